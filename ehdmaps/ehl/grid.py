@@ -1,0 +1,190 @@
+"""Nodes of one line contact: a smooth map from a uniform index, so that the scheme keeps its order on a graded grid.
+
+x(s) is defined by its inverse s(x), a sum of asinh terms: uniform within the width of a term, logarithmic outside.
+One term sits in the inlet, one at the exit, one over the Hertz zone, and, when its place is known, one at the pressure
+spike, which is far narrower than anything else in the contact.
+
+All lengths are in Hertz half-widths b. The grid is fixed to the exit of the film: x = X - X_exit <= 0, because the
+exit is an unknown and the elastic kernel depends on differences only.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Nodes and metric of one grid.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n + 1,)
+        Node positions relative to the exit, increasing, x[-1] = 0 [b].
+    step : ndarray, shape (n + 1,)
+        dx/ds at the nodes, s counted in cells [b].
+    face : ndarray, shape (n,)
+        Positions half-way (in s) between the nodes [b].
+    face_step : ndarray, shape (n,)
+        dx/ds half-way between the nodes [b].
+    """
+
+    x: Array
+    step: Array
+    face: Array
+    face_step: Array
+
+
+@dataclass(frozen=True)
+class Spike:
+    """Where the pressure spike stands, relative to the exit, and the width within which cells are finest [b]."""
+
+    position: float
+    width: float
+
+
+@dataclass(frozen=True)
+class GridShape:
+    """Where a grid spends its cells; dimensionless weights, the same for every operating point."""
+
+    inlet: float = 1.0
+    exit: float = 0.4
+    core: float = 0.135
+    spike: float = 0.5
+    inlet_width: float = 1.35
+    exit_width: float = 0.45
+
+
+def thick_film_exit(film: float) -> float:
+    """Exit coordinate X_exit of a film H [b^2/R]: near 1 for thin films, 0.475 sqrt(2H) for rigid surfaces."""
+    return math.sqrt(1.0 + 0.226 * 2.0 * film) + 0.25 * film ** (2 / 3) / (1.0 + film ** (2 / 3))
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The map s(x) of one contact; any number of cells can be laid on it.
+
+    Attributes
+    ----------
+    film : float
+        Film H for which it is laid [b^2/R].
+    length : float
+        From the inlet end to the exit [b].
+    inlet_edge, blur, core : float
+        Where the Hertz zone starts, over which length its term is rounded [b], and its weight.
+    terms : ndarray, shape (3, k)
+        Centres [b], widths [b] and weights of the asinh terms.
+    """
+
+    film: float
+    length: float
+    inlet_edge: float
+    blur: float
+    core: float
+    terms: Array
+
+    @property
+    def span(self) -> float:
+        """s(exit) - s(inlet end): how many e-folds of distance the grid has to resolve."""
+        first, last = (
+            _index(x, self.inlet_edge, self.blur, self.core, self.terms)[0] for x in (-self.length, 0.0)
+        )
+        return float(last - first)
+
+    def grid(self, cells: int) -> Grid:
+        """Nodes at equal steps of s."""
+        x, step = _nodes(2 * cells, self.length, self.inlet_edge, self.blur, self.core, self.terms)
+        return Grid(x=x[::2].copy(), step=2.0 * step[::2], face=x[1::2].copy(), face_step=2.0 * step[1::2])
+
+
+def lay_out(
+    film: float, inlet_length: float, shape: GridShape = GridShape(), spike: Spike | None = None
+) -> Layout:
+    """Layout for a contact whose film is about `film`.
+
+    Parameters
+    ----------
+    film : float
+        Expected film H = h R/b^2; sets the widths of inlet and exit.
+    inlet_length : float
+        Length of the inlet in units of sqrt(2 H).
+    shape, spike
+        Weights of the terms, and the pressure spike if there is one.
+    """
+    film_length = math.sqrt(2.0 * film)
+    zone = zone_width(film)
+    inlet_edge = -(thick_film_exit(film) + math.sqrt(1.0 + 0.25 * film_length**2))
+    centres = [inlet_edge + 0.3 * zone, -0.45 * zone]
+    widths = [shape.inlet_width * zone, shape.exit_width * zone]
+    weights = [shape.inlet, shape.exit]
+    if spike is not None:
+        centres.append(spike.position)
+        widths.append(spike.width)
+        weights.append(shape.spike)
+    return Layout(
+        film=film,
+        length=-inlet_edge + 6.0 + inlet_length * film_length,
+        inlet_edge=inlet_edge,
+        blur=0.1 * math.sqrt(1.0 + film_length**2),
+        core=shape.core / math.sqrt(1.0 + 0.25 * film_length**2),
+        terms=np.array([centres, widths, weights]),
+    )
+
+
+def zone_width(film: float) -> float:
+    """Width of inlet and exit zones [b]: H^(2/3) for thin films, sqrt(2H) for thick ones."""
+    return film ** (2 / 3) / (1.0 + film ** (2 / 3) / math.sqrt(2.0 * film))
+
+
+@njit(cache=True)
+def _index(x: float, edge: float, blur: float, core: float, terms: Array) -> tuple[float, float]:
+    """The uniform index s at x, and ds/dx."""
+    left = math.hypot(x - edge, blur)
+    right = math.hypot(x, blur)
+    index = core * (left - right)
+    slope = core * ((x - edge) / left - x / right)
+    for k in range(terms.shape[1]):
+        ratio = (x - terms[0, k]) / terms[1, k]
+        index += terms[2, k] * math.asinh(ratio)
+        slope += terms[2, k] / (terms[1, k] * math.sqrt(1.0 + ratio * ratio))
+    return index, slope
+
+
+@njit(cache=True)
+def _nodes(count: int, length: float, edge: float, blur: float, core: float, terms: Array) -> tuple[Array, Array]:
+    """Invert s(x) at equal steps, from the exit inwards, by Newton steps kept inside a bracket."""
+    first = _index(-length, edge, blur, core, terms)[0]
+    last, slope = _index(0.0, edge, blur, core, terms)
+    spacing = (last - first) / count
+    x = np.empty(count + 1)
+    step = np.empty(count + 1)
+    x[count] = 0.0
+    step[count] = spacing / slope
+    for i in range(count - 1, -1, -1):
+        target = first + i * spacing
+        low, high = -length, x[i + 1]
+        trial = max(low, high - step[i + 1])
+        for _ in range(60):
+            index, slope = _index(trial, edge, blur, core, terms)
+            if index > target:
+                high = trial
+            else:
+                low = trial
+            move = (target - index) / slope
+            if abs(index - target) < 1e-13 * (last - first):
+                break
+            trial += move
+            if not low < trial < high:
+                trial = 0.5 * (low + high)
+        if i == 0:
+            trial = -length
+        x[i] = trial
+        step[i] = spacing / _index(trial, edge, blur, core, terms)[1]
+    return x, step

@@ -1,0 +1,407 @@
+"""The story of one solve: coarse grid, place of the spike, fine grid, linear response, error estimate.
+
+Everything here is in the groups of the problem (Hertz-dimensionless); `solver` adds the units.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ehdmaps.ehl.elastic import DRY_DATUM, log_kernel
+from ehdmaps.ehl.grid import Grid, GridShape, Layout, Spike, lay_out, thick_film_exit, zone_width
+from ehdmaps.ehl.linearisation import Neighbours, Response, film_response
+from ehdmaps.ehl.newton import CONVERGED, hertz_start, newton
+from ehdmaps.ehl.reynolds import LineProblem, film, node_pressure
+from ehdmaps.physics.films import moes_central
+
+Array = NDArray[np.float64]
+
+LOAD = 0.5 * math.pi
+"""Int P dX of a pressure in units of p_H over lengths in units of b."""
+
+MOST_STEPS = 60
+"""Newton steps on one grid after which a point counts as stagnated."""
+
+MOST_MOVES = 6
+"""Coarse grids laid in search of the spike."""
+
+LOOSE_TOLERANCE = 1e-2
+"""Newton tolerance while the place of the spike is still being looked for."""
+
+COLD_START_BELOW = 1.0
+"""Load M below which the cold start is as good as any other."""
+
+THIN_FILM = 20.0
+"""Load M above which a negative loss can only be a numerical one."""
+
+LADDER_RATIO = 1.5
+"""Step in M from a light load up to a point that does not converge by itself."""
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """What decides accuracy and cost of a solve.
+
+    Attributes
+    ----------
+    density : float
+        Cells of the fine grid per e-fold of distance from inlet, exit and spike (about 100 cells a contact at 7);
+        the error is estimated against the grid with half as many.
+    inlet_length : float
+        Length of the inlet in units of sqrt(2 h R).
+    tolerance : float
+        Newton tolerance on the last step; convergence is quadratic, so what remains is about its square.
+    spike_width : float
+        Width of the finest cells around the pressure spike [b]; less where inlet and exit zones are narrower.
+    spike_steepness : float
+        Fall of pressure behind the spike, in p_H per width of the exit zone, above which the spike gets cells of its
+        own and the linearised grid follows it.
+    shape : GridShape
+        Where the grid spends its cells.
+    """
+
+    density: float = 6.5
+    inlet_length: float = 300.0
+    tolerance: float = 1e-6
+    spike_width: float = 0.1
+    spike_steepness: float = 0.6
+    shape: GridShape = GridShape()
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A converged discrete solution on its grid."""
+
+    problem: LineProblem
+    layout: Layout
+    grid: Grid
+    kernel: Array
+    unknowns: Array
+    spike: Spike | None
+
+    @property
+    def cells(self) -> int:
+        """Number of cells."""
+        return self.grid.face.size
+
+    @property
+    def pressure(self) -> Array:
+        """P at the nodes, shape (n + 1,) [p_H]."""
+        return np.asarray(node_pressure(self.unknowns))
+
+    @property
+    def film(self) -> Array:
+        """H at the nodes, shape (n + 1,) [b^2/R]."""
+        return np.asarray(film(self.grid.x, self.kernel, self.unknowns))
+
+    @property
+    def position(self) -> Array:
+        """X of the nodes from the centre of the Hertz contact, shape (n + 1,) [b]."""
+        return self.grid.x + self.unknowns[-2]
+
+    @property
+    def film_offset(self) -> float:
+        """Dry minus lubricated approach [b^2/R]: H0 above the datum of the dry contact."""
+        return float(self.unknowns[-1]) - DRY_DATUM
+
+
+@dataclass(frozen=True)
+class GroupSolution:
+    """Film of one point in units of b, p_H, b^2/R and b/u, with estimated relative errors.
+
+    `profile` is the fine solution (the coarse one where the fine one failed, None where both did).
+    """
+
+    outcome: int
+    profile: Profile | None
+    film_offset: float = math.nan
+    film_compliance: float = math.nan
+    loss: float = math.nan
+    central_film: float = math.nan
+    minimum_film: float = math.nan
+    max_pressure: float = math.nan
+    film_offset_error: float = math.nan
+    film_compliance_error: float = math.nan
+    loss_error: float = math.nan
+    steps: int = 0
+
+
+def expected_film(M: float, L: float) -> float:
+    """Film H [b^2/R] about which the grid is laid: 0.8 of the Moes central film."""
+    return 0.8 * float(moes_central(M, max(L, 1e-6))) * math.pi / (8.0 * M)
+
+
+def solve_groups(
+    problem: LineProblem,
+    M: float,
+    L: float,
+    resolution: Resolution,
+    previous: Profile | None = None,
+    frequency: float = 0.0,
+) -> GroupSolution:
+    """Film and linear response of one point.
+
+    Parameters
+    ----------
+    problem : LineProblem
+        The groups that enter the equations.
+    M, L : float
+        Moes' load and lubricant parameters of the same point; used for grids and starts.
+    resolution : Resolution
+        Accuracy and cost.
+    previous : Profile, optional
+        Solution at a neighbouring load, a better start than none.
+    frequency : float
+        Omega = omega b/u of the response.
+    """
+    solution = _solve_once(problem, M, L, resolution, previous, frequency)
+    if solution.outcome == CONVERGED and (solution.loss > 0.0 or M < THIN_FILM):
+        return solution
+    # a grid too coarse for the inlet of a heavily loaded contact does not converge, or shows a negative loss
+    finer = replace(resolution, density=2.0 * resolution.density)
+    again = _solve_once(problem, M, L, finer, solution.profile, frequency)
+    steps = solution.steps + again.steps
+    return replace(again if again.outcome == CONVERGED else solution, steps=steps)
+
+
+def _solve_once(
+    problem: LineProblem, M: float, L: float, resolution: Resolution, previous: Profile | None, frequency: float
+) -> GroupSolution:
+    """One solve at one resolution."""
+    coarse, steps, outcome = _coarse(problem, M, L, resolution, previous)
+    if coarse is None:
+        return GroupSolution(outcome=outcome, profile=None, steps=steps)
+    grid = coarse.layout.grid(2 * coarse.cells)
+    fine, more, outcome = _converged(problem, coarse.layout, grid, _refined(coarse, grid), coarse.spike, resolution.tolerance)
+    steps += more
+    if fine is None:
+        return GroupSolution(outcome=outcome, profile=None, steps=steps)
+    response = _response(fine, resolution, frequency)
+    rough = _response(coarse, resolution, frequency)
+    return _assembled(M, L, fine, coarse, response, rough, resolution, steps)
+
+
+def _converged(
+    problem: LineProblem, layout: Layout, grid: Grid, start: Array | None, spike: Spike | None, tolerance: float
+) -> tuple[Profile | None, int, int]:
+    """Newton on one grid, from `start` or from Hertz: profile (None unless converged), steps, outcome."""
+    kernel = log_kernel(grid.x, grid.step)
+    if start is None:
+        guess = layout.film
+        start = hertz_start(grid.x, grid.step, kernel, guess, thick_film_exit(guess), LOAD)
+    result = newton(problem, grid.x, grid.step, grid.face_step, kernel, start, LOAD, tolerance, MOST_STEPS)
+    if result.outcome != CONVERGED:
+        return None, result.steps, result.outcome
+    return Profile(problem, layout, grid, kernel, result.unknowns, spike), result.steps, CONVERGED
+
+
+def _coarse(
+    problem: LineProblem, M: float, L: float, resolution: Resolution, previous: Profile | None
+) -> tuple[Profile | None, int, int]:
+    """Coarse solution with the spike in its place: from the previous point, from Hertz, or up a ladder of loads."""
+    guess = expected_film(M, L)
+    total, outcome = 0, CONVERGED
+    warm = previous if M >= COLD_START_BELOW else None
+    found: Profile | None = None
+    if warm is not None:
+        found, steps, outcome = _with_spike(problem, guess, resolution, warm, warm.spike)
+        total += steps
+    if found is None and M < 20.0:
+        found, steps, outcome = _with_spike(problem, guess, resolution, None, None)
+        total += steps
+    if found is None:
+        found, steps, outcome = _climb(problem, M, L, resolution)
+        total += steps
+    return found, total, outcome
+
+
+def _climb(
+    problem: LineProblem, M: float, L: float, resolution: Resolution
+) -> tuple[Profile | None, int, int]:
+    """Start at a light load, where every start converges, and raise M step by step at the same L."""
+    rungs = max(1, math.ceil(math.log(M / min(M, 0.5 * COLD_START_BELOW)) / math.log(LADDER_RATIO)))
+    rung: Profile | None = None
+    total, outcome = 0, CONVERGED
+    for k in range(rungs + 1):
+        factor = (min(M, 0.5 * COLD_START_BELOW) / M) ** (1.0 - k / rungs)
+        rung_problem = at_load(problem, factor)
+        rung, steps, outcome = _with_spike(
+            rung_problem, expected_film(M * factor, L), resolution, rung, rung.spike if rung else None
+        )
+        total += steps
+        if rung is None:
+            break
+    return rung, total, outcome
+
+
+def at_load(problem: LineProblem, factor: float) -> LineProblem:
+    """The same contact, oil and speed at `factor` times the load: p_H and b go with its square root."""
+    root = math.sqrt(factor)
+    return LineProblem(
+        wedge=problem.wedge / (factor * factor),
+        alpha=problem.alpha * root,
+        exponent=problem.exponent,
+        pressure_ratio=problem.pressure_ratio * root,
+        density_ratio=problem.density_ratio * root,
+    )
+
+
+def _with_spike(
+    problem: LineProblem, guess: float, resolution: Resolution, start: Profile | None, spike: Spike | None
+) -> tuple[Profile | None, int, int]:
+    """Solve on one coarse grid after another, loosely at first, until the spike stands where the grid expects it."""
+    total = 0
+    zone = zone_width(guess)
+    finest = resolution.spike_width * min(1.0, zone / 0.3)
+    solution = start
+    for attempt in range(MOST_MOVES):
+        layout = lay_out(guess, resolution.inlet_length, resolution.shape, spike)
+        grid = layout.grid(math.ceil(0.5 * resolution.density * layout.span))
+        unknowns = None if solution is None else _moved(solution, grid)
+        for tolerance in (LOOSE_TOLERANCE, resolution.tolerance):
+            solution, steps, outcome = _converged(problem, layout, grid, unknowns, spike, tolerance)
+            total += steps
+            if solution is None:
+                return None, total, outcome
+            unknowns = solution.unknowns
+            front, steepness = _front(solution)
+            if spike is None:
+                settled = steepness * zone < resolution.spike_steepness
+            else:
+                settled = abs(front - spike.position) < 0.5 * finest and spike.width == finest
+            if not settled and attempt < MOST_MOVES - 1:
+                spike = Spike(front, finest)
+                break
+        else:
+            break
+    return solution, total, CONVERGED
+
+
+def _front(profile: Profile) -> tuple[float, float]:
+    """Where the pressure falls fastest behind its maximum, relative to the exit [b], and how fast [p_H/b]."""
+    pressure = profile.pressure
+    fall = -np.diff(pressure) / np.diff(profile.grid.x)
+    top = int(np.argmax(pressure))
+    cell = top + int(np.argmax(fall[top:]))
+    return float(profile.grid.face[cell]), float(fall[cell])
+
+
+def _moved(profile: Profile, grid: Grid) -> Array:
+    """Start on another grid from a solution nearby: what differs from the Hertz pressure is interpolated."""
+    exit_at = profile.unknowns[-2]
+    excess = profile.pressure - _hertz(profile.position)
+    pressure = np.interp(grid.x, profile.grid.x, excess) + _hertz(grid.x + exit_at)
+    return np.concatenate([np.maximum(pressure[1:-1], 0.0), profile.unknowns[-3:]])
+
+
+def _refined(coarse: Profile, grid: Grid) -> Array:
+    """Start on the grid with twice the cells: old nodes stay, new ones by cubic interpolation in the index."""
+    exit_at = coarse.unknowns[-2]
+    old = coarse.pressure - _hertz(coarse.position)
+    new = np.empty(2 * old.size - 1)
+    new[::2] = old
+    middle = 0.5 * (old[1:] + old[:-1])
+    cubic = (9.0 * (old[1:-2] + old[2:-1]) - old[:-3] - old[3:]) / 16.0
+    low, high = np.minimum(old[1:-2], old[2:-1]), np.maximum(old[1:-2], old[2:-1])
+    middle[1:-1] = np.where((cubic > low) & (cubic < high), cubic, middle[1:-1])
+    new[1::2] = middle
+    pressure = new + _hertz(grid.x + exit_at)
+    return np.concatenate([np.maximum(pressure[1:-1], 0.0), coarse.unknowns[-3:]])
+
+
+def _hertz(position: Array) -> Array:
+    """Pressure of the dry contact."""
+    return np.sqrt(np.maximum(0.0, 1.0 - position * position))
+
+
+def _response(profile: Profile, resolution: Resolution, frequency: float) -> Response:
+    """Linear response of one profile, its grid following the spike where there is one."""
+    neighbours = None
+    spike = profile.spike
+    if spike is not None:
+        shift = 0.02 * spike.width
+        behind, ahead = (
+            lay_out(
+                profile.layout.film, resolution.inlet_length, resolution.shape, Spike(spike.position + d, spike.width)
+            ).grid(profile.cells)
+            for d in (-shift, shift)
+        )
+        neighbours = Neighbours(behind, ahead, shift, _front_node(profile))
+    return film_response(
+        profile.problem, profile.grid, profile.kernel, profile.unknowns, LOAD, neighbours, frequency
+    )
+
+
+def _front_node(profile: Profile) -> int:
+    """The node half-way down the front."""
+    front, _ = _front(profile)
+    pressure = profile.pressure
+    cell = int(np.searchsorted(profile.grid.face, front - 1e-12))
+    around = 0.5 * (pressure[max(cell - 1, 0)] + pressure[min(cell + 2, pressure.size - 1)])
+    node = cell if abs(pressure[cell] - around) < abs(pressure[cell + 1] - around) else cell + 1
+    return min(max(node, 1), pressure.size - 2)
+
+
+def _assembled(
+    M: float, L: float, fine: Profile, coarse: Profile, response: Response, rough: Response, resolution: Resolution, steps: int
+) -> GroupSolution:
+    """Numbers and error estimates from the fine and the coarse solution."""
+    by_offset, by_response = _grid_share(M, L, fine.spike is not None)
+    inlet = 1.0 / resolution.inlet_length**2
+    central, minimum = _films(fine)
+
+    def error(value: float, other: float, share: float, tail: float) -> float:
+        return abs(value - other) * share / abs(value) + tail * inlet
+
+    return GroupSolution(
+        outcome=CONVERGED,
+        profile=fine,
+        film_offset=fine.film_offset,
+        film_compliance=response.compliance,
+        loss=response.loss,
+        central_film=central,
+        minimum_film=minimum,
+        max_pressure=float(np.max(fine.pressure)),
+        film_offset_error=error(fine.film_offset, coarse.film_offset, by_offset, 3.0),
+        film_compliance_error=error(response.compliance, rough.compliance, by_response, 6.0),
+        loss_error=error(response.loss, rough.loss, by_response, 6.0),
+        steps=steps,
+    )
+
+
+def _grid_share(M: float, L: float, spike: bool) -> tuple[float, float]:
+    """Share of the difference between both grids that is left as error of the finer one: film offset, response.
+
+    1/(2^p - 1) with p = 4 and half as much again for safety; p = 2 where the order is lost: the film offset where a
+    front narrower than a cell carries load, the response at the valley, where it is a small difference of large parts
+    whose errors have either sign.
+    """
+    fourth, second = 1.5 / 15.0, 1.0 / 3.0
+    by_offset = second if spike and M < 20.0 else fourth
+    by_response = second if 0.2 < M < 2.0 or L > 30.0 else fourth
+    return by_offset, by_response
+
+
+def _films(profile: Profile) -> tuple[float, float]:
+    """Film at X = 0 and smallest film, by parabolas through three nodes."""
+    position, gap = profile.position, profile.film
+    last = gap.size - 2
+    centre = min(max(int(np.argmin(np.abs(position))), 1), last)
+    lowest = min(max(int(np.argmin(gap)), 1), last)
+    value, slope, curvature = _parabola(position, gap, centre)
+    away = -position[centre]
+    central = value + slope * away + 0.5 * curvature * away * away
+    value, slope, curvature = _parabola(position, gap, lowest)
+    return central, value - 0.5 * slope * slope / curvature if curvature > 0.0 else value
+
+
+def _parabola(x: Array, y: Array, i: int) -> tuple[float, float, float]:
+    """Value, slope and second derivative at node i of the parabola through nodes i-1, i, i+1."""
+    left, right = x[i] - x[i - 1], x[i + 1] - x[i]
+    down, up = (y[i] - y[i - 1]) / left, (y[i + 1] - y[i]) / right
+    curvature = 2.0 * (up - down) / (left + right)
+    return float(y[i]), float((down * right + up * left) / (left + right)), float(curvature)

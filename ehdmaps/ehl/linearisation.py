@@ -1,0 +1,119 @@
+"""Stiffness and damping of the film: linear response of the discrete transient equations about the steady solution.
+
+A small load dW(T) moves the far bodies by dH0: dH0/dW = -a + i Omega b + O(Omega^2), Omega = omega b/u. `a` is the
+compliance of the contact in the log kernel's datum (it contains the dry ln(2)/pi), `b` its low-frequency loss.
+
+The pressure spike of a strongly piezoviscous contact is a front far narrower than a cell. On a grid that stands still
+the front is locked to its cell, and the tangent is that of a staircase. So the grid's spike follows an isobar of the
+front: its position is one more unknown, and the pressure at the front's node is held. In the limit of fine grids the
+response does not depend on how the grid moves.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ehdmaps.ehl.elastic import log_kernel
+from ehdmaps.ehl.grid import Grid
+from ehdmaps.ehl.newton import solve_scaled
+from ehdmaps.ehl.reynolds import LineProblem, residual, stored_mass, stored_mass_rate
+
+Array = NDArray[np.float64]
+
+DRY_COMPLIANCE = math.log(2.0) / math.pi
+"""a of the dry Hertz contact: what the log kernel with reference length b gives."""
+
+
+class Neighbours(NamedTuple):
+    """Two grids that differ from the solution's grid in the place of the spike only, by -/+ `shift` [b]."""
+
+    behind: Grid
+    ahead: Grid
+    shift: float
+    node: int  # the node whose isobar the grid follows
+
+
+class Response(NamedTuple):
+    """Film compliance a - ln(2)/pi and loss b, dimensionless; at Omega > 0 real part and -imaginary part over Omega."""
+
+    compliance: float
+    loss: float
+
+
+def film_response(
+    problem: LineProblem,
+    grid: Grid,
+    kernel: Array,
+    unknowns: Array,
+    load: float,
+    neighbours: Neighbours | None = None,
+    frequency: float = 0.0,
+) -> Response:
+    """Film and loss compliance at a converged solution.
+
+    Parameters
+    ----------
+    unknowns : ndarray, shape (n + 2,)
+        Converged unknowns on `grid`.
+    neighbours : Neighbours, optional
+        Needed where the grid has a spike term: the grid then follows the spike.
+    frequency : float
+        Omega = omega b/u; 0 is the low-frequency limit.
+    """
+    size = unknowns.size
+    n = size - 2
+    total = size + (neighbours is not None)
+    matrix = np.zeros((total, total))
+    out = np.empty(size)
+    jacobian = np.empty((size, size))
+    residual(problem, grid.x, grid.step, grid.face_step, kernel, unknowns, load, out, jacobian)
+    matrix[:size, :size] = jacobian
+    grid_mass: Array | None = None
+    if neighbours is not None:
+        by_grid, grid_mass = _by_grid(problem, grid, kernel, unknowns, load, neighbours)
+        matrix[:size, size] = by_grid
+        matrix[size, neighbours.node - 1] = 1.0
+    unit = np.zeros(total)
+    unit[n + 1] = 1.0
+    _, carried = stored_mass(problem, grid.x, grid.step, kernel, unknowns)
+
+    def storage(rate: Array) -> Array:
+        """What the time derivative adds to the residual for a rate of the unknowns (and of the spike)."""
+        added = np.zeros(total)
+        mass_rate = stored_mass_rate(problem, grid.x, grid.step, kernel, unknowns, rate[:size]) - carried * rate[n]
+        if grid_mass is not None:
+            mass_rate += grid_mass * rate[size]
+        added[:n] = -mass_rate[:n]
+        added[n] = mass_rate[n]
+        return added
+
+    if frequency == 0.0:
+        static = solve_scaled(matrix.copy(), unit.copy())
+        slow = solve_scaled(matrix, -storage(static))
+        return Response(compliance=-float(static[n + 1]) - DRY_COMPLIANCE, loss=float(slow[n + 1]))
+    rates = np.column_stack([storage(column) for column in np.eye(total)])
+    dynamic = np.linalg.solve(matrix + 1j * frequency * rates, unit.astype(complex))[n + 1]
+    return Response(compliance=-float(dynamic.real) - DRY_COMPLIANCE, loss=float(dynamic.imag) / frequency)
+
+
+def _by_grid(
+    problem: LineProblem, grid: Grid, kernel: Array, unknowns: Array, load: float, neighbours: Neighbours
+) -> tuple[Array, Array]:
+    """Derivatives of the residual and of the stored mass (seen by the moving faces) with respect to the spike's place."""
+    size = unknowns.size
+    sides = []
+    for side in (neighbours.behind, neighbours.ahead):
+        side_kernel = log_kernel(side.x, side.step)
+        out = np.empty(size)
+        residual(problem, side.x, side.step, side.face_step, side_kernel, unknowns, load, out, np.empty((size, size)))
+        mass, _ = stored_mass(problem, side.x, side.step, side_kernel, unknowns)
+        sides.append((out, mass, np.append(side.face, side.x[-1])))
+    (out_0, mass_0, face_0), (out_1, mass_1, face_1) = sides
+    _, carried = stored_mass(problem, grid.x, grid.step, kernel, unknowns)
+    width = 2.0 * neighbours.shift
+    by_grid: Array = (out_1 - out_0) / width
+    return by_grid, (mass_1 - mass_0) / width - carried * (face_1 - face_0) / width

@@ -1,0 +1,143 @@
+"""Full Newton for the discrete contact: dense Jacobian, rows scaled, steps limited in ln eta, film kept positive."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from ehdmaps.ehl.reynolds import LineProblem, film, node_pressure, residual
+
+Array = NDArray[np.float64]
+
+LOG_VISCOSITY_STEP = 5.0
+"""Largest change of ln eta in one step."""
+
+CONVERGED, STAGNATED, DIVERGED = 0, 1, 2
+
+
+class NewtonResult(NamedTuple):
+    """Unknowns, outcome (CONVERGED, STAGNATED or DIVERGED), Newton steps taken and size of the last step."""
+
+    unknowns: Array
+    outcome: int
+    steps: int
+    last_step: float
+
+
+@njit(cache=True)
+def solve_scaled(jacobian: Array, right_hand_side: Array) -> Array:
+    """Solve a dense system after scaling each row by its largest entry; overwrites both arguments."""
+    for i in range(jacobian.shape[0]):
+        largest = 0.0
+        for j in range(jacobian.shape[1]):
+            largest = max(largest, abs(jacobian[i, j]))
+        if largest > 0.0:
+            for j in range(jacobian.shape[1]):
+                jacobian[i, j] /= largest
+            right_hand_side[i] /= largest
+    return np.linalg.solve(jacobian, right_hand_side)
+
+
+@njit(cache=True)
+def newton(
+    problem: LineProblem,
+    x: Array,
+    step: Array,
+    face_step: Array,
+    kernel: Array,
+    start: Array,
+    load: float,
+    tolerance: float,
+    most_steps: int,
+) -> NewtonResult:
+    """Solve the discrete contact from `start`.
+
+    Parameters
+    ----------
+    tolerance : float
+        On the last full step: pressure relative to its maximum, film and exit relative to film and exit.
+    most_steps : int
+        Steps after which the point counts as stagnated.
+    """
+    size = start.size
+    n = size - 2
+    unknowns = start.copy()
+    # a start interpolated from another grid can touch: lift it clear first
+    lowest = np.min(film(x, kernel, unknowns))
+    if lowest < 0.2 * unknowns[n - 1]:
+        unknowns[n + 1] += 0.2 * unknowns[n - 1] - lowest
+    out = np.empty(size)
+    jacobian = np.empty((size, size))
+    last = math.inf
+    for count in range(most_steps):
+        lowest = residual(problem, x, step, face_step, kernel, unknowns, load, out, jacobian)
+        if not np.all(np.isfinite(out)):
+            return NewtonResult(unknowns, DIVERGED, count, last)
+        move = solve_scaled(jacobian, -out)
+        peak = 0.0
+        for i in range(n - 1):
+            peak = max(peak, unknowns[i])
+        outflow = abs(unknowns[n - 1])
+        last = max(
+            abs(move[n - 1]) / outflow,
+            abs(move[n]) / (1.0 + abs(unknowns[n])),
+            abs(move[n + 1]) / (outflow + 1e-3),
+        )
+        thickening = 0.0
+        for i in range(n - 1):
+            last = max(last, abs(move[i]) / peak)
+            p = max(unknowns[i], 0.0)
+            slope = problem.alpha * (1.0 + problem.pressure_ratio * p) ** (problem.exponent - 1.0)
+            thickening = max(thickening, abs(move[i]) * slope)
+        if not math.isfinite(last):
+            return NewtonResult(unknowns, DIVERGED, count, last)
+        length = 1.0
+        if thickening > LOG_VISCOSITY_STEP:
+            length = LOG_VISCOSITY_STEP / thickening
+        length = min(length, 0.3 * (1.0 + abs(unknowns[n])) / max(abs(move[n]), 1e-300))
+        for _ in range(15):
+            trial = unknowns + length * move
+            if trial[n - 1] > 0.0:
+                gap = film(x, kernel, trial)
+                if np.min(gap) >= 0.2 * min(lowest, trial[n - 1]):
+                    break
+            length *= 0.5
+        unknowns = unknowns + length * move
+        if length == 1.0 and last < tolerance:
+            return NewtonResult(unknowns, CONVERGED, count + 1, last)
+    return NewtonResult(unknowns, STAGNATED, most_steps, last)
+
+
+@njit(cache=True)
+def hertz_start(x: Array, step: Array, kernel: Array, film_guess: float, exit_guess: float, load: float) -> Array:
+    """Cold start: Hertz pressure with its edges rounded by the film, and a film of about `film_guess` at the centre."""
+    n = x.size - 1
+    zone = film_guess ** (2 / 3)
+    rounding = 0.15 * zone
+    stretch = math.sqrt(1.0 + 2.0 * film_guess) if film_guess > 0.3 else 1.0
+    pressure = np.zeros(n + 1)
+    for i in range(1, n):
+        place = exit_guess + x[i]
+        if film_guess > 0.3:
+            # thick film: a hump of the width of the film's own scale, with the inlet's cubic tail
+            t = place / stretch
+            pressure[i] = max(0.0, -x[i] / stretch) ** 2 / (1.0 + t * t) ** 2.5
+        elif place > 0.0:
+            pressure[i] = math.sqrt(max(0.0, 1.0 - (place / exit_guess) ** 2))
+        elif place < -1.0 + rounding:
+            pressure[i] = math.sqrt(2.0 * rounding) * math.exp((place + 1.0 - rounding) / (0.6 * zone + 1e-9))
+        else:
+            pressure[i] = math.sqrt(max(0.0, 1.0 - place * place))
+    pressure *= load / np.sum(step * pressure)
+    centre = np.argmin(np.abs(x + exit_guess))
+    deflection = kernel[centre] @ pressure
+    start = np.empty(n + 2)
+    start[: n - 1] = pressure[1:n]
+    start[n - 1] = film_guess
+    start[n] = exit_guess
+    start[n + 1] = film_guess - 0.5 * (exit_guess + x[centre]) ** 2 + deflection
+    return start

@@ -1,0 +1,219 @@
+"""The solver `reynolds`: operating points in SI, one line of loads after another.
+
+The groups of a point go to `line`, which knows no units; what comes back is scaled by b, p_H, b^2/R and b/u.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+from ehdmaps.ehl.grid import GridShape
+from ehdmaps.ehl.line import GroupSolution, Profile, Resolution, solve_groups
+from ehdmaps.ehl.newton import CONVERGED, DIVERGED
+from ehdmaps.ehl.reynolds import LineProblem
+from ehdmaps.errors import InputError
+from ehdmaps.physics.closed_form import THIN_FILM_LIMIT
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.hertz import half_width, max_pressure
+from ehdmaps.physics.lubricant import Lubricant, LubricantState
+from ehdmaps.physics.moes import moes_groups
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solution import FilmSolution, Status
+
+DENSITY_PRESSURE = 0.59e9
+"""Pressure in the Dowson-Higginson density law [Pa]."""
+
+LARGEST_PRESSURE = 10e9
+"""Hertz pressure above which no solve is tried [Pa]; steel yields long before."""
+
+HEAVIEST_LOAD_NUMBER = 2e6
+"""Moes' M above which the film is too thin for double precision to see it beside the elastic deflection."""
+
+LARGEST_OIL_NUMBER = 150.0
+"""Moes' L above which no solve is tried."""
+
+
+@dataclass(frozen=True)
+class ReynoldsSolver:
+    """Finite-difference solver of the steady line contact and of its linear response.
+
+    Isothermal, Newtonian, piezoviscous, compressible, fully flooded, with Reynolds' cavitation condition at the exit.
+
+    Attributes
+    ----------
+    density : float
+        Cells per e-fold of distance from inlet, exit and spike; 6.5 gives about 90 cells a contact.
+    inlet_length : float
+        Length of the inlet in units of sqrt(2 h R).
+    tolerance : float
+        Newton tolerance on the last (quadratic) step.
+
+    Raises
+    ------
+    InputError
+        If a setting is outside its range.
+    """
+
+    density: float = 6.5
+    inlet_length: float = 300.0
+    tolerance: float = 1e-6
+
+    def __post_init__(self) -> None:
+        limits = {"density": (3.0, 60.0), "inlet_length": (20.0, 1e5), "tolerance": (1e-12, 1e-3)}
+        problems = [
+            f"reynolds solver, {name}: got {getattr(self, name)!r}; allowed: {low:g} to {high:g}; leave it out for the default"
+            for name, (low, high) in limits.items()
+            if not low <= getattr(self, name) <= high
+        ]
+        if problems:
+            raise InputError(problems)
+
+    @property
+    def name(self) -> str:
+        """Name of the solver."""
+        return "reynolds"
+
+    @property
+    def resolution(self) -> Resolution:
+        """The same settings, as the solve in groups takes them."""
+        return Resolution(density=self.density, inlet_length=self.inlet_length, tolerance=self.tolerance)
+
+    def settings(self) -> dict[str, float | int | str]:
+        """Everything that changes the numbers."""
+        shape = GridShape()
+        return {
+            "density": self.density,
+            "inlet_length": self.inlet_length,
+            "tolerance": self.tolerance,
+            "grid_shape": f"{shape}",
+        }
+
+    def solve_line(
+        self,
+        contact: LineContact,
+        lubricant: Lubricant,
+        loads: tuple[float, ...],
+        entrainment_speed: float,
+        temperature: float,
+        frequency: float = 0.0,
+    ) -> tuple[FilmSolution, ...]:
+        """Films at each load [N/m], in the order given; each starts from the one before it."""
+        state = lubricant.at(temperature)
+        films = []
+        previous: Profile | None = None
+        for load in loads:
+            OperatingPoint(load, entrainment_speed, temperature)
+            film, previous = self._solve(contact, state, load, entrainment_speed, frequency, previous)
+            films.append(film)
+        return tuple(films)
+
+    def _solve(
+        self,
+        contact: LineContact,
+        state: LubricantState,
+        load: float,
+        speed: float,
+        frequency: float,
+        previous: Profile | None,
+    ) -> tuple[FilmSolution, Profile | None]:
+        """One point, and its profile for the next one."""
+        peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
+        if speed == 0.0:
+            return dry_film(peak, "no entrainment: dry contact"), previous
+        problem, M, L = line_problem(contact, state, load, speed)
+        beyond = _beyond_reach(peak, M, L)
+        if beyond:
+            return FilmSolution(Status.OUTSIDE_VALIDITY, beyond), previous
+        started = time.perf_counter()
+        half = float(half_width(load, contact.radius, contact.reduced_modulus))
+        omega = 2.0 * math.pi * frequency * half / speed
+        groups = solve_groups(problem, M, L, self.resolution, previous, omega)
+        seconds = time.perf_counter() - started
+        if groups.outcome != CONVERGED:
+            word = "diverged" if groups.outcome == DIVERGED else "stagnated"
+            status = Status.DIVERGED if groups.outcome == DIVERGED else Status.STAGNATED
+            reason = f"Newton {word} at M = {M:.4g}, L = {L:.4g} on every grid tried"
+            return FilmSolution(status, reason, iterations=groups.steps, solve_seconds=seconds), None
+        return _in_si(groups, contact, state, half, peak, speed, seconds), groups.profile
+
+
+def line_problem(
+    contact: LineContact, state: LubricantState, load: float, speed: float
+) -> tuple[LineProblem, float, float]:
+    """Groups of one operating point: those of the equations, and Moes' M and L."""
+    law = state.pressure_viscosity
+    peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
+    M, L = moes_groups(
+        load, speed, state.viscosity, law.pressure_viscosity, contact.radius, contact.reduced_modulus
+    )
+    problem = LineProblem(
+        wedge=3.0 * math.pi**2 / (8.0 * M * M),
+        alpha=law.pressure_viscosity * peak,
+        exponent=law.exponent,
+        pressure_ratio=peak / law.pressure_scale,
+        density_ratio=peak / DENSITY_PRESSURE if state.compressible else 0.0,
+    )
+    return problem, float(M), L
+
+
+def dry_film(peak: float, reason: str) -> FilmSolution:
+    """The limit u = 0: no film, no loss, Hertz' pressure."""
+    return FilmSolution(
+        status=Status.ASYMPTOTE,
+        reason=reason,
+        film_offset=0.0,
+        film_compliance=0.0,
+        loss_compliance=0.0,
+        central_film=0.0,
+        minimum_film=0.0,
+        max_pressure=peak,
+        film_offset_error=0.0,
+        film_compliance_error=0.0,
+        loss_compliance_error=0.0,
+    )
+
+
+def _beyond_reach(peak: float, M: float, L: float) -> str:
+    """Why a point is not even tried; empty if it is."""
+    if not (math.isfinite(M) and math.isfinite(L) and M > 0.0):
+        return f"groups M = {M:.4g}, L = {L:.4g} are not finite: load, speed or viscosity is absurd"
+    if peak > LARGEST_PRESSURE:
+        return f"Hertz pressure {peak / 1e9:.3g} GPa above {LARGEST_PRESSURE / 1e9:g} GPa"
+    if M > HEAVIEST_LOAD_NUMBER:
+        return f"M = {M:.3g} above {HEAVIEST_LOAD_NUMBER:g}: the film is below round-off of the elastic deflection"
+    if L > LARGEST_OIL_NUMBER:
+        return f"L = {L:.3g} above {LARGEST_OIL_NUMBER:g}"
+    return ""
+
+
+def _in_si(
+    groups: GroupSolution, contact: LineContact, state: LubricantState, half: float, peak: float, speed: float, seconds: float
+) -> FilmSolution:
+    """Scale films by b^2/R, the compliance by b/(p_H R), the loss by b^2/(p_H R u)."""
+    film = half * half / contact.radius
+    compliance = half / (peak * contact.radius)
+    status, reason = Status.CONVERGED, ""
+    thickness = groups.film_offset * film / contact.radius
+    if thickness > THIN_FILM_LIMIT:
+        status = Status.ASYMPTOTE
+        reason = "film thicker than 1 % of the radius: limit of thin-film theory, Reynolds with a parabolic gap"
+    elif groups.loss < 0.0:
+        reason = "negative damping at the valley of an isothermal, Newtonian film; a contact law takes zero"
+    return FilmSolution(
+        status=status,
+        reason=reason,
+        film_offset=groups.film_offset * film,
+        film_compliance=groups.film_compliance * compliance,
+        loss_compliance=groups.loss * compliance * half / speed,
+        central_film=groups.central_film * film,
+        minimum_film=groups.minimum_film * film,
+        max_pressure=groups.max_pressure * peak,
+        film_offset_error=groups.film_offset_error,
+        film_compliance_error=groups.film_compliance_error,
+        loss_compliance_error=groups.loss_error,
+        iterations=groups.steps,
+        solve_seconds=seconds,
+        viscosity_extrapolated=groups.max_pressure * peak > state.fitted_pressure,
+    )

@@ -1,0 +1,42 @@
+"""Everything that ehdmaps raises on purpose, so that a caller can tell bad input from a failed solve.
+
+Messages say where, what was got (with unit), what is allowed, and what to do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+
+class EhdmapsError(Exception):
+    """Base of all errors raised on purpose by ehdmaps and mbs."""
+
+
+class InputError(EhdmapsError):
+    """Input that cannot be used; carries every problem found, not only the first.
+
+    Parameters
+    ----------
+    problems : sequence of str, or str
+        One sentence a problem: where - what was got - what is allowed - what to do.
+    """
+
+    def __init__(self, problems: Sequence[str] | str) -> None:
+        self.problems: tuple[str, ...] = (problems,) if isinstance(problems, str) else tuple(problems)
+        super().__init__("\n".join(self.problems))
+
+
+class SolverError(EhdmapsError):
+    """A contact solver gave up in a way it could not express as a status; the sweep records it as `failed`."""
+
+
+class StoreError(EhdmapsError):
+    """The store of solved points cannot be read, written or shared."""
+
+
+class MapError(EhdmapsError):
+    """A map file is broken, of another schema, or unfit for what is asked of it."""
+
+
+class OutsideMapError(EhdmapsError):
+    """A contact law was called outside the range of its map and its policy is `error`."""

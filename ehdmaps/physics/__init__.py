@@ -1,0 +1,24 @@
+"""What the problem is: frozen values and cited formulas, in SI units and K, without a solver.
+
+The modules in the order in which data pass through them:
+
+==================  ====================================================================================
+solids              `Material`, `STEEL`, the reduced modulus E'
+bearing             `BearingGeometry`: reduced radii, entrainment speed, the two contacts of a roller
+approach            the structural part of the approach: ISO 16281, Palmgren, half space
+contact             `LineContact`: one contact, and its structural approach and compliance
+pressure_viscosity  ln(eta/eta0) over pressure: Barus, Roelands and the law of FVA 3 as one family
+viscosity           eta0 over temperature: constant, ASTM D341, Vogel
+lubricant           `Lubricant`, and `LubricantState` at a temperature
+operating_point     `OperatingPoint`: load, entrainment speed, temperature
+hertz               dry line contact: half-width, pressure, gap, compliance
+moes                dimensionless groups and back: M and L; U, W and G
+films               published film formulas: rigid, Dowson-Higginson, Pan-Hamrock, Moes
+damping             published damping formulas: rolling film, squeeze film, Dietl
+thermal             reduction of the film by inlet shear heating
+solution            `FilmSolution`, `ContactSolution`, `Status`, and the Protocol `ContactSolver`
+closed_form         the solvers `hertz` and `formula`
+==================  ====================================================================================
+
+Nothing is imported here: take the names from their modules.
+"""

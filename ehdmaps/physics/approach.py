@@ -1,0 +1,213 @@
+"""Structural laws: the elastic part of the approach of one contact over its load, and its derivative.
+
+A plane log kernel has no absolute approach, so it is taken from one of three laws that name their
+reference: `iso16281` and `palmgren` for a steel roller of finite length, `half_space` for a stated depth.
+Each law is zero for loads at and below zero, where its compliance is inf (an unloaded contact has no
+stiffness).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import Values, as_given
+from ehdmaps.physics.solids import STEEL, reduced_modulus
+
+StructuralLaw = Literal["iso16281", "palmgren", "half_space"]
+STRUCTURAL_LAWS: tuple[StructuralLaw, ...] = ("iso16281", "palmgren", "half_space")
+
+STEEL_REDUCED_MODULUS = reduced_modulus(STEEL, STEEL)
+_LOAD_EXPONENT = 0.9
+_HALF_PLANE_DEPTH_RATIO = 0.49
+
+
+def iso16281(load: Values, roller_length: float, reduced_modulus: float = STEEL_REDUCED_MODULUS) -> Values:
+    """Elastic approach of one contact of a roller after ISO/TS 16281 [m].
+
+    delta [mm] = 1/2 [(w/1000) L^(1/9) / 35948]^0.9 (E'_steel/E')^0.9, w in N/m, L in mm. The constant
+    35948 L^(8/9) N/mm^(10/9) of the standard belongs to the total approach of both contacts; they are taken
+    as alike, hence the half.
+
+    Parameters
+    ----------
+    load : float or array
+        w [N/m]; negative loads are taken as zero.
+    roller_length : float
+        Effective length L of the whole roller [m], never of a slice.
+    reduced_modulus : float
+        E' [Pa]. The standard is for steel; other materials are scaled.
+
+    References
+    ----------
+    ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for
+    universally loaded bearings; DIN 26281:2010.
+
+    Examples
+    --------
+    A load of 10 kN on a roller of 15 mm:
+
+    >>> round(1e6 * iso16281(10e3 / 15e-3, roller_length=15e-3), 3)
+    18.113
+    """
+    length_mm = 1e3 * roller_length
+    coefficient = 0.5e-3 * (1e-3 * length_mm ** (1.0 / 9.0) / 35948.0) ** _LOAD_EXPONENT
+    return _power_law(load, coefficient * _material_factor(reduced_modulus))
+
+
+def iso16281_compliance(
+    load: Values, roller_length: float, reduced_modulus: float = STEEL_REDUCED_MODULUS
+) -> Values:
+    """d(delta)/dw of `iso16281` [m2/N]; inf at and below zero load."""
+    return _power_law_slope(load, iso16281(load, roller_length, reduced_modulus))
+
+
+def palmgren(load: Values, roller_length: float, reduced_modulus: float = STEEL_REDUCED_MODULUS) -> Values:
+    """Elastic approach of one contact of a roller after Palmgren [m].
+
+    delta [mm] = 3.84e-5 (w/1000)^0.9 L^0.1 (E'_steel/E')^0.9, w in N/m, L in mm; that is
+    3.84e-5 Q^0.9 / L^0.8 with the load Q = w L of the roller in N.
+
+    Parameters
+    ----------
+    load : float or array
+        w [N/m]; negative loads are taken as zero.
+    roller_length : float
+        Length L of the whole roller [m], never of a slice: slices of it do not add up to the law.
+    reduced_modulus : float
+        E' [Pa]. The law is for steel; other materials are scaled.
+
+    References
+    ----------
+    A. Palmgren, Ball and Roller Bearing Engineering, 3rd ed., Burbank, Philadelphia, 1959.
+
+    Examples
+    --------
+    A load of 10 kN on a roller of 15 mm:
+
+    >>> round(1e6 * palmgren(10e3 / 15e-3, roller_length=15e-3), 3)
+    17.517
+    """
+    length_mm = 1e3 * roller_length
+    coefficient = 1e-3 * 3.84e-5 * 1e-3**_LOAD_EXPONENT * length_mm**0.1
+    return _power_law(load, coefficient * _material_factor(reduced_modulus))
+
+
+def palmgren_compliance(
+    load: Values, roller_length: float, reduced_modulus: float = STEEL_REDUCED_MODULUS
+) -> Values:
+    """d(delta)/dw of `palmgren` [m2/N]; inf at and below zero load."""
+    return _power_law_slope(load, palmgren(load, roller_length, reduced_modulus))
+
+
+def half_space(load: Values, reference_depth: float, radius: float, reduced_modulus: float) -> Values:
+    """Elastic approach of two bodies against points at a stated depth [m].
+
+    delta = (4 w/(pi E')) [ln(2 d*/b) + 1/2], b the half-width of Hertz.
+
+    Parameters
+    ----------
+    load : float or array
+        w [N/m]; negative loads are taken as zero.
+    reference_depth : float
+        d* [m], the geometric mean of the depths of the two bodies: see `roller_reference_depth` and
+        `half_plane_reference_depth`. It is a depth far below the contact, so b <= d* is asked for.
+    radius : float
+        Reduced radius R [m].
+    reduced_modulus : float
+        E' [Pa].
+
+    Raises
+    ------
+    InputError
+        If the contact is wider than the reference depth.
+
+    References
+    ----------
+    K. L. Johnson, Contact Mechanics, Cambridge, 1985, section 5.6.
+
+    Examples
+    --------
+    >>> delta = half_space(100e3, reference_depth=5e-3, radius=5.515e-3, reduced_modulus=230.77e9)
+    >>> round(1e6 * delta, 4)
+    2.9537
+    """
+    positive, ratio = _half_space_terms(load, reference_depth, radius, reduced_modulus)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        delta = 4.0 * positive / (math.pi * reduced_modulus) * (np.log(2.0 * ratio) + 0.5)
+    return as_given(np.where(positive > 0.0, delta, 0.0), load)
+
+
+def half_space_compliance(
+    load: Values, reference_depth: float, radius: float, reduced_modulus: float
+) -> Values:
+    """d(delta)/dw of `half_space`, (4/(pi E')) ln(2 d*/b) [m2/N]; inf at and below zero load."""
+    _, ratio = _half_space_terms(load, reference_depth, radius, reduced_modulus)
+    return as_given(4.0 / (math.pi * reduced_modulus) * np.log(2.0 * ratio), load)
+
+
+def roller_reference_depth(roller_diameter: float) -> float:
+    """Depth d* = D/e [m] that stands for the centre of a roller of diameter D [m].
+
+    With it the share of the roller in the half space law is w (1 - nu^2)/(pi E) [2 ln(2 D/b) - 1], the
+    compression between the contact and the centre of a roller loaded on opposite sides
+    (K. L. Johnson, Contact Mechanics, Cambridge, 1985, section 5.6).
+
+    Examples
+    --------
+    >>> round(1e3 * roller_reference_depth(14e-3), 3)
+    5.15
+    """
+    return roller_diameter / math.e
+
+
+def half_plane_reference_depth(depth: float) -> float:
+    """Depth d* = 0.49 times the depth [m] of a datum point below the surface of a half plane, for nu = 0.3.
+
+    A half plane yields by w (1 - nu^2)/(pi E) [2 ln(2 z/b) - nu/(1 - nu)] against a point at z >> b, so that
+    d* = z exp(-(1/2)(1 + nu/(1 - nu))), 0.4895 z for nu = 0.3
+    (K. L. Johnson, Contact Mechanics, Cambridge, 1985, section 5.6).
+
+    Examples
+    --------
+    >>> round(half_plane_reference_depth(10e-3), 6)
+    0.0049
+    """
+    return _HALF_PLANE_DEPTH_RATIO * depth
+
+
+def _material_factor(reduced_modulus: float) -> float:
+    """Scale of the approach of a material that is not steel."""
+    return float((STEEL_REDUCED_MODULUS / reduced_modulus) ** _LOAD_EXPONENT)
+
+
+def _power_law(load: Values, coefficient: float) -> Values:
+    """Coefficient times load^0.9, zero for negative loads."""
+    return as_given(coefficient * np.maximum(load, 0.0) ** _LOAD_EXPONENT, load)
+
+
+def _power_law_slope(load: Values, approach: Values) -> Values:
+    """0.9 delta/w, inf at zero."""
+    loaded = np.asarray(load) > 0.0
+    return as_given(np.where(loaded, _LOAD_EXPONENT * approach / np.where(loaded, load, 1.0), np.inf), load)
+
+
+def _half_space_terms(
+    load: Values, reference_depth: float, radius: float, reduced_modulus: float
+) -> tuple[Values, Values]:
+    """Load without its negative part, and d*/b."""
+    positive = np.maximum(load, 0.0)
+    half_width = np.sqrt(8.0 * positive * radius / (math.pi * reduced_modulus))
+    widest = float(np.max(half_width, initial=0.0))
+    if widest > reference_depth:
+        raise InputError(
+            f"half_space law: got a contact half-width of {widest:.4g} m at the load "
+            f"{float(np.max(positive)):.6g} N/m; "
+            f"allowed: at most the reference_depth {reference_depth:.4g} m; "
+            "lower the load or give the real depth"
+        )
+    with np.errstate(divide="ignore"):
+        return as_given(positive, load), as_given(np.divide(reference_depth, half_width), load)

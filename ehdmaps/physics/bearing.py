@@ -1,0 +1,201 @@
+"""Geometry of a cylindrical roller bearing: reduced radii, entrainment speed, contacts of a roller."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics.approach import StructuralLaw, roller_reference_depth
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.solids import Material
+
+
+@dataclass(frozen=True)
+class BearingGeometry:
+    """A cylindrical roller bearing.
+
+    Attributes
+    ----------
+    name : str
+        As in provenance and messages.
+    inner_raceway_diameter, outer_raceway_diameter : float
+        Nominal raceway diameters [m].
+    roller_diameter, roller_length : float
+        D and L [m], L the effective length.
+    rollers : int
+        Number Z of rollers.
+    diametral_clearance : float
+        P_d [m], < 0 for a preloaded bearing. It is an input of its own and not checked against the raceways.
+
+    Raises
+    ------
+    InputError
+        With every problem of the geometry.
+
+    Examples
+    --------
+    >>> nu308 = BearingGeometry.named("NU308")
+    >>> round(1e3 * nu308.inner_radius, 4), round(1e3 * nu308.outer_radius, 4)
+    (5.5152, 8.4848)
+    """
+
+    name: str
+    inner_raceway_diameter: float
+    outer_raceway_diameter: float
+    roller_diameter: float
+    roller_length: float
+    rollers: int
+    diametral_clearance: float
+
+    def __post_init__(self) -> None:
+        problems = _problems(self)
+        if problems:
+            raise InputError(problems)
+
+    @classmethod
+    def named(cls, name: str) -> BearingGeometry:
+        """One of the bearings of `BEARINGS`, with its nominal clearance of zero.
+
+        Raises
+        ------
+        InputError
+            If there is no bearing of that name.
+        """
+        try:
+            return BEARINGS[name]
+        except KeyError:
+            raise InputError(
+                f"bearing name: got {name!r}; allowed: {', '.join(BEARINGS)}; "
+                "give other bearings by their dimensions"
+            ) from None
+
+    @property
+    def pitch_diameter(self) -> float:
+        """d_m, mean of the raceway diameters [m]."""
+        return 0.5 * (self.inner_raceway_diameter + self.outer_raceway_diameter)
+
+    @property
+    def gamma(self) -> float:
+        """Ratio D/d_m."""
+        return self.roller_diameter / self.pitch_diameter
+
+    @property
+    def inner_radius(self) -> float:
+        """Reduced radius of the inner contact, (D/2)(1 - gamma) [m]."""
+        return 0.5 * self.roller_diameter * (1.0 - self.gamma)
+
+    @property
+    def outer_radius(self) -> float:
+        """Reduced radius of the outer contact, (D/2)(1 + gamma) [m]."""
+        return 0.5 * self.roller_diameter * (1.0 + self.gamma)
+
+    def entrainment_speed(self, inner_speed: float, outer_speed: float = 0.0) -> float:
+        """Entrainment speed u = (d_m/4) |omega_i - omega_o| (1 - gamma^2) [m/s].
+
+        Pure rolling is taken; u is then the same at both races.
+
+        Parameters
+        ----------
+        inner_speed, outer_speed : float
+            Speeds of the rings [rad/s].
+
+        Examples
+        --------
+        500 rpm:
+
+        >>> round(BearingGeometry.named("NU308").entrainment_speed(500 * 2 * math.pi / 60), 3)
+        0.825
+        """
+        return 0.25 * self.pitch_diameter * abs(inner_speed - outer_speed) * (1.0 - self.gamma**2)
+
+    def contacts(self, material: Material, structural_law: StructuralLaw) -> tuple[LineContact, LineContact]:
+        """The contacts "inner" and "outer" of a roller.
+
+        Roller length and reference depth d* = D/e are given to both, whichever of them the law uses.
+        """
+        inner, outer = (
+            LineContact(
+                name=name,
+                radius=radius,
+                material=material,
+                structural_law=structural_law,
+                roller_length=self.roller_length,
+                reference_depth=roller_reference_depth(self.roller_diameter),
+            )
+            for name, radius in (("inner", self.inner_radius), ("outer", self.outer_radius))
+        )
+        return inner, outer
+
+
+def _problems(bearing: BearingGeometry) -> list[str]:
+    """All that is impossible about a geometry, in words."""
+    where = f"bearing {bearing.name!r}"
+    problems = []
+    lengths_known = True
+    for key in ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length"):
+        value = getattr(bearing, key)
+        if not (math.isfinite(value) and value > 0):
+            problems.append(f"{where}, {key}: got {value!r} m; allowed: finite and > 0")
+            lengths_known = False
+    rollers = bearing.rollers
+    rollers_known = isinstance(rollers, int) and not isinstance(rollers, bool) and rollers >= 1
+    if not rollers_known:
+        problems.append(f"{where}, rollers: got {rollers!r}; allowed: a whole number >= 1")
+    clearance_known = math.isfinite(bearing.diametral_clearance)
+    if not clearance_known:
+        problems.append(
+            f"{where}, diametral_clearance: got {bearing.diametral_clearance!r} m; allowed: finite; "
+            "use 0 if unknown"
+        )
+    if not lengths_known:
+        return problems
+
+    diameter, pitch = bearing.roller_diameter, bearing.pitch_diameter
+    if bearing.outer_raceway_diameter <= bearing.inner_raceway_diameter:
+        problems.append(
+            f"{where}, outer_raceway_diameter: got {bearing.outer_raceway_diameter!r} m; "
+            f"allowed: > the inner_raceway_diameter {bearing.inner_raceway_diameter!r} m; exchange them?"
+        )
+    if diameter >= pitch:
+        problems.append(
+            f"{where}, roller_diameter: got {diameter!r} m; allowed: < the pitch diameter {pitch:.6g} m "
+            "(mean of the raceway diameters)"
+        )
+    elif rollers_known and rollers > 1 and pitch * math.sin(math.pi / rollers) < diameter:
+        most = int(math.pi / math.asin(diameter / pitch))
+        problems.append(
+            f"{where}, rollers: got {rollers}, which overlap on the pitch circle of {pitch:.6g} m; "
+            f"allowed: at most {most} rollers of {diameter!r} m"
+        )
+    if clearance_known and abs(bearing.diametral_clearance) >= diameter:
+        problems.append(
+            f"{where}, diametral_clearance: got {bearing.diametral_clearance!r} m; "
+            f"allowed: smaller than the roller_diameter {diameter!r} m; check its unit"
+        )
+    return problems
+
+
+BEARINGS: dict[str, BearingGeometry] = {
+    bearing.name: bearing
+    for bearing in (
+        BearingGeometry(
+            name="N1014",
+            inner_raceway_diameter=82e-3,
+            outer_raceway_diameter=100e-3,
+            roller_diameter=9e-3,
+            roller_length=9e-3,
+            rollers=24,
+            diametral_clearance=0.0,
+        ),
+        BearingGeometry(
+            name="NU308",
+            inner_raceway_diameter=52e-3,
+            outer_raceway_diameter=80e-3,
+            roller_diameter=14e-3,
+            roller_length=15e-3,
+            rollers=12,
+            diametral_clearance=0.0,
+        ),
+    )
+}

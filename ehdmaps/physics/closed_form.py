@@ -1,0 +1,234 @@
+"""The solvers without a discretisation: `hertz` (dry) and `formula` (a published central film formula).
+
+Their numerical errors are zero, since they evaluate closed forms: how far the formula is from a full
+solution is a model error, which no error estimate of a map includes. Both are low-frequency limits: they
+have no dependence on frequency and give the same numbers at each.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.damping import rolling_film_damping
+from ehdmaps.physics.films import (
+    dowson_higginson_minimum,
+    dowson_toyoda_central,
+    martin_minimum,
+    moes_central_and_slope,
+    pan_hamrock_central,
+)
+from ehdmaps.physics.hertz import max_pressure
+from ehdmaps.physics.lubricant import Lubricant, LubricantState
+from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solution import FilmSolution, Status
+
+FilmFormula = Literal["moes", "dowson-toyoda", "pan-hamrock"]
+
+THIN_FILM_LIMIT = 0.01
+"""h/R above which a film is outside thin-film theory."""
+
+
+@dataclass(frozen=True)
+class HertzSolver:
+    """Dry contact: no film, no film compliance, no loss."""
+
+    @property
+    def name(self) -> str:
+        """Name of the solver."""
+        return "hertz"
+
+    def solve_line(
+        self,
+        contact: LineContact,
+        lubricant: Lubricant,
+        loads: tuple[float, ...],
+        entrainment_speed: float,
+        temperature: float,
+        frequency: float = 0.0,
+    ) -> tuple[FilmSolution, ...]:
+        """Dry films at each load [N/m]; oil, speed, temperature and frequency do not matter."""
+        _check(loads, entrainment_speed, temperature)
+        return tuple(_dry(contact, load, Status.CONVERGED) for load in loads)
+
+    def settings(self) -> dict[str, float | int | str]:
+        """Nothing changes its numbers."""
+        return {}
+
+
+@dataclass(frozen=True)
+class FormulaSolver:
+    """Film offset = central film h_c of a published formula; its load derivative gives the film compliance.
+
+    The loss compliance is c/k_h^2 with the rigid rolling film, c = 6.548 eta0 (R/h_c)^1.5, and k_h =
+    -dw/dh_c. The minimum film is the larger of Dowson-Higginson's and Martin's, at most h_c; the largest
+    pressure is Hertz's.
+
+    Attributes
+    ----------
+    film_formula : {"moes", "dowson-toyoda", "pan-hamrock"}
+        `moes` covers all regimes; the other two are for M >= 2 in the piezoviscous-elastic regime.
+
+    Raises
+    ------
+    InputError
+        If there is no formula of that name.
+    """
+
+    film_formula: FilmFormula = "moes"
+
+    def __post_init__(self) -> None:
+        if self.film_formula not in FILM_FORMULAS:
+            raise InputError(
+                f"film_formula: got {self.film_formula!r}; allowed: {', '.join(FILM_FORMULAS)}; "
+                "choose one of them"
+            )
+
+    @property
+    def name(self) -> str:
+        """Name of the solver."""
+        return "formula"
+
+    def solve_line(
+        self,
+        contact: LineContact,
+        lubricant: Lubricant,
+        loads: tuple[float, ...],
+        entrainment_speed: float,
+        temperature: float,
+        frequency: float = 0.0,
+    ) -> tuple[FilmSolution, ...]:
+        """Films at each load [N/m]; the frequency does not matter."""
+        _check(loads, entrainment_speed, temperature)
+        state = lubricant.at(temperature)
+        return tuple(self._solve(contact, state, load, entrainment_speed) for load in loads)
+
+    def settings(self) -> dict[str, float | int | str]:
+        """The formula."""
+        return {"film_formula": self.film_formula}
+
+    def _solve(self, contact: LineContact, state: LubricantState, load: float, speed: float) -> FilmSolution:
+        """One point."""
+        if speed == 0.0:
+            return _dry(contact, load, Status.ASYMPTOTE, "entrainment speed zero: dry contact")
+        try:
+            with np.errstate(all="ignore"):
+                film, slope = FILM_FORMULAS[self.film_formula](contact, state, load, speed)
+                loss = rolling_film_damping(film, state.viscosity, contact.radius) * slope**2
+                minimum = min(film, _minimum_film(contact, state, load, speed))
+        except (OverflowError, ZeroDivisionError):
+            film = slope = loss = minimum = math.nan
+        peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
+        if not (film > 0.0 and minimum > 0.0 and all(map(math.isfinite, (film, slope, loss, peak)))):
+            return FilmSolution(
+                status=Status.OUTSIDE_VALIDITY,
+                reason=f"the film formula {self.film_formula} gives no finite, positive film here",
+            )
+        status, reason = Status.CONVERGED, ""
+        if film / contact.radius > THIN_FILM_LIMIT:
+            status = Status.ASYMPTOTE
+            reason = (
+                f"film h/R = {film / contact.radius:.3g} above {THIN_FILM_LIMIT}: outside thin-film theory"
+            )
+        return FilmSolution(
+            status=status,
+            reason=reason,
+            film_offset=film,
+            film_compliance=-slope,
+            loss_compliance=loss,
+            central_film=film,
+            minimum_film=minimum,
+            max_pressure=peak,
+            film_offset_error=0.0,
+            film_compliance_error=0.0,
+            loss_compliance_error=0.0,
+            viscosity_extrapolated=peak > state.fitted_pressure,
+        )
+
+
+def _dry(contact: LineContact, load: float, status: Status, reason: str = "") -> FilmSolution:
+    """The dry contact as a film of zero thickness."""
+    peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
+    if not math.isfinite(peak):
+        return FilmSolution(status=Status.OUTSIDE_VALIDITY, reason="the Hertz pressure is not finite here")
+    return FilmSolution(
+        status=status,
+        reason=reason,
+        film_offset=0.0,
+        film_compliance=0.0,
+        loss_compliance=0.0,
+        central_film=0.0,
+        minimum_film=0.0,
+        max_pressure=peak,
+        film_offset_error=0.0,
+        film_compliance_error=0.0,
+        loss_compliance_error=0.0,
+    )
+
+
+def _check(loads: tuple[float, ...], speed: float, temperature: float) -> None:
+    """Refuse loads, speeds and temperatures that no point of a map can have."""
+    for load in loads:
+        OperatingPoint(load, speed, temperature)
+
+
+_Film = Callable[[LineContact, LubricantState, float, float], tuple[float, float]]
+
+
+def _moes(contact: LineContact, state: LubricantState, load: float, speed: float) -> tuple[float, float]:
+    """Central film of Moes [m] and its derivative with respect to load [m2/N]."""
+    M, L = moes_groups(*_group_arguments(contact, state, load, speed))
+    film_number, slope = moes_central_and_slope(M, L)
+    film = film_from_moes(film_number, speed, state.viscosity, contact.radius, contact.reduced_modulus)
+    return float(film), float(film * slope / film_number * M / load)
+
+
+def _dowson_toyoda(
+    contact: LineContact, state: LubricantState, load: float, speed: float
+) -> tuple[float, float]:
+    """Central film of Dowson and Toyoda [m] and its derivative with respect to load [m2/N]."""
+    film = contact.radius * dowson_toyoda_central(
+        *dowson_groups(*_group_arguments(contact, state, load, speed))
+    )
+    return float(film), float(-0.10 * film / load)
+
+
+def _pan_hamrock(
+    contact: LineContact, state: LubricantState, load: float, speed: float
+) -> tuple[float, float]:
+    """Central film of Pan and Hamrock [m] and its derivative with respect to load [m2/N]."""
+    film = contact.radius * pan_hamrock_central(
+        *dowson_groups(*_group_arguments(contact, state, load, speed))
+    )
+    return float(film), float(-0.166 * film / load)
+
+
+FILM_FORMULAS: Mapping[str, _Film] = {
+    "moes": _moes,
+    "dowson-toyoda": _dowson_toyoda,
+    "pan-hamrock": _pan_hamrock,
+}
+
+
+def _minimum_film(contact: LineContact, state: LubricantState, load: float, speed: float) -> float:
+    """Larger of the minimum films of Dowson-Higginson and of Martin [m]."""
+    arguments = _group_arguments(contact, state, load, speed)
+    elastic = contact.radius * dowson_higginson_minimum(*dowson_groups(*arguments))
+    M, _ = moes_groups(*arguments)
+    rigid = film_from_moes(martin_minimum(M), speed, state.viscosity, contact.radius, contact.reduced_modulus)
+    return float(max(elastic, rigid))
+
+
+def _group_arguments(
+    contact: LineContact, state: LubricantState, load: float, speed: float
+) -> tuple[float, float, float, float, float, float]:
+    """Arguments of the dimensionless groups."""
+    alpha = state.pressure_viscosity.pressure_viscosity
+    return load, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus

@@ -1,0 +1,483 @@
+"""Oils: viscosity and density over pressure and temperature.
+
+A `Lubricant` holds laws over temperature; `Lubricant.at` gives the `LubricantState` that a solver works with.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Literal
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import Values, as_given
+from ehdmaps.physics.pressure_viscosity import (
+    ROELANDS_LOG,
+    ROELANDS_PRESSURE,
+    ZERO_CELSIUS,
+    Barus,
+    Fva3,
+    PressureViscosity,
+    PressureViscosityLaw,
+    Roelands,
+)
+from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw, VogelViscosity
+
+__all__ = ["DENSITY_LAWS", "LUBRICANTS", "DensityLaw", "Lubricant", "LubricantState", "PressureViscosity"]
+
+DensityLaw = Literal["dowson-higginson", "incompressible"]
+DENSITY_LAWS: tuple[DensityLaw, ...] = ("dowson-higginson", "incompressible")
+
+_DENSITY_PRESSURE, _DENSITY_LIMIT = 0.59e9, 1.34
+
+
+@dataclass(frozen=True)
+class LubricantState:
+    """An oil at one temperature: all that an isothermal solver needs.
+
+    Attributes
+    ----------
+    temperature : float
+        [K].
+    viscosity : float
+        eta0 at ambient pressure [Pa s].
+    density : float
+        rho0 at ambient pressure [kg/m3].
+    pressure_viscosity : PressureViscosity
+        The isotherm ln(eta/eta0) over pressure.
+    compressible : bool
+        Density after Dowson and Higginson if true, constant if false.
+    fitted_pressure : float
+        Above this pressure [Pa] the viscosity law is extrapolated; inf if unknown.
+    """
+
+    temperature: float
+    viscosity: float
+    density: float
+    pressure_viscosity: PressureViscosity
+    compressible: bool
+    fitted_pressure: float
+
+    def viscosity_at(self, p: Values) -> Values:
+        """Viscosity eta [Pa s] at the pressures p [Pa], >= 0; inf where it exceeds the range of floats."""
+        with np.errstate(over="ignore"):
+            return as_given(self.viscosity * np.exp(self.pressure_viscosity.log_ratio(p)), p)
+
+    def density_ratio(self, p: Values) -> Values:
+        """rho/rho0 = (0.59e9 + 1.34 p)/(0.59e9 + p) at the pressures p [Pa], >= 0; 1 if incompressible.
+
+        References
+        ----------
+        D. Dowson, G. R. Higginson, Elasto-Hydrodynamic Lubrication, Pergamon, 1966.
+        """
+        if not self.compressible:
+            return as_given(np.ones_like(p), p)
+        return (_DENSITY_PRESSURE + _DENSITY_LIMIT * p) / (_DENSITY_PRESSURE + p)
+
+    def density_ratio_slope(self, p: Values) -> Values:
+        """d(rho/rho0)/dp [1/Pa] at the pressures p [Pa], >= 0."""
+        if not self.compressible:
+            return as_given(np.zeros_like(p), p)
+        return as_given((_DENSITY_LIMIT - 1.0) * _DENSITY_PRESSURE / (_DENSITY_PRESSURE + p) ** 2, p)
+
+
+@dataclass(frozen=True)
+class Lubricant:
+    """An oil as laws over temperature; comparable, and equal oils give equal numbers.
+
+    Make one by `named`, or by hand with `barus`, `roelands` or `fva3` (called after their law over pressure).
+
+    Attributes
+    ----------
+    name : str
+        As in provenance and messages.
+    verified : bool
+        Whether its numbers have a stated source (`named`), or are vouched for by the user (own oils).
+    viscosity : ConstantViscosity, AstmViscosity or VogelViscosity
+        eta0 over temperature.
+    pressure_viscosity : Barus, Roelands or Fva3
+        Isotherms over temperature.
+    density_15 : float
+        rho0 at 15 degC [kg/m3].
+    density_slope : float
+        d rho0/dT [kg/(m3 K)].
+    density_law : {"dowson-higginson", "incompressible"}
+        Density over pressure.
+    fitted_pressure : float
+        Above this pressure [Pa] the viscosity law is extrapolated; inf if unknown.
+    thermal_conductivity : float or None
+        [W/(m K)].
+
+    Raises
+    ------
+    InputError
+        With every value out of its limits.
+
+    Examples
+    --------
+    >>> state = Lubricant.named("FVA3").at(313.15)
+    >>> round(1e3 * state.viscosity, 1), round(1e8 * state.pressure_viscosity.pressure_viscosity, 2)
+    (84.5, 2.24)
+    """
+
+    name: str
+    verified: bool
+    viscosity: ViscosityLaw
+    pressure_viscosity: PressureViscosityLaw
+    density_15: float
+    density_slope: float = 0.0
+    density_law: DensityLaw = "dowson-higginson"
+    fitted_pressure: float = math.inf
+    thermal_conductivity: float | None = None
+
+    def __post_init__(self) -> None:
+        where = f"lubricant {self.name!r}"
+        problems = []
+        if not (math.isfinite(self.density_15) and self.density_15 > 0):
+            problems.append(
+                f"{where}, density: got {self.density_15!r} kg/m3; allowed: finite and > 0; "
+                "oils have about 880 kg/m3"
+            )
+        if not math.isfinite(self.density_slope):
+            problems.append(f"{where}, density_slope: got {self.density_slope!r} kg/(m3 K); allowed: finite")
+        if self.density_law not in DENSITY_LAWS:
+            problems.append(
+                f"{where}, density_law: got {self.density_law!r}; allowed: {', '.join(DENSITY_LAWS)}"
+            )
+        if not self.fitted_pressure > 0:
+            problems.append(
+                f"{where}, fitted_pressure: got {self.fitted_pressure!r} Pa; allowed: > 0, inf if unknown"
+            )
+        conductivity = self.thermal_conductivity
+        if conductivity is not None and not (math.isfinite(conductivity) and conductivity > 0):
+            problems.append(
+                f"{where}, thermal_conductivity: got {conductivity!r} W/(m K); allowed: finite and > 0"
+            )
+        if problems:
+            raise InputError(problems)
+
+    @classmethod
+    def named(cls, name: str) -> Lubricant:
+        """One of the oils of `LUBRICANTS`.
+
+        FVA 3
+            Reference oil; Lubricants 11, 2023, 369, table A1. The source of the viscosity law was not found
+            to state its range in pressure: fitted_pressure = 0.6 GPa is an assumption. The law holds from
+            -14.67 degC up.
+        Spirax MA 80W
+            No data sheet was found: typical values of an SAE 80W gear oil, marked unverified. nu40 = 87.5
+            mm2/s, nu100 = 9.5 mm2/s, rho15 = 887 kg/m3, the density slope of FVA 3, and Roelands' law with
+            the z that gives alpha = 2e-8 1/Pa at 40 degC.
+
+        Raises
+        ------
+        InputError
+            If there is no oil of that name.
+        """
+        try:
+            return _NAMED[name]
+        except KeyError:
+            raise InputError(
+                f"lubricant name: got {name!r}; allowed: {', '.join(LUBRICANTS)}; "
+                "give other oils by their data"
+            ) from None
+
+    @classmethod
+    def barus(
+        cls,
+        *,
+        density: float,
+        pressure_viscosity: float | None = None,
+        pressure_viscosity_40: float | None = None,
+        pressure_viscosity_100: float | None = None,
+        viscosity: float | None = None,
+        viscosity_40: float | None = None,
+        viscosity_100: float | None = None,
+        density_slope: float = 0.0,
+        density_law: DensityLaw = "dowson-higginson",
+        fitted_pressure: float = math.inf,
+        name: str = "own oil",
+    ) -> Lubricant:
+        """An oil with Barus' law, eta = eta0 exp(alpha p).
+
+        Parameters
+        ----------
+        density : float
+            rho0 at 15 degC [kg/m3].
+        pressure_viscosity : float, optional
+            alpha [1/Pa], constant; or both of the next two.
+        pressure_viscosity_40, pressure_viscosity_100 : float, optional
+            alpha at 40 and 100 degC [1/Pa]; ln alpha is linear in temperature.
+        viscosity : float, optional
+            eta0 [Pa s], constant; or both of the next two.
+        viscosity_40, viscosity_100 : float, optional
+            Kinematic viscosities at 40 and 100 degC [m2/s], joined by ASTM D341.
+        density_slope : float
+            d rho0/dT [kg/(m3 K)].
+        density_law : {"dowson-higginson", "incompressible"}
+            Density over pressure.
+        fitted_pressure : float
+            Reach of the viscosity data [Pa].
+        name : str
+            As in provenance and messages.
+
+        Raises
+        ------
+        InputError
+            With every value that is missing, doubly given or out of its limits.
+
+        Examples
+        --------
+        >>> oil = Lubricant.barus(viscosity=0.1, pressure_viscosity=2e-8, density=880.0)
+        >>> round(oil.at(313.15).viscosity_at(50e6), 4)
+        0.2718
+        """
+        problems: list[str] = []
+        law = _viscosity_law(name, viscosity, viscosity_40, viscosity_100, problems)
+        pair = _coefficient_pair(
+            name, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100, problems
+        )
+        if pair is None and not problems:
+            problems.append(
+                f"lubricant {name!r}, pressure_viscosity: got none; viscosity_law barus needs it; "
+                "give it in 1/Pa"
+            )
+        if problems or law is None or pair is None:
+            raise InputError(problems)
+        return cls(
+            name,
+            True,
+            law,
+            Barus(*pair),
+            density,
+            density_slope,
+            density_law,
+            fitted_pressure=fitted_pressure,
+        )
+
+    @classmethod
+    def roelands(
+        cls,
+        *,
+        density: float,
+        roelands_z: float | None = None,
+        pressure_viscosity: float | None = None,
+        pressure_viscosity_40: float | None = None,
+        pressure_viscosity_100: float | None = None,
+        viscosity: float | None = None,
+        viscosity_40: float | None = None,
+        viscosity_100: float | None = None,
+        density_slope: float = 0.0,
+        density_law: DensityLaw = "dowson-higginson",
+        fitted_pressure: float = math.inf,
+        name: str = "own oil",
+    ) -> Lubricant:
+        """An oil with Roelands' law, p0 = 1.96e8 Pa.
+
+        Without roelands_z, z = alpha p0/(ln eta0 + 9.67) at each temperature; without a pressure_viscosity,
+        alpha follows from z likewise; both hold as stated where both are given.
+        The other parameters and errors are those of `barus`.
+
+        Examples
+        --------
+        >>> oil = Lubricant.roelands(viscosity=0.04, pressure_viscosity=1.7e-8, density=870.0)
+        >>> round(oil.at(313.15).pressure_viscosity.exponent, 4)
+        0.5165
+        """
+        problems: list[str] = []
+        law = _viscosity_law(name, viscosity, viscosity_40, viscosity_100, problems)
+        pair = _coefficient_pair(
+            name, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100, problems
+        )
+        if problems or law is None:
+            raise InputError(problems)
+        isotherms = Roelands(roelands_z, *(pair or (None, None)))
+        return cls(
+            name, True, law, isotherms, density, density_slope, density_law, fitted_pressure=fitted_pressure
+        )
+
+    @classmethod
+    def fva3(
+        cls,
+        *,
+        density: float,
+        pressure_viscosity: float | None = None,
+        pressure_viscosity_40: float | None = None,
+        pressure_viscosity_100: float | None = None,
+        viscosity: float | None = None,
+        viscosity_40: float | None = None,
+        viscosity_100: float | None = None,
+        density_slope: float = 0.0,
+        density_law: DensityLaw = "dowson-higginson",
+        fitted_pressure: float = math.inf,
+        name: str = "own oil",
+    ) -> Lubricant:
+        """An own oil with the law p/(a + b p) and the coefficients of FVA 3 over pressure.
+
+        A pressure_viscosity that is given takes the place of 1/a; b is always that of FVA 3.
+        The other parameters and errors are those of `barus`.
+
+        Examples
+        --------
+        >>> oil = Lubricant.fva3(viscosity=0.05, density=880.0)
+        >>> round(1e8 * oil.at(313.15).pressure_viscosity.pressure_viscosity, 2)
+        2.24
+        """
+        problems: list[str] = []
+        law = _viscosity_law(name, viscosity, viscosity_40, viscosity_100, problems)
+        pair = _coefficient_pair(
+            name, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100, problems
+        )
+        if problems or law is None:
+            raise InputError(problems)
+        cold, hot = pair or (None, None)
+        isotherms = Fva3(pressure_viscosity_40=cold, pressure_viscosity_100=hot)
+        return cls(
+            name, True, law, isotherms, density, density_slope, density_law, fitted_pressure=fitted_pressure
+        )
+
+    def at(self, temperature: float) -> LubricantState:
+        """The oil at a temperature [K].
+
+        Raises
+        ------
+        InputError
+            Where one of the laws breaks down, with the oil, the temperature, what is allowed and what to do.
+        """
+        where = f"lubricant {self.name!r}"
+        if not (math.isfinite(temperature) and temperature > 0):
+            raise InputError(f"{where}, temperature: got {temperature!r} K; allowed: finite and > 0 K")
+        density = self.density_15 + self.density_slope * (temperature - ZERO_CELSIUS - 15.0)
+        if density <= 0:
+            raise InputError(
+                f"{where}, temperature: got {temperature - ZERO_CELSIUS:.6g} degC, where its density is "
+                f"{density:.6g} kg/m3; allowed: temperatures with a density > 0; check density_slope"
+            )
+        try:
+            viscosity = self.viscosity.at(temperature, density)
+            isotherm = self.pressure_viscosity.at(temperature, viscosity)
+        except InputError as error:
+            raise InputError([f"{where}, {problem}" for problem in error.problems]) from None
+        return LubricantState(
+            temperature=temperature,
+            viscosity=viscosity,
+            density=density,
+            pressure_viscosity=isotherm,
+            compressible=self.density_law == "dowson-higginson",
+            fitted_pressure=self.fitted_pressure,
+        )
+
+    def record(self) -> dict[str, float | str | bool]:
+        """Everything that defines the oil, flat, for provenance; SI units; values not given are left out."""
+        record: dict[str, float | str | bool] = {}
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name == "viscosity":
+                record["viscosity_over_temperature"] = _VISCOSITY_WORDS[type(value)]
+                record.update(_given(value, rename=_VOGEL_WORDS))
+            elif field.name == "pressure_viscosity":
+                record["viscosity_law"] = type(value).__name__.lower()
+                record.update(_given(value, rename={"exponent": "roelands_z"}))
+            elif value is not None:
+                record[field.name] = value
+        return record
+
+
+_VISCOSITY_WORDS: Mapping[type, str] = {
+    ConstantViscosity: "constant",
+    AstmViscosity: "astm-d341",
+    VogelViscosity: "vogel",
+}
+
+_VOGEL_WORDS = {"factor": "vogel_factor", "slope": "vogel_slope", "offset": "vogel_offset"}
+
+
+def _given(law: ViscosityLaw | PressureViscosityLaw, rename: Mapping[str, str]) -> dict[str, float]:
+    """The parameters of a law that are not None."""
+    values = {rename.get(field.name, field.name): getattr(law, field.name) for field in fields(law)}
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def _viscosity_law(
+    name: str,
+    viscosity: float | None,
+    viscosity_40: float | None,
+    viscosity_100: float | None,
+    problems: list[str],
+) -> ViscosityLaw | None:
+    """The law that is given, or None with its problems noted."""
+    where = f"lubricant {name!r}"
+    try:
+        if viscosity is not None and viscosity_40 is None and viscosity_100 is None:
+            return ConstantViscosity(viscosity)
+        if viscosity is None and viscosity_40 is not None and viscosity_100 is not None:
+            return AstmViscosity(viscosity_40, viscosity_100)
+    except InputError as error:
+        problems.extend(f"{where}, {problem}" for problem in error.problems)
+        return None
+    problems.append(
+        f"{where}, viscosity: got "
+        f"{_listed(viscosity=viscosity, viscosity_40=viscosity_40, viscosity_100=viscosity_100)}; "
+        "allowed: either viscosity, or viscosity_40 and viscosity_100; give one of the two"
+    )
+    return None
+
+
+def _coefficient_pair(
+    name: str, constant: float | None, cold: float | None, hot: float | None, problems: list[str]
+) -> tuple[float, float] | None:
+    """Alpha at 40 and 100 degC, or None if none is given (or with its problems noted)."""
+    if constant is not None and cold is None and hot is None:
+        return constant, constant
+    if constant is None and cold is not None and hot is not None:
+        return cold, hot
+    if constant is not None or cold is not None or hot is not None:
+        given = _listed(pressure_viscosity=constant, pressure_viscosity_40=cold, pressure_viscosity_100=hot)
+        problems.append(
+            f"lubricant {name!r}, pressure_viscosity: got {given}; allowed: either pressure_viscosity, or "
+            "pressure_viscosity_40 and pressure_viscosity_100; give one of the two"
+        )
+    return None
+
+
+def _listed(**values: float | None) -> str:
+    """What is given, in words."""
+    return ", ".join(f"{name} = {value!r}" for name, value in values.items() if value is not None) or "none"
+
+
+def _fva3() -> Lubricant:
+    """FVA 3 after Lubricants 11, 2023, 369, table A1."""
+    return Lubricant(
+        name="FVA3",
+        verified=True,
+        viscosity=VogelViscosity(factor=0.062e-3, slope=1021.7, offset=101.5517),
+        pressure_viscosity=Fva3(),
+        density_15=887.6,
+        density_slope=-0.6,
+        fitted_pressure=0.6e9,
+        thermal_conductivity=0.134,
+    )
+
+
+def _spirax() -> Lubricant:
+    """Guess of an SAE 80W gear oil, see `Lubricant.named`."""
+    density, slope = 887.0, -0.6
+    viscosity = AstmViscosity(87.5e-6, 9.5e-6)
+    cold = ZERO_CELSIUS + 40.0
+    z = 2e-8 * ROELANDS_PRESSURE / (math.log(viscosity.at(cold, density + 25.0 * slope)) + ROELANDS_LOG)
+    return Lubricant(
+        name="Spirax MA 80W",
+        verified=False,
+        viscosity=viscosity,
+        pressure_viscosity=Roelands(z, None, None),
+        density_15=density,
+        density_slope=slope,
+    )
+
+
+_NAMED: Mapping[str, Lubricant] = {oil.name: oil for oil in (_fva3(), _spirax())}
+LUBRICANTS: tuple[str, ...] = tuple(_NAMED)
+"""Names that `Lubricant.named` knows."""

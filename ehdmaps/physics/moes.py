@@ -1,0 +1,119 @@
+"""Dimensionless groups of an isothermal line contact, and back.
+
+Moes' groups M and L (two of them) and the groups U, W, G of Dowson and Higginson (three) say the same
+thing: load, speed, oil and radius collapse to them exactly for a Barus oil without compressibility, nearly
+otherwise. Note their speeds: Moes takes the sum us = 2u of the surface speeds, Dowson and Higginson the
+mean u.
+
+References
+----------
+H. Moes, Optimum similarity analysis with applications to elastohydrodynamic lubrication, Wear 159, 1992,
+57-66. D. Dowson, G. R. Higginson, Elasto-Hydrodynamic Lubrication, Pergamon, 1966.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ehdmaps.physics._values import Values, as_given
+
+
+def moes_groups(
+    load: Values,
+    speed: float,
+    viscosity: float,
+    pressure_viscosity: float,
+    radius: float,
+    reduced_modulus: float,
+) -> tuple[Values, float]:
+    """Load number M = w/(E'R) (eta0 us/(E'R))^(-1/2) and oil number L = alpha E' (eta0 us/(E'R))^(1/4).
+
+    Parameters
+    ----------
+    load : float or array
+        w [N/m].
+    speed : float
+        Entrainment speed u, the mean of the surface speeds [m/s], > 0; us = 2u.
+    viscosity : float
+        eta0 [Pa s].
+    pressure_viscosity : float
+        alpha = d ln eta/dp at p = 0 [1/Pa].
+    radius : float
+        R [m].
+    reduced_modulus : float
+        E' [Pa].
+
+    Examples
+    --------
+    >>> M, L = moes_groups(88571.4, 1.7, 0.0845, 2.24e-8, 5.5152e-3, 230.769e9)
+    >>> round(M, 3), round(L, 3)
+    (4.632, 20.037)
+    """
+    speed_number = moes_speed_number(speed, viscosity, radius, reduced_modulus)
+    load_number = load / (reduced_modulus * radius) / math.sqrt(speed_number)
+    return as_given(load_number, load), pressure_viscosity * reduced_modulus * speed_number**0.25
+
+
+def moes_speed_number(speed: float, viscosity: float, radius: float, reduced_modulus: float) -> float:
+    """Group eta0 us/(E'R) with the sum us = 2u of the surface speeds; units as in `moes_groups`."""
+    return viscosity * 2.0 * speed / (reduced_modulus * radius)
+
+
+def film_from_moes(
+    film_number: Values, speed: float, viscosity: float, radius: float, reduced_modulus: float
+) -> Values:
+    """Film thickness h = H R (eta0 us/(E'R))^(1/2) [m] of Moes' film number H; units as in `moes_groups`."""
+    scale = radius * math.sqrt(moes_speed_number(speed, viscosity, radius, reduced_modulus))
+    return as_given(film_number * scale, film_number)
+
+
+def load_and_speed(
+    load_number: float,
+    oil_number: float,
+    viscosity: float,
+    pressure_viscosity: float,
+    radius: float,
+    reduced_modulus: float,
+) -> tuple[float, float]:
+    """Load w [N/m] and entrainment speed u [m/s] at which a given oil and contact have the groups M and L.
+
+    The inverse of `moes_groups`, for L > 0 and pressure_viscosity > 0; units as there.
+
+    Examples
+    --------
+    >>> w, u = load_and_speed(20.0, 10.0, 0.0845, 2.24e-8, 5.5152e-3, 230.769e9)
+    >>> M, L = moes_groups(w, u, 0.0845, 2.24e-8, 5.5152e-3, 230.769e9)
+    >>> round(M, 9), round(L, 9)
+    (20.0, 10.0)
+    """
+    speed_number = (oil_number / (pressure_viscosity * reduced_modulus)) ** 4
+    load = load_number * reduced_modulus * radius * math.sqrt(speed_number)
+    return load, speed_number * reduced_modulus * radius / (2.0 * viscosity)
+
+
+def viscosity_exponent(load_number: Values, oil_number: float) -> Values:
+    """Alpha p_H = L sqrt(M/(2 pi)), the exponent of Barus' law at the largest Hertz pressure."""
+    return as_given(oil_number * np.sqrt(load_number / (2.0 * math.pi)), load_number)
+
+
+def dowson_groups(
+    load: Values,
+    speed: float,
+    viscosity: float,
+    pressure_viscosity: float,
+    radius: float,
+    reduced_modulus: float,
+) -> tuple[float, Values, float]:
+    """Groups U = eta0 u/(E'R) with the mean speed u, W = w/(E'R), G = alpha E'; units as in `moes_groups`.
+
+    Examples
+    --------
+    >>> U, W, G = dowson_groups(88571.4, 1.7, 0.0845, 2.24e-8, 5.5152e-3, 230.769e9)
+    >>> f"{U:.4g} {W:.4g} {G:.4g}"
+    '1.129e-10 6.959e-05 5169'
+    """
+    speed_number = viscosity * speed / (reduced_modulus * radius)
+    load_number = as_given(load / (reduced_modulus * radius), load)
+    return speed_number, load_number, pressure_viscosity * reduced_modulus

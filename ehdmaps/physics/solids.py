@@ -1,0 +1,71 @@
+"""Solids of the contact: elastic constants and the reduced modulus."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ehdmaps.errors import InputError
+
+
+@dataclass(frozen=True)
+class Material:
+    """Isotropic linear elastic solid.
+
+    Attributes
+    ----------
+    youngs_modulus : float
+        E [Pa], > 0.
+    poisson_ratio : float
+        nu, -1 < nu < 0.5.
+    density : float
+        [kg/m3], > 0. It gives rollers their mass; the contact does not use it.
+
+    Raises
+    ------
+    InputError
+        With every value that is not finite or out of these limits.
+    """
+
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float = 7850.0
+
+    def __post_init__(self) -> None:
+        problems = []
+        if not (math.isfinite(self.youngs_modulus) and self.youngs_modulus > 0):
+            problems.append(
+                f"youngs_modulus: got {self.youngs_modulus!r} Pa; allowed: finite and > 0; steel has 210e9 Pa"
+            )
+        if not -1.0 < self.poisson_ratio < 0.5:
+            problems.append(
+                f"poisson_ratio: got {self.poisson_ratio!r}; allowed: -1 < nu < 0.5; steel has 0.3"
+            )
+        if not (math.isfinite(self.density) and self.density > 0):
+            problems.append(
+                f"density: got {self.density!r} kg/m3; allowed: finite and > 0; steel has 7850 kg/m3"
+            )
+        if problems:
+            raise InputError(problems)
+
+
+STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850.0)
+
+
+def reduced_modulus(first: Material, second: Material) -> float:
+    """Reduced modulus of a pair, E' = 2 / ((1 - nu1^2)/E1 + (1 - nu2^2)/E2) [Pa].
+
+    Not the E* of contact mechanics, which is E'/2.
+
+    References
+    ----------
+    D. Dowson, G. R. Higginson, Elasto-Hydrodynamic Lubrication, Pergamon, 1966.
+
+    Examples
+    --------
+    >>> round(reduced_modulus(STEEL, STEEL) / 1e9, 3)
+    230.769
+    """
+    compliance = (1.0 - first.poisson_ratio**2) / first.youngs_modulus
+    compliance += (1.0 - second.poisson_ratio**2) / second.youngs_modulus
+    return 2.0 / compliance

@@ -1,0 +1,189 @@
+"""What a solver returns: the film of one contact at one operating point, and the contact made of film and solids.
+
+A solver knows the film only (`FilmSolution`). `contact_solution` adds the structural part, which is the same law for
+every solver, and gives the numbers of the map (`ContactSolution`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Protocol
+
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.operating_point import OperatingPoint
+
+
+class Status(IntEnum):
+    """How a point ended; the values are the flag_values of the map file."""
+
+    CONVERGED = 0
+    ASYMPTOTE = 1
+    STAGNATED = 2
+    DIVERGED = 3
+    OUTSIDE_VALIDITY = 4
+    FAILED = 5
+
+    @property
+    def usable(self) -> bool:
+        """Whether the numbers of such a point may be used."""
+        return self in (Status.CONVERGED, Status.ASYMPTOTE)
+
+    @property
+    def word(self) -> str:
+        """The status as written in files and tables."""
+        return self.name.lower()
+
+
+@dataclass(frozen=True)
+class FilmSolution:
+    """The film of one contact: what lubrication adds to the dry solids. NaN where the status is not usable.
+
+    Attributes
+    ----------
+    status, reason
+        Typed status, and its cause in words (empty for plain convergence).
+    film_offset : float
+        h_eff = dry minus lubricated approach at equal load [m].
+    film_compliance : float
+        -d(h_eff)/dw = 1/k - 1/k_dry [m2/N]; at a frequency its real part.
+    loss_compliance : float
+        c/k^2 at low frequency, c/(k^2 + (omega c)^2) at omega [m2 s/N].
+    central_film, minimum_film : float
+        h at the contact centre, smallest h [m].
+    max_pressure : float
+        [Pa].
+    film_offset_error, film_compliance_error, loss_compliance_error : float
+        Estimated numerical errors, relative to the value beside them.
+    iterations : int
+        Newton steps (or the solver's own count), all grids together.
+    solve_seconds : float
+        Wall time.
+    viscosity_extrapolated : bool
+        The pressure left the range in which the viscosity law was fitted.
+    """
+
+    status: Status
+    reason: str = ""
+    film_offset: float = math.nan
+    film_compliance: float = math.nan
+    loss_compliance: float = math.nan
+    central_film: float = math.nan
+    minimum_film: float = math.nan
+    max_pressure: float = math.nan
+    film_offset_error: float = math.nan
+    film_compliance_error: float = math.nan
+    loss_compliance_error: float = math.nan
+    iterations: int = 0
+    solve_seconds: float = 0.0
+    viscosity_extrapolated: bool = False
+
+
+@dataclass(frozen=True)
+class ContactSolution:
+    """One point of a map: approach, stiffness, damping and films of one contact, per unit length.
+
+    Attributes
+    ----------
+    approach : float
+        delta_el(w) - h_eff [m], > 0 when the bodies come together.
+    stiffness : float
+        k = dw/d(approach) [N/m2]; with `frequency` > 0 the real part of the dynamic stiffness.
+    damping : float
+        c [N s/m2].
+    film_offset_error, film_compliance_error, stiffness_error, damping_error : float
+        Estimated relative numerical errors.
+    frequency : float
+        [Hz]; 0 is the low-frequency limit.
+
+    The other attributes are those of `FilmSolution`.
+    """
+
+    status: Status
+    reason: str
+    approach: float
+    film_offset: float
+    stiffness: float
+    damping: float
+    central_film: float
+    minimum_film: float
+    max_pressure: float
+    film_offset_error: float
+    film_compliance_error: float
+    stiffness_error: float
+    damping_error: float
+    iterations: int
+    solve_seconds: float
+    viscosity_extrapolated: bool
+    frequency: float = 0.0
+
+
+class ContactSolver(Protocol):
+    """What every solver offers: films along a line of loads, so that a point may start from the one before it.
+
+    `solve_line` never raises for a point that does not converge: it returns the status. It is deterministic: the same
+    line gives the same numbers, whatever was solved before.
+    """
+
+    @property
+    def name(self) -> str:
+        """Name of the solver, as in a job file."""
+        ...
+
+    def solve_line(
+        self,
+        contact: LineContact,
+        lubricant: Lubricant,
+        loads: tuple[float, ...],
+        entrainment_speed: float,
+        temperature: float,
+        frequency: float = 0.0,
+    ) -> tuple[FilmSolution, ...]:
+        """Films at each load [N/m], in the order given, at one speed [m/s], temperature [K] and frequency [Hz]."""
+        ...
+
+    def settings(self) -> dict[str, float | int | str]:
+        """Everything that changes the numbers, by name; goes into the map's attributes and the store's key."""
+        ...
+
+
+def contact_solution(
+    film: FilmSolution, contact: LineContact, point: OperatingPoint, frequency: float = 0.0
+) -> ContactSolution:
+    """Add the structural part to a film.
+
+    1/(k + i omega c) = d(delta_el)/dw + film_compliance - i omega loss_compliance; at omega = 0 its limit
+    k = 1/(dry + film compliance), c = loss_compliance k^2.
+
+    Errors are carried over to first order: 1/k has the absolute error of the film compliance, c that of the loss
+    compliance plus twice that of k.
+    """
+    dry = contact.structural_compliance(point.load)
+    compliance = dry + film.film_compliance
+    omega = 2.0 * math.pi * frequency
+    loss = film.loss_compliance
+    squared = compliance**2 + (omega * loss) ** 2
+    stiffness = compliance / squared
+    damping = loss / squared
+    stiffness_error = abs(film.film_compliance) * film.film_compliance_error / compliance
+    return ContactSolution(
+        status=film.status,
+        reason=film.reason,
+        approach=contact.structural_approach(point.load) - film.film_offset,
+        film_offset=film.film_offset,
+        stiffness=stiffness,
+        damping=damping,
+        central_film=film.central_film,
+        minimum_film=film.minimum_film,
+        max_pressure=film.max_pressure,
+        film_offset_error=film.film_offset_error,
+        film_compliance_error=film.film_compliance_error,
+        stiffness_error=stiffness_error,
+        damping_error=film.loss_compliance_error + 2.0 * stiffness_error,
+        iterations=film.iterations,
+        solve_seconds=film.solve_seconds,
+        viscosity_extrapolated=film.viscosity_extrapolated,
+        frequency=frequency,
+    )
