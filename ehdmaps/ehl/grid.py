@@ -56,15 +56,16 @@ class GridShape:
 
     inlet: float = 1.0
     exit: float = 0.4
-    core: float = 0.135
+    core: float = 0.25
     spike: float = 0.5
-    inlet_width: float = 1.35
+    inlet_width: float = 1.0
     exit_width: float = 0.45
 
 
 def thick_film_exit(film: float) -> float:
     """Exit coordinate X_exit of a film H [b^2/R]: near 1 for thin films, 0.475 sqrt(2H) for rigid surfaces."""
-    return math.sqrt(1.0 + 0.226 * 2.0 * film) + 0.25 * film ** (2 / 3) / (1.0 + film ** (2 / 3))
+    thin = math.pow(film, 2 / 3)
+    return math.sqrt(1.0 + 0.226 * 2.0 * film) + 0.25 * thin / (1.0 + thin)
 
 
 @dataclass(frozen=True)
@@ -93,9 +94,7 @@ class Layout:
     @property
     def span(self) -> float:
         """s(exit) - s(inlet end): how many e-folds of distance the grid has to resolve."""
-        first, last = (
-            _index(x, self.inlet_edge, self.blur, self.core, self.terms)[0] for x in (-self.length, 0.0)
-        )
+        first, last = (_index(x, self.inlet_edge, self.blur, self.core, self.terms)[0] for x in (-self.length, 0.0))
         return float(last - first)
 
     def grid(self, cells: int) -> Grid:
@@ -104,9 +103,7 @@ class Layout:
         return Grid(x=x[::2].copy(), step=2.0 * step[::2], face=x[1::2].copy(), face_step=2.0 * step[1::2])
 
 
-def lay_out(
-    film: float, inlet_length: float, shape: GridShape = GridShape(), spike: Spike | None = None
-) -> Layout:
+def lay_out(film: float, inlet_length: float, shape: GridShape = GridShape(), spike: Spike | None = None) -> Layout:
     """Layout for a contact whose film is about `film`.
 
     Parameters
@@ -140,7 +137,8 @@ def lay_out(
 
 def zone_width(film: float) -> float:
     """Width of inlet and exit zones [b]: H^(2/3) for thin films, sqrt(2H) for thick ones."""
-    return film ** (2 / 3) / (1.0 + film ** (2 / 3) / math.sqrt(2.0 * film))
+    thin = math.pow(film, 2 / 3)
+    return thin / (1.0 + thin / math.sqrt(2.0 * film))
 
 
 @njit(cache=True)
@@ -167,10 +165,13 @@ def _nodes(count: int, length: float, edge: float, blur: float, core: float, ter
     step = np.empty(count + 1)
     x[count] = 0.0
     step[count] = spacing / slope
-    for i in range(count - 1, -1, -1):
+    x[0] = -length
+    step[0] = spacing / _index(-length, edge, blur, core, terms)[1]
+    growth = 1.0
+    for i in range(count - 1, 0, -1):
         target = first + i * spacing
         low, high = -length, x[i + 1]
-        trial = max(low, high - step[i + 1])
+        trial = max(0.5 * (low + high), high - step[i + 1] * math.sqrt(growth))
         for _ in range(60):
             index, slope = _index(trial, edge, blur, core, terms)
             if index > target:
@@ -178,13 +179,12 @@ def _nodes(count: int, length: float, edge: float, blur: float, core: float, ter
             else:
                 low = trial
             move = (target - index) / slope
-            if abs(index - target) < 1e-13 * (last - first):
-                break
             trial += move
-            if not low < trial < high:
+            if not low <= trial <= high:
                 trial = 0.5 * (low + high)
-        if i == 0:
-            trial = -length
+            elif abs(move) * slope < 1e-7 * spacing:  # Newton: what is left is its square
+                break
         x[i] = trial
         step[i] = spacing / _index(trial, edge, blur, core, terms)[1]
+        growth = step[i] / step[i + 1]
     return x, step

@@ -6,7 +6,7 @@ Everything here is in the groups of the problem (Hertz-dimensionless); `solver` 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,8 +38,8 @@ COLD_START_BELOW = 1.0
 THIN_FILM = 20.0
 """Load M above which a negative loss can only be a numerical one."""
 
-LADDER_RATIO = 1.5
-"""Step in M from a light load up to a point that does not converge by itself."""
+LADDER_RATIO, STEEP_LADDER_RATIO = 1.5, 1.2
+"""Steps in M from a light load up to a point that does not converge by itself, up to L = 30 and above."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,8 @@ class Resolution:
         Width of the finest cells around the pressure spike [b]; less where inlet and exit zones are narrower.
     spike_steepness : float
         Fall of pressure behind the spike, in p_H per width of the exit zone, above which the spike gets cells of its
-        own and the linearised grid follows it.
+        own and the linearised grid follows it; M/100 times as much above M = 100, where the edge of the Hertz
+        zone alone is that steep.
     shape : GridShape
         Where the grid spends its cells.
     """
@@ -69,7 +70,7 @@ class Resolution:
     tolerance: float = 1e-6
     spike_width: float = 0.1
     spike_steepness: float = 0.6
-    shape: GridShape = GridShape()
+    shape: GridShape = field(default_factory=GridShape)
 
 
 @dataclass(frozen=True)
@@ -101,7 +102,7 @@ class Profile:
     @property
     def position(self) -> Array:
         """X of the nodes from the centre of the Hertz contact, shape (n + 1,) [b]."""
-        return self.grid.x + self.unknowns[-2]
+        return np.asarray(self.grid.x + self.unknowns[-2])
 
     @property
     def film_offset(self) -> float:
@@ -111,7 +112,7 @@ class Profile:
 
 @dataclass(frozen=True)
 class GroupSolution:
-    """Film of one point in units of b, p_H, b^2/R and b/u, with estimated relative errors.
+    """Film of one point in units of b, p_H, b^2/R and b/u, with estimated relative errors (> 0: value too large).
 
     `profile` is the fine solution (the coarse one where the fine one failed, None where both did).
     """
@@ -169,14 +170,21 @@ def solve_groups(
 
 
 def _solve_once(
-    problem: LineProblem, M: float, L: float, resolution: Resolution, previous: Profile | None, frequency: float
+    problem: LineProblem,
+    M: float,
+    L: float,
+    resolution: Resolution,
+    previous: Profile | None,
+    frequency: float,
 ) -> GroupSolution:
     """One solve at one resolution."""
     coarse, steps, outcome = _coarse(problem, M, L, resolution, previous)
     if coarse is None:
         return GroupSolution(outcome=outcome, profile=None, steps=steps)
     grid = coarse.layout.grid(2 * coarse.cells)
-    fine, more, outcome = _converged(problem, coarse.layout, grid, _refined(coarse, grid), coarse.spike, resolution.tolerance)
+    fine, more, outcome = _converged(
+        problem, coarse.layout, grid, _refined(coarse, grid), coarse.spike, resolution.tolerance
+    )
     steps += more
     if fine is None:
         return GroupSolution(outcome=outcome, profile=None, steps=steps)
@@ -186,7 +194,12 @@ def _solve_once(
 
 
 def _converged(
-    problem: LineProblem, layout: Layout, grid: Grid, start: Array | None, spike: Spike | None, tolerance: float
+    problem: LineProblem,
+    layout: Layout,
+    grid: Grid,
+    start: Array | None,
+    spike: Spike | None,
+    tolerance: float,
 ) -> tuple[Profile | None, int, int]:
     """Newton on one grid, from `start` or from Hertz: profile (None unless converged), steps, outcome."""
     kernel = log_kernel(grid.x, grid.step)
@@ -208,10 +221,10 @@ def _coarse(
     warm = previous if M >= COLD_START_BELOW else None
     found: Profile | None = None
     if warm is not None:
-        found, steps, outcome = _with_spike(problem, guess, resolution, warm, warm.spike)
+        found, steps, outcome = _with_spike(problem, guess, resolution, warm)
         total += steps
     if found is None and M < 20.0:
-        found, steps, outcome = _with_spike(problem, guess, resolution, None, None)
+        found, steps, outcome = _with_spike(problem, guess, resolution, None)
         total += steps
     if found is None:
         found, steps, outcome = _climb(problem, M, L, resolution)
@@ -219,23 +232,25 @@ def _coarse(
     return found, total, outcome
 
 
-def _climb(
-    problem: LineProblem, M: float, L: float, resolution: Resolution
-) -> tuple[Profile | None, int, int]:
+def _climb(problem: LineProblem, M: float, L: float, resolution: Resolution) -> tuple[Profile | None, int, int]:
     """Start at a light load, where every start converges, and raise M step by step at the same L."""
-    rungs = max(1, math.ceil(math.log(M / min(M, 0.5 * COLD_START_BELOW)) / math.log(LADDER_RATIO)))
+    ratio = LADDER_RATIO if L < 30.0 else STEEP_LADDER_RATIO
+    rungs = max(1, math.ceil(math.log(M / min(M, 0.5 * COLD_START_BELOW)) / math.log(ratio)))
     rung: Profile | None = None
     total, outcome = 0, CONVERGED
     for k in range(rungs + 1):
         factor = (min(M, 0.5 * COLD_START_BELOW) / M) ** (1.0 - k / rungs)
-        rung_problem = at_load(problem, factor)
-        rung, steps, outcome = _with_spike(
-            rung_problem, expected_film(M * factor, L), resolution, rung, rung.spike if rung else None
-        )
+        rung_film = expected_film(M * factor, L)
+        rung, steps, outcome = _with_spike(at_load(problem, factor), rung_film, resolution, rung)
         total += steps
         if rung is None:
             break
     return rung, total, outcome
+
+
+def problem_load(problem: LineProblem) -> float:
+    """Moes' M of the groups."""
+    return math.sqrt(3.0 * math.pi**2 / (8.0 * problem.wedge))
 
 
 def at_load(problem: LineProblem, factor: float) -> LineProblem:
@@ -251,17 +266,29 @@ def at_load(problem: LineProblem, factor: float) -> LineProblem:
 
 
 def _with_spike(
-    problem: LineProblem, guess: float, resolution: Resolution, start: Profile | None, spike: Spike | None
+    problem: LineProblem, guess: float, resolution: Resolution, previous: Profile | None
 ) -> tuple[Profile | None, int, int]:
-    """Solve on one coarse grid after another, loosely at first, until the spike stands where the grid expects it."""
+    """Solve on one coarse grid after another, loosely at first, until the spike stands where the grid expects it.
+
+    From a neighbouring load the spike is expected where it was, times the ratio of loads to the power of -0.7 (seen
+    over L = 10 to 50), and the start is carried over by index, so that the front moves with its cells: Newton moves it
+    by one cell a step only.
+    """
     total = 0
     zone = zone_width(guess)
     finest = resolution.spike_width * min(1.0, zone / 0.3)
-    solution = start
+    spike = None
+    if previous is not None and previous.spike is not None:
+        ratio = problem_load(problem) / problem_load(previous.problem)
+        spike = Spike(previous.spike.position * ratio**-0.7, finest)
+    solution = previous
     for attempt in range(MOST_MOVES):
         layout = lay_out(guess, resolution.inlet_length, resolution.shape, spike)
         grid = layout.grid(math.ceil(0.5 * resolution.density * layout.span))
-        unknowns = None if solution is None else _moved(solution, grid)
+        if solution is None:
+            unknowns = None
+        else:
+            unknowns = _moved(solution, grid, by_index=attempt == 0 and spike is not None)
         for tolerance in (LOOSE_TOLERANCE, resolution.tolerance):
             solution, steps, outcome = _converged(problem, layout, grid, unknowns, spike, tolerance)
             total += steps
@@ -270,7 +297,7 @@ def _with_spike(
             unknowns = solution.unknowns
             front, steepness = _front(solution)
             if spike is None:
-                settled = steepness * zone < resolution.spike_steepness
+                settled = steepness * zone < resolution.spike_steepness * max(1.0, problem_load(problem) / 100.0)
             else:
                 settled = abs(front - spike.position) < 0.5 * finest and spike.width == finest
             if not settled and attempt < MOST_MOVES - 1:
@@ -290,11 +317,18 @@ def _front(profile: Profile) -> tuple[float, float]:
     return float(profile.grid.face[cell]), float(fall[cell])
 
 
-def _moved(profile: Profile, grid: Grid) -> Array:
-    """Start on another grid from a solution nearby: what differs from the Hertz pressure is interpolated."""
+def _moved(profile: Profile, grid: Grid, by_index: bool) -> Array:
+    """Start on another grid from a solution nearby, at the same places or at the same share of the nodes.
+
+    What differs from the Hertz pressure is interpolated.
+    """
     exit_at = profile.unknowns[-2]
     excess = profile.pressure - _hertz(profile.position)
-    pressure = np.interp(grid.x, profile.grid.x, excess) + _hertz(grid.x + exit_at)
+    if by_index:
+        excess = np.interp(np.linspace(0.0, 1.0, grid.x.size), np.linspace(0.0, 1.0, excess.size), excess)
+    else:
+        excess = np.interp(grid.x, profile.grid.x, excess)
+    pressure = excess + _hertz(grid.x + exit_at)
     return np.concatenate([np.maximum(pressure[1:-1], 0.0), profile.unknowns[-3:]])
 
 
@@ -326,14 +360,15 @@ def _response(profile: Profile, resolution: Resolution, frequency: float) -> Res
         shift = 0.02 * spike.width
         behind, ahead = (
             lay_out(
-                profile.layout.film, resolution.inlet_length, resolution.shape, Spike(spike.position + d, spike.width)
+                profile.layout.film,
+                resolution.inlet_length,
+                resolution.shape,
+                Spike(spike.position + d, spike.width),
             ).grid(profile.cells)
             for d in (-shift, shift)
         )
         neighbours = Neighbours(behind, ahead, shift, _front_node(profile))
-    return film_response(
-        profile.problem, profile.grid, profile.kernel, profile.unknowns, LOAD, neighbours, frequency
-    )
+    return film_response(profile.problem, profile.grid, profile.kernel, profile.unknowns, LOAD, neighbours, frequency)
 
 
 def _front_node(profile: Profile) -> int:
@@ -347,15 +382,24 @@ def _front_node(profile: Profile) -> int:
 
 
 def _assembled(
-    M: float, L: float, fine: Profile, coarse: Profile, response: Response, rough: Response, resolution: Resolution, steps: int
+    M: float,
+    L: float,
+    fine: Profile,
+    coarse: Profile,
+    response: Response,
+    rough: Response,
+    resolution: Resolution,
+    steps: int,
 ) -> GroupSolution:
     """Numbers and error estimates from the fine and the coarse solution."""
     by_offset, by_response = _grid_share(M, L, fine.spike is not None)
     inlet = 1.0 / resolution.inlet_length**2
     central, minimum = _films(fine)
 
-    def error(value: float, other: float, share: float, tail: float) -> float:
-        return abs(value - other) * share / abs(value) + tail * inlet
+    def error(value: float, rough_value: float, share: float, lost: float) -> float:
+        """Signed: what refinement would take away; a short inlet makes all three too small in magnitude."""
+        grid = (rough_value - value) * share / value
+        return math.copysign(abs(grid) + lost * inlet, grid)
 
     return GroupSolution(
         outcome=CONVERGED,
@@ -376,13 +420,17 @@ def _assembled(
 def _grid_share(M: float, L: float, spike: bool) -> tuple[float, float]:
     """Share of the difference between both grids that is left as error of the finer one: film offset, response.
 
-    1/(2^p - 1) with p = 4 and half as much again for safety; p = 2 where the order is lost: the film offset where a
-    front narrower than a cell carries load, the response at the valley, where it is a small difference of large parts
-    whose errors have either sign.
+    1/(2^p - 1) and half as much again for safety. p = 4; p = 2 where the order is lost: the film offset where a front
+    narrower than a cell carries load, the response at the valley, where it is a small difference of large parts whose
+    errors have either sign. A sharp front (L > 12) leaves the response between the two.
     """
-    fourth, second = 1.5 / 15.0, 1.0 / 3.0
+    fourth, second = 1.5 / 15.0, 1.5 / 3.0
     by_offset = second if spike and M < 20.0 else fourth
-    by_response = second if 0.2 < M < 2.0 or L > 30.0 else fourth
+    by_response = fourth
+    if 0.6 < M < 2.0 or L > 30.0:
+        by_response = 1.0 / 3.0
+    elif spike and L > 12.0 or 0.2 < M < 0.6:
+        by_response = 1.5 * fourth
     return by_offset, by_response
 
 

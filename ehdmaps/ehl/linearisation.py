@@ -103,13 +103,23 @@ def film_response(
 def _by_grid(
     problem: LineProblem, grid: Grid, kernel: Array, unknowns: Array, load: float, neighbours: Neighbours
 ) -> tuple[Array, Array]:
-    """Derivatives of the residual and of the stored mass (seen by the moving faces) with respect to the spike's place."""
+    """Derivatives of the residual and of the stored mass (as moving faces see it) with respect to the spike's place."""
     size = unknowns.size
     sides = []
     for side in (neighbours.behind, neighbours.ahead):
         side_kernel = log_kernel(side.x, side.step)
         out = np.empty(size)
-        residual(problem, side.x, side.step, side.face_step, side_kernel, unknowns, load, out, np.empty((size, size)))
+        residual(
+            problem,
+            side.x,
+            side.step,
+            side.face_step,
+            side_kernel,
+            unknowns,
+            load,
+            out,
+            np.empty((size, size)),
+        )
         mass, _ = stored_mass(problem, side.x, side.step, side_kernel, unknowns)
         sides.append((out, mass, np.append(side.face, side.x[-1])))
     (out_0, mass_0, face_0), (out_1, mass_1, face_1) = sides

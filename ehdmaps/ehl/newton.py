@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ehdmaps.ehl.reynolds import LineProblem, film, node_pressure, residual
+from ehdmaps.ehl.reynolds import LineProblem, film, residual
 
 Array = NDArray[np.float64]
 
@@ -39,7 +39,7 @@ def solve_scaled(jacobian: Array, right_hand_side: Array) -> Array:
             for j in range(jacobian.shape[1]):
                 jacobian[i, j] /= largest
             right_hand_side[i] /= largest
-    return np.linalg.solve(jacobian, right_hand_side)
+    return np.linalg.solve(jacobian, right_hand_side)  # type: ignore[return-value]
 
 
 @njit(cache=True)
@@ -67,9 +67,9 @@ def newton(
     n = size - 2
     unknowns = start.copy()
     # a start interpolated from another grid can touch: lift it clear first
-    lowest = np.min(film(x, kernel, unknowns))
-    if lowest < 0.2 * unknowns[n - 1]:
-        unknowns[n + 1] += 0.2 * unknowns[n - 1] - lowest
+    clearance = np.min(film(x, kernel, unknowns)) - 0.2 * unknowns[n - 1]
+    if clearance < 0.0:
+        unknowns[n + 1] -= clearance
     out = np.empty(size)
     jacobian = np.empty((size, size))
     last = math.inf

@@ -59,7 +59,9 @@ class LineProblem(NamedTuple):
 
 
 @njit(cache=True)
-def oil(problem: LineProblem, pressure: Array, log_eta: Array, log_eta_slope: Array, rho: Array, rho_slope: Array) -> None:
+def oil(
+    problem: LineProblem, pressure: Array, log_eta: Array, log_eta_slope: Array, rho: Array, rho_slope: Array
+) -> None:
     """Fill ln eta, rho and their derivatives at each pressure; a negative trial pressure acts as zero on ln eta."""
     z, q, alpha, kappa = problem.exponent, problem.pressure_ratio, problem.alpha, problem.density_ratio
     for i in range(pressure.size):
@@ -96,7 +98,8 @@ def film(x: Array, kernel: Array, unknowns: Array) -> Array:
     """Film H at all nodes, shape (n + 1,) [b^2/R]."""
     n = x.size - 1
     deflection = kernel @ node_pressure(unknowns)
-    return unknowns[n + 1] + 0.5 * (unknowns[n] + x) ** 2 - deflection
+    gap: Array = unknowns[n + 1] + 0.5 * (unknowns[n] + x) ** 2 - deflection
+    return gap
 
 
 @njit(cache=True)
@@ -223,16 +226,12 @@ def residual(
     total[n - 1], total[n], total[n + 1] = 0.0, 0.0, 0.0
     out[n] = mass[n] - outflow
     out[n + 1] = carried_load - load
-    lowest = gap[0]
-    for i in range(n + 1):
-        lowest = min(lowest, gap[i])
+    lowest: float = np.min(gap)
     return lowest
 
 
 @njit(cache=True)
-def stored_mass(
-    problem: LineProblem, x: Array, step: Array, kernel: Array, unknowns: Array
-) -> tuple[Array, Array]:
+def stored_mass(problem: LineProblem, x: Array, step: Array, kernel: Array, unknowns: Array) -> tuple[Array, Array]:
     """Minus the oil mass between each face and the exit, and the mass per length rho H carried through the face.
 
     Both have shape (n + 1,): faces 0 .. n-1, then the exit node.
@@ -246,9 +245,7 @@ def stored_mass(
 
 
 @njit(cache=True)
-def stored_mass_rate(
-    problem: LineProblem, x: Array, step: Array, kernel: Array, unknowns: Array, rate: Array
-) -> Array:
+def stored_mass_rate(problem: LineProblem, x: Array, step: Array, kernel: Array, unknowns: Array, rate: Array) -> Array:
     """Derivative of `stored_mass`[0] for a rate of the unknowns, shape (n + 2,), on a grid that moves with the exit."""
     n = x.size - 1
     pressure = node_pressure(unknowns)
@@ -262,7 +259,7 @@ def stored_mass_rate(
 
 @njit(cache=True)
 def _accumulate(density: Array) -> Array:
-    """Minus the integral over s from each face (and from the exit: 0) to the exit; fourth order, half a cell at the exit.
+    """Minus the integral over s from each face (and from the exit: 0) to the exit; fourth order inside.
 
     Counted from the exit, where the film is thin: the inlet holds so much oil that its round-off would drown the rest.
     """

@@ -63,7 +63,8 @@ class ReynoldsSolver:
     def __post_init__(self) -> None:
         limits = {"density": (3.0, 60.0), "inlet_length": (20.0, 1e5), "tolerance": (1e-12, 1e-3)}
         problems = [
-            f"reynolds solver, {name}: got {getattr(self, name)!r}; allowed: {low:g} to {high:g}; leave it out for the default"
+            f"reynolds solver, {name}: got {getattr(self, name)!r}; allowed: {low:g} to {high:g}; "
+            "leave it out for the default"
             for name, (low, high) in limits.items()
             if not low <= getattr(self, name) <= high
         ]
@@ -145,9 +146,7 @@ def line_problem(
     """Groups of one operating point: those of the equations, and Moes' M and L."""
     law = state.pressure_viscosity
     peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
-    M, L = moes_groups(
-        load, speed, state.viscosity, law.pressure_viscosity, contact.radius, contact.reduced_modulus
-    )
+    M, L = moes_groups(load, speed, state.viscosity, law.pressure_viscosity, contact.radius, contact.reduced_modulus)
     problem = LineProblem(
         wedge=3.0 * math.pi**2 / (8.0 * M * M),
         alpha=law.pressure_viscosity * peak,
@@ -189,7 +188,13 @@ def _beyond_reach(peak: float, M: float, L: float) -> str:
 
 
 def _in_si(
-    groups: GroupSolution, contact: LineContact, state: LubricantState, half: float, peak: float, speed: float, seconds: float
+    groups: GroupSolution,
+    contact: LineContact,
+    state: LubricantState,
+    half: float,
+    peak: float,
+    speed: float,
+    seconds: float,
 ) -> FilmSolution:
     """Scale films by b^2/R, the compliance by b/(p_H R), the loss by b^2/(p_H R u)."""
     film = half * half / contact.radius

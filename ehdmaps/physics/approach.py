@@ -58,9 +58,7 @@ def iso16281(load: Values, roller_length: float, reduced_modulus: float = STEEL_
     return _power_law(load, coefficient * _material_factor(reduced_modulus))
 
 
-def iso16281_compliance(
-    load: Values, roller_length: float, reduced_modulus: float = STEEL_REDUCED_MODULUS
-) -> Values:
+def iso16281_compliance(load: Values, roller_length: float, reduced_modulus: float = STEEL_REDUCED_MODULUS) -> Values:
     """d(delta)/dw of `iso16281` [m2/N]; inf at and below zero load."""
     return _power_law_slope(load, iso16281(load, roller_length, reduced_modulus))
 
@@ -96,9 +94,7 @@ def palmgren(load: Values, roller_length: float, reduced_modulus: float = STEEL_
     return _power_law(load, coefficient * _material_factor(reduced_modulus))
 
 
-def palmgren_compliance(
-    load: Values, roller_length: float, reduced_modulus: float = STEEL_REDUCED_MODULUS
-) -> Values:
+def palmgren_compliance(load: Values, roller_length: float, reduced_modulus: float = STEEL_REDUCED_MODULUS) -> Values:
     """d(delta)/dw of `palmgren` [m2/N]; inf at and below zero load."""
     return _power_law_slope(load, palmgren(load, roller_length, reduced_modulus))
 
@@ -141,9 +137,7 @@ def half_space(load: Values, reference_depth: float, radius: float, reduced_modu
     return as_given(np.where(positive > 0.0, delta, 0.0), load)
 
 
-def half_space_compliance(
-    load: Values, reference_depth: float, radius: float, reduced_modulus: float
-) -> Values:
+def half_space_compliance(load: Values, reference_depth: float, radius: float, reduced_modulus: float) -> Values:
     """d(delta)/dw of `half_space`, (4/(pi E')) ln(2 d*/b) [m2/N]; inf at and below zero load."""
     _, ratio = _half_space_terms(load, reference_depth, radius, reduced_modulus)
     return as_given(4.0 / (math.pi * reduced_modulus) * np.log(2.0 * ratio), load)

@@ -66,8 +66,7 @@ class BearingGeometry:
             return BEARINGS[name]
         except KeyError:
             raise InputError(
-                f"bearing name: got {name!r}; allowed: {', '.join(BEARINGS)}; "
-                "give other bearings by their dimensions"
+                f"bearing name: got {name!r}; allowed: {', '.join(BEARINGS)}; give other bearings by their dimensions"
             ) from None
 
     @property
@@ -145,8 +144,7 @@ def _problems(bearing: BearingGeometry) -> list[str]:
     clearance_known = math.isfinite(bearing.diametral_clearance)
     if not clearance_known:
         problems.append(
-            f"{where}, diametral_clearance: got {bearing.diametral_clearance!r} m; allowed: finite; "
-            "use 0 if unknown"
+            f"{where}, diametral_clearance: got {bearing.diametral_clearance!r} m; allowed: finite; use 0 if unknown"
         )
     if not lengths_known:
         return problems

@@ -87,8 +87,7 @@ class FormulaSolver:
     def __post_init__(self) -> None:
         if self.film_formula not in FILM_FORMULAS:
             raise InputError(
-                f"film_formula: got {self.film_formula!r}; allowed: {', '.join(FILM_FORMULAS)}; "
-                "choose one of them"
+                f"film_formula: got {self.film_formula!r}; allowed: {', '.join(FILM_FORMULAS)}; choose one of them"
             )
 
     @property
@@ -134,9 +133,7 @@ class FormulaSolver:
         status, reason = Status.CONVERGED, ""
         if film / contact.radius > THIN_FILM_LIMIT:
             status = Status.ASYMPTOTE
-            reason = (
-                f"film h/R = {film / contact.radius:.3g} above {THIN_FILM_LIMIT}: outside thin-film theory"
-            )
+            reason = f"film h/R = {film / contact.radius:.3g} above {THIN_FILM_LIMIT}: outside thin-film theory"
         return FilmSolution(
             status=status,
             reason=reason,
@@ -190,23 +187,15 @@ def _moes(contact: LineContact, state: LubricantState, load: float, speed: float
     return float(film), float(film * slope / film_number * M / load)
 
 
-def _dowson_toyoda(
-    contact: LineContact, state: LubricantState, load: float, speed: float
-) -> tuple[float, float]:
+def _dowson_toyoda(contact: LineContact, state: LubricantState, load: float, speed: float) -> tuple[float, float]:
     """Central film of Dowson and Toyoda [m] and its derivative with respect to load [m2/N]."""
-    film = contact.radius * dowson_toyoda_central(
-        *dowson_groups(*_group_arguments(contact, state, load, speed))
-    )
+    film = contact.radius * dowson_toyoda_central(*dowson_groups(*_group_arguments(contact, state, load, speed)))
     return float(film), float(-0.10 * film / load)
 
 
-def _pan_hamrock(
-    contact: LineContact, state: LubricantState, load: float, speed: float
-) -> tuple[float, float]:
+def _pan_hamrock(contact: LineContact, state: LubricantState, load: float, speed: float) -> tuple[float, float]:
     """Central film of Pan and Hamrock [m] and its derivative with respect to load [m2/N]."""
-    film = contact.radius * pan_hamrock_central(
-        *dowson_groups(*_group_arguments(contact, state, load, speed))
-    )
+    film = contact.radius * pan_hamrock_central(*dowson_groups(*_group_arguments(contact, state, load, speed)))
     return float(film), float(-0.166 * film / load)
 
 

@@ -138,24 +138,17 @@ class Lubricant:
         problems = []
         if not (math.isfinite(self.density_15) and self.density_15 > 0):
             problems.append(
-                f"{where}, density: got {self.density_15!r} kg/m3; allowed: finite and > 0; "
-                "oils have about 880 kg/m3"
+                f"{where}, density: got {self.density_15!r} kg/m3; allowed: finite and > 0; oils have about 880 kg/m3"
             )
         if not math.isfinite(self.density_slope):
             problems.append(f"{where}, density_slope: got {self.density_slope!r} kg/(m3 K); allowed: finite")
         if self.density_law not in DENSITY_LAWS:
-            problems.append(
-                f"{where}, density_law: got {self.density_law!r}; allowed: {', '.join(DENSITY_LAWS)}"
-            )
+            problems.append(f"{where}, density_law: got {self.density_law!r}; allowed: {', '.join(DENSITY_LAWS)}")
         if not self.fitted_pressure > 0:
-            problems.append(
-                f"{where}, fitted_pressure: got {self.fitted_pressure!r} Pa; allowed: > 0, inf if unknown"
-            )
+            problems.append(f"{where}, fitted_pressure: got {self.fitted_pressure!r} Pa; allowed: > 0, inf if unknown")
         conductivity = self.thermal_conductivity
         if conductivity is not None and not (math.isfinite(conductivity) and conductivity > 0):
-            problems.append(
-                f"{where}, thermal_conductivity: got {conductivity!r} W/(m K); allowed: finite and > 0"
-            )
+            problems.append(f"{where}, thermal_conductivity: got {conductivity!r} W/(m K); allowed: finite and > 0")
         if problems:
             raise InputError(problems)
 
@@ -181,8 +174,7 @@ class Lubricant:
             return _NAMED[name]
         except KeyError:
             raise InputError(
-                f"lubricant name: got {name!r}; allowed: {', '.join(LUBRICANTS)}; "
-                "give other oils by their data"
+                f"lubricant name: got {name!r}; allowed: {', '.join(LUBRICANTS)}; give other oils by their data"
             ) from None
 
     @classmethod
@@ -237,13 +229,10 @@ class Lubricant:
         """
         problems: list[str] = []
         law = _viscosity_law(name, viscosity, viscosity_40, viscosity_100, problems)
-        pair = _coefficient_pair(
-            name, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100, problems
-        )
+        pair = _coefficient_pair(name, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100, problems)
         if pair is None and not problems:
             problems.append(
-                f"lubricant {name!r}, pressure_viscosity: got none; viscosity_law barus needs it; "
-                "give it in 1/Pa"
+                f"lubricant {name!r}, pressure_viscosity: got none; viscosity_law barus needs it; give it in 1/Pa"
             )
         if problems or law is None or pair is None:
             raise InputError(problems)
@@ -289,15 +278,11 @@ class Lubricant:
         """
         problems: list[str] = []
         law = _viscosity_law(name, viscosity, viscosity_40, viscosity_100, problems)
-        pair = _coefficient_pair(
-            name, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100, problems
-        )
+        pair = _coefficient_pair(name, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100, problems)
         if problems or law is None:
             raise InputError(problems)
         isotherms = Roelands(roelands_z, *(pair or (None, None)))
-        return cls(
-            name, True, law, isotherms, density, density_slope, density_law, fitted_pressure=fitted_pressure
-        )
+        return cls(name, True, law, isotherms, density, density_slope, density_law, fitted_pressure=fitted_pressure)
 
     @classmethod
     def fva3(
@@ -328,16 +313,12 @@ class Lubricant:
         """
         problems: list[str] = []
         law = _viscosity_law(name, viscosity, viscosity_40, viscosity_100, problems)
-        pair = _coefficient_pair(
-            name, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100, problems
-        )
+        pair = _coefficient_pair(name, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100, problems)
         if problems or law is None:
             raise InputError(problems)
         cold, hot = pair or (None, None)
         isotherms = Fva3(pressure_viscosity_40=cold, pressure_viscosity_100=hot)
-        return cls(
-            name, True, law, isotherms, density, density_slope, density_law, fitted_pressure=fitted_pressure
-        )
+        return cls(name, True, law, isotherms, density, density_slope, density_law, fitted_pressure=fitted_pressure)
 
     def at(self, temperature: float) -> LubricantState:
         """The oil at a temperature [K].

@@ -145,9 +145,7 @@ class Roelands:
 
     def __post_init__(self) -> None:
         if self.exponent is not None and not (math.isfinite(self.exponent) and self.exponent > 0):
-            raise InputError(
-                f"roelands_z: got {self.exponent!r}; allowed: finite and > 0; oils have 0.4 to 0.8"
-            )
+            raise InputError(f"roelands_z: got {self.exponent!r}; allowed: finite and > 0; oils have 0.4 to 0.8")
         _check_coefficients(self.pressure_viscosity_40, self.pressure_viscosity_100)
         if self.exponent is None and self.pressure_viscosity_40 is None:
             raise InputError(
@@ -232,8 +230,7 @@ def _check_coefficients(cold: float | None, hot: float | None) -> None:
     if cold is None and hot is None:
         return
     problems = [
-        f"{key}: got {value!r} 1/Pa; allowed: finite and >= 0, > 0 if it varies; "
-        "mineral oils have about 2e-8 1/Pa"
+        f"{key}: got {value!r} 1/Pa; allowed: finite and >= 0, > 0 if it varies; mineral oils have about 2e-8 1/Pa"
         for key, value in (("pressure_viscosity_40", cold), ("pressure_viscosity_100", hot))
         if value is None or not (math.isfinite(value) and value >= 0 and (value > 0 or cold == hot))
     ]

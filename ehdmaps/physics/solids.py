@@ -38,13 +38,9 @@ class Material:
                 f"youngs_modulus: got {self.youngs_modulus!r} Pa; allowed: finite and > 0; steel has 210e9 Pa"
             )
         if not -1.0 < self.poisson_ratio < 0.5:
-            problems.append(
-                f"poisson_ratio: got {self.poisson_ratio!r}; allowed: -1 < nu < 0.5; steel has 0.3"
-            )
+            problems.append(f"poisson_ratio: got {self.poisson_ratio!r}; allowed: -1 < nu < 0.5; steel has 0.3")
         if not (math.isfinite(self.density) and self.density > 0):
-            problems.append(
-                f"density: got {self.density!r} kg/m3; allowed: finite and > 0; steel has 7850 kg/m3"
-            )
+            problems.append(f"density: got {self.density!r} kg/m3; allowed: finite and > 0; steel has 7850 kg/m3")
         if problems:
             raise InputError(problems)
 

@@ -56,7 +56,8 @@ class FilmSolution:
     max_pressure : float
         [Pa].
     film_offset_error, film_compliance_error, loss_compliance_error : float
-        Estimated numerical errors, relative to the value beside them.
+        Estimated numerical errors, relative to the value beside them; positive where the value is too large, so that
+        errors of compliance and loss that come from one cause can cancel in the damping.
     iterations : int
         Newton steps (or the solver's own count), all grids together.
     solve_seconds : float
@@ -157,8 +158,8 @@ def contact_solution(
     1/(k + i omega c) = d(delta_el)/dw + film_compliance - i omega loss_compliance; at omega = 0 its limit
     k = 1/(dry + film compliance), c = loss_compliance k^2.
 
-    Errors are carried over to first order: 1/k has the absolute error of the film compliance, c that of the loss
-    compliance plus twice that of k.
+    Errors are carried over to first order: 1/k has the absolute error of the film compliance, and c = loss k^2 has that
+    of the loss plus twice that of k, with their signs, and a twentieth of both magnitudes in case they cancel.
     """
     dry = contact.structural_compliance(point.load)
     compliance = dry + film.film_compliance
@@ -167,7 +168,9 @@ def contact_solution(
     squared = compliance**2 + (omega * loss) ** 2
     stiffness = compliance / squared
     damping = loss / squared
-    stiffness_error = abs(film.film_compliance) * film.film_compliance_error / compliance
+    stiffness_error = -film.film_compliance * film.film_compliance_error / compliance
+    loss_error = film.loss_compliance_error
+    damping_error = abs(loss_error + 2.0 * stiffness_error) + 0.05 * (abs(loss_error) + 2.0 * abs(stiffness_error))
     return ContactSolution(
         status=film.status,
         reason=film.reason,
@@ -178,10 +181,10 @@ def contact_solution(
         central_film=film.central_film,
         minimum_film=film.minimum_film,
         max_pressure=film.max_pressure,
-        film_offset_error=film.film_offset_error,
-        film_compliance_error=film.film_compliance_error,
-        stiffness_error=stiffness_error,
-        damping_error=film.loss_compliance_error + 2.0 * stiffness_error,
+        film_offset_error=abs(film.film_offset_error),
+        film_compliance_error=abs(film.film_compliance_error),
+        stiffness_error=abs(stiffness_error),
+        damping_error=damping_error,
         iterations=film.iterations,
         solve_seconds=film.solve_seconds,
         viscosity_extrapolated=film.viscosity_extrapolated,

@@ -36,15 +36,12 @@ def thermal_loading(viscosity_slope: float, speed: float, conductivity: float) -
     """
     problems = []
     if not (math.isfinite(viscosity_slope) and viscosity_slope <= 0):
-        problems.append(
-            f"viscosity_slope: got {viscosity_slope!r} Pa s/K; allowed: finite and <= 0; check its sign"
-        )
+        problems.append(f"viscosity_slope: got {viscosity_slope!r} Pa s/K; allowed: finite and <= 0; check its sign")
     if not math.isfinite(speed):
         problems.append(f"speed: got {speed!r} m/s; allowed: finite")
     if not (math.isfinite(conductivity) and conductivity > 0):
         problems.append(
-            f"conductivity: got {conductivity!r} W/(m K); allowed: finite and > 0; "
-            "mineral oils have about 0.13"
+            f"conductivity: got {conductivity!r} W/(m K); allowed: finite and > 0; mineral oils have about 0.13"
         )
     if problems:
         raise InputError(problems)

@@ -66,8 +66,7 @@ class AstmViscosity:
 
     def __post_init__(self) -> None:
         problems = [
-            f"{key}: got {value!r} m2/s = {value / _MM2:.6g} mm2/s; allowed: finite and > 0.3 mm2/s; "
-            "check its unit"
+            f"{key}: got {value!r} m2/s = {value / _MM2:.6g} mm2/s; allowed: finite and > 0.3 mm2/s; check its unit"
             for key, value in (("viscosity_40", self.viscosity_40), ("viscosity_100", self.viscosity_100))
             if not (math.isfinite(value) and value > 0.3 * _MM2)
         ]

@@ -13,9 +13,7 @@ from ehdmaps.physics import damping, films, hertz, moes
 from ehdmaps.physics.approach import half_space_compliance
 from ehdmaps.physics.lubricant import Lubricant
 
-REFERENCES = tomllib.loads(
-    (Path(__file__).parents[1] / "references" / "line_contact.toml").read_text(encoding="utf-8")
-)
+REFERENCES = tomllib.loads((Path(__file__).parents[1] / "references" / "line_contact.toml").read_text(encoding="utf-8"))
 ALPHA, ETA, RADIUS, MODULUS = 1.7e-8, 0.04, 10e-3, 230.77e9
 ELASTIC_POINTS = [point for point in REFERENCES["point"] if point["M"] >= 2]
 QUADRATURE = 1e-6  # of the integrals below, and of the constants' seven digits
@@ -81,18 +79,14 @@ def test_dry_compliance_of_the_log_kernel():
     (w_up, h_up), (w_down, h_down) = load_and_offset(1 + 1e-4), load_and_offset(1 - 1e-4)
     compliance = -(h_up - h_down) / (w_up - w_down)
     assert compliance == pytest.approx(hertz.DRY_COMPLIANCE, rel=1e-6)
-    assert limit("dry line contact")["compliance"] == pytest.approx(
-        hertz.DRY_COMPLIANCE, rel=3e-6
-    )  # 6 digits
+    assert limit("dry line contact")["compliance"] == pytest.approx(hertz.DRY_COMPLIANCE, rel=3e-6)  # 6 digits
 
 
 def test_half_space_law_has_the_dry_compliance_of_the_log_kernel():
     """With d* = b its tangent (4/(pi E')) ln(2 d*/b) is ln2/pi in Hertz's units (round-off)."""
     w = 1e5
     b, p_h = hertz.half_width(w, RADIUS, MODULUS), hertz.max_pressure(w, RADIUS, MODULUS)
-    tangent = half_space_compliance(
-        w, reference_depth=b * (1 + 1e-12), radius=RADIUS, reduced_modulus=MODULUS
-    )
+    tangent = half_space_compliance(w, reference_depth=b * (1 + 1e-12), radius=RADIUS, reduced_modulus=MODULUS)
     assert tangent * p_h * RADIUS / b == pytest.approx(hertz.DRY_COMPLIANCE, rel=1e-10)
 
 
@@ -141,9 +135,7 @@ def test_formulas_against_each_other(speed_number, load_number, material_number)
     groups = (speed_number, load_number, material_number)
     M, L = load_number / math.sqrt(2 * speed_number), material_number * (2 * speed_number) ** 0.25
     moes_film = films.moes_central(M, L) * math.sqrt(2 * speed_number)
-    assert films.pan_hamrock_minimum(*groups) == pytest.approx(
-        films.dowson_higginson_minimum(*groups), rel=0.15
-    )
+    assert films.pan_hamrock_minimum(*groups) == pytest.approx(films.dowson_higginson_minimum(*groups), rel=0.15)
     assert films.dowson_toyoda_central(*groups) == pytest.approx(moes_film, rel=0.15)
     assert films.dowson_higginson_minimum(*groups) < films.pan_hamrock_central(*groups) < 1.1 * moes_film
 

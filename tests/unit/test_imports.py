@@ -1,0 +1,69 @@
+"""The direction of imports: errors <- physics <- (ehl | maps) <- jobs; maps, physics <- mbs."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+ALLOWED = {
+    "ehdmaps.errors": set(),
+    "ehdmaps.units": {"ehdmaps.errors"},
+    "ehdmaps.physics": {"ehdmaps.errors"},
+    "ehdmaps.ehl": {"ehdmaps.errors", "ehdmaps.physics"},
+    "ehdmaps.maps": {"ehdmaps.errors", "ehdmaps.units", "ehdmaps.physics"},
+    "ehdmaps.jobs": {"ehdmaps", "ehdmaps.errors", "ehdmaps.units", "ehdmaps.physics", "ehdmaps.ehl", "ehdmaps.maps"},
+    "mbs": {"ehdmaps.errors", "ehdmaps.units", "ehdmaps.physics", "ehdmaps.maps"},
+}
+"""What each layer may import besides itself and other distributions. `ehdmaps` itself is the shop window of all."""
+
+
+def _layer(module: str) -> str | None:
+    parts = module.split(".")
+    if parts[0] == "mbs":
+        return "mbs"
+    if parts[0] != "ehdmaps":
+        return None
+    return ".".join(parts[:2])
+
+
+def _imported(path: Path) -> set[str]:
+    modules = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            modules.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            modules.add(node.module or "")
+    return modules
+
+
+FILES = sorted([*ROOT.glob("ehdmaps/*/**/*.py"), *ROOT.glob("ehdmaps/*.py"), *ROOT.glob("mbs/**/*.py")])
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_imports_point_one_way(path: Path) -> None:
+    module = ".".join(path.relative_to(ROOT).with_suffix("").parts)
+    own = _layer(module)
+    if module in ("ehdmaps.__init__", "ehdmaps.__main__"):
+        return
+    assert own is not None
+    foreign = {layer for name in _imported(path) if (layer := _layer(name)) not in (None, own)}
+    assert foreign <= ALLOWED[own], f"{path}: imports {sorted(foreign - ALLOWED[own])}"
+
+
+def test_every_file_is_looked_at() -> None:
+    assert len(FILES) > 40
+
+
+@pytest.mark.parametrize("statement", ["import ehdmaps", "import ehdmaps.physics.closed_form"])
+def test_import_is_light(statement: str) -> None:
+    heavy = ("numba", "matplotlib", "PyFoam", "xarray", "scipy", "pint")
+    code = f"{statement}; import sys; print([m for m in {heavy!r} if m in sys.modules])"
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert result.stdout.strip() == "[]"
