@@ -11,11 +11,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ehdmaps.ehl.elastic import DRY_DATUM, log_kernel
+from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid, GridShape, Layout, Spike, lay_out, thick_film_exit, zone_width
 from ehdmaps.ehl.linearisation import Neighbours, Response, film_response
 from ehdmaps.ehl.newton import CONVERGED, hertz_start, newton
-from ehdmaps.ehl.reynolds import LineProblem, film, node_pressure
+from ehdmaps.ehl.profile import Profile, films_of, front, front_node, moved, refined
+from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.physics.films import moes_central
 
 Array = NDArray[np.float64]
@@ -71,43 +72,6 @@ class Resolution:
     spike_width: float = 0.1
     spike_steepness: float = 0.6
     shape: GridShape = field(default_factory=GridShape)
-
-
-@dataclass(frozen=True)
-class Profile:
-    """A converged discrete solution on its grid."""
-
-    problem: LineProblem
-    layout: Layout
-    grid: Grid
-    kernel: Array
-    unknowns: Array
-    spike: Spike | None
-
-    @property
-    def cells(self) -> int:
-        """Number of cells."""
-        return self.grid.face.size
-
-    @property
-    def pressure(self) -> Array:
-        """P at the nodes, shape (n + 1,) [p_H]."""
-        return np.asarray(node_pressure(self.unknowns))
-
-    @property
-    def film(self) -> Array:
-        """H at the nodes, shape (n + 1,) [b^2/R]."""
-        return np.asarray(film(self.grid.x, self.kernel, self.unknowns))
-
-    @property
-    def position(self) -> Array:
-        """X of the nodes from the centre of the Hertz contact, shape (n + 1,) [b]."""
-        return np.asarray(self.grid.x + self.unknowns[-2])
-
-    @property
-    def film_offset(self) -> float:
-        """Dry minus lubricated approach [b^2/R]: H0 above the datum of the dry contact."""
-        return float(self.unknowns[-1]) - DRY_DATUM
 
 
 @dataclass(frozen=True)
@@ -183,7 +147,7 @@ def _solve_once(
         return GroupSolution(outcome=outcome, profile=None, steps=steps)
     grid = coarse.layout.grid(2 * coarse.cells)
     fine, more, outcome = _converged(
-        problem, coarse.layout, grid, _refined(coarse, grid), coarse.spike, resolution.tolerance
+        problem, coarse.layout, grid, refined(coarse, grid), coarse.spike, resolution.tolerance
     )
     steps += more
     if fine is None:
@@ -285,71 +249,24 @@ def _with_spike(
     for attempt in range(MOST_MOVES):
         layout = lay_out(guess, resolution.inlet_length, resolution.shape, spike)
         grid = layout.grid(math.ceil(0.5 * resolution.density * layout.span))
-        if solution is None:
-            unknowns = None
-        else:
-            unknowns = _moved(solution, grid, by_index=attempt == 0 and spike is not None)
+        unknowns = None if solution is None else moved(solution, grid, by_index=attempt == 0 and spike is not None)
         for tolerance in (LOOSE_TOLERANCE, resolution.tolerance):
             solution, steps, outcome = _converged(problem, layout, grid, unknowns, spike, tolerance)
             total += steps
             if solution is None:
                 return None, total, outcome
             unknowns = solution.unknowns
-            front, steepness = _front(solution)
+            place, steepness = front(solution)
             if spike is None:
                 settled = steepness * zone < resolution.spike_steepness * max(1.0, problem_load(problem) / 100.0)
             else:
-                settled = abs(front - spike.position) < 0.5 * finest and spike.width == finest
+                settled = abs(place - spike.position) < 0.5 * finest and spike.width == finest
             if not settled and attempt < MOST_MOVES - 1:
-                spike = Spike(front, finest)
+                spike = Spike(place, finest)
                 break
         else:
             break
     return solution, total, CONVERGED
-
-
-def _front(profile: Profile) -> tuple[float, float]:
-    """Where the pressure falls fastest behind its maximum, relative to the exit [b], and how fast [p_H/b]."""
-    pressure = profile.pressure
-    fall = -np.diff(pressure) / np.diff(profile.grid.x)
-    top = int(np.argmax(pressure))
-    cell = top + int(np.argmax(fall[top:]))
-    return float(profile.grid.face[cell]), float(fall[cell])
-
-
-def _moved(profile: Profile, grid: Grid, by_index: bool) -> Array:
-    """Start on another grid from a solution nearby, at the same places or at the same share of the nodes.
-
-    What differs from the Hertz pressure is interpolated.
-    """
-    exit_at = profile.unknowns[-2]
-    excess = profile.pressure - _hertz(profile.position)
-    if by_index:
-        excess = np.interp(np.linspace(0.0, 1.0, grid.x.size), np.linspace(0.0, 1.0, excess.size), excess)
-    else:
-        excess = np.interp(grid.x, profile.grid.x, excess)
-    pressure = excess + _hertz(grid.x + exit_at)
-    return np.concatenate([np.maximum(pressure[1:-1], 0.0), profile.unknowns[-3:]])
-
-
-def _refined(coarse: Profile, grid: Grid) -> Array:
-    """Start on the grid with twice the cells: old nodes stay, new ones by cubic interpolation in the index."""
-    exit_at = coarse.unknowns[-2]
-    old = coarse.pressure - _hertz(coarse.position)
-    new = np.empty(2 * old.size - 1)
-    new[::2] = old
-    middle = 0.5 * (old[1:] + old[:-1])
-    cubic = (9.0 * (old[1:-2] + old[2:-1]) - old[:-3] - old[3:]) / 16.0
-    low, high = np.minimum(old[1:-2], old[2:-1]), np.maximum(old[1:-2], old[2:-1])
-    middle[1:-1] = np.where((cubic > low) & (cubic < high), cubic, middle[1:-1])
-    new[1::2] = middle
-    pressure = new + _hertz(grid.x + exit_at)
-    return np.concatenate([np.maximum(pressure[1:-1], 0.0), coarse.unknowns[-3:]])
-
-
-def _hertz(position: Array) -> Array:
-    """Pressure of the dry contact."""
-    return np.sqrt(np.maximum(0.0, 1.0 - position * position))
 
 
 def _response(profile: Profile, resolution: Resolution, frequency: float) -> Response:
@@ -367,18 +284,8 @@ def _response(profile: Profile, resolution: Resolution, frequency: float) -> Res
             ).grid(profile.cells)
             for d in (-shift, shift)
         )
-        neighbours = Neighbours(behind, ahead, shift, _front_node(profile))
+        neighbours = Neighbours(behind, ahead, shift, front_node(profile))
     return film_response(profile.problem, profile.grid, profile.kernel, profile.unknowns, LOAD, neighbours, frequency)
-
-
-def _front_node(profile: Profile) -> int:
-    """The node half-way down the front."""
-    front, _ = _front(profile)
-    pressure = profile.pressure
-    cell = int(np.searchsorted(profile.grid.face, front - 1e-12))
-    around = 0.5 * (pressure[max(cell - 1, 0)] + pressure[min(cell + 2, pressure.size - 1)])
-    node = cell if abs(pressure[cell] - around) < abs(pressure[cell + 1] - around) else cell + 1
-    return min(max(node, 1), pressure.size - 2)
 
 
 def _assembled(
@@ -394,7 +301,7 @@ def _assembled(
     """Numbers and error estimates from the fine and the coarse solution."""
     by_offset, by_response = _grid_share(M, L, fine.spike is not None)
     inlet = 1.0 / resolution.inlet_length**2
-    central, minimum = _films(fine)
+    central, minimum = films_of(fine)
 
     def error(value: float, rough_value: float, share: float, lost: float) -> float:
         """Signed: what refinement would take away; a short inlet makes all three too small in magnitude."""
@@ -429,27 +336,6 @@ def _grid_share(M: float, L: float, spike: bool) -> tuple[float, float]:
     by_response = fourth
     if 0.6 < M < 2.0 or L > 30.0:
         by_response = 1.0 / 3.0
-    elif spike and L > 12.0 or 0.2 < M < 0.6:
+    elif (spike and L > 12.0) or 0.2 < M < 0.6:
         by_response = 1.5 * fourth
     return by_offset, by_response
-
-
-def _films(profile: Profile) -> tuple[float, float]:
-    """Film at X = 0 and smallest film, by parabolas through three nodes."""
-    position, gap = profile.position, profile.film
-    last = gap.size - 2
-    centre = min(max(int(np.argmin(np.abs(position))), 1), last)
-    lowest = min(max(int(np.argmin(gap)), 1), last)
-    value, slope, curvature = _parabola(position, gap, centre)
-    away = -position[centre]
-    central = value + slope * away + 0.5 * curvature * away * away
-    value, slope, curvature = _parabola(position, gap, lowest)
-    return central, value - 0.5 * slope * slope / curvature if curvature > 0.0 else value
-
-
-def _parabola(x: Array, y: Array, i: int) -> tuple[float, float, float]:
-    """Value, slope and second derivative at node i of the parabola through nodes i-1, i, i+1."""
-    left, right = x[i] - x[i - 1], x[i + 1] - x[i]
-    down, up = (y[i] - y[i - 1]) / left, (y[i + 1] - y[i]) / right
-    curvature = 2.0 * (up - down) / (left + right)
-    return float(y[i]), float((down * right + up * left) / (left + right)), float(curvature)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+
 from tests.verification.ehl_cases import solved
 
 DENSITIES = (5.0, 10.0)

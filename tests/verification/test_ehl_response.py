@@ -6,12 +6,13 @@ import math
 
 import numpy as np
 import pytest
-from tests.verification.ehl_cases import roelands_problem, solved
 
-from ehdmaps.ehl.line import LOAD, GroupSolution, Profile, at_load
+from ehdmaps.ehl.line import LOAD, GroupSolution, at_load
 from ehdmaps.ehl.linearisation import DRY_COMPLIANCE, film_response
 from ehdmaps.ehl.newton import CONVERGED, newton
+from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import residual, stored_mass, stored_mass_rate
+from tests.verification.ehl_cases import roelands_problem, solved
 
 
 def _profile(result: GroupSolution) -> Profile:
@@ -130,10 +131,10 @@ def test_stored_mass_rate_is_the_derivative_of_the_stored_mass() -> None:
 
 @pytest.mark.parametrize(("M", "L", "omega"), [(5.0, 3.0, 0.3), (1.0, 4.0, 0.5), (0.52, 45.0, 0.1)])
 def test_impedance_against_a_small_oscillation_in_time(M: float, L: float, omega: float) -> None:
-    """Nonlinear time stepping (second-order backward differences of the stored mass) of a small oscillation of the load.
+    """Nonlinear time stepping (backward differences of the stored mass) of a small oscillation of the load.
 
-    The last point has negative damping. The load is prescribed, not H0: with its datum at one half-width the log kernel is not positive for wide pressures, so
-    that bodies held at that datum have no stable motion.
+    The last point has negative damping. The load is prescribed, not H0: with its datum at one half-width the log kernel
+    is not positive for wide pressures, so that bodies held at that datum have no stable motion.
     """
     profile = _profile(solved(M, L, density=5.0))
     grid, kernel, problem = profile.grid, profile.kernel, profile.problem

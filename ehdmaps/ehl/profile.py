@@ -1,0 +1,126 @@
+"""A converged discrete solution on its grid: what can be read from it, and how it starts another solve."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ehdmaps.ehl.elastic import DRY_DATUM
+from ehdmaps.ehl.grid import Grid, Layout, Spike
+from ehdmaps.ehl.reynolds import LineProblem, film, node_pressure
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A converged discrete solution on its grid."""
+
+    problem: LineProblem
+    layout: Layout
+    grid: Grid
+    kernel: Array
+    unknowns: Array
+    spike: Spike | None
+
+    @property
+    def cells(self) -> int:
+        """Number of cells."""
+        return self.grid.face.size
+
+    @property
+    def pressure(self) -> Array:
+        """P at the nodes, shape (n + 1,) [p_H]."""
+        return np.asarray(node_pressure(self.unknowns))
+
+    @property
+    def film(self) -> Array:
+        """H at the nodes, shape (n + 1,) [b^2/R]."""
+        return np.asarray(film(self.grid.x, self.kernel, self.unknowns))
+
+    @property
+    def position(self) -> Array:
+        """X of the nodes from the centre of the Hertz contact, shape (n + 1,) [b]."""
+        return np.asarray(self.grid.x + self.unknowns[-2])
+
+    @property
+    def film_offset(self) -> float:
+        """Dry minus lubricated approach [b^2/R]: H0 above the datum of the dry contact."""
+        return float(self.unknowns[-1]) - DRY_DATUM
+
+
+def front(profile: Profile) -> tuple[float, float]:
+    """Where the pressure falls fastest behind its maximum, relative to the exit [b], and how fast [p_H/b]."""
+    pressure = profile.pressure
+    fall = -np.diff(pressure) / np.diff(profile.grid.x)
+    top = int(np.argmax(pressure))
+    cell = top + int(np.argmax(fall[top:]))
+    return float(profile.grid.face[cell]), float(fall[cell])
+
+
+def front_node(profile: Profile) -> int:
+    """The node half-way down the front."""
+    place, _ = front(profile)
+    pressure = profile.pressure
+    cell = int(np.searchsorted(profile.grid.face, place - 1e-12))
+    around = 0.5 * (pressure[max(cell - 1, 0)] + pressure[min(cell + 2, pressure.size - 1)])
+    node = cell if abs(pressure[cell] - around) < abs(pressure[cell + 1] - around) else cell + 1
+    return min(max(node, 1), pressure.size - 2)
+
+
+def films_of(profile: Profile) -> tuple[float, float]:
+    """Film at X = 0 and smallest film, by parabolas through three nodes."""
+    position, gap = profile.position, profile.film
+    last = gap.size - 2
+    centre = min(max(int(np.argmin(np.abs(position))), 1), last)
+    lowest = min(max(int(np.argmin(gap)), 1), last)
+    value, slope, curvature = _parabola(position, gap, centre)
+    away = -position[centre]
+    central = value + slope * away + 0.5 * curvature * away * away
+    value, slope, curvature = _parabola(position, gap, lowest)
+    return central, value - 0.5 * slope * slope / curvature if curvature > 0.0 else value
+
+
+def _parabola(x: Array, y: Array, i: int) -> tuple[float, float, float]:
+    """Value, slope and second derivative at node i of the parabola through nodes i-1, i, i+1."""
+    left, right = x[i] - x[i - 1], x[i + 1] - x[i]
+    down, up = (y[i] - y[i - 1]) / left, (y[i + 1] - y[i]) / right
+    curvature = 2.0 * (up - down) / (left + right)
+    return float(y[i]), float((down * right + up * left) / (left + right)), float(curvature)
+
+
+def moved(profile: Profile, grid: Grid, by_index: bool) -> Array:
+    """Start on another grid from a solution nearby, at the same places or at the same share of the nodes.
+
+    What differs from the Hertz pressure is interpolated.
+    """
+    exit_at = profile.unknowns[-2]
+    excess = profile.pressure - _hertz(profile.position)
+    if by_index:
+        excess = np.interp(np.linspace(0.0, 1.0, grid.x.size), np.linspace(0.0, 1.0, excess.size), excess)
+    else:
+        excess = np.interp(grid.x, profile.grid.x, excess)
+    pressure = excess + _hertz(grid.x + exit_at)
+    return np.concatenate([np.maximum(pressure[1:-1], 0.0), profile.unknowns[-3:]])
+
+
+def refined(coarse: Profile, grid: Grid) -> Array:
+    """Start on the grid with twice the cells: old nodes stay, new ones by cubic interpolation in the index."""
+    exit_at = coarse.unknowns[-2]
+    old = coarse.pressure - _hertz(coarse.position)
+    new = np.empty(2 * old.size - 1)
+    new[::2] = old
+    middle = 0.5 * (old[1:] + old[:-1])
+    cubic = (9.0 * (old[1:-2] + old[2:-1]) - old[:-3] - old[3:]) / 16.0
+    low, high = np.minimum(old[1:-2], old[2:-1]), np.maximum(old[1:-2], old[2:-1])
+    middle[1:-1] = np.where((cubic > low) & (cubic < high), cubic, middle[1:-1])
+    new[1::2] = middle
+    pressure = new + _hertz(grid.x + exit_at)
+    return np.concatenate([np.maximum(pressure[1:-1], 0.0), coarse.unknowns[-3:]])
+
+
+def _hertz(position: Array) -> Array:
+    """Pressure of the dry contact."""
+    return np.sqrt(np.maximum(0.0, 1.0 - position * position))

@@ -1,0 +1,219 @@
+"""How fast the Reynolds solver is, beside the error it makes; and against plain ways to solve the same equations.
+
+Run: python -m tests.benchmarks.bench_ehl [--points N]
+
+One process, one thread. Points are drawn along load lines of the NU308 map, as a sweep solves them. Errors are against
+four times the default density of cells and twice the inlet. The plain solvers get the same grid and the same start
+(the interpolated coarse solution), and solve the fine grid's equations only: no linear response, no coarse grid, no
+estimate.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import fsolve
+from threadpoolctl import threadpool_limits
+
+from ehdmaps.ehl.line import LOAD, Resolution, solve_groups
+from ehdmaps.ehl.newton import newton
+from ehdmaps.ehl.profile import Profile, refined
+from ehdmaps.ehl.reynolds import FITTED_STEP, LineProblem, residual
+from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.solution import contact_solution
+
+CONTACT = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[0]
+OIL = Lubricant.named("FVA3")
+DENSITIES = (4.5, 6.5, 10.0)
+
+
+def numpy_residual(problem: LineProblem, profile: Profile, unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The equations of ehdmaps.ehl.reynolds once more, in plain numpy, with matrices instead of loops."""
+    grid, kernel = profile.grid, profile.kernel
+    n = grid.x.size - 1
+    pressure = np.concatenate([[0.0], unknowns[: n - 1], [0.0]])
+    p = np.maximum(pressure, 0.0)
+    base = 1.0 + problem.pressure_ratio * p
+    z, q = problem.exponent, problem.pressure_ratio
+    log_eta = problem.alpha / (z * q) * (base**z - 1.0)
+    slope = np.where(pressure >= 0.0, problem.alpha * base ** (z - 1.0), 0.0)
+    t = problem.density_ratio * p
+    rho, rho_slope = (1.0 + 1.34 * t) / (1.0 + t), 0.34 * problem.density_ratio / (1.0 + t) ** 2
+    gap = unknowns[n + 1] + 0.5 * (unknowns[n] + grid.x) ** 2 - kernel @ pressure
+    by_unknowns = np.column_stack([-kernel[:, 1:n], np.zeros(n + 1), unknowns[n] + grid.x, np.ones(n + 1)])
+    rows, inner = np.arange(n), np.zeros((n + 1, n + 2))
+    inner[np.arange(1, n), np.arange(n - 1)] = 1.0  # d pressure / d unknowns
+    # cell flow
+    d = np.clip(np.diff(log_eta), -300.0, 300.0)
+    small = np.abs(d) < 1e-2
+    safe = np.where(small, 1.0, d)
+    phi = np.where(small, 1.0 - d / 2 + d * d / 6 - d**3 / 24, -np.expm1(-safe) / safe)
+    dphi = np.where(small, -0.5 + d / 3 - d * d / 8, (np.exp(-safe) * (safe + 1.0) - 1.0) / safe**2)
+    fluidity, rise = np.exp(-log_eta[:-1]), np.diff(pressure)
+    flow = fluidity * phi * rise
+    left = -fluidity * (phi + dphi) * slope[:-1] * rise - fluidity * phi
+    right = fluidity * dphi * slope[1:] * rise + fluidity * phi
+    by_flow = left[:, None] * inner[:-1] + right[:, None] * inner[1:]
+    by_jump = slope[1:, None] * inner[1:] - slope[:-1, None] * inner[:-1]
+    # fourth-order correction
+    middle = np.minimum(rows, n - 2)
+    middle[0] = 1
+    curvature = flow[middle + 1] - 2.0 * flow[middle] + flow[middle - 1]
+    by_curvature = by_flow[middle + 1] - 2.0 * by_flow[middle] + by_flow[middle - 1]
+    jumps = d[middle - 1] ** 2 + d[middle] ** 2 + d[middle + 1] ** 2
+    by_jumps = 2.0 * sum(d[middle + k][:, None] * by_jump[middle + k] for k in (-1, 0, 1))
+    fade = 1.0 / (1.0 + jumps**2 / FITTED_STEP**4)
+    fade[0] = 0.0
+    gradient = flow - fade * curvature / 24.0
+    by_gradient = by_flow - (fade[:, None] * by_curvature) / 24.0
+    by_gradient += (curvature * fade**2 * 2.0 * jumps / FITTED_STEP**4 / 24.0)[:, None] * by_jumps
+    # films at the faces
+    central, upwind = np.zeros((n, n + 1)), np.zeros((n, n + 1))
+    for f in range(n):
+        if f == 0:
+            central[f, :2] = upwind[f, :2] = 0.5
+            continue
+        upwind[f, max(f - 2, 0) : f + 2] = (-2, 12, 6) if f == 1 else (1, -5, 15, 5)
+        upwind[f] /= 16.0
+        if f == n - 1:
+            central[f] = upwind[f]
+        else:
+            central[f, f - 1 : f + 3] = np.array([-1, 9, 9, -1]) / 16.0
+    face = central @ gap
+    rho_face = 0.5 * (rho[1:] + rho[:-1])
+    conductance = rho_face * face**3 / (problem.wedge * grid.face_step)
+    flux = conductance * gradient
+    mass = rho * gap
+    by_mass = rho[:, None] * by_unknowns + (rho_slope * gap)[:, None] * inner
+    by_rho = 0.5 * (rho_slope[:-1, None] * inner[:-1] + rho_slope[1:, None] * inner[1:])
+    out, jacobian = np.empty(n + 2), np.zeros((n + 2, n + 2))
+    out[:n] = flux - upwind @ mass + unknowns[n - 1]
+    jacobian[:n] = conductance[:, None] * by_gradient + (3.0 * flux / face)[:, None] * (central @ by_unknowns)
+    jacobian[:n] += (flux / rho_face)[:, None] * by_rho - upwind @ by_mass
+    jacobian[:n, n - 1] += 1.0
+    out[n], jacobian[n] = mass[n] - unknowns[n - 1], by_mass[n]
+    jacobian[n, n - 1] -= 1.0
+    out[n + 1], jacobian[n + 1, : n - 1] = grid.step[1:n] @ unknowns[: n - 1] - LOAD, grid.step[1:n]
+    return out, jacobian
+
+
+def numpy_newton(problem: LineProblem, profile: Profile, start: np.ndarray) -> np.ndarray:
+    """Dense Newton with numpy only, no damping."""
+    unknowns = start.copy()
+    for _ in range(30):
+        out, jacobian = numpy_residual(problem, profile, unknowns)
+        step = np.linalg.solve(jacobian, -out)
+        unknowns += step
+        if np.max(np.abs(step)) < 1e-9:
+            break
+    return unknowns
+
+
+def scipy_fsolve(problem: LineProblem, profile: Profile, start: np.ndarray) -> np.ndarray:
+    """scipy.optimize.fsolve on the compiled residual, Jacobian by its own differences."""
+    grid = profile.grid
+    waste = np.empty((start.size, start.size))
+
+    def equations(unknowns: np.ndarray) -> np.ndarray:
+        out = np.empty(start.size)
+        residual(problem, grid.x, grid.step, grid.face_step, profile.kernel, unknowns, LOAD, out, waste)
+        return out
+
+    return np.asarray(fsolve(equations, start, xtol=1e-9))
+
+
+def lines(points: int) -> list[tuple[tuple[float, ...], float, float]]:
+    """Load lines of the NU308 map, so many that they hold about `points` points."""
+    rng = np.random.default_rng(3)
+    count = max(1, round(points / 25))
+    loads = tuple(float(w) for w in np.geomspace(1e2, 1e6, 25))
+    return [
+        (loads, float(10 ** rng.uniform(np.log10(0.05), 1.0)), float(rng.uniform(293.15, 393.15))) for _ in range(count)
+    ]
+
+
+def errors(solver: ReynoldsSolver, sample: list[tuple[tuple[float, ...], float, float]]) -> str:
+    """Median and 95 % quantile of the error in k and c (of the contact) and film offset and film compliance."""
+    fine = ReynoldsSolver(density=26.0, inlet_length=600.0)
+    found = []
+    for loads, speed, temperature in sample:
+        pair = (s.solve_line(CONTACT, OIL, loads[::5], speed, temperature) for s in (solver, fine))
+        for load, film, exact in zip(loads[::5], *pair, strict=True):
+            point = OperatingPoint(load, speed, temperature)
+            one, two = contact_solution(film, CONTACT, point), contact_solution(exact, CONTACT, point)
+            found.append(
+                [
+                    abs(film.film_offset / exact.film_offset - 1.0),
+                    abs(film.film_compliance / exact.film_compliance - 1.0),
+                    abs(one.stiffness / two.stiffness - 1.0),
+                    abs(one.damping / two.damping - 1.0),
+                ]
+            )
+    table = np.array(found)
+    table = table[np.all(np.isfinite(table), axis=1)]
+    return "  ".join(
+        f"{m:7.1e} {q:7.1e}" for m, q in zip(np.median(table, 0), np.quantile(table, 0.95, 0), strict=True)
+    )
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--points", type=int, default=300)
+    sample = lines(parser.parse_args().points)
+    ReynoldsSolver().solve_line(CONTACT, OIL, (1e3, 1e4, 1e5), 1.0, 313.15)  # compile
+    print("ehdmaps.ehl.solver.ReynoldsSolver: film, k, c, error estimates; one core")
+    print("density  points/s   error, median and 95 %: film offset     film compliance   k                 c")
+    rates: dict[float, float] = {}
+    for density in DENSITIES:
+        solver = ReynoldsSolver(density=density)
+        started = time.perf_counter()
+        count = sum(len(solver.solve_line(CONTACT, OIL, *line)) for line in sample)
+        rates[density] = count / (time.perf_counter() - started)
+        print(f"{density:7.1f}  {rates[density]:8.0f}                          {errors(solver, sample)}")
+    print(
+        "\nfilm only, one fine grid, from the same coarse solution: time relative to ehdmaps' own Newton, same equations"
+    )
+    starts = []
+    for loads, speed, temperature in sample:
+        for load in loads[::6]:
+            problem, M, L = line_problem(CONTACT, OIL.at(temperature), load, speed)
+            half = solve_groups(problem, M, L, Resolution(density=3.25)).profile
+            fine = solve_groups(problem, M, L, Resolution(density=6.5)).profile
+            if half is not None and fine is not None and half.cells == fine.cells // 2:
+                starts.append((problem, fine, refined(half, fine.grid)))
+    starts = [s for s in starts if s[1].spike is None][:12] or starts[:12]
+
+    def own(problem: LineProblem, profile: Profile, start: np.ndarray) -> np.ndarray:
+        grid = profile.grid
+        return newton(problem, grid.x, grid.step, grid.face_step, profile.kernel, start, LOAD, 1e-6, 60).unknowns
+
+    solvers: dict[str, Callable[[LineProblem, Profile, np.ndarray], np.ndarray]] = {
+        "ehdmaps": own,
+        "numpy dense Newton": numpy_newton,
+        "scipy fsolve": scipy_fsolve,
+    }
+    own_time = 0.0
+    for name, solve in solvers.items():
+        solve(*starts[0])
+        started = time.perf_counter()
+        results = [solve(*start) for start in starts]
+        elapsed = (time.perf_counter() - started) / len(starts)
+        own_time = own_time or elapsed
+        worst = max(
+            float(np.max(np.abs(r[-3:] - s[1].unknowns[-3:]) / np.abs(s[1].unknowns[-3:])))
+            for r, s in zip(results, starts, strict=True)
+        )
+        print(f"{name:20s} {elapsed * 1e3:9.2f} ms  x{elapsed / own_time:8.1f}   distance to the solution {worst:.1e}")
+
+
+if __name__ == "__main__":
+    with threadpool_limits(1):
+        main()
