@@ -28,11 +28,13 @@ from numpy.typing import NDArray
 from scipy.interpolate import BSpline, CubicSpline, PPoly, make_lsq_spline
 
 from ehdmaps.errors import MapError
+from ehdmaps.maps.mixing import mix_lines
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, moes_speed_number
 
 Array = NDArray[np.float64]
+IndexArray = NDArray[np.int64]
 
 VALLEY_STEP, OUTER_STEP = 0.06, 0.3
 """Steps of zeta inside and outside the valley."""
@@ -58,6 +60,12 @@ small a part of the compliance that it is solved less accurately than the offset
 
 LOSS_SCALE = 1e-3
 """Loss, as a share of film offset over speed, below which its interpolation turns from logarithmic to linear."""
+
+LOSS_FLOOR = 1e-4
+"""Smallest loss compliance of a field, as a share of b/(u k): a tenth of what the solver's damping is good to."""
+
+LATTICE_STEP = 0.02
+"""Step of zeta to which lines are refined for reading."""
 
 NAME = "backbone"
 GROUP_VARIABLES = ("film_offset", "film_compliance", "loss_compliance")
@@ -253,9 +261,16 @@ class _OffsetLine:
         """Its derivative."""
         return np.asarray(self.steep(zeta) + self.tie(zeta, 1))
 
+    def curvature(self, zeta: Array) -> Array:
+        """Its second derivative."""
+        return np.asarray(self.steep(zeta, 1) + self.tie(zeta, 2))
+
 
 class BackboneField:
     """Films of any contact of the map from its backbone; a `FilmField`.
+
+    The loss compliance is kept positive: where the solved one falls below LOSS_FLOOR, or below zero at the bottom of the
+    valley, it runs smoothly into a small positive value, so that a contact law is passive.
 
     Parameters
     ----------
@@ -289,57 +304,62 @@ class BackboneField:
         self.load_range = load_range
         self.speed_range = speed_range
         self.temperature_range = temperature_range
+        self.dry = False
         self._contacts = {c.name: c for c in contacts}
         self._lubricant = lubricant
         self._reference = reference
-        self._speeds = np.asarray(group["reference_speed"].values, dtype=float)
+        self._log_speeds = np.log(np.asarray(group["reference_speed"].values, dtype=float))
         self._temperatures = np.asarray(group["temperature"].values, dtype=float)
         zeta = np.asarray(group["zeta"].values, dtype=float)
+        self._first = float(zeta[0])
+        nodes = 2 + math.ceil((zeta[-1] - zeta[0]) / LATTICE_STEP)
         offset, compliance, loss = (np.asarray(group[name].values, dtype=float) for name in GROUP_VARIABLES)
-        self._lines = {
-            (j, k): self._line(zeta, offset[:, j, k], compliance[:, j, k], loss[:, j, k], j, k)
-            for j in range(self._speeds.size)
-            for k in range(self._temperatures.size)
-        }
+        self._lattice = np.array(
+            [
+                self._line(nodes, zeta, offset[:, j, k], compliance[:, j, k], loss[:, j, k], j, k)
+                for j in range(self._log_speeds.size)
+                for k in range(self._temperatures.size)
+            ]
+        )
 
-    def _line(
-        self, zeta: Array, offset: Array, compliance: Array, loss: Array, j: int, k: int
-    ) -> tuple[_OffsetLine, CubicSpline, float, float]:
-        """ln(film offset) and the scaled loss along one line, and the ends of the line."""
+    def _line(self, nodes: int, zeta: Array, offset: Array, compliance: Array, loss: Array, j: int, k: int) -> Array:
+        """One line on the common lattice, shape (nodes, 5), linear beyond the line's own ends."""
+        speed, temperature = math.exp(self._log_speeds[j]), float(self._temperatures[k])
         solved = np.isfinite(offset) & np.isfinite(compliance) & np.isfinite(loss) & (offset > 0.0)
-        if np.count_nonzero(solved) < NEIGHBOURS:
+        if np.count_nonzero(solved) <= 2 * TIE_NODES:
             raise MapError(
-                f"backbone: {np.count_nonzero(solved)} solved points at reference speed {self._speeds[j]:.4g} m/s and "
-                f"{self._temperatures[k]:.2f} K; at least {NEIGHBOURS} are needed; generate the map again"
+                f"backbone: {np.count_nonzero(solved)} solved points at reference speed {speed:.4g} m/s and "
+                f"{temperature:.2f} K; at least {2 * TIE_NODES + 1} are needed; generate the map again"
             )
         z, h, s, b = zeta[solved], offset[solved], compliance[solved], loss[solved]
-        unit, valley = self._unit(self._reference, self._speeds[j], self._temperatures[k])
+        unit, valley, scale = self._scales(self._reference, speed, temperature)
         loads = np.exp(z) * valley / unit
-        share = b * self._speeds[j] * loads / (h * self._half_width(self._reference, loads))
-        return (
-            _OffsetLine.through(z, np.log(h), -s * loads / h),
-            CubicSpline(z, np.arcsinh(share / LOSS_SCALE)),
-            float(z[0]),
-            float(z[-1]),
+        share = b * speed * loads / (h * _half_width(self._reference, loads))
+        film = _OffsetLine.through(z, np.log(h / scale), -s * loads / h)
+        damping = CubicSpline(z, np.arcsinh(share / LOSS_SCALE))
+        places = self._first + LATTICE_STEP * np.arange(nodes)
+        inside = np.clip(places, z[0], z[-1])
+        beyond = places - inside
+        within = (beyond == 0.0).astype(float)
+        slope, damping_slope = film.slope(inside), damping(inside, 1)
+        return np.column_stack(
+            [
+                film.value(inside) + slope * beyond,
+                slope,
+                film.curvature(inside) * within,
+                damping(inside) + damping_slope * beyond,
+                damping_slope,
+            ]
         )
 
-    def _unit(self, contact: LineContact, speed: float, temperature: float) -> tuple[float, float]:
-        """Moes' M per N/m and M at the valley."""
+    def _scales(self, contact: LineContact, speed: float, temperature: float) -> tuple[float, float, float]:
+        """Moes' M per N/m, M at the valley, and the film whose Moes number is one [m]."""
         state = self._lubricant.at(temperature)
-        unit, L = moes_groups(
-            1.0,
-            speed,
-            state.viscosity,
-            state.pressure_viscosity.pressure_viscosity,
-            contact.radius,
-            contact.reduced_modulus,
-        )
-        return float(unit), float(valley_load_number(L))
-
-    @staticmethod
-    def _half_width(contact: LineContact, loads: Array) -> Array:
-        """Hertz half-width [m]."""
-        return np.sqrt(8.0 * loads * contact.radius / (math.pi * contact.reduced_modulus))
+        radius, modulus = contact.radius, contact.reduced_modulus
+        alpha = state.pressure_viscosity.pressure_viscosity
+        unit, L = moes_groups(1.0, speed, state.viscosity, alpha, radius, modulus)
+        film = radius * math.sqrt(moes_speed_number(speed, state.viscosity, radius, modulus))
+        return float(unit), float(valley_load_number(L)), film
 
     def films(self, contact: str, loads: Array, speeds: Array, temperatures: Array) -> tuple[Array, Array, Array]:
         """Film offset [m], film compliance [m2/N] and loss compliance [m2 s/N].
@@ -354,56 +374,46 @@ class BackboneField:
             [m/s], > 0, and [K].
         """
         chosen = self._contacts[contact]
-        offset, compliance, loss = np.empty_like(loads), np.empty_like(loads), np.empty_like(loads)
-        for m, u in enumerate(speeds):
-            for n, T in enumerate(temperatures):
-                offset[:, m, n], compliance[:, m, n], loss[:, m, n] = self._at(
-                    chosen, loads[:, m, n], float(u), float(T)
-                )
-        return offset, compliance, loss
+        results = np.empty((3, *loads.shape))
+        by_speed = [_lagrange(self._log_speeds, math.log(u * self._reference.radius / chosen.radius)) for u in speeds]
+        by_temperature = [_lagrange(self._temperatures, float(T)) for T in temperatures]
+        for n, T in enumerate(temperatures):
+            columns, column_weights = by_temperature[n]
+            for m, u in enumerate(speeds):
+                rows, row_weights = by_speed[m]
+                lines = (rows[:, None] * self._temperatures.size + columns).ravel()
+                weights = np.outer(row_weights, column_weights).ravel()
+                results[:, :, m, n] = self._at(chosen, loads[:, m, n], float(u), float(T), lines, weights)
+        return results[0], results[1], results[2]
 
-    def _at(self, contact: LineContact, loads: Array, speed: float, temperature: float) -> tuple[Array, Array, Array]:
-        """Films along loads at one speed and temperature."""
-        reference_speed = speed * self._reference.radius / contact.radius
-        unit, valley = self._unit(contact, speed, temperature)
+    def _at(
+        self, contact: LineContact, loads: Array, speed: float, temperature: float, lines: IndexArray, weights: Array
+    ) -> Array:
+        """Films along loads at one speed and temperature, shape (3, n)."""
+        unit, valley, scale = self._scales(contact, speed, temperature)
+        mixed = np.empty((3, loads.size))
         zeta = np.log(loads * unit / valley)
-        log_offset, slope, scaled = np.zeros_like(loads), np.zeros_like(loads), np.zeros_like(loads)
-        for j, weight_j in _lagrange(np.log(self._speeds), math.log(reference_speed)):
-            for k, weight_k in _lagrange(self._temperatures, temperature):
-                weight = weight_j * weight_k
-                film, damping, low, high = self._lines[(j, k)]
-                inside = np.clip(zeta, low, high)
-                beyond = zeta - inside
-                rate = film.slope(inside)
-                # Moes' film number, so that lines of other speeds and temperatures can be mixed
-                log_offset += weight * (film.value(inside) + rate * beyond - self._film_scale(j, k))
-                slope += weight * rate
-                scaled += weight * (damping(inside) + damping(inside, 1) * beyond)
-        state = self._lubricant.at(temperature)
-        scale = contact.radius * math.sqrt(
-            moes_speed_number(speed, state.viscosity, contact.radius, contact.reduced_modulus)
-        )
-        offset = np.exp(log_offset) * scale
-        share = LOSS_SCALE * np.sinh(scaled)
-        loss = share * offset * self._half_width(contact, loads) / (speed * loads)
-        return offset, -slope * offset / loads, loss
-
-    def _film_scale(self, j: int, k: int) -> float:
-        """ln of the length by which Moes' film number of the reference contact is a film."""
-        state = self._lubricant.at(float(self._temperatures[k]))
-        number = moes_speed_number(
-            float(self._speeds[j]), state.viscosity, self._reference.radius, self._reference.reduced_modulus
-        )
-        return math.log(self._reference.radius * math.sqrt(number))
+        mix_lines(self._lattice, self._first, LATTICE_STEP, lines, weights, zeta, mixed)
+        offset = scale * np.exp(mixed[0])
+        compliance = -mixed[1] * offset / loads
+        time = _half_width(contact, loads) / speed
+        loss = LOSS_SCALE * np.sinh(mixed[2]) * offset / loads * time
+        floor = LOSS_FLOOR * time * (contact.structural_compliance(loads) + compliance)
+        return np.stack([offset, compliance, 0.5 * (loss + np.hypot(loss, 2.0 * floor))])
 
 
-def _lagrange(nodes: Array, at: float) -> list[tuple[int, float]]:
-    """Indices and Lagrange weights of the nodes around `at`."""
+def _half_width(contact: LineContact, loads: Array) -> Array:
+    """Hertz half-width [m]."""
+    return np.sqrt(8.0 * loads * contact.radius / (math.pi * contact.reduced_modulus))
+
+
+def _lagrange(nodes: Array, at: float) -> tuple[IndexArray, Array]:
+    """Indices and Lagrange weights of the nodes around `at`; linear through the end nodes beyond them."""
     count = min(NEIGHBOURS, nodes.size)
+    if not nodes[0] <= at <= nodes[-1]:
+        count = min(2, nodes.size)
     first = int(np.searchsorted(nodes, at)) - count // 2
     first = min(max(first, 0), nodes.size - count)
     near = nodes[first : first + count]
-    weights = [
-        float(np.prod([(at - near[q]) / (near[p] - near[q]) for q in range(count) if q != p])) for p in range(count)
-    ]
-    return [(first + p, w) for p, w in enumerate(weights)]
+    weights = [np.prod([(at - near[q]) / (near[p] - near[q]) for q in range(count) if q != p]) for p in range(count)]
+    return first + np.arange(count), np.array(weights, dtype=float)

@@ -1,0 +1,31 @@
+"""From a job file to a map file: the only place that knows every part of the project.
+
+The modules in the order in which data pass through them:
+
+==========  =====================================================================================
+job         `Job`, what a job file asks for, in SI
+table       one table of a TOML file, read key by key with all its problems
+axes        the axes of the grid
+problem     bearing or contact, material, lubricant
+reader      job file, shipped job or map file -> `Job`
+solvers     names and settings of the solvers
+tasks       `Job` -> `LineTask`, the units of work, each with the key of everything that shapes it
+store       results by key in a file beside the map; survives kill -9
+sweep       tasks -> results, over all cores, past dead workers and Ctrl-C
+holes       isolated holes filled from their neighbours
+assemble    results -> dataset of the map
+write       dataset -> map file, aside and renamed
+generate    the whole story: job -> map file
+progress    a bar on a terminal, lines elsewhere
+report      statuses by cause and error estimates, for the next two
+summary     what happened, in words
+describe    what a map file holds, in words
+plot        what a map file holds, on one page
+compare     differences between two maps
+tradeoff    speed against accuracy, measured
+commands    one module a command
+cli         the command line
+==========  =====================================================================================
+
+Nothing is imported here: take the names from their modules.
+"""

@@ -1,0 +1,163 @@
+"""Results of the tasks -> dataset of the map: places, structure, holes, provenance."""
+
+from __future__ import annotations
+
+import dataclasses
+import platform
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from ehdmaps.jobs.holes import filled, isolated_holes
+from ehdmaps.jobs.job import Job, record_json
+from ehdmaps.jobs.store import Arrays
+from ehdmaps.jobs.tasks import LineTask, solver_version
+from ehdmaps.maps import schema
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
+
+_PACKAGES = ("ehdmaps", "numpy", "scipy", "numba", "xarray", "netCDF4")
+_FILLED_FIELDS = (
+    "film_offset",
+    "film_compliance",
+    "loss_compliance",
+    "central_film",
+    "minimum_film",
+    "max_pressure",
+)
+_ALWAYS = ("status", "reason", "iterations", "solve_seconds", "viscosity_extrapolated")
+"""Fields of a film that a hole keeps."""
+
+_CONTACT_FIELDS = tuple(
+    field.name for field in dataclasses.fields(ContactSolution) if field.name in {v.name for v in schema.VARIABLES}
+)
+
+
+def assemble(job: Job, solver: ContactSolver, tasks: Sequence[LineTask], results: Mapping[str, Arrays]) -> xr.Dataset:
+    """Build the dataset of a map.
+
+    Parameters
+    ----------
+    job : Job
+        What was asked for.
+    solver : ContactSolver
+        What solved it.
+    tasks : sequence of LineTask
+        All of them.
+    results : mapping
+        Arrays by key of the task.
+
+    Returns
+    -------
+    xarray.Dataset
+        As the schema wants it, with provenance; isolated holes filled if the job says so.
+    """
+    films = _films(job, tasks, results)
+    holes_filled = np.zeros(job.shape, dtype=bool)
+    if job.fill == "neighbours":
+        films, holes_filled = _fill(job, films)
+    values = _with_structure(job, films)
+    values["filled"] = holes_filled.astype(np.int8)
+    coordinates = {
+        "contact": [contact.name for contact in job.contacts],
+        "load": job.loads,
+        "entrainment_speed": job.entrainment_speeds,
+        "temperature": job.temperatures,
+    }
+    return schema.dataset(coordinates, values, _attributes(job, solver))
+
+
+def _films(job: Job, tasks: Sequence[LineTask], results: Mapping[str, Arrays]) -> dict[str, npt.NDArray[Any]]:
+    """Put the films of every task in their place; only usable points keep their numbers."""
+    films: dict[str, npt.NDArray[Any]] = {}
+    for task in tasks:
+        contact, start, speed, temperature = task.place
+        for name, line in results[task.key].items():
+            if name not in films:
+                films[name] = np.empty(job.shape, dtype=object if line.dtype.kind == "U" else line.dtype)
+            films[name][contact, start : start + task.points, speed, temperature] = line
+    usable = _usable(films["status"])
+    return {name: array if name in _ALWAYS else np.where(usable, array, np.nan) for name, array in films.items()}
+
+
+def _usable(status: npt.NDArray[Any]) -> npt.NDArray[np.bool_]:
+    """Whether the numbers of a point may be used."""
+    return np.isin(status, [int(known) for known in Status if known.usable])
+
+
+def _fill(job: Job, films: dict[str, npt.NDArray[Any]]) -> tuple[dict[str, npt.NDArray[Any]], npt.NDArray[np.bool_]]:
+    """Fill isolated holes; their error estimates stay NaN, since nobody estimated them."""
+    along_load, along_speed = isolated_holes(_usable(films["status"]))
+    result = dict(films)
+    for name in _FILLED_FIELDS:
+        for holes, axis, coordinate in ((along_load, 1, job.loads), (along_speed, 2, job.entrainment_speeds)):
+            if holes.any():
+                # From the solved values only: a filled point never fills another.
+                result[name] = np.where(holes, filled(films[name], holes, axis, np.array(coordinate)), result[name])
+    return result, along_load | along_speed
+
+
+def _with_structure(job: Job, films: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
+    """Add the structural part, point by point, by the one function that defines it."""
+    values: dict[str, npt.NDArray[Any]] = {
+        name: np.empty(job.shape, dtype=films[name].dtype if name in films else np.float64) for name in _CONTACT_FIELDS
+    }
+    names = tuple(films)
+    for index in np.ndindex(job.shape):
+        film: dict[str, Any] = {name: films[name][index] for name in names}
+        film["status"] = Status(int(film["status"]))
+        point = OperatingPoint(job.loads[index[1]], job.entrainment_speeds[index[2]], job.temperatures[index[3]])
+        solution = contact_solution(FilmSolution(**film), job.contacts[index[0]], point)
+        for name, array in values.items():
+            array[index] = getattr(solution, name)
+    return values
+
+
+def _attributes(job: Job, solver: ContactSolver) -> dict[str, Any]:
+    """Return the provenance: a map alone is enough to repeat it."""
+    return {
+        "Conventions": "CF-1.10",
+        "title": f"EHD map of {job.title}, {job.lubricant.name}, by the solver {solver.name}",
+        "schema_version": schema.SCHEMA_VERSION,
+        "job_name": job.name,
+        "job_toml": job.text,
+        "job_sha256": job.sha256,
+        "solver": solver.name,
+        "solver_settings": record_json(solver.settings()),
+        "solver_version": solver_version(solver),
+        "structural_law": job.contacts[0].structural_law,
+        "structural_scaling": _structural_scaling(job.contacts[0]),
+        "fill": job.fill,
+        "contacts": record_json([dataclasses.asdict(contact) for contact in job.contacts]),
+        "geometry": record_json(job.bearing),
+        "lubricant": record_json(job.lubricant.record()),
+        "lubricant_verified": int(job.lubricant.verified),
+        "package_versions": record_json(package_versions()),
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+    }
+
+
+def _structural_scaling(contact: LineContact) -> float:
+    """Return the factor on steel's structural approach; 1 for half_space, which knows the material."""
+    if contact.structural_law == "half_space":
+        return 1.0
+    load = 1e5  # any: the laws are power laws of the load
+    return contact.structural_approach(load) / dataclasses.replace(contact, material=STEEL).structural_approach(load)
+
+
+def package_versions() -> dict[str, str]:
+    """Return the versions under the numbers; a package that runs without being installed says so."""
+    versions = {"python": platform.python_version()}
+    for package in _PACKAGES:
+        try:
+            versions[package] = version(package)
+        except PackageNotFoundError:
+            versions[package] = "not installed"
+    return versions

@@ -1,0 +1,127 @@
+"""The command line `ehdmaps`: arguments, exit status, messages. The work is in `ehdmaps.jobs.commands`."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+
+from ehdmaps.errors import EhdmapsError, InputError
+
+DONE, NOT_DONE = 0, 2
+"""0: done; 1, from commands: done, with failed points or an unmet tolerance; 2: nothing written."""
+
+_SOLVER = "hertz | formula | reynolds | openfoam; instead of the job's, with its default settings"
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of all commands."""
+    top = argparse.ArgumentParser(
+        prog="ehdmaps",
+        description="Elastohydrodynamic contact maps for roller bearings.",
+        epilog="JOB is a job file, a map (its job is repeated), or the name of a shipped job: nu308, n1014. "
+        "Exit status: 0 done; 1 done, with failed points or an unmet tolerance; 2 bad input, nothing "
+        "written.",
+    )
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    generate = commands.add_parser("generate", help="make a map; the same command goes on after an interruption")
+    generate.add_argument("job", metavar="JOB")
+    generate.add_argument("-o", "--output", metavar="MAP.nc", help="default: the job's name with .nc, in this folder")
+    generate.add_argument("--solver", metavar="NAME", help=_SOLVER)
+    generate.add_argument("--workers", metavar="N", type=_workers, help="processes; default: all cores")
+    generate.add_argument("--fresh", action="store_true", help="forget what is solved already")
+
+    check = commands.add_parser("check", help="list every problem of a job; estimate points, time, memory")
+    check.add_argument("job", metavar="JOB")
+    check.add_argument("--solver", metavar="NAME", help=_SOLVER)
+
+    show = commands.add_parser("show", help="what a map holds")
+    show.add_argument("map", metavar="MAP.nc")
+
+    plot = commands.add_parser("plot", help="stiffness, damping and films on one page")
+    plot.add_argument("map", metavar="MAP.nc")
+    plot.add_argument("-o", "--output", metavar="FIG.png", help="default: the map's name with .png; also .pdf, .svg")
+
+    solve = commands.add_parser("solve", help="one operating point, as a table")
+    solve.add_argument("job", metavar="JOB")
+    solve.add_argument("--load", required=True, help='such as "62 N" (with --length) or "88 N/mm"')
+    solve.add_argument("--length", help='that carries the load, such as "0.7 mm"')
+    solve.add_argument("--speed", required=True, help='entrainment speed, such as "1.7 m/s"')
+    solve.add_argument("--temperature", required=True, help='of the oil, such as "40 degC"')
+    solve.add_argument("--frequency", help='of small oscillations, such as "1 kHz"; default: the low-frequency limit')
+    solve.add_argument("--solver", metavar="NAME", help=_SOLVER)
+    solve.add_argument("--json", action="store_true", help="one object a contact, SI, per unit length")
+
+    compare = commands.add_parser("compare", help="differences between two maps")
+    compare.add_argument("first", metavar="A.nc")
+    compare.add_argument("second", metavar="B.nc")
+
+    tradeoff = commands.add_parser("tradeoff", help="measured speed and accuracy of the solvers and settings")
+    tradeoff.add_argument("job", metavar="JOB")
+    tradeoff.add_argument("--lines", metavar="N", type=_workers, default=4, help="load lines in the sample; default: 4")
+    return top
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        Arguments; those of the process if left out.
+
+    Returns
+    -------
+    int
+        Exit status.
+    """
+    arguments = parser().parse_args(argv)
+    # Before numpy loads: the matrices are small, and more threads than processes only get in each other's
+    # way.
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
+    try:
+        command = importlib.import_module(f"ehdmaps.jobs.commands.{arguments.command}")
+        text, status = command.run(arguments)
+    except EhdmapsError as error:
+        problems = error.problems if isinstance(error, InputError) else str(error).splitlines()
+        _complain(
+            f"ehdmaps {arguments.command}: {len(problems)} problem{'s' if len(problems) > 1 else ''}",
+            problems,
+        )
+        return NOT_DONE
+    except KeyboardInterrupt:
+        sys.stderr.write("\nstopped\n")
+        return 130
+    return _print(text, status)
+
+
+def _workers(text: str) -> int:
+    """Read a whole number >= 1."""
+    if not (text.isascii() and text.isdigit() and 1 <= int(text[:6]) <= 1024 and len(text) <= 4):
+        raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 1 to 1024")
+    return int(text)
+
+
+def _complain(head: str, problems: Sequence[str]) -> None:
+    """List problems on stderr."""
+    sys.stderr.write("\n".join([head, *(f"  {problem}" for problem in problems)]) + "\n")
+
+
+def _print(text: str, status: int) -> int:
+    """Print a result; a reader that closes the pipe early has had enough, which is no error of ours."""
+    try:
+        if text:
+            print(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        # The interpreter flushes again at its end: give it somewhere to write.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

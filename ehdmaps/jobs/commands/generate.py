@@ -1,0 +1,38 @@
+"""`ehdmaps generate`: make a map, or go on with one."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from ehdmaps.errors import InputError
+from ehdmaps.jobs.generate import generate
+from ehdmaps.jobs.progress import progress
+from ehdmaps.jobs.reader import is_map, read_job
+from ehdmaps.jobs.report import holes
+from ehdmaps.jobs.store import store_path
+from ehdmaps.jobs.summary import summary
+
+INTERRUPTED = 130
+"""Exit status after Ctrl-C, as shells have it."""
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Make the map; status 1 if points have no solution."""
+    job = read_job(arguments.job, arguments.solver)
+    if arguments.output is None and is_map(arguments.job):
+        raise InputError(f"-o: missing; {arguments.job} is a map itself; give the map to write with -o")
+    output = Path(arguments.output or f"{job.name}.nc")
+    if output.is_dir():
+        raise InputError(f"-o: got {output}, a folder; allowed: the name of a map file")
+    if not output.parent.is_dir():
+        raise InputError(f"-o: got {output}, but {output.parent} is no folder; allowed: a file in a folder that exists")
+    try:
+        generated = generate(job, output, arguments.workers, arguments.fresh, progress)
+    except KeyboardInterrupt:
+        sys.stderr.write(
+            f"\nstopped; what is solved is kept in {store_path(output)}: the same command goes on from there\n"
+        )
+        return "", INTERRUPTED
+    return summary(generated, output), 1 if holes(generated.dataset) else 0

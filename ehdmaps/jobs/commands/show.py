@@ -1,0 +1,16 @@
+"""`ehdmaps show`: what a map holds."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ehdmaps.jobs.describe import describe
+from ehdmaps.maps.emap import open_map
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Describe the map."""
+    path = Path(arguments.map)
+    emap = open_map(path)
+    return describe(emap.dataset, emap.backbone, path.name), 0

@@ -1,0 +1,83 @@
+"""From a job to a map file: the whole story in one function."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import xarray as xr
+
+from ehdmaps.jobs import solvers
+from ehdmaps.jobs.assemble import assemble
+from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.store import Store, store_path
+from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
+from ehdmaps.jobs.tasks import line_tasks
+from ehdmaps.jobs.write import write_map
+from ehdmaps.maps import schema
+from ehdmaps.physics.solution import ContactSolver
+
+
+@dataclass(frozen=True)
+class Generated:
+    """A finished map and how it came about.
+
+    Attributes
+    ----------
+    dataset : xarray.Dataset
+        As written.
+    sweep : SweepResult
+        Counts and times.
+    """
+
+    dataset: xr.Dataset
+    sweep: SweepResult
+
+
+def generate(
+    job: Job,
+    output: Path,
+    workers: int | None = None,
+    fresh: bool = False,
+    progress: Callable[[int], Progress] | None = None,
+    solver: ContactSolver | None = None,
+) -> Generated:
+    """Make a map; what its store has already is taken over.
+
+    Parameters
+    ----------
+    job : Job
+        What to make.
+    output : Path
+        The map file; its store stands beside it.
+    workers : int, optional
+        Processes; all cores if left out. A script that uses more than one needs the usual
+        ``if __name__ == "__main__":``.
+    fresh : bool
+        Drop the store first.
+    progress : callable, optional
+        Takes the number of points, gives the `Progress` to tell.
+    solver : ContactSolver, optional
+        Instead of the job's; picklable.
+
+    Raises
+    ------
+    InputError, StoreError, MapError
+        With what to do; everything solved is kept.
+    """
+    chosen = solver or solvers.build(job.solver, job.solver_options)
+    tasks = line_tasks(job, chosen)
+    with Store(store_path(output), fresh) as store:
+        told = progress(sum(task.points for task in tasks)) if progress else None
+        result = sweep(tasks, store, workers or available_cores(), told)
+        dataset = assemble(job, chosen, tasks, result.arrays)
+        schema.validate(dataset, str(output))
+        write_map(dataset, output)
+    return Generated(dataset, result)
+
+
+def available_cores() -> int:
+    """Return the cores that this process may use, which may be fewer than the machine has."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

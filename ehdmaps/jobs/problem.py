@@ -1,0 +1,194 @@
+"""The physical half of a job file: [bearing] or [contact], [material] and [lubricant]."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, TypeVar, cast
+
+from ehdmaps.errors import InputError
+from ehdmaps.jobs.table import Table
+from ehdmaps.physics.approach import StructuralLaw
+from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.lubricant import DENSITY_LAWS, LUBRICANTS, Lubricant
+from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.units import LENGTH, Display
+
+Built = TypeVar("Built")
+
+_BEARING_LENGTHS = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
+_BEARING_KEYS = (*_BEARING_LENGTHS, "rollers", "diametral_clearance")
+
+_VISCOSITY = Display("mPa s", 1e3)
+_KINEMATIC = Display("mm^2/s", 1e6)
+_COEFFICIENT = Display("1/GPa", 1e9)
+_GPA = Display("GPa", 1e-9)
+_DENSITY = Display("kg/m^3")
+
+_OIL_QUANTITIES: dict[str, tuple[str, float, float, Display]] = {
+    "viscosity": ("Pa s", 1e-5, 1e3, _VISCOSITY),
+    "viscosity_40": ("m^2/s", 1e-7, 1e-1, _KINEMATIC),
+    "viscosity_100": ("m^2/s", 1e-7, 1e-1, _KINEMATIC),
+    "pressure_viscosity": ("1/Pa", 1e-10, 1e-7, _COEFFICIENT),
+    "pressure_viscosity_40": ("1/Pa", 1e-10, 1e-7, _COEFFICIENT),
+    "pressure_viscosity_100": ("1/Pa", 1e-10, 1e-7, _COEFFICIENT),
+    "density": ("kg/m^3", 300.0, 3000.0, _DENSITY),
+    "density_slope": ("kg/(m^3 K)", -5.0, 0.0, Display("kg/(m^3 K)")),
+    "fitted_pressure": ("Pa", 1e7, 1e10, _GPA),
+}
+_OIL_LAWS: dict[str, Callable[..., Lubricant]] = {
+    "barus": Lubricant.barus,
+    "roelands": Lubricant.roelands,
+    "fva3": Lubricant.fva3,
+}
+_OIL_KEYS = ("viscosity_law", *_OIL_QUANTITIES, "roelands_z", "density_law")
+
+
+def read_contacts(top: Table, law: str | None) -> tuple[BearingGeometry | None, tuple[LineContact, ...]]:
+    """Read [bearing] or [contact], and [material].
+
+    Parameters
+    ----------
+    top : Table
+        The whole file.
+    law : str or None
+        Structural law; None where it was wrong already.
+
+    Returns
+    -------
+    bearing, contacts
+        The bearing (None for a [contact]); no contacts where a problem was noted.
+    """
+    section = top.table("material", "[material]")
+    material = _material(section) if section else STEEL
+    bare = top.table("contact", "[contact]")
+    rolling = top.table("bearing", "[bearing]")
+    if bare and rolling:
+        top.note("[contact]", "stands beside [bearing]; allowed: one of the two; delete one")
+    if not bare and not rolling and "contact" not in top and "bearing" not in top:
+        top.note("bearing", "missing; allowed: [bearing] with a name or dimensions, or [contact] with a radius")
+    # A law that was wrong already must not hide problems of the geometry.
+    checked = cast(StructuralLaw, law or "half_space")
+    bearing = _bearing(rolling) if rolling else None
+    if bare:
+        contact = _contact(bare, material or STEEL, checked, law is not None)
+        return bearing, (contact,) if contact and not rolling else ()
+    return bearing, bearing.contacts(material or STEEL, checked) if bearing else ()
+
+
+def _material(section: Table) -> Material | None:
+    """Read [material]."""
+    modulus = section.quantity("youngs_modulus", "Pa", 1e8, 2e12, _GPA)
+    ratio = section.number("poisson_ratio", 0.0, 0.499)
+    density = section.quantity("density", "kg/m^3", 500.0, 25000.0, _DENSITY)
+    section.close()
+    return _built(
+        section,
+        lambda: Material(
+            STEEL.youngs_modulus if modulus is None else modulus,
+            STEEL.poisson_ratio if ratio is None else ratio,
+            STEEL.density if density is None else density,
+        ),
+    )
+
+
+def _bearing(section: Table) -> BearingGeometry | None:
+    """Read [bearing]: a name, or dimensions."""
+    if "name" in section:
+        name = section.choice("name", tuple(BEARINGS))
+        clearance = _clearance(section)
+        for key in (*_BEARING_LENGTHS, "rollers"):
+            if key in section:
+                section.get(key)
+                section.note(key, "stands beside name; allowed: a name, or dimensions without a name; delete one")
+        section.close(others=_BEARING_KEYS)
+        if name is None:
+            return None
+        named = BEARINGS[name]
+        if clearance is None:
+            return named
+        return _built(section, lambda: replace(named, diametral_clearance=clearance))
+    if not any(key in section for key in _BEARING_KEYS):
+        section.note("name", f"missing; allowed: {', '.join(BEARINGS)}; or give {', '.join(_BEARING_KEYS)}")
+        section.close(others=("name", *_BEARING_KEYS))
+        return None
+    lengths = [section.quantity(key, "m", 1e-5, 100.0, LENGTH, required=True) for key in _BEARING_LENGTHS]
+    rollers = section.integer("rollers", 1, 10000, required=True)
+    play = _clearance(section)
+    if "diametral_clearance" not in section:
+        section.note("diametral_clearance", 'missing; allowed: a length; "0 mm" if unknown')
+    section.close(others=("name",))
+    inner, outer, diameter, length = lengths
+    if inner is None or outer is None or diameter is None or length is None or rollers is None or play is None:
+        return None
+    roller = f"{diameter * 1e3:g} x {length * 1e3:g} mm"
+    name = f"bearing {inner * 1e3:g}/{outer * 1e3:g} mm, {rollers} rollers {roller}"
+    return _built(section, lambda: BearingGeometry(name, inner, outer, diameter, length, rollers, play))
+
+
+def _clearance(section: Table) -> float | None:
+    """Read the clearance; an interference is a negative one."""
+    return section.quantity("diametral_clearance", "m", -1e-2, 1e-2, LENGTH)
+
+
+def _contact(section: Table, material: Material, law: StructuralLaw, law_known: bool) -> LineContact | None:
+    """Read [contact]."""
+    radius = section.quantity("radius", "m", 1e-5, 100.0, LENGTH, required=True)
+    depth = section.quantity("reference_depth", "m", 1e-5, 100.0, LENGTH)
+    length = section.quantity("roller_length", "m", 1e-5, 100.0, LENGTH)
+    section.close()
+    given_wrong = ("reference_depth" in section and depth is None) or ("roller_length" in section and length is None)
+    if radius is None or given_wrong or not law_known:
+        return None
+    return _built(section, lambda: LineContact("line", radius, material, law, length, depth))
+
+
+def read_lubricant(section: Table) -> Lubricant | None:
+    """Read [lubricant]: a name, or a viscosity law with its data.
+
+    Returns
+    -------
+    Lubricant or None
+        None where a problem was noted.
+    """
+    if "name" in section:
+        name = section.choice("name", LUBRICANTS)
+        for key in _OIL_KEYS:
+            if key in section:
+                section.get(key)
+                section.note(key, "stands beside name; allowed: a name, or data without a name; delete one")
+        section.close(others=_OIL_KEYS)
+        return Lubricant.named(name) if name is not None else None
+    law = section.choice("viscosity_law", tuple(_OIL_LAWS), required=True)
+    values: dict[str, Any] = {
+        key: section.quantity(key, *rule, required=key == "density") for key, rule in _OIL_QUANTITIES.items()
+    }
+    density_law = section.choice("density_law", DENSITY_LAWS)
+    if law == "roelands":
+        values["roelands_z"] = section.number("roelands_z", 0.05, 2.0)
+    elif "roelands_z" in section and law is not None:
+        section.get("roelands_z")
+        section.note("roelands_z", f"stands beside viscosity_law = {law!r}; allowed: with 'roelands' only; delete it")
+    else:
+        section.get("roelands_z")
+    if density_law is not None:
+        values["density_law"] = density_law
+    section.close(others=("name",))
+    wrong = [key for key in values if key in section and values[key] is None]
+    if law is None or wrong or values["density"] is None:
+        return None
+    given = {key: value for key, value in values.items() if value is not None}
+    return _built(section, lambda: _OIL_LAWS[law](**given))
+
+
+def _built(section: Table, make: Callable[[], Built]) -> Built | None:
+    """Make a value of the physics; note its problems under the table's name."""
+    try:
+        return make()
+    except InputError as error:
+        for problem in error.problems:
+            section.note("", problem)
+    except (ValueError, OverflowError, ZeroDivisionError) as error:
+        section.note("", f"its values together give no usable {section.where} ({error}); check their units")
+    return None

@@ -1,0 +1,221 @@
+"""Read a job: a TOML file, the name of a shipped job, or a map that carries its job."""
+
+from __future__ import annotations
+
+import hashlib
+import tomllib
+from importlib import resources
+from pathlib import Path
+
+from ehdmaps.errors import InputError
+from ehdmaps.jobs import solvers
+from ehdmaps.jobs.axes import LOAD_AXIS, SPEED_AXIS, TEMPERATURE_AXIS, AxisRule, read_axis
+from ehdmaps.jobs.job import MOST_POINTS, Job
+from ehdmaps.jobs.problem import read_contacts, read_lubricant
+from ehdmaps.jobs.table import Table
+from ehdmaps.physics.approach import STRUCTURAL_LAWS
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.units import closest
+
+LONGEST_FILE = 1_000_000
+"""Bytes of a job file; axes of a hundred thousand values still fit."""
+
+_SIGNATURES = (b"CDF", b"\x89HDF")
+_TABLES = ("schema", "bearing", "contact", "material", "lubricant", "grid", "solver")
+
+
+def shipped_jobs() -> tuple[str, ...]:
+    """Return the names of the jobs that come with the package."""
+    folder = resources.files("ehdmaps.jobs") / "shipped"
+    return tuple(sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml")))
+
+
+def read_job(source: str, solver: str | None = None) -> Job:
+    """Read a job.
+
+    Parameters
+    ----------
+    source : str
+        Name of a shipped job ("nu308"), path of a job file, or path of a map file, whose job is read again.
+    solver : str, optional
+        Takes the place of the job's solver; its own keys have their defaults then.
+
+    Raises
+    ------
+    InputError
+        With every problem found.
+    """
+    if source in shipped_jobs():
+        text = (resources.files("ehdmaps.jobs") / "shipped" / f"{source}.toml").read_text(encoding="utf-8")
+        return parse_job(text, name=source, where=f"{source} (shipped)", solver=solver)
+    path = Path(source)
+    try:
+        with path.open("rb") as file:
+            head = file.read(LONGEST_FILE + 1)
+    except (OSError, ValueError) as error:
+        cause = getattr(error, "strerror", None) or str(error)
+        raise InputError(
+            f"{source}: cannot be read ({cause}); allowed: a job file, a map file, or a shipped job: "
+            f"{', '.join(shipped_jobs())}{closest(source, shipped_jobs())}"
+        ) from error
+    if head.startswith(_SIGNATURES):
+        text, name, of_map = _job_of_map(path)
+        return parse_job(text, name=name, where=f"{source} (job of the map)", solver=solver or of_map)
+    if len(head) > LONGEST_FILE:
+        raise InputError(
+            f"{source}: longer than {LONGEST_FILE} bytes; allowed: a job file; write long axes as from, to, points"
+        )
+    try:
+        text = head.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"{source}: is not UTF-8 text (byte {error.start}); allowed: a TOML file or a map file"
+        ) from error
+    return parse_job(text, name=path.stem, where=source, solver=solver)
+
+
+def parse_job(text: str, name: str, where: str, solver: str | None = None) -> Job:
+    """Read a job from the text of its file.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    name : str
+        Name of the job.
+    where : str
+        How messages call the file.
+    solver : str, optional
+        Takes the place of the job's solver.
+
+    Raises
+    ------
+    InputError
+        With every problem found, each beginning with `where`.
+    """
+    try:
+        values = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        # ValueError covers TOMLDecodeError and numbers with too many digits.
+        raise InputError(
+            f"{where}: is not TOML: {error}; allowed: TOML 1.0; strings with units stand in quotes"
+        ) from error
+    problems: list[str] = []
+    job = _job(Table(values, "job file", problems), text, name, solver)
+    if problems or job is None:
+        raise InputError([f"{where}: {problem}" for problem in problems])
+    return job
+
+
+def _job(top: Table, text: str, name: str, override: str | None) -> Job | None:
+    """Read all tables; None where a problem was noted."""
+    schema = top.get("schema", required="schema = 1")
+    if "schema" in top and (isinstance(schema, bool) or schema != 1):
+        top.note("schema", f"got {schema!r:.60}; allowed: 1; this version of ehdmaps reads no other")
+
+    section = top.table("solver", "[solver]", required="a table with name and structural_law")
+    solver, options, law, fill = _solver(section) if section else (None, {}, None, "neighbours")
+    if override is not None and override not in solvers.SOLVER_NAMES:
+        top.note("--solver", f"got {override!r:.60}; allowed: {', '.join(solvers.SOLVER_NAMES)}")
+    elif override is not None and override != solver:
+        solver, options = override, {}
+    if solver is not None and solver in solvers.SOLVERS and solvers.SOLVERS[solver].missing:
+        top.note("[solver] name", f"got {solvers.SOLVERS[solver].missing}")
+
+    bearing, contacts = read_contacts(top, law)
+    oil_section = top.table("lubricant", "[lubricant]", required="a table with the name of an oil, or its data")
+    oil = read_lubricant(oil_section) if oil_section else None
+
+    axes: list[tuple[float, ...] | None] = [None, None, None]
+    grid = top.table("grid", "[grid]", required="a table with load, entrainment_speed and temperature")
+    if grid:
+        axes = _grid(grid, len(contacts) or 2)
+        if oil is not None and axes[2] is not None:
+            _check_temperatures(oil, axes[2], grid)
+    top.close(others=_TABLES)
+
+    loads, speeds, temperatures = axes
+    if top.problems or solver is None or oil is None or loads is None or speeds is None or temperatures is None:
+        return None
+    return Job(
+        name=name,
+        text=text,
+        bearing=bearing,
+        contacts=contacts,
+        lubricant=oil,
+        loads=loads,
+        entrainment_speeds=speeds,
+        temperatures=temperatures,
+        solver=solver,
+        solver_options=options,
+        fill=fill,
+    )
+
+
+def _solver(section: Table) -> tuple[str | None, dict[str, object], str | None, str]:
+    """Read [solver]: name, its own keys, structural law, fill."""
+    name = section.choice("name", solvers.SOLVER_NAMES, required=True)
+    law = section.choice("structural_law", STRUCTURAL_LAWS, required=True)
+    fill = section.choice("fill", ("neighbours", "none")) or "neighbours"
+    options: dict[str, object] = {}
+    if name is not None:
+        options = solvers.read_options(name, section)
+        section.close()
+    return name, options, law, fill
+
+
+def _grid(grid: Table, contacts: int) -> list[tuple[float, ...] | None]:
+    """Read [grid]."""
+    rules: tuple[AxisRule, ...] = (LOAD_AXIS, SPEED_AXIS, TEMPERATURE_AXIS)
+    axes = [read_axis(grid, rule) for rule in rules]
+    grid.close()
+    points = contacts
+    for axis in axes:
+        points *= len(axis) if axis else 1
+    if points > MOST_POINTS:
+        lengths = " x ".join([str(contacts), *(str(len(axis)) for axis in axes if axis)])
+        grid.note(
+            "",
+            f"got {lengths} = {points} points; allowed: at most {MOST_POINTS}; use fewer points on the axes",
+        )
+    return axes
+
+
+def _check_temperatures(oil: Lubricant, temperatures: tuple[float, ...], grid: Table) -> None:
+    """Note where the oil's laws do not hold on the temperature axis (its first and last such value)."""
+    found: list[str] = []
+    for temperature in temperatures:
+        try:
+            oil.at(temperature)
+        except InputError as error:
+            found.extend(error.problems)
+    for problem in dict.fromkeys((found[0], found[-1]) if found else ()):
+        grid.note("temperature", problem)
+
+
+def is_map(source: str) -> bool:
+    """Whether a job was given as a map file."""
+    try:
+        with open(source, "rb") as file:
+            return source not in shipped_jobs() and file.read(8).startswith(_SIGNATURES)
+    except (OSError, ValueError):
+        return False
+
+
+def _job_of_map(path: Path) -> tuple[str, str, str | None]:
+    """Return the job's text and name, and the solver's name, that a map carries."""
+    import netCDF4
+
+    try:
+        with netCDF4.Dataset(path) as file:
+            attributes = {name: file.getncattr(name) for name in file.ncattrs()}
+    except (OSError, RuntimeError) as error:
+        raise InputError(f"{path}: looks like a map file but cannot be read ({error}); generate it again") from error
+    text, digest, solver, name = (attributes.get(key) for key in ("job_toml", "job_sha256", "solver", "job_name"))
+    if not isinstance(text, str):
+        raise InputError(f"{path}: carries no job (attribute job_toml); allowed: a map written by `ehdmaps generate`")
+    if hashlib.sha256(text.encode()).hexdigest() != digest:
+        raise InputError(
+            f"{path}: its job does not match its job_sha256; the file was edited; use the job file instead"
+        )
+    return text, str(name or path.stem), solver if isinstance(solver, str) else None

@@ -1,0 +1,99 @@
+"""Lines about a map that both the summary of a run and `show` print: statuses by cause, error estimates."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from ehdmaps.physics.solution import Status
+from ehdmaps.units import DAMPING, FILM, LOAD, PRESSURE, SPEED, STIFFNESS, TEMPERATURE, Display
+
+AXES = (("load", LOAD), ("entrainment_speed", SPEED), ("temperature", TEMPERATURE))
+"""Numeric axes and how people read them."""
+
+ERRORS = ("film_offset_error", "film_compliance_error", "stiffness_error", "damping_error")
+_NUMBER = re.compile(r"[-+]?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]+)?")
+
+
+def holes(dataset: xr.Dataset) -> int:
+    """Return the number of points without a solution, filled or not."""
+    usable = [int(status) for status in Status if status.usable]
+    return int(np.count_nonzero(~np.isin(dataset["status"].values, usable)))
+
+
+def status_lines(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield the statuses, grouped by cause, with the corner of the map where each is found.
+
+    Reasons that differ in their numbers only count as one cause; the first is shown.
+    """
+    status = dataset["status"].values.ravel()
+    reasons = np.array([str(reason) for reason in dataset["reason"].values.ravel()], dtype=object)
+    causes = np.array([_NUMBER.sub("#", reason) for reason in reasons], dtype=object)
+    for known in Status:
+        here = status == int(known)
+        if not here.any():
+            continue
+        yield f"  {known.word:17s} {np.count_nonzero(here):7d}  {100.0 * here.mean():6.2f} %"
+        for cause in sorted(set(causes[here]) - {""}):
+            of_cause = here & (causes == cause)
+            count = int(np.count_nonzero(of_cause))
+            example = reasons[of_cause][0]
+            yield f"    {count:7d} x {example}" + (" (numbers differ)" if len(set(reasons[of_cause])) > 1 else "")
+            yield f"              {_corner(dataset, of_cause)}"
+    filled = int(np.count_nonzero(dataset["filled"].values))
+    if filled:
+        yield f"  of the points without a solution {filled} are isolated and filled from their neighbours"
+
+
+def _corner(dataset: xr.Dataset, chosen: npt.NDArray[np.bool_]) -> str:
+    """Say in which ranges of the axes the chosen points lie."""
+    index = np.nonzero(chosen.reshape(dataset["status"].shape))
+    names = [str(dataset["contact"].values[i]) for i in np.unique(index[0])]
+    ranges = [
+        span(dataset[name].values[index[position]], display) for position, (name, display) in enumerate(AXES, start=1)
+    ]
+    return f"{' and '.join(names)}, {', '.join(ranges)}"
+
+
+def span(values: npt.NDArray[np.float64], display: Display) -> str:
+    """Return the range of an axis in words."""
+    low, high = display.value(float(np.min(values))), display.value(float(np.max(values)))
+    return f"{low:.4g} {display.unit}" if low == high else f"{low:.4g} to {high:.4g} {display.unit}"
+
+
+def error_lines(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield median, 95 % quantile and maximum of the error estimates over the solved points."""
+    yield "  estimated relative error       median       95 %    largest"
+    for name in ERRORS:
+        values = dataset[name].values
+        known = values[np.isfinite(values)]
+        label = name.removesuffix("_error").replace("_", " ")
+        if known.size:
+            middle, high, most = (float(value) for value in np.quantile(known, (0.5, 0.95, 1.0)))
+            yield f"  {label:25s} {middle:11.2g} {high:10.2g} {most:10.2g}"
+        else:
+            yield f"  {label:25s}        none"
+
+
+def value_lines(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield the ranges of the main variables over the points that have values."""
+    shown = (
+        ("approach", FILM),
+        ("film_offset", FILM),
+        ("stiffness", STIFFNESS),
+        ("damping", DAMPING),
+        ("central_film", FILM),
+        ("minimum_film", FILM),
+        ("max_pressure", PRESSURE),
+    )
+    yield "  variable                     smallest     median    largest  unit"
+    for name, display in shown:
+        values = dataset[name].values
+        known = values[np.isfinite(values)]
+        if known.size:
+            low, middle, high = (display.value(float(value)) for value in np.quantile(known, (0.0, 0.5, 1.0)))
+            yield f"  {name:25s} {low:11.4g} {middle:10.4g} {high:10.4g}  {display.unit}"

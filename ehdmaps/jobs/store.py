@@ -1,0 +1,241 @@
+"""What is solved already: arrays by key, in one SQLite file beside the map.
+
+The file survives kill -9 at any moment (SQLite rolls half-written work back), and SQLite's own exclusive
+lock, which the operating system drops with the process, keeps a second job out. The store knows keys and
+arrays, nothing else.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import sqlite3
+import time
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.errors import StoreError
+
+Arrays = dict[str, npt.NDArray[Any]]
+"""What a task returns: arrays by name, none of object type."""
+
+COMMIT_SECONDS = 0.25
+"""Results are brought to the disk this often; shorter would wait for the disk more than it computes."""
+
+_APPLICATION_ID = 0x45484D31  # "EHM1"
+_BUSY = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED)
+_BROKEN = (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT)
+
+
+def store_path(output: Path) -> Path:
+    """Return the store that belongs to a map file."""
+    return output.with_name(output.name + ".store")
+
+
+class Store:
+    """Open store of solved tasks, held exclusively until closed; use it in a `with` statement.
+
+    Parameters
+    ----------
+    path : Path
+        File of the store; made if absent.
+    fresh : bool
+        Drop what is in it, readable or not.
+
+    Attributes
+    ----------
+    damaged : int
+        Entries whose checksum did not match; they count as not solved.
+
+    Raises
+    ------
+    StoreError
+        If another job holds it, or it cannot be read or written.
+    """
+
+    def __init__(self, path: Path, fresh: bool = False) -> None:
+        self.path = path
+        self.damaged = 0
+        self._last_commit = time.monotonic()
+        try:
+            self._database = self._open()
+        except sqlite3.Error as error:
+            if not (fresh and _code(error) in _BROKEN):
+                raise self._told(error) from error
+            self._drop()
+            try:
+                self._database = self._open()
+            except sqlite3.Error as again:
+                raise self._told(again) from again
+        if fresh:
+            self._write("DELETE FROM results", ())
+            self.commit()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            if not isinstance(error, StoreError):
+                self.commit()
+        finally:
+            self._database.close()
+
+    def get(self, key: str) -> Arrays | None:
+        """Return the arrays of a key, or None if it is not solved.
+
+        Raises
+        ------
+        StoreError
+            If the store cannot be read.
+        """
+        try:
+            row = self._database.execute("SELECT checksum, content FROM results WHERE key = ?", (key,)).fetchone()
+        except sqlite3.Error as error:
+            raise self._told(error) from error
+        if row is None:
+            return None
+        checksum, content = row
+        if hashlib.sha256(content).hexdigest() != checksum:
+            self.damaged += 1
+            return None
+        return unpack(content)
+
+    def put(self, key: str, arrays: Mapping[str, npt.NDArray[Any]], at_once: bool = False) -> None:
+        """Keep the arrays of a key; on disk within `COMMIT_SECONDS` of the next call, or `at_once`.
+
+        Raises
+        ------
+        StoreError
+            If the store cannot be written.
+        """
+        content = pack(arrays)
+        self._write(
+            "INSERT OR REPLACE INTO results VALUES (?, ?, ?)",
+            (key, hashlib.sha256(content).hexdigest(), content),
+        )
+        if at_once:
+            self.commit()
+        else:
+            self.commit_if_due()
+
+    def commit_if_due(self) -> None:
+        """Bring what was put to the disk if `COMMIT_SECONDS` have passed since it last was."""
+        if time.monotonic() - self._last_commit >= COMMIT_SECONDS:
+            self.commit()
+
+    def commit(self) -> None:
+        """Bring what was put to the disk.
+
+        Raises
+        ------
+        StoreError
+            If the disk does not take it.
+        """
+        try:
+            self._database.commit()
+        except sqlite3.Error as error:
+            raise self._told(error) from error
+        self._last_commit = time.monotonic()
+
+    def _write(self, statement: str, values: tuple[object, ...]) -> None:
+        """Run one writing statement."""
+        try:
+            self._database.execute(statement, values)
+        except sqlite3.Error as error:
+            raise self._told(error) from error
+
+    def _open(self) -> sqlite3.Connection:
+        """Open, lock and check the file."""
+        database = sqlite3.connect(self.path, timeout=0.0)
+        try:
+            # Exclusive mode keeps the lock that the first write takes until the file is closed.
+            database.execute("PRAGMA locking_mode = EXCLUSIVE")
+            database.execute("BEGIN EXCLUSIVE")
+            (application_id,) = database.execute("PRAGMA application_id").fetchone()
+            (tables,) = database.execute("SELECT count(*) FROM sqlite_master").fetchone()
+            if tables and application_id != _APPLICATION_ID:
+                raise sqlite3.DatabaseError("a database of another program")
+            database.execute(f"PRAGMA application_id = {_APPLICATION_ID}")
+            database.execute(
+                "CREATE TABLE IF NOT EXISTS results (key TEXT PRIMARY KEY, checksum TEXT NOT NULL, "
+                "content BLOB NOT NULL)"
+            )
+            (verdict,) = database.execute("PRAGMA quick_check(1)").fetchone()
+            if verdict != "ok":
+                raise sqlite3.DatabaseError(verdict)
+            database.commit()
+        except sqlite3.Error:
+            database.close()
+            raise
+        return database
+
+    def _drop(self) -> None:
+        """Delete an unreadable store and SQLite's own files beside it."""
+        for path in (self.path, Path(f"{self.path}-journal"), Path(f"{self.path}-wal")):
+            path.unlink(missing_ok=True)
+
+    def _told(self, error: sqlite3.Error) -> StoreError:
+        """Say what went wrong with the store, and what to do."""
+        code = _code(error)
+        if code in _BUSY:
+            return StoreError(
+                f"{self.path}: is in use by another job; allowed: one job a store; wait for it, or "
+                "choose another output with -o"
+            )
+        if code == sqlite3.SQLITE_FULL:
+            return StoreError(
+                f"{self.path}: the disk is full; free space and run the same command again: "
+                "what was solved until a second ago is kept"
+            )
+        if code in (
+            sqlite3.SQLITE_CANTOPEN,
+            sqlite3.SQLITE_READONLY,
+            sqlite3.SQLITE_PERM,
+            sqlite3.SQLITE_IOERR,
+        ):
+            return StoreError(
+                f"{self.path}: cannot be written ({error}); allowed: a folder that exists and may "
+                "be written; choose another output with -o"
+            )
+        cause = " ".join(str(error).split())
+        return StoreError(
+            f"{self.path}: is not a readable store ({cause}); the map beside it is untouched; move the store "
+            "away or start again with --fresh"
+        )
+
+
+def _code(error: sqlite3.Error) -> int:
+    """Return SQLite's primary result code; a file of another kind counts as not a database."""
+    code = getattr(error, "sqlite_errorcode", None)
+    return sqlite3.SQLITE_NOTADB if code is None else int(code) & 0xFF
+
+
+def pack(arrays: Mapping[str, npt.NDArray[Any]]) -> bytes:
+    """Write arrays as the bytes of an npz file."""
+    buffer = io.BytesIO()
+    np.savez(buffer, allow_pickle=False, **{name: np.asarray(array) for name, array in arrays.items()})
+    return buffer.getvalue()
+
+
+def unpack(content: bytes) -> Arrays:
+    """Read arrays from the bytes of an npz file.
+
+    Raises
+    ------
+    StoreError
+        If they are not the bytes of an npz file.
+    """
+    try:
+        with np.load(io.BytesIO(content), allow_pickle=False) as file:
+            return {name: file[name] for name in file.files}
+    except (ValueError, OSError, zipfile.BadZipFile) as error:
+        raise StoreError(f"store: an entry cannot be read ({error}); start again with --fresh") from error

@@ -1,0 +1,244 @@
+"""Run tasks over all cores, past dead workers, solver errors and Ctrl-C; every result goes into the store.
+
+The sweep does not know what a task computes. It is the only place where solver errors are caught, and only
+their own types: any other exception is a bug and stops the sweep, with everything solved so far in the store.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections import deque
+from collections.abc import Generator, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from multiprocessing.connection import wait as wait_for_process
+from typing import Protocol
+
+from ehdmaps.errors import SolverError
+from ehdmaps.jobs.store import COMMIT_SECONDS, Arrays, Store
+
+_THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+_AHEAD = 3
+"""Tasks handed out per worker, so that none waits for the next; few, so that few are lost on Ctrl-C."""
+
+
+class Task(Protocol):
+    """A unit of work; picklable, and the same numbers whatever ran before it."""
+
+    @property
+    def key(self) -> str:
+        """Hash of everything that changes its numbers."""
+        ...
+
+    @property
+    def points(self) -> int:
+        """Number of points in it, for progress and counts."""
+        ...
+
+    @property
+    def slow(self) -> bool:
+        """Whether its result is worth a trip to the disk of its own."""
+        ...
+
+    def run(self) -> Arrays:
+        """Compute its arrays; may raise SolverError."""
+        ...
+
+    def failed(self, reason: str) -> Arrays:
+        """Return the arrays that say it failed."""
+        ...
+
+
+class Progress(Protocol):
+    """Where the sweep tells how far it is."""
+
+    def taken_over(self, points: int) -> None:
+        """So many points were in the store already."""
+        ...
+
+    def solved(self, points: int) -> None:
+        """So many more points are solved."""
+        ...
+
+
+class NoProgress:
+    """Tells nobody."""
+
+    def taken_over(self, points: int) -> None:
+        """Do nothing."""
+
+    def solved(self, points: int) -> None:
+        """Do nothing."""
+
+
+@dataclass
+class SweepResult:
+    """Results of a sweep, and how they came about.
+
+    Attributes
+    ----------
+    arrays : dict
+        Arrays by key of the task.
+    taken_over, solved : int
+        Points that were in the store, and points that were solved now.
+    wall_seconds : float
+        Time of the sweep.
+    damaged : int
+        Entries of the store that were unreadable and so solved again.
+    """
+
+    arrays: dict[str, Arrays] = field(default_factory=dict)
+    taken_over: int = 0
+    solved: int = 0
+    wall_seconds: float = 0.0
+    damaged: int = 0
+
+
+def sweep(tasks: Sequence[Task], store: Store, workers: int, progress: Progress | None = None) -> SweepResult:
+    """Take over what the store has, run the rest, and keep every result in the store.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+        What to do; the order of results does not depend on it.
+    store : Store
+        Open store.
+    workers : int
+        Processes; 1 runs in this one.
+    progress : Progress, optional
+        Told about points.
+
+    Returns
+    -------
+    SweepResult
+        With the arrays of every task.
+
+    Raises
+    ------
+    StoreError
+        If a result cannot be kept.
+    KeyboardInterrupt
+        On Ctrl-C, after the workers are stopped and the store is committed.
+    """
+    told = progress or NoProgress()
+    begin = time.monotonic()
+    result = SweepResult()
+    todo: list[Task] = []
+    for task in tasks:
+        known = store.get(task.key)
+        if known is None:
+            todo.append(task)
+        else:
+            result.arrays[task.key] = known
+            result.taken_over += task.points
+    result.damaged = store.damaged
+    told.taken_over(result.taken_over)
+    outcomes = _in_process(todo) if workers <= 1 else _in_pool(todo, min(workers, len(todo)), store)
+    try:
+        for task, arrays, final in outcomes:
+            if final:
+                store.put(task.key, arrays, at_once=task.slow)
+            result.arrays[task.key] = arrays
+            result.solved += task.points
+            told.solved(task.points)
+    finally:
+        outcomes.close()
+        store.commit()
+    result.wall_seconds = time.monotonic() - begin
+    return result
+
+
+def _run(task: Task) -> Arrays:
+    """Run one task; a solver that gave up is a result too."""
+    try:
+        return task.run()
+    except SolverError as error:
+        return task.failed(str(error))
+
+
+_Outcomes = Generator[tuple[Task, Arrays, bool], None, None]
+"""Task, its arrays, and whether they are kept: not those of a dead worker, so the next run tries again."""
+
+
+def _in_process(tasks: Sequence[Task]) -> _Outcomes:
+    """Run tasks one after the other in this process."""
+    for task in tasks:
+        yield task, _run(task), True
+
+
+def _in_pool(tasks: Sequence[Task], workers: int, store: Store) -> _Outcomes:
+    """Run tasks in worker processes; those that were out when a worker died are tried again alone."""
+    waiting = deque(tasks)
+    while waiting:
+        running: dict[Future[Arrays], Task] = {}
+        try:
+            with _pool(workers) as pool:
+                while waiting or running:
+                    while waiting and len(running) < workers * _AHEAD:
+                        running[pool.submit(_run, waiting[0])] = waiting[0]
+                        waiting.popleft()
+                    done, _ = wait(running, timeout=COMMIT_SECONDS, return_when=FIRST_COMPLETED)
+                    store.commit_if_due()
+                    for future in done:
+                        arrays = future.result()
+                        yield running.pop(future), arrays, True
+        except BrokenProcessPool:
+            # Nobody knows which task killed the worker: each one that was out gets a process of its own.
+            yield from _alone(list(running.values()))
+
+
+def _alone(tasks: Sequence[Task]) -> _Outcomes:
+    """Run tasks one at a time, each in a process that it may take down with it."""
+    for task in tasks:
+        try:
+            with _pool(1) as pool:
+                outcome = pool.submit(_run, task).result(), True
+        except BrokenProcessPool:
+            reason = "the worker process died twice (killed, or out of memory); the same command tries again"
+            outcome = task.failed(reason), False
+        yield task, *outcome
+
+
+@contextmanager
+def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
+    """Start worker processes of one thread each; on any error stop them at once, else when they are done."""
+    others = set(multiprocessing.active_children())
+    before = {name: os.environ.get(name) for name in _THREAD_VARIABLES}
+    # Workers read these when they import numpy; they are spawned, so they inherit the environment of their
+    # start.
+    os.environ.update(dict.fromkeys(_THREAD_VARIABLES, "1"))
+    pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), initializer=_start_worker)
+    try:
+        yield pool
+        pool.shutdown()
+    except BaseException:
+        pool.shutdown(wait=False, cancel_futures=True)
+        for child in set(multiprocessing.active_children()) - others:
+            child.terminate()
+        raise
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+def _start_worker() -> None:
+    """Leave Ctrl-C to the parent, and end with it even when it is killed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """Wait for the parent's end; without this, the workers of a killed job would wait for tasks for ever."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        wait_for_process([parent.sentinel])
+        os._exit(1)

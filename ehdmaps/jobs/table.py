@@ -1,0 +1,124 @@
+"""One table of a TOML file, read key by key; every problem is noted, none stops the reading."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ehdmaps.errors import InputError
+from ehdmaps.units import Display, closest, quantity, short
+
+
+class Table:
+    """A table and the list of problems that it shares with the other tables of its file.
+
+    Every reading method returns None where it noted a problem (or where an optional key is absent), so that
+    reading goes on. `close` notes the keys that nobody asked for.
+
+    Parameters
+    ----------
+    values : object
+        What stands in the file; a table, or a slip.
+    where : str
+        How messages call the table, such as "[grid]".
+    problems : list of str
+        Problems of the file, appended to.
+    """
+
+    def __init__(self, values: object, where: str, problems: list[str]) -> None:
+        self.where = where
+        self.problems = problems
+        self._known: list[str] = []
+        self._values: dict[str, Any] = {}
+        if isinstance(values, dict):
+            self._values = values
+        else:
+            self.note("", f"got {short(values)}; allowed: a table; write {where} and its keys below it")
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._values
+
+    def note(self, key: str, problem: str) -> None:
+        """Note a problem of a key."""
+        self.problems.append(f"{self.where}{' ' if key else ''}{key}: {problem}")
+
+    def get(self, key: str, required: str = "") -> Any:
+        """Return the raw value; `required` is what a missing key should have been."""
+        self._known.append(key)
+        if key not in self._values and required:
+            self.note(key, f"missing; allowed: {required}")
+        return self._values.get(key)
+
+    def table(self, key: str, where: str, required: str = "") -> Table | None:
+        """Return the table under a key."""
+        values = self.get(key, required)
+        return None if key not in self else Table(values, where, self.problems)
+
+    def quantity(
+        self, key: str, unit: str, low: float, high: float, display: Display, *, required: bool = False
+    ) -> float | None:
+        """Return a string with a unit as a number in SI, within [low, high]."""
+        limits = f"{display.text(low)} to {display.text(high)}"
+        text = self.get(key, f"a quantity of {limits}" if required else "")
+        if key not in self:
+            return None
+        return self.quantity_of(text, key, unit, low, high, display)
+
+    def quantity_of(self, text: object, key: str, unit: str, low: float, high: float, display: Display) -> float | None:
+        """Return one string with a unit (an entry of a list, say) as a number in SI, within [low, high]."""
+        try:
+            value = quantity(text, unit)
+        except InputError as error:
+            self.note(key, error.problems[0])
+            return None
+        if not low <= value <= high:
+            self.note(
+                key,
+                f"got {short(text)}; allowed: {display.text(low)} to {display.text(high)}; check value and unit",
+            )
+            return None
+        return value
+
+    def number(self, key: str, low: float, high: float, *, required: bool = False) -> float | None:
+        """Return a bare number within [low, high]."""
+        value = self.get(key, f"a number from {low:g} to {high:g}" if required else "")
+        if key not in self:
+            return None
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            self.note(key, f"got {short(value)}; allowed: a bare number from {low:g} to {high:g}")
+            return None
+        if not (low <= value <= high and math.isfinite(value)):
+            self.note(key, f"got {short(value)}; allowed: {low:g} to {high:g}")
+            return None
+        return float(value)
+
+    def integer(self, key: str, low: int, high: int, *, required: bool = False) -> int | None:
+        """Return a whole number within [low, high]."""
+        value = self.get(key, f"a whole number from {low} to {high}" if required else "")
+        if key not in self:
+            return None
+        if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+            self.note(key, f"got {short(value)}; allowed: a whole number from {low} to {high}, without quotes")
+            return None
+        return value
+
+    def choice(self, key: str, allowed: tuple[str, ...], *, required: bool = False) -> str | None:
+        """Return one of some words."""
+        listed = ", ".join(repr(word) for word in allowed)
+        value = self.get(key, listed if required else "")
+        if key not in self:
+            return None
+        if not isinstance(value, str):
+            self.note(key, f"got {short(value)}; allowed: {listed}, in quotes")
+            return None
+        if value not in allowed:
+            self.note(key, f"got {short(value)}{closest(value, allowed)}; allowed: {listed}")
+            return None
+        return value
+
+    def close(self, others: tuple[str, ...] = ()) -> None:
+        """Note every key that nobody asked for; `others` are keys that were not due this time."""
+        known = tuple(dict.fromkeys(self._known + list(others)))
+        for key in self._values:
+            if key not in self._known:
+                self.note(short(key)[1:-1], f"unknown key{closest(key, known)}; allowed: {', '.join(known)}")

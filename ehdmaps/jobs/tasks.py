@@ -1,0 +1,157 @@
+"""The units of work of a map, each with the key of everything that shapes its numbers."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import cached_property, lru_cache
+from importlib import resources
+from typing import Any
+
+import numpy as np
+
+from ehdmaps.jobs.job import Job, record_json
+from ehdmaps.jobs.store import Arrays
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.solution import ContactSolver, FilmSolution, Status
+
+LONGEST_LINE = 32
+"""Loads of one task, which is lost as a whole when its process is killed: well under a second."""
+
+_TYPES: Mapping[str, Any] = {
+    "status": np.int8,
+    "reason": np.str_,
+    "iterations": np.int32,
+    "viscosity_extrapolated": np.int8,
+}
+FILM_FIELDS = tuple(field.name for field in fields(FilmSolution))
+
+
+@dataclass(frozen=True)
+class LineTask:
+    """The films along one line of loads, at fixed contact, speed and temperature.
+
+    A solver may start a load from the one before it, but a line knows nothing of other lines: results do not
+    depend on the order of solving or on interruptions. Films only: the structural part is added when the map
+    is assembled.
+
+    Attributes
+    ----------
+    contact, lubricant, solver
+        What is solved, and how.
+    loads : tuple of float
+        [N/m].
+    entrainment_speed : float
+        [m/s].
+    temperature : float
+        [K].
+    place : tuple of int
+        Where the line starts in the map: indices of contact, load, entrainment speed, temperature. Not in
+        the key.
+    """
+
+    contact: LineContact
+    lubricant: Lubricant
+    loads: tuple[float, ...]
+    entrainment_speed: float
+    temperature: float
+    solver: ContactSolver
+    place: tuple[int, int, int, int] = (0, 0, 0, 0)
+
+    @cached_property
+    def key(self) -> str:
+        """Hash of everything that changes the numbers; the structural law does not change a film."""
+        record = {
+            "kind": "line",
+            "radius": self.contact.radius,
+            "youngs_modulus": self.contact.material.youngs_modulus,
+            "poisson_ratio": self.contact.material.poisson_ratio,
+            "lubricant": self.lubricant.record(),
+            "loads": self.loads,
+            "entrainment_speed": self.entrainment_speed,
+            "temperature": self.temperature,
+            "solver": self.solver.name,
+            "settings": self.solver.settings(),
+            "version": solver_version(self.solver),
+        }
+        return hashlib.sha256(record_json(record).encode()).hexdigest()
+
+    @property
+    def points(self) -> int:
+        """Number of points in the task."""
+        return len(self.loads)
+
+    @property
+    def slow(self) -> bool:
+        """Whether every point deserves to be brought to the disk at once."""
+        return is_slow(self.solver)
+
+    def run(self) -> Arrays:
+        """Solve the line; arrays over the loads, by the names of `FilmSolution`."""
+        films = self.solver.solve_line(
+            self.contact, self.lubricant, self.loads, self.entrainment_speed, self.temperature
+        )
+        return film_arrays(films)
+
+    def failed(self, reason: str) -> Arrays:
+        """Return the result of a line that gave none."""
+        return film_arrays([FilmSolution(Status.FAILED, reason)] * self.points)
+
+
+def film_arrays(films: list[FilmSolution] | tuple[FilmSolution, ...]) -> Arrays:
+    """Turn films into arrays by field name."""
+    return {
+        name: np.array([getattr(film, name) for film in films], _TYPES.get(name, np.float64)) for name in FILM_FIELDS
+    }
+
+
+def line_tasks(job: Job, solver: ContactSolver) -> tuple[LineTask, ...]:
+    """Return the tasks of a whole map: lines of loads, or single points for a slow solver."""
+    length = 1 if is_slow(solver) else LONGEST_LINE
+    return tuple(
+        LineTask(
+            contact=contact,
+            lubricant=job.lubricant,
+            loads=job.loads[start : start + length],
+            entrainment_speed=speed,
+            temperature=temperature,
+            solver=solver,
+            place=(i, start, j, k),
+        )
+        for k, temperature in enumerate(job.temperatures)
+        for j, speed in enumerate(job.entrainment_speeds)
+        for i, contact in enumerate(job.contacts)
+        for start in range(0, len(job.loads), length)
+    )
+
+
+def is_slow(solver: ContactSolver) -> bool:
+    """Whether one point of a solver takes seconds or more (its attribute `slow`)."""
+    return bool(getattr(solver, "slow", False))
+
+
+def solver_version(solver: ContactSolver) -> str:
+    """Return what tells one version of a solver from the next.
+
+    Its attribute `version` where it has one: results that took days should not be lost to an edited comment.
+    Else a hash of the sources of its package and of the physics, so that a changed formula never meets stale results.
+    """
+    version = getattr(solver, "version", None)
+    if version is not None:
+        return str(version)
+    own = type(solver).__module__.rpartition(".")[0]
+    return _sources_hash(tuple(sorted({"ehdmaps.physics", own} - {""})))
+
+
+@lru_cache(maxsize=8)
+def _sources_hash(packages: tuple[str, ...]) -> str:
+    """Hash the sources of some packages."""
+    digest = hashlib.sha256()
+    for package in packages:
+        for entry in sorted(resources.files(package).iterdir(), key=lambda entry: entry.name):
+            if entry.name.endswith(".py"):
+                digest.update(entry.name.encode())
+                digest.update(entry.read_bytes())
+    return digest.hexdigest()

@@ -1,0 +1,160 @@
+"""Speed against accuracy, measured: solvers and settings on a sample of a job, against a fine solve."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.jobs import solvers
+from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.tasks import LineTask, film_arrays, line_tasks
+from ehdmaps.physics.solution import ContactSolver, Status
+
+JUDGED = ("film_offset", "film_compliance", "loss_compliance", "central_film", "minimum_film")
+REFINEMENT = 4
+"""Grid density of the reference over that of the default; its inlet is twice as long."""
+
+_RESOLUTIONS = (0.5, 0.7, 1.0, 1.4, 2.0)
+"""Grid densities that are measured, over that of the default."""
+
+_DENSITIES = (3.0, 60.0)
+
+
+@dataclass(frozen=True)
+class Contestant:
+    """One solver with its settings, and what it is called in the table."""
+
+    label: str
+    solver: ContactSolver
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What one contestant did on the sample.
+
+    Attributes
+    ----------
+    label : str
+        Of the contestant.
+    seconds_per_point : float
+        Wall time on one core.
+    solved : int
+        Points with a usable status.
+    errors : dict
+        By variable: relative errors at the points that it and the reference solved.
+    """
+
+    label: str
+    seconds_per_point: float
+    solved: int
+    errors: dict[str, npt.NDArray[np.float64]]
+
+
+def contestants(job: Job) -> tuple[tuple[Contestant, ...], Contestant]:
+    """Return who is measured, and the reference; the one place to change either."""
+    own = dict(job.solver_options) if job.solver == "reynolds" else {}
+    settings = solvers.build("reynolds", own).settings()
+    density, inlet = float(settings["density"]), float(settings["inlet_length"])
+
+    def reynolds(factor: float, **further: float) -> Contestant:
+        used = round(min(max(density * factor, _DENSITIES[0]), _DENSITIES[1]), 2)
+        return Contestant(f"reynolds, density {used:g}", solvers.build("reynolds", {**own, "density": used, **further}))
+
+    field = [Contestant("hertz", solvers.build("hertz", {}))]
+    field += [
+        Contestant(f"formula, {formula}", solvers.build("formula", {"film_formula": formula}))
+        for formula in ("moes", "dowson-toyoda", "pan-hamrock")
+    ]
+    field += [reynolds(factor) for factor in _RESOLUTIONS]
+    return tuple(field), reynolds(REFINEMENT, inlet_length=2.0 * inlet)
+
+
+def measure(
+    job: Job, lines: int, entries: Sequence[Contestant], reference: Contestant
+) -> tuple[tuple[Measured, ...], Measured]:
+    """Solve a sample of load lines with every contestant and the reference.
+
+    Parameters
+    ----------
+    job : Job
+        Its lines are sampled evenly.
+    lines : int
+        How many.
+    entries : sequence of Contestant
+        Measured one after the other, on one core.
+    reference : Contestant
+        What the others are compared with.
+
+    Returns
+    -------
+    measured : tuple of Measured
+        One a contestant.
+    truth : Measured
+        The reference itself, without errors.
+    """
+    chosen = _sample(job, lines)
+    truth, seconds = _solve(reference.solver, chosen)
+    known = _usable(truth["status"])
+    measured = []
+    for entry in entries:
+        films, spent = _solve(entry.solver, chosen)
+        both = known & _usable(films["status"])
+        errors = {}
+        for name in JUDGED:
+            scale = np.abs(truth[name][both])
+            difference = np.abs(films[name][both] - truth[name][both])
+            errors[name] = difference[scale > 0] / scale[scale > 0]
+        measured.append(Measured(entry.label, spent / known.size, int(_usable(films["status"]).sum()), errors))
+    return tuple(measured), Measured(reference.label, seconds / known.size, int(known.sum()), {})
+
+
+def table(measured: Sequence[Measured], truth: Measured, points: int) -> str:
+    """Return the measurement as a printed table."""
+    lines = [
+        f"{points} points; errors relative to {truth.label} ({truth.seconds_per_point * 1e3:.3g} ms a point, "
+        f"{truth.solved} solved); median / 95 %",
+        f"{'':26s}{'ms/point':>9s}{'solved':>8s}" + "".join(f"{name.replace('_', ' '):>20s}" for name in JUDGED),
+    ]
+    for entry in measured:
+        cells = []
+        for name in JUDGED:
+            errors = entry.errors[name]
+            if errors.size:
+                middle, high = (float(value) for value in np.quantile(errors, (0.5, 0.95)))
+                cells.append(f"{middle:.1e} / {high:.1e}")
+            else:
+                cells.append("-")
+        numbers = f"{entry.seconds_per_point * 1e3:9.3g}{entry.solved:8d}"
+        lines.append(f"{entry.label:26s}{numbers}" + "".join(f"{cell:>20s}" for cell in cells))
+    return "\n".join(lines)
+
+
+def _sample(job: Job, lines: int) -> tuple[LineTask, ...]:
+    """Return lines spread over contacts, speeds and temperatures; the same ones each time."""
+    tasks = line_tasks(job, solvers.build("hertz", {}))
+    order = np.random.default_rng(0).permutation(len(tasks))[:lines]
+    return tuple(tasks[index] for index in sorted(order))
+
+
+def _solve(solver: ContactSolver, chosen: Sequence[LineTask]) -> tuple[dict[str, npt.NDArray[np.float64]], float]:
+    """Return the films of all lines, and the time; a first solve that compiles is not in it."""
+    first = chosen[0]
+    solver.solve_line(first.contact, first.lubricant, first.loads[:1], first.entrainment_speed, first.temperature)
+    begin = time.perf_counter()
+    films = [
+        film
+        for line in chosen
+        for film in solver.solve_line(
+            line.contact, line.lubricant, line.loads, line.entrainment_speed, line.temperature
+        )
+    ]
+    return film_arrays(films), time.perf_counter() - begin
+
+
+def _usable(status: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    """Whether points have a solution."""
+    return np.isin(status, [int(known) for known in Status if known.usable])

@@ -1,0 +1,23 @@
+"""The contract between those who make maps and those who use them: the file, and the contact law.
+
+The modules in the order in which data pass through them:
+
+=============  =======================================================================================
+schema         names, units and types of everything in a map file
+records        contacts, bearing and oil from the attributes of a map
+emap           `EHDMap`, `open_map`: a map file as a value
+usable         whether a law can be made from a map
+film_field     `FilmField`: film of each contact at any load, speed and temperature
+grid_field     the film field of the map's own grid
+dry            stand-in for the film of a dry map
+tail           film below the lowest mapped load
+contact_curve  approach and damping of one contact over load
+splines        cubic splines on uniform axes
+compilation    curves -> table over approach, speed and temperature
+tables         the arrays of a compiled law
+kernel         the law at run time, for compiled code
+law            `ContactLaw`, `LawAtPoint`
+=============  =======================================================================================
+
+Nothing is imported here: take the names from their modules, or `open_map` from `ehdmaps`.
+"""

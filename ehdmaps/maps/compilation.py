@@ -1,0 +1,268 @@
+"""From the curves of the contacts to the table of a law: load and damping over approach, speed and temperature.
+
+Three choices make a small table exact enough:
+
+- The approach axis is stretched and aligned: s = asinh((delta - offset)/scale), with an offset and a scale that
+  follow the film over speed and temperature in closed form (approach and its change with load at Moes' M = 2.5).
+  What happens at constant M, such as the damping valley, stays at nearly constant s.
+- The load is held as its cube root g: it fades out as the cube of the approach, so that g goes straight through
+  zero, and w = max(g, 0)^3 is smooth and never negative.
+- The damping is held as ln(c/w), so that c is never negative.
+
+Both are tensor products of cubic B-splines, hence C2, with their coefficients side by side in memory.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
+
+from ehdmaps.errors import MapError
+from ehdmaps.maps.contact_curve import ContactCurve, Curve
+from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.splines import spline_coefficients
+from ehdmaps.maps.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
+from ehdmaps.physics._values import FloatArray
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.films import moes_central
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.moes import film_from_moes, moes_groups
+
+_ALIGNED_LOAD_NUMBER = 2.5
+_SCALE = 0.25
+_MARGIN = 4
+_BEYOND = 2.0
+_WIDEST_CONTACT = 0.9
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """Spacing of the nodes of a table.
+
+    Attributes
+    ----------
+    approach : float
+        Distance of nodes of the stretched approach s.
+    log_speed : float
+        Largest distance of nodes of ln u.
+    temperature : float
+        Largest distance of nodes of 1000 K/(T - `COLDEST`).
+    log_load : float
+        Distance of the samples of ln w from which the table is made.
+    """
+
+    approach: float = 0.06
+    log_speed: float = 0.15
+    temperature: float = 0.2
+    log_load: float = 0.02
+
+
+def highest_structural_load(contact: LineContact) -> float:
+    """Load [N/m] up to which the structural law of a contact may be continued; inf for the power laws."""
+    if contact.structural_law != "half_space" or contact.reference_depth is None:
+        return math.inf
+    width = _WIDEST_CONTACT * contact.reference_depth
+    return math.pi * contact.reduced_modulus * width**2 / (8.0 * contact.radius)
+
+
+def structural_parameters(contact: LineContact) -> tuple[float, float, float]:
+    """Structural law of a contact for a kernel: kind and two parameters.
+
+    POWER_LAW: delta = a w^b. HALF_SPACE: delta = a w (b - ln(w)/2), which is
+    (4 w/(pi E')) [ln(2 d*/b_Hertz) + 1/2] with the half-width b_Hertz ~ sqrt(w).
+    """
+    if contact.structural_law == "half_space":
+        slope = 4.0 / (math.pi * contact.reduced_modulus)
+        return HALF_SPACE, slope, contact.structural_approach(1.0) / slope
+    at_one = contact.structural_approach(1.0)
+    return POWER_LAW, at_one, contact.structural_compliance(1.0) / at_one
+
+
+def compile_table(
+    field: FilmField,
+    contacts: Sequence[LineContact],
+    lubricant: Lubricant,
+    speeds: tuple[float, float],
+    held_load: float,
+    resolution: Resolution | None = None,
+) -> ApproachTable:
+    """Table of one contact, or of several in series, without centrifugal load.
+
+    Parameters
+    ----------
+    field : FilmField
+        Film of each contact.
+    contacts : sequence of LineContact
+        In series.
+    lubricant : Lubricant
+        For the alignment of the table.
+    speeds : (float, float)
+        Lowest and highest entrainment speed [m/s], > 0.
+    held_load : float
+        Highest load [N/m] at which the table must be exact.
+    resolution : Resolution, optional
+        Spacing of nodes.
+
+    Raises
+    ------
+    MapError
+        If the approach does not rise with load.
+    """
+    resolution = resolution or Resolution()
+    log_speeds = _axis(math.log(speeds[0]), math.log(speeds[1]), resolution.log_speed)
+    low, high = (1.0 / (temperature - COLDEST) for temperature in field.temperature_range)
+    colds = _axis(high, low, 1e-3 * resolution.temperature)
+    temperatures = COLDEST + 1.0 / colds
+    offset, scale = _alignment(contacts, lubricant, np.exp(log_speeds), temperatures)
+    root, curve = _sampled(field, contacts, np.exp(log_speeds), temperatures, held_load, resolution)
+
+    stretched = np.arcsinh((curve.approach - offset) / scale)
+    root_slope = scale * np.sqrt(1.0 + ((curve.approach - offset) / scale) ** 2) / curve.slope
+    lifted = np.count_nonzero(root[:, 0, 0] < 0.0)
+    start = float(np.min(stretched[lifted])) - _MARGIN * resolution.approach
+    held = np.count_nonzero(root[:, 0, 0] <= np.cbrt(held_load))
+    end = float(np.max(stretched[held - 1])) + _MARGIN * resolution.approach
+    nodes = start + resolution.approach * np.arange(math.ceil((end - start) / resolution.approach) + 1)
+
+    values = np.empty((log_speeds.size, temperatures.size, nodes.size, 2))
+    for i, j in np.ndindex(log_speeds.size, temperatures.size):
+        line = stretched[:, i, j]
+        if not np.all(np.diff(line) > 0.0):
+            raise MapError(
+                f"law: the approach of the contacts {', '.join(c.name for c in contacts)} does not rise with "
+                f"load at {math.exp(log_speeds[i]):.4g} m/s, {temperatures[j]:.2f} K; a law needs that; "
+                "look at that part of the map, solve it again with a finer grid"
+            )
+        values[i, j, :, 0] = _continued_root(line, root[:, i, j], root_slope[:, i, j], nodes)
+        values[i, j, :, 1] = _continued_log(line, np.log(curve.loss_ratio[:, i, j]), nodes)
+
+    coefficients = values
+    place = np.stack((offset, 1.0 / scale), axis=-1)
+    for axis in (0, 1):
+        coefficients = spline_coefficients(coefficients, axis, 2)
+        place = spline_coefficients(place, axis, 2)
+    coefficients = spline_coefficients(coefficients, 2, 3)
+    return ApproachTable(
+        coefficients=coefficients.reshape(*coefficients.shape[:2], -1),
+        place=place,
+        log_speed_start=float(log_speeds[0]),
+        log_speed_step=_inverse_step(log_speeds),
+        temperature_start=float(colds[0]),
+        temperature_step=_inverse_step(colds),
+        start=start,
+        step=1.0 / resolution.approach,
+    )
+
+
+def _axis(low: float, high: float, largest_step: float) -> FloatArray:
+    """Uniform nodes from low to high, at least eight; one if both are alike."""
+    if high <= low:
+        return np.array([low])
+    return np.linspace(low, high, max(8, math.ceil((high - low) / largest_step) + 1))
+
+
+def _inverse_step(nodes: FloatArray) -> float:
+    """1/distance of uniform nodes; 0 for a single one."""
+    return 0.0 if nodes.size == 1 else float((nodes.size - 1) / (nodes[-1] - nodes[0]))
+
+
+def _alignment(
+    contacts: Sequence[LineContact], lubricant: Lubricant, speeds: FloatArray, temperatures: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Offset and scale of the stretched approach [m], (n_u, n_T)."""
+    most = min(highest_structural_load(contact) for contact in contacts)
+    offset, scale = np.empty((2, speeds.size, temperatures.size))
+    states = [lubricant.at(float(temperature)) for temperature in temperatures]
+    for i, j in np.ndindex(speeds.size, temperatures.size):
+        state, speed = states[j], float(speeds[i])
+        alpha = state.pressure_viscosity.pressure_viscosity
+        logs, films = [], []
+        for contact in contacts:
+            oil = (speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
+            unit_load_number, oil_number = moes_groups(1.0, *oil)
+            logs.append(math.log(_ALIGNED_LOAD_NUMBER / unit_load_number))
+            film_number = moes_central(_ALIGNED_LOAD_NUMBER, oil_number)
+            films.append(
+                film_from_moes(film_number, speed, state.viscosity, contact.radius, contact.reduced_modulus)
+            )
+        load = min(math.exp(sum(logs) / len(logs)), most)
+        offset[i, j] = sum(contact.structural_approach(load) for contact in contacts) - sum(films)
+        scale[i, j] = _SCALE * load * sum(contact.structural_compliance(load) for contact in contacts)
+    return offset, scale
+
+
+def _sampled(
+    field: FilmField,
+    contacts: Sequence[LineContact],
+    speeds: FloatArray,
+    temperatures: FloatArray,
+    held_load: float,
+    resolution: Resolution,
+) -> tuple[FloatArray, Curve]:
+    """Samples of g and of the summed curve, from below lift-off to beyond the held load."""
+    curves = [ContactCurve(field, contact, speeds, temperatures) for contact in contacts]
+    lowest, highest = field.load_range
+    first = np.cbrt(lowest)
+    faded = 0.7 * np.cbrt(np.min([curve.fade_load for curve in curves], axis=0))
+    linear = np.linspace(-0.6, 1.0, 97)[:, None, None] * faded
+    tail_range = float(np.max(np.log(first / faded)))
+    count = max(8, math.ceil(3.0 * tail_range / (2.0 * resolution.log_load)))
+    part = np.linspace(0.0, 1.0, count + 1)[1:-1, None, None]
+    tail = np.concatenate((linear, faded * (first / faded) ** part))
+
+    mapped = _log_range(lowest, highest, resolution.log_load)
+    most = min(highest_structural_load(contact) for contact in contacts)
+    beyond = _log_range(highest, min(_BEYOND * held_load, most), resolution.log_load)[1:]
+    shape = (speeds.size, temperatures.size)
+    mapped_loads, beyond_loads = (
+        np.broadcast_to(loads[:, None, None], (loads.size, *shape)).copy() for loads in (mapped, beyond)
+    )
+    pieces = [
+        _summed([curve.below(tail) for curve in curves]),
+        _summed([curve.mapped(mapped_loads) for curve in curves]),
+        _summed([curve.above(beyond_loads) for curve in curves]),
+    ]
+    root = np.concatenate((tail, np.cbrt(mapped_loads), np.cbrt(beyond_loads)))
+    return root, Curve(
+        *(
+            np.concatenate([getattr(piece, name) for piece in pieces])
+            for name in ("approach", "slope", "loss_ratio")
+        )
+    )
+
+
+def _log_range(low: float, high: float, step: float) -> FloatArray:
+    """Values from low to high, uniform in their logarithm; the ends exactly."""
+    values = np.geomspace(low, high, max(2, math.ceil(math.log(high / low) / step) + 1))
+    values[0], values[-1] = low, high
+    return values
+
+
+def _summed(curves: Sequence[Curve]) -> Curve:
+    """Contacts in series."""
+    total = curves[0]
+    for curve in curves[1:]:
+        total = total + curve
+    return total
+
+
+def _continued_root(line: FloatArray, root: FloatArray, slope: FloatArray, nodes: FloatArray) -> FloatArray:
+    """g at the nodes of s; below the samples its tangent, above them ln g is linear."""
+    inside = np.clip(nodes, line[0], line[-1])
+    values = CubicHermiteSpline(line, root, slope)(inside)
+    below, above = nodes - line[0], nodes - line[-1]
+    values = np.where(below < 0.0, root[0] + slope[0] * below, values)
+    growth = slope[-1] / root[-1]
+    return np.where(above > 0.0, root[-1] * np.exp(growth * np.maximum(above, 0.0)), values)
+
+
+def _continued_log(line: FloatArray, logs: FloatArray, nodes: FloatArray) -> FloatArray:
+    """ln(c/w) at the nodes of s; its tangents outside the samples."""
+    spline = CubicSpline(line, logs)
+    inside = np.clip(nodes, line[0], line[-1])
+    result: FloatArray = spline(inside) + (nodes - inside) * spline(inside, nu=1)
+    return result

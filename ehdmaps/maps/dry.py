@@ -1,0 +1,54 @@
+"""Stand-in for a map without any film: a law needs a smooth curve to hang the dry contact on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.maps.film_field import FilmField
+from ehdmaps.physics._values import FloatArray
+
+_FILM = 1e-6
+
+
+@dataclass(frozen=True)
+class DryField:
+    """A rigid film h ~ 1/w over the ranges of a dry map.
+
+    The law fades it out entirely, as at standstill, so that its size is of no consequence.
+    """
+
+    origin: FilmField
+
+    @property
+    def contacts(self) -> tuple[str, ...]:
+        """Those of the map."""
+        return self.origin.contacts
+
+    @property
+    def load_range(self) -> tuple[float, float]:
+        """That of the map [N/m]."""
+        return self.origin.load_range
+
+    @property
+    def speed_range(self) -> tuple[float, float]:
+        """That of the map [m/s]."""
+        return self.origin.speed_range
+
+    @property
+    def temperature_range(self) -> tuple[float, float]:
+        """That of the map [K]."""
+        return self.origin.temperature_range
+
+    @property
+    def dry(self) -> bool:
+        """The stand-in has a film."""
+        return False
+
+    def films(
+        self, contact: str, loads: FloatArray, speeds: FloatArray, temperatures: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """h = 1 um w1/w, its compliance and some loss."""
+        film = _FILM * self.load_range[0] / loads
+        return film, film / loads, np.asarray(1e-3 * film / loads)

@@ -1,0 +1,64 @@
+"""What a contact law is made from: the film of each contact as a smooth field over load, speed, temperature."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from ehdmaps.physics._values import FloatArray
+
+
+class FilmField(Protocol):
+    """Film offset, film compliance and loss compliance at any load, speed and temperature of a map.
+
+    The film compliance is the exact derivative of the film offset: -d(film_offset)/dw. Film offset and loss
+    compliance are positive, unless `dry`. Loads and speeds beyond the ranges are continued smoothly, by the
+    trend at the end of the range and at constant Moes number M in speed; temperatures are never outside.
+    """
+
+    @property
+    def contacts(self) -> tuple[str, ...]:
+        """Names of the contacts."""
+        ...
+
+    @property
+    def load_range(self) -> tuple[float, float]:
+        """Lowest and highest load [N/m]."""
+        ...
+
+    @property
+    def speed_range(self) -> tuple[float, float]:
+        """Lowest entrainment speed above zero, and highest [m/s]."""
+        ...
+
+    @property
+    def temperature_range(self) -> tuple[float, float]:
+        """Lowest and highest temperature [K]."""
+        ...
+
+    @property
+    def dry(self) -> bool:
+        """Whether no contact has any film anywhere; `films` is then of no use."""
+        ...
+
+    def films(
+        self, contact: str, loads: FloatArray, speeds: FloatArray, temperatures: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Film of one contact.
+
+        Parameters
+        ----------
+        contact : str
+            One of `contacts`.
+        loads : array (n, n_u, n_T)
+            Loads w [N/m], > 0, of each pair of speed and temperature.
+        speeds : array (n_u,)
+            Entrainment speeds [m/s], > 0.
+        temperatures : array (n_T,)
+            [K].
+
+        Returns
+        -------
+        film_offset, film_compliance, loss_compliance : array (n, n_u, n_T)
+            [m], [m2/N], [m2 s/N].
+        """
+        ...

@@ -1,0 +1,219 @@
+"""The film of a map between its own grid points.
+
+The film of one contact and oil depends on load and speed through Moes' groups M and L; along speed at constant M it
+changes slowly, at constant load it does not (a narrow valley of the damping stays at constant M). So the line of
+loads of each speed and temperature is first taken to an axis of ln M that all lines share, then the lines are
+interpolated in ln u and T at constant M, then each wanted load is found on the common axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+
+from ehdmaps.maps.splines import hermite, spline_weights
+from ehdmaps.physics._values import FloatArray
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.moes import moes_speed_number
+
+_STEP = 0.02
+_FORGOTTEN = 0.5
+
+
+class Lines(NamedTuple):
+    """Film of one contact over ln M (first axis), speed and temperature, in Moes' scaling.
+
+    Attributes
+    ----------
+    start : float
+        First node of ln M; nodes are `_STEP` apart.
+    film, film_slope : array (n, n_u, n_T)
+        ln H and d ln H/d ln M, H = h_eff/R (eta0 us/(E'R))^(-1/2).
+    loss, loss_slope : array (n, n_u, n_T)
+        ln B and d ln B/d ln M, B = E' u times the loss compliance.
+    """
+
+    start: float
+    film: FloatArray
+    film_slope: FloatArray
+    loss: FloatArray
+    loss_slope: FloatArray
+
+
+@dataclass(frozen=True)
+class GridField:
+    """Film field of a regular grid of solved points; see `FilmField`.
+
+    Attributes
+    ----------
+    line_contacts : tuple of LineContact
+        In the order of the first axis of the arrays.
+    lubricant : Lubricant
+        The oil.
+    loads, speeds, temperatures : array
+        Axes [N/m], [m/s], [K]; only speeds above zero are used.
+    film_offset, film_compliance, loss_compliance : array (contacts, n_w, n_u, n_T)
+        [m], [m2/N], [m2 s/N], positive where the speed is; all zero in a dry map.
+    """
+
+    line_contacts: tuple[LineContact, ...]
+    lubricant: Lubricant
+    loads: FloatArray
+    speeds: FloatArray
+    temperatures: FloatArray
+    film_offset: FloatArray
+    film_compliance: FloatArray
+    loss_compliance: FloatArray
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_lines", {} if self.dry else self._all_lines())
+
+    @property
+    def contacts(self) -> tuple[str, ...]:
+        """Names of the contacts."""
+        return tuple(contact.name for contact in self.line_contacts)
+
+    @property
+    def load_range(self) -> tuple[float, float]:
+        """Lowest and highest load [N/m]."""
+        return float(self.loads[0]), float(self.loads[-1])
+
+    @property
+    def speed_range(self) -> tuple[float, float]:
+        """Lowest speed above zero and highest speed [m/s]; 0 and 0 if there is only standstill."""
+        moving = self.speeds[self.speeds > 0.0]
+        return (float(moving[0]), float(moving[-1])) if moving.size else (0.0, 0.0)
+
+    @property
+    def temperature_range(self) -> tuple[float, float]:
+        """Lowest and highest temperature [K]."""
+        return float(self.temperatures[0]), float(self.temperatures[-1])
+
+    @property
+    def dry(self) -> bool:
+        """Whether there is no film anywhere."""
+        return not np.any(self.film_offset)
+
+    def films(
+        self, contact: str, loads: FloatArray, speeds: FloatArray, temperatures: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Film of one contact; see `FilmField.films`."""
+        solids = self.line_contacts[self.contacts.index(contact)]
+        lines: Lines = self._lines[contact]  # type: ignore[attr-defined]
+        along_u = spline_weights(np.log(self.speeds[self.speeds > 0.0]), np.log(speeds))
+        along_t = spline_weights(self.temperatures, temperatures)
+        film, film_slope, loss, loss_slope = (
+            np.einsum("mjk,uj,tk->mut", values, along_u, along_t, optimize=True) for values in lines[1:]
+        )
+        speed_numbers = self._speed_numbers(solids, speeds, temperatures)
+        modulus = solids.reduced_modulus
+        place = np.log(loads / (modulus * solids.radius * np.sqrt(speed_numbers)))
+        log_film, exponent = _along(place, lines.start, film, film_slope)
+        log_loss, _ = _along(place, lines.start, loss, loss_slope)
+        offset = solids.radius * np.sqrt(speed_numbers) * np.exp(log_film)
+        return offset, -offset * exponent / loads, np.exp(log_loss) / (modulus * speeds[:, None])
+
+    def _speed_numbers(
+        self, contact: LineContact, speeds: FloatArray, temperatures: FloatArray
+    ) -> FloatArray:
+        """Group eta0 us/(E'R) of each speed and temperature."""
+        viscosities = [self.lubricant.at(float(temperature)).viscosity for temperature in temperatures]
+        per_speed = [moes_speed_number(1.0, eta, contact.radius, contact.reduced_modulus) for eta in viscosities]
+        return speeds[:, None] * np.array(per_speed)
+
+    def _all_lines(self) -> Mapping[str, Lines]:
+        """Lines of every contact."""
+        return {contact.name: self._common_lines(i, contact) for i, contact in enumerate(self.line_contacts)}
+
+    def _common_lines(self, index: int, contact: LineContact) -> Lines:
+        """Lines of one contact on an axis of ln M that covers all of them."""
+        moving = self.speeds > 0.0
+        speeds = self.speeds[moving]
+        numbers = self._speed_numbers(contact, speeds, self.temperatures)
+        loads = self.loads[:, None, None]
+        offset, compliance, loss = (
+            values[index][:, moving, :]
+            for values in (self.film_offset, self.film_compliance, self.loss_compliance)
+        )
+        modulus, radius = contact.reduced_modulus, contact.radius
+        log_load = np.log(loads / (modulus * radius * np.sqrt(numbers)))
+        log_film = np.log(offset / (radius * np.sqrt(numbers)))
+        film_slope = -compliance * loads / offset
+        log_loss = np.log(loss * modulus * speeds[:, None])
+
+        start = float(np.min(log_load))
+        nodes = start + _STEP * np.arange(int((np.max(log_load) - start) / _STEP) + 2)
+        tables = np.empty((4, nodes.size, *numbers.shape))
+        ends = np.empty((2, *numbers.shape), dtype=int)
+        for j, k in np.ndindex(*numbers.shape):
+            line = log_load[:, j, k]
+            inside = np.clip(nodes, line[0], line[-1])
+            pieces: Sequence[CubicHermiteSpline | PchipInterpolator]
+            if line.size > 1:
+                pieces = (
+                    CubicHermiteSpline(line, log_film[:, j, k], film_slope[:, j, k]),
+                    PchipInterpolator(line, log_loss[:, j, k]),
+                )
+                for row, piece in enumerate(pieces):
+                    slope = piece(inside, nu=1)
+                    tables[2 * row, :, j, k] = piece(inside) + (nodes - inside) * slope
+                    tables[2 * row + 1, :, j, k] = slope
+            ends[:, j, k] = np.searchsorted(nodes, line[0]), np.searchsorted(nodes, line[-1], side="right") - 1
+        _complete(tables, ends, np.argsort(numbers, axis=None))
+        return Lines(start, *tables)
+
+
+def _along(
+    place: FloatArray, start: float, values: FloatArray, slopes: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Values and slopes at places of a uniform axis, line by line; tangents beyond its ends."""
+    x = (place - start) / _STEP
+    inside = np.clip(x, 0.0, values.shape[0] - 1)
+    cell = np.minimum(inside.astype(np.intp), values.shape[0] - 2)
+    left, right = (
+        (np.take_along_axis(values, at, 0), np.take_along_axis(slopes, at, 0)) for at in (cell, cell + 1)
+    )
+    value, slope = hermite(left, right, inside - cell, _STEP)
+    return value + _STEP * (x - inside) * slope, slope
+
+
+def _complete(tables: FloatArray, ends: npt.NDArray[np.intp], rising: npt.NDArray[np.intp]) -> None:
+    """Continue each line beyond its own loads in the shape of the next line that goes there.
+
+    Of two lines the one with the larger speed number reaches lower M, the other one higher M. The shape is
+    followed from equal value and slope; the difference of slopes dies away within `_FORGOTTEN` of ln M.
+
+    Parameters
+    ----------
+    tables : array (4, n, n_u, n_T)
+        Values, slopes, values, slopes; changed in place. Beyond the lines' ends they hold tangents.
+    ends : array (2, n_u, n_T)
+        First and last node inside each line.
+    rising : array
+        Lines in the order of their speed numbers.
+    """
+    shape = ends.shape[1:]
+    for order, end in ((rising[::-1], 0), (rising, 1)):
+        for leader, follower in zip(order[:-1], order[1:], strict=True):
+            a, b = np.unravel_index(leader, shape), np.unravel_index(follower, shape)
+            last = ends[(end, *b)]
+            beyond = slice(None, last) if end == 0 else slice(last + 1, None)
+            nodes = np.arange(tables.shape[1])[beyond]
+            distance = _STEP * (nodes - last)
+            fading = np.exp(-np.abs(distance) / _FORGOTTEN)
+            for row in (0, 2):
+                values, slopes = tables[row], tables[row + 1]
+                kink = slopes[(last, *b)] - slopes[(last, *a)]
+                values[(beyond, *b)] = (
+                    values[(last, *b)]
+                    + values[(beyond, *a)]
+                    - values[(last, *a)]
+                    + kink * _FORGOTTEN * np.sign(distance) * (1.0 - fading)
+                )
+                slopes[(beyond, *b)] = slopes[(beyond, *a)] + kink * fading

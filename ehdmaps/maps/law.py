@@ -1,0 +1,358 @@
+"""The contact law: load, stiffness and damping of a contact, or of a roller between its two contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal, get_args
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.maps import bulk, kernel
+from ehdmaps.maps.compilation import (
+    Resolution,
+    compile_table,
+    highest_structural_load,
+    structural_parameters,
+)
+from ehdmaps.maps.dry import DryField
+from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE, ApproachTable, CountArray, LawTable, Point
+from ehdmaps.physics._values import FloatArray
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.lubricant import Lubricant
+
+LawKind = Literal["series", "inner", "outer", "line"]
+OutsidePolicy = Literal["error", "clamp", "asymptote"]
+
+LOAD_REACH, SPEED_REACH = 100.0, 10.0
+"""How far the policy `asymptote` goes, as multiples of the highest load and speed; it holds the edge beyond."""
+
+_CAUSES: Mapping[str, int] = {"load": LOAD, "entrainment_speed": SPEED, "temperature": TEMPERATURE}
+
+
+class ContactLaw:
+    """Load per unit length of a contact over approach, rate, entrainment speed and temperature.
+
+    C2 inside the map (C1 where the film fades below the lowest mapped speed), rising with the approach at rest,
+    never a tension, passive, with exact derivatives. Make one by `EHDMap.law`.
+
+    Calls are for arrays of any shape that broadcast, and cost about 0.1 us a point; `at` gives the law of one
+    speed and temperature, five times faster. Other compiled code uses `table`, `workspace`, `counts` and the
+    functions of `ehdmaps.maps.kernel` without any Python.
+
+    Parameters
+    ----------
+    kind : {"series", "inner", "outer", "line"}
+        A roller between both raceways, or one contact.
+    contacts : sequence of LineContact
+        Inner and outer for `series`, else one.
+    lubricant : Lubricant
+        The oil of the map.
+    field : FilmField
+        Film of each contact.
+    outside : {"error", "clamp", "asymptote"}
+        What happens outside the map; counted always. `error`: OutsideMapError. `clamp`: load, speed and
+        temperature are held at the edge, with the dry tangent above the highest load. `asymptote`: film offset
+        and c go on with their end exponents, in speed at constant Moes number M, up to `LOAD_REACH` times the
+        highest load and `SPEED_REACH` times the highest speed, and as `clamp` beyond; temperature is held.
+    resolution : Resolution, optional
+        Spacing of the nodes of the table.
+
+    Raises
+    ------
+    InputError
+        For a policy that does not exist.
+    MapError
+        If the map cannot make a law.
+    """
+
+    def __init__(
+        self,
+        kind: LawKind,
+        contacts: Sequence[LineContact],
+        lubricant: Lubricant,
+        field: FilmField,
+        outside: OutsidePolicy = "error",
+        resolution: Resolution | None = None,
+    ) -> None:
+        if outside not in get_args(OutsidePolicy):
+            raise InputError(
+                f"contact law, outside: got {outside!r}; allowed: {', '.join(get_args(OutsidePolicy))}"
+            )
+        self.kind: LawKind = kind
+        self.outside: OutsidePolicy = outside
+        self.contacts = tuple(contacts)
+        self.load_range = field.load_range
+        self.speed_range = field.speed_range
+        self.temperature_range = field.temperature_range
+        self.counts: CountArray = np.zeros(4, dtype=np.int64)
+        self._lubricant = lubricant
+        self._dry = field.dry
+        self._field = DryField(field) if field.dry else field
+        self._resolution = resolution
+        self._plain = self._law_table()
+
+    @cached_property
+    def table(self) -> LawTable:
+        """Arrays for `ehdmaps.maps.kernel`, ready for a centrifugal load where the law takes one."""
+        if self.kind != "series":
+            return self._plain
+        inner, outer = (self._approach_table((contact,)) for contact in self.contacts)
+        return self._plain._replace(inner=inner, outer=outer)
+
+    def workspace(self) -> FloatArray:
+        """Scratch for `kernel.collapse` and `kernel.evaluate`, one for each thread and each `Point` kept."""
+        return _workspace(self.table)
+
+    @property
+    def outside_counts(self) -> dict[str, int]:
+        """How many points were outside the map so far, by cause."""
+        return {cause: int(self.counts[index]) for cause, index in _CAUSES.items()}
+
+    def reset_counts(self) -> None:
+        """Start counting again from zero."""
+        self.counts[:] = 0
+
+    def __call__(
+        self,
+        delta: npt.ArrayLike,
+        rate: npt.ArrayLike,
+        entrainment_speed: npt.ArrayLike,
+        temperature: npt.ArrayLike,
+        centrifugal_load: npt.ArrayLike = 0.0,
+    ) -> tuple[Any, Any, Any]:
+        """Load and its derivatives.
+
+        Parameters
+        ----------
+        delta, rate : float or array
+            Approach [m] and its rate [m/s]; for `series` of both contacts together.
+        entrainment_speed, temperature : float or array
+            u [m/s], of either sign, and T [K].
+        centrifugal_load : float or array
+            q >= 0 [N/m], what the outer contact carries besides; for `series` only. The roller is then brought
+            into equilibrium between its contacts at each point, which costs some microseconds.
+
+        Returns
+        -------
+        w, dw_ddelta, dw_drate : float or array
+            Load on the inner contact [N/m], [N/m2], [N s/m2], in the shape to which the arguments broadcast.
+
+        Raises
+        ------
+        InputError
+            For arguments that are no finite numbers or do not broadcast, and for a centrifugal load that is
+            negative, above the highest load, or given to a single contact.
+        OutsideMapError
+            Outside the map, with the policy `error`.
+        """
+        named = _floats(
+            delta=delta,
+            rate=rate,
+            entrainment_speed=entrainment_speed,
+            temperature=temperature,
+            centrifugal_load=centrifugal_load,
+        )
+        self._check_centrifugal(named["centrifugal_load"])
+        try:
+            arrays = np.broadcast_arrays(*named.values())
+        except ValueError:
+            shapes = ", ".join(f"{name} {array.shape}" for name, array in named.items())
+            raise InputError(f"contact law: got shapes that do not broadcast: {shapes}") from None
+        shape = arrays[0].shape
+        flat = [np.ascontiguousarray(array).reshape(-1) for array in arrays]
+        table = self.table if np.any(named["centrifugal_load"]) else self._plain
+        forces = np.empty((3, flat[0].size))
+        counts = np.zeros(4, dtype=np.int64)
+        bulk.evaluate_many(table, _workspace(table), *flat, forces, counts)
+        self._settle(counts, named, flat)
+        return tuple(force.reshape(shape)[()] for force in forces)
+
+    def at(
+        self, entrainment_speed: float, temperature: float, centrifugal_load: float = 0.0
+    ) -> LawAtPoint:
+        """Law at one speed [m/s], temperature [K] and centrifugal load [N/m]: equal values, faster.
+
+        Raises
+        ------
+        InputError, OutsideMapError
+            As calling the law does.
+        """
+        named = _floats(
+            entrainment_speed=entrainment_speed, temperature=temperature, centrifugal_load=centrifugal_load
+        )
+        for name, value in named.items():
+            if value.ndim:
+                raise InputError(f"contact law, {name}: got an array; allowed: one number in `at`")
+        _check_finite(named)
+        self._check_centrifugal(named["centrifugal_load"])
+        table = self.table if centrifugal_load else self._plain
+        counts = np.zeros(4, dtype=np.int64)
+        u, T, q = (float(value) for value in named.values())
+        point = kernel.collapse(table, _workspace(table), u, T, q, counts)
+        self._settle(counts, named, [])
+        return LawAtPoint(u, T, q, point, self)
+
+    def _law_table(self) -> LawTable:
+        """Everything but the single contacts of a series."""
+        highest = self.load_range[1]
+        low, high = self.speed_range if self.speed_range[0] > 0.0 else (1.0, 1.0)
+        held = highest * (1.0 + kernel.LOAD_TOLERANCE)
+        if self.outside == "asymptote":
+            high = SPEED_REACH * high if high > low else high
+            most = min(highest_structural_load(contact) for contact in self.contacts)
+            held = max(held, min(LOAD_REACH * highest, most))
+        self._speeds, self._held_load = (low, high), held
+        own = self._approach_table(self.contacts)
+        return LawTable(
+            own=own,
+            inner=own,
+            outer=own,
+            structure=np.array([structural_parameters(contact) for contact in self.contacts]),
+            film_speed=np.inf if self._dry else low,
+            lowest_speed=low,
+            highest_speed=high,
+            lowest_temperature=self.temperature_range[0],
+            highest_temperature=self.temperature_range[1],
+            highest_load=highest,
+            highest_root=float(np.cbrt(highest)),
+            held_load=held,
+            counted_speed=self.speed_range[1],
+        )
+
+    def _approach_table(self, contacts: Sequence[LineContact]) -> ApproachTable:
+        """Table of some contacts in series."""
+        return compile_table(
+            self._field, contacts, self._lubricant, self._speeds, self._held_load, self._resolution
+        )
+
+    def _check_centrifugal(self, values: FloatArray) -> None:
+        """Refuse centrifugal loads that this law does not take."""
+        if not np.any(values):
+            return
+        if self.kind != "series":
+            raise InputError(
+                f"contact law {self.kind!r}, centrifugal_load: got {float(np.max(np.abs(values))):.6g} N/m; "
+                "allowed: 0; only the law 'series' brings a roller into equilibrium"
+            )
+        highest = self.load_range[1]
+        wrong = values[(values < 0.0) | (values >= highest)]
+        if wrong.size:
+            raise InputError(
+                f"contact law {self.kind!r}, centrifugal_load: got {wrong.flat[0]:.6g} N/m; "
+                f"allowed: 0 to below the highest mapped load {highest:.6g} N/m; check its sign and unit"
+            )
+
+    def _settle(self, counts: CountArray, named: Mapping[str, FloatArray], flat: Sequence[FloatArray]) -> None:
+        """Add up the counts of a call, and raise what they ask for."""
+        if counts[NOT_FINITE]:
+            _check_finite(named)
+        self.counts += counts
+        if self.outside != "error" or not np.any(counts[[LOAD, SPEED, TEMPERATURE]]):
+            return
+        problems = []
+        if counts[LOAD]:
+            problems.append(self._load_problem(int(counts[LOAD]), flat))
+        if counts[SPEED]:
+            fastest = float(np.max(np.abs(named["entrainment_speed"])))
+            problems.append(
+                f"entrainment_speed: got {fastest:.6g} m/s; mapped: up to {self.speed_range[1]:.6g} m/s"
+            )
+        if counts[TEMPERATURE]:
+            low, high = self.temperature_range
+            values = named["temperature"]
+            farthest = values.flat[int(np.argmax(np.maximum(low - values, values - high)))]
+            problems.append(f"temperature: got {farthest:.6g} K; mapped: {low:.6g} to {high:.6g} K")
+        raise OutsideMapError(
+            "\n".join(f"contact law {self.kind!r}, {problem}" for problem in problems)
+            + "\nmake a map that reaches there, or take a law with outside='clamp' or outside='asymptote'"
+        )
+
+    def _load_problem(self, count: int, flat: Sequence[FloatArray]) -> str:
+        """Say which load is too high."""
+        highest = f"mapped: up to {self.load_range[1]:.6g} N/m"
+        if len(flat) < 5:
+            return f"load: got more than that in the outer contact; {highest}"
+        forces, counts = np.empty((3, flat[0].size)), np.zeros(4, dtype=np.int64)
+        table = self.table if np.any(flat[4]) else self._plain
+        at_rest = np.zeros_like(flat[0])
+        bulk.evaluate_many(table, _workspace(table), flat[0], at_rest, *flat[2:], forces, counts)
+        worst = int(np.argmax(forces[0]))
+        return (
+            f"load: got about {forces[0, worst]:.6g} N/m at the approach {flat[0][worst]:.6g} m, "
+            f"{flat[2][worst]:.6g} m/s, {flat[3][worst]:.6g} K ({count} of {flat[0].size} points above); {highest}"
+        )
+
+
+@dataclass(frozen=True)
+class LawAtPoint:
+    """A contact law at one speed, temperature and centrifugal load.
+
+    Attributes
+    ----------
+    entrainment_speed, temperature, centrifugal_load : float
+        u [m/s], T [K], q [N/m].
+    point : Point
+        Arrays for `kernel.evaluate_at`.
+    law : ContactLaw
+        Where it comes from; it keeps the counts.
+    """
+
+    entrainment_speed: float
+    temperature: float
+    centrifugal_load: float
+    point: Point
+    law: ContactLaw
+
+    def __call__(self, delta: npt.ArrayLike, rate: npt.ArrayLike) -> tuple[Any, Any, Any]:
+        """Load and its derivatives; as calling the `ContactLaw`."""
+        named = _floats(delta=delta, rate=rate)
+        try:
+            deltas, rates = np.broadcast_arrays(*named.values())
+        except ValueError:
+            raise InputError(
+                f"contact law: got shapes that do not broadcast: delta {named['delta'].shape}, "
+                f"rate {named['rate'].shape}"
+            ) from None
+        flat = [np.ascontiguousarray(array).reshape(-1) for array in (deltas, rates)]
+        forces = np.empty((3, flat[0].size))
+        counts = np.zeros(4, dtype=np.int64)
+        bulk.evaluate_many_at(self.point, *flat, forces, counts)
+        if np.any(counts):
+            fixed = (self.entrainment_speed, self.temperature, self.centrifugal_load)
+            flat += [np.full(flat[0].size, value) for value in fixed]
+            self.law._settle(counts, named, flat)
+        return tuple(force.reshape(deltas.shape)[()] for force in forces)
+
+
+def _workspace(table: LawTable) -> FloatArray:
+    """Scratch for the largest of the tables."""
+    width = max(entry.coefficients.shape[2] for entry in (table.own, table.inner, table.outer))
+    return np.empty((4, width // 2, 8))
+
+
+def _floats(**values: npt.ArrayLike) -> dict[str, FloatArray]:
+    """Arrays of doubles by name; what is no number is refused."""
+    arrays = {}
+    for name, value in values.items():
+        try:
+            arrays[name] = np.asarray(value, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InputError(f"contact law, {name}: got {value!r}; allowed: real numbers") from None
+    return arrays
+
+
+def _check_finite(named: Mapping[str, FloatArray]) -> None:
+    """Refuse values that are no finite numbers."""
+    problems = [
+        f"contact law, {name}: got {values[~np.isfinite(values)].flat[0]} "
+        f"({np.count_nonzero(~np.isfinite(values))} of {values.size}); allowed: finite numbers"
+        for name, values in named.items()
+        if not np.all(np.isfinite(values))
+    ]
+    if problems:
+        raise InputError(problems)

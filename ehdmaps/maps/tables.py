@@ -1,0 +1,155 @@
+"""The arrays of a compiled law, as named tuples that numba takes as they are.
+
+`ApproachTable` and `LawTable` hold a law over approach, entrainment speed and temperature; `Line` and `Point` hold
+what is left of them at one speed, temperature and centrifugal load.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.physics._values import FloatArray
+
+CountArray = npt.NDArray[np.int64]
+
+LOAD, SPEED, TEMPERATURE, NOT_FINITE = 0, 1, 2, 3
+"""Places in an array of counts: calls outside by cause, and values that are no finite numbers."""
+
+POWER_LAW, HALF_SPACE = 0.0, 1.0
+"""Kinds of structural law in `LawTable.structure`."""
+
+
+COLDEST = 170.0
+"""Temperature at which the viscosity of mineral oils tends to infinity [K], by Vogel's law about."""
+
+
+class ApproachTable(NamedTuple):
+    """g = w^(1/3) and ln(c/w) of one contact, or of two in series, over speed, temperature and approach.
+
+    The axes are uniform in ln u, in 1/(T - `COLDEST`), in which ln eta0 of an oil is nearly straight, and in
+    s = asinh((delta - offset)/scale). Between the nodes i and i + 1 of an axis the cubic B-splines have the
+    coefficients i to i + 3.
+
+    Attributes
+    ----------
+    coefficients : array (n_u, n_T, 2 n_s)
+        Of g [(N/m)^(1/3)] and ln(c/w) [c/w in s/m], in turns.
+    place : array (n_u, n_T, 2)
+        Coefficients of the offset [m] and of 1/scale [1/m].
+    log_speed_start, log_speed_step : float
+        First node and inverse distance of nodes of ln u; step 0 for a single speed.
+    temperature_start, temperature_step : float
+        First node [1/K], inverse distance of nodes [K]; step 0 for a single temperature.
+    start, step : float
+        First node and inverse distance of nodes of s.
+    """
+
+    coefficients: FloatArray
+    place: FloatArray
+    log_speed_start: float
+    log_speed_step: float
+    temperature_start: float
+    temperature_step: float
+    start: float
+    step: float
+
+
+class LawTable(NamedTuple):
+    """Everything that a law needs at run time.
+
+    Attributes
+    ----------
+    own : ApproachTable
+        The law without centrifugal load.
+    inner, outer : ApproachTable
+        The two contacts, for the equilibrium of a roller with centrifugal load; `own` again where the law has
+        no centrifugal load.
+    structure : array (n, 3)
+        Structural law of each contact: kind, and two parameters.
+    film_speed : float
+        Speed below which the film is faded [m/s]; inf for a map without films.
+    lowest_speed, highest_speed : float
+        Of the table [m/s], > 0.
+    lowest_temperature, highest_temperature : float
+        Of the table [K].
+    highest_load : float
+        Highest mapped load [N/m]; loads above it are counted.
+    highest_root : float
+        Its cube root.
+    held_load : float
+        Load above which the law is its dry tangent [N/m].
+    counted_speed : float
+        Speeds above it are counted [m/s].
+    """
+
+    own: ApproachTable
+    inner: ApproachTable
+    outer: ApproachTable
+    structure: FloatArray
+    film_speed: float
+    lowest_speed: float
+    highest_speed: float
+    lowest_temperature: float
+    highest_temperature: float
+    highest_load: float
+    highest_root: float
+    held_load: float
+    counted_speed: float
+
+
+class Line(NamedTuple):
+    """An `ApproachTable` at one speed and temperature.
+
+    Attributes
+    ----------
+    coefficients : array (cells, 8)
+        Cubics over the cells of s, in the part of the cell: four coefficients of g, four of ln(c/w).
+    offset, inverse_scale : float
+        [m], [1/m].
+    start, step : float
+        As in the table.
+    """
+
+    coefficients: FloatArray
+    offset: float
+    inverse_scale: float
+    start: float
+    step: float
+
+
+class Point(NamedTuple):
+    """A `LawTable` at one speed, temperature and centrifugal load.
+
+    Attributes
+    ----------
+    own, inner, outer : Line
+        As in the table.
+    structure : array (n, 3)
+        As in the table.
+    film : float
+        Part of the film that is there, 1 at and above the lowest mapped speed, 0 at standstill.
+    centrifugal_load : float
+        q [N/m].
+    lift_off : float
+        Approach at and below which there is no load [m].
+    highest_load : float
+        Loads above it are counted [N/m].
+    held_load, held_approach, held_stiffness, held_damping : float
+        Above this load the law is the tangent with this stiffness, and this damping.
+    """
+
+    own: Line
+    inner: Line
+    outer: Line
+    structure: FloatArray
+    film: float
+    centrifugal_load: float
+    lift_off: float
+    highest_load: float
+    held_load: float
+    held_approach: float
+    held_stiffness: float
+    held_damping: float

@@ -1,0 +1,104 @@
+"""Whether a law can be made from a map: no holes, no clusters of filled points, films and damping positive."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from ehdmaps.errors import MapError
+from ehdmaps.maps.schema import DIMS
+from ehdmaps.physics.solution import Status
+from ehdmaps.units import LOAD, SPEED, TEMPERATURE
+
+_NEEDED = ("film_offset", "stiffness", "damping")
+_SHOWN = 3
+
+Mask = npt.NDArray[np.bool_]
+
+
+def check_usable(dataset: xr.Dataset, contacts: tuple[str, ...]) -> None:
+    """Refuse a map that a law of these contacts cannot stand on.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map.
+    contacts : tuple of str
+        Contacts that the law uses.
+
+    Raises
+    ------
+    MapError
+        With every reason, each with places and what to do.
+    """
+    chosen = dataset.sel(contact=list(contacts)).transpose(*DIMS, ...)
+    filled = chosen["filled"].values.astype(bool) if "filled" in chosen else np.zeros(_shape(chosen), bool)
+    usable = np.isin(chosen["status"].values, [int(status) for status in Status if status.usable]) | filled
+    for name in _NEEDED:
+        usable &= np.isfinite(chosen[name].values)
+    problems = []
+    if not np.all(usable):
+        problems.append(
+            f"{np.count_nonzero(~usable)} holes, {_places(chosen, ~usable)}; "
+            "solve them again with other settings of the solver, let `generate` fill them, or leave them "
+            "out of the axes"
+        )
+    clusters = _clusters(filled)
+    if np.any(clusters):
+        problems.append(
+            f"{np.count_nonzero(clusters)} filled points beside one another, {_places(chosen, clusters)}; "
+            "nothing is known there; solve them again with other settings of the solver"
+        )
+    if not problems:
+        problems = _unphysical(chosen)
+    if problems:
+        raise MapError("\n".join(f"law of {', '.join(contacts)}: the map has {problem}" for problem in problems))
+
+
+def _shape(chosen: xr.Dataset) -> tuple[int, ...]:
+    """Lengths of the axes."""
+    return tuple(chosen.sizes[name] for name in DIMS)
+
+
+def _clusters(filled: Mask) -> Mask:
+    """Filled points with a filled neighbour along load, speed or temperature."""
+    found = np.zeros_like(filled)
+    for axis in (1, 2, 3):
+        rows, marks = np.moveaxis(filled, axis, 0), np.moveaxis(found, axis, 0)
+        pairs = rows[1:] & rows[:-1]
+        marks[1:] |= pairs
+        marks[:-1] |= pairs
+    return found
+
+
+def _unphysical(chosen: xr.Dataset) -> list[str]:
+    """Values of which no law can be made; a map without any film is a dry one, which is fine."""
+    if not np.any(chosen["film_offset"].values):
+        return []
+    moving = np.broadcast_to((chosen["entrainment_speed"].values > 0.0)[:, None], _shape(chosen))
+    problems = []
+    for name, word in (("film_offset", "film offset"), ("stiffness", "stiffness"), ("damping", "damping")):
+        wrong = moving & ~(chosen[name].values > 0.0)
+        if np.any(wrong):
+            problems.append(
+                f"{np.count_nonzero(wrong)} points whose {word} is not positive, {_places(chosen, wrong)}; "
+                "a law needs it positive; solve them again with a finer grid"
+            )
+    return problems
+
+
+def _places(chosen: xr.Dataset, where: Mask) -> str:
+    """Name the first few points."""
+    names = []
+    for i, j, k, m in np.argwhere(where)[:_SHOWN]:
+        load, speed, temperature = (
+            float(chosen[name].values[index])
+            for name, index in (("load", j), ("entrainment_speed", k), ("temperature", m))
+        )
+        names.append(
+            f"{chosen['contact'].values[i]} at {LOAD.text(load)}, {SPEED.text(speed)}, "
+            f"{TEMPERATURE.text(temperature)}"
+        )
+    more = np.count_nonzero(where) - len(names)
+    return "; ".join(names) + (f"; and {more} more" if more > 0 else "")

@@ -1,0 +1,198 @@
+"""Strings with units: the one place where they are read, and where numbers are written for people.
+
+Inside the package and in files everything is SI, temperatures in K. `quantity` turns what a person typed
+("62 N/mm", "40 degC") into that; the `Display` values turn it back into an engineer's units.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from ehdmaps.errors import InputError
+
+if TYPE_CHECKING:
+    import pint
+
+LONGEST_QUANTITY = 80
+"""Characters; no sensible quantity is longer, and a parser should not be asked to try."""
+
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
+# One power a unit, of one digit: pint evaluates powers, and "m^9^9^9" would keep it busy for ever.
+_ATOM = r"[A-Za-zµμ°%]+(?:(?:\^|\*\*)-?[1-9]|[²³])?"
+_UNIT = re.compile(rf"(?:1 ?/ ?)?\(?{_ATOM}(?:(?: ?[*/·] ?| )\(?{_ATOM}\)?)*")
+
+_EXAMPLES = {
+    "N/m": "62 N/mm",
+    "N": "62 N",
+    "m": "0.7 mm",
+    "m/s": "1.7 m/s",
+    "K": "40 degC",
+    "Pa": "210 GPa",
+    "1/Pa": "22.4 1/GPa",
+    "Pa s": "84.5 mPa s",
+    "m^2/s": "95 mm^2/s",
+    "kg/m^3": "880 kg/m^3",
+    "Hz": "1 kHz",
+    "rad/s": "500 rpm",
+}
+
+
+def quantity(text: object, unit: str) -> float:
+    """Read a number with its unit, in SI.
+
+    Parameters
+    ----------
+    text : object
+        What was typed; anything but a string such as "62 N/mm" is refused.
+    unit : str
+        The SI unit of the result, which also says what units are allowed ("N/m", "K", "rad/s").
+
+    Returns
+    -------
+    float
+        The value in `unit`; always finite.
+
+    Raises
+    ------
+    InputError
+        With one problem, which does not say where: the caller knows that.
+
+    Examples
+    --------
+    >>> quantity("62 N/mm", "N/m")
+    62000.0
+    >>> quantity("40 degC", "K")
+    313.15
+    """
+    if not isinstance(text, str):
+        raise InputError(f"got {short(text)} without a unit; allowed: {_allowed(unit)}")
+    stripped = text.strip()
+    if len(stripped) > LONGEST_QUANTITY:
+        raise InputError(f"got {short(text)}, {len(text)} characters long; allowed: {_allowed(unit)}")
+    number = _NUMBER.match(stripped)
+    if number is None:
+        raise InputError(f"got {short(text)}, which does not start with a number; allowed: {_allowed(unit)}")
+    unit_text = " ".join(stripped[number.end() :].split())
+    if not unit_text:
+        raise InputError(f"got {short(text)} without a unit; allowed: {_allowed(unit)}")
+    if not _UNIT.fullmatch(unit_text):
+        raise InputError(
+            f"got {short(text)}, where {short(unit_text)} does not read as a unit; allowed: {_allowed(unit)}"
+        )
+    factor, offset = _conversion(unit_text, unit)
+    value = float(number.group()) * factor + offset
+    if not math.isfinite(value):
+        raise InputError(f"got {short(text)}, which is too large for a number; allowed: {_allowed(unit)}")
+    return float(f"{value:.15g}")  # 273.15 + 40 is 313.15, not 313.15000000000003
+
+
+def short(value: object) -> str:
+    """Quote a value of any kind and size for a message."""
+    if isinstance(value, int) and not isinstance(value, bool) and abs(value) >= 10**20:
+        return f"a number of {value.bit_length()} bits"
+    if isinstance(value, (dict, list, tuple)):
+        kind = "a table" if isinstance(value, dict) else "a list"
+        return f"{kind} of {len(value)} entries"
+    if isinstance(value, str) and len(value) > 60:
+        value = value[:50] + "..."
+    return repr(value)
+
+
+def closest(word: str, allowed: tuple[str, ...]) -> str:
+    """Say ' (did you mean ...?)' where one of the allowed words is close, else nothing."""
+    matches = difflib.get_close_matches(word[:100], allowed, n=1, cutoff=0.6)
+    return f" (did you mean {matches[0]!r}?)" if matches else ""
+
+
+def _allowed(unit: str) -> str:
+    """Say what a quantity of this unit looks like."""
+    example = _EXAMPLES.get(unit)
+    return f'a number with a unit of {unit}, such as "{example}"' if example else f"a number with a unit of {unit}"
+
+
+@lru_cache(maxsize=1)
+def _registry() -> pint.UnitRegistry[float]:
+    """Return pint's registry; it takes a quarter of a second to build, so nobody does without need."""
+    import pint
+
+    return pint.UnitRegistry()
+
+
+@lru_cache(maxsize=1024)
+def _conversion(unit_text: str, unit: str) -> tuple[float, float]:
+    """Return factor and offset from the typed unit to the SI unit."""
+    import tokenize
+
+    import pint
+
+    registry = _registry()
+    wrong = f"got the unit {short(unit_text)}; allowed: {_allowed(unit)}"
+    if unit_text == "C" and unit == "K":
+        raise InputError(f"{wrong}; C is the coulomb, write degC")
+    target = registry.parse_units(unit)
+    try:
+        given = registry.parse_units(unit_text.replace("·", "*"))
+        if given.dimensionality != target.dimensionality:
+            raise InputError(wrong)
+        if _turns(given) != _turns(target) and target.dimensionality == registry.Unit("Hz").dimensionality:
+            # pint takes 1 Hz for 1 rad/s, which is wrong by 2 pi either way.
+            raise InputError(f"{wrong}; cycles (Hz) and angles (rad, rpm) are not converted into each other")
+        zero = float(registry.Quantity(0.0, given).to(target).magnitude)
+        thousand = float(registry.Quantity(1000.0, given).to(target).magnitude)
+    except (
+        pint.PintError,
+        ValueError,
+        AttributeError,
+        TypeError,
+        AssertionError,
+        tokenize.TokenError,
+    ) as error:
+        raise InputError(wrong) from error
+    return float(f"{(thousand - zero) / 1000.0:.15g}"), float(f"{zero:.15g}")
+
+
+def _turns(unit: pint.Unit) -> float:
+    """Return the power of the angle in a unit: pint keeps it as 'radian' although it has no dimension."""
+    _, root = _registry().get_root_units(unit)
+    power: Any = dict(root._units).get("radian", 0.0)
+    return float(power)
+
+
+@dataclass(frozen=True)
+class Display:
+    """How a quantity is shown to people.
+
+    Attributes
+    ----------
+    unit : str
+        As printed and as on a figure's axis.
+    factor, offset : float
+        shown = SI * factor + offset.
+    """
+
+    unit: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+    def value(self, si: float) -> float:
+        """Return the number in the display unit."""
+        return si * self.factor + self.offset
+
+    def text(self, si: float, digits: int = 4) -> str:
+        """Return the number with its unit, such as '62 N/mm'."""
+        return f"{self.value(si):.{digits}g} {self.unit}"
+
+
+LOAD = Display("N/mm", 1e-3)
+SPEED = Display("m/s")
+TEMPERATURE = Display("degC", 1.0, -273.15)
+FILM = Display("um", 1e6)
+LENGTH = Display("mm", 1e3)
+PRESSURE = Display("GPa", 1e-9)
+STIFFNESS = Display("N/(um mm)", 1e-9)
+DAMPING = Display("N s/(m mm)", 1e-3)

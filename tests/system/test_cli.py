@@ -1,0 +1,394 @@
+"""The command line as a person or a script meets it."""
+
+import io
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from ehdmaps import errors
+from ehdmaps.jobs import cli, solvers
+from ehdmaps.maps.emap import open_map
+from ehdmaps.physics.closed_form import FormulaSolver
+from ehdmaps.physics.solution import FilmSolution, Status
+
+TEXT = """
+schema = 1
+[bearing]
+name = "NU308"
+[lubricant]
+name = "FVA3"
+[grid]
+load = { from = "1 N/mm", to = "1000 N/mm", points = 6, spacing = "log" }
+entrainment_speed = ["0.5 m/s", "1 m/s"]
+temperature = ["40 degC", "60 degC"]
+[solver]
+name = "formula"
+structural_law = "iso16281"
+"""
+COLD = TEXT.replace("1 N/mm", "0.1 N/mm").replace('"40 degC"', '"0 degC", "40 degC"')
+POINT = ["--load", "40 N", "--length", "0.45 mm", "--speed", "3.297 m/s", "--temperature", "40 degC"]
+TIMES = ["solve_seconds"]
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PYTHONPATH", str(Path(errors.__file__).parents[1]))  # for commands in their own process
+    (tmp_path / "mine.toml").write_text(TEXT)
+    return tmp_path
+
+
+def run(capsys, *arguments):
+    """Return exit status, stdout and stderr of a command."""
+    status = cli.main(arguments)
+    captured = capsys.readouterr()
+    return status, captured.out, captured.err
+
+
+def names(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_generate_show_plot_compare(here, capsys):
+    status, out, err = run(capsys, "generate", "mine.toml", "--workers", "1")
+    assert status == 0
+    assert "points: 0 taken over, 48 solved now, 0 without a solution" in out
+    assert err.splitlines()[0] == "0 of 48 points taken over"
+    assert names(here) == ["mine.nc", "mine.nc.store", "mine.toml"]
+
+    status, out, _ = run(capsys, "show", "mine.nc")
+    assert (status, out.splitlines()[0]) == (0, "EHD map of NU308, FVA3, by the solver formula")
+
+    status, out, _ = run(capsys, "plot", "mine.nc")
+    assert (status, out) == (0, "mine.png: written\n")
+    status, out, _ = run(capsys, "plot", "mine.nc", "-o", "page.pdf")
+    assert (status, (here / "page.pdf").read_bytes()[:4]) == (0, b"%PDF")
+
+    assert run(capsys, "generate", "mine.toml", "-o", "dry.nc", "--solver", "hertz")[0] == 0
+    status, out, _ = run(capsys, "compare", "mine.nc", "dry.nc")
+    assert status == 0
+    assert "48 points in common, 48 of them solved in both" in out
+
+
+def test_generate_goes_on_and_fresh_begins_again(here, capsys):
+    run(capsys, "generate", "mine.toml", "--workers", "1")
+    first = open_map(here / "mine.nc").dataset
+    assert "48 taken over, 0 solved now" in run(capsys, "generate", "mine.toml", "--workers", "1")[1]
+    xr.testing.assert_identical(open_map(here / "mine.nc").dataset.drop_attrs(), first.drop_attrs())
+    assert "0 taken over, 48 solved now" in run(capsys, "generate", "mine.toml", "--workers", "1", "--fresh")[1]
+
+
+def test_a_changed_job_solves_only_what_is_new(here, capsys):
+    run(capsys, "generate", "mine.toml", "--workers", "1")
+    (here / "mine.toml").write_text(TEXT.replace('"60 degC"', '"60 degC", "80 degC"').replace("iso16281", "palmgren"))
+    assert "48 taken over, 24 solved now" in run(capsys, "generate", "mine.toml", "--workers", "1")[1]
+
+
+def test_a_map_alone_repeats_itself(here, capsys):
+    run(capsys, "generate", "mine.toml", "-o", "a.nc", "--solver", "hertz")
+    (here / "mine.toml").unlink()
+    assert run(capsys, "generate", "a.nc", "-o", "again.nc")[0] == 0
+    first, again = open_map(here / "a.nc").dataset, open_map(here / "again.nc").dataset
+    assert again.attrs["solver"] == "hertz"
+    xr.testing.assert_identical(again.drop_vars(TIMES).drop_attrs(), first.drop_vars(TIMES).drop_attrs())
+    assert {key for key in first.attrs if first.attrs[key] != again.attrs[key]} <= {"created"}
+    status, _, err = run(capsys, "generate", "a.nc")
+    assert status == 2
+    assert "-o: missing; a.nc is a map itself" in err
+
+
+class Light(FormulaSolver):
+    """The formula solver, giving up above 100 N/mm."""
+
+    def solve_line(self, contact, lubricant, loads, *further, **options):
+        films = super().solve_line(contact, lubricant, loads, *further, **options)
+        lost = FilmSolution(Status.OUTSIDE_VALIDITY, "too heavy")
+        return tuple(lost if load > 1e5 else film for load, film in zip(loads, films, strict=True))
+
+
+def test_points_without_a_solution_make_status_1(here, capsys, monkeypatch):
+    monkeypatch.setattr(solvers, "build", lambda *_: Light())
+    status, out, _ = run(capsys, "generate", "mine.toml", "--workers", "1")
+    assert status == 1
+    assert "16 without a solution" in out
+    assert "outside_validity       16   33.33 %" in out
+    assert "16 x too heavy" in out
+    assert int(np.isnan(open_map(here / "mine.nc").dataset["stiffness"].values).sum()) == 16
+
+
+@pytest.mark.parametrize("command", ["generate", "check"])
+def test_bad_input_lists_everything_and_writes_nothing(here, capsys, command):
+    (here / "mine.toml").write_text(TEXT.replace("NU308", "NU3").replace("FVA3", "FVA9").replace("1 N/mm", "1 N"))
+    status, out, err = run(capsys, command, "mine.toml")
+    assert (status, out) == (2, "")
+    assert err.startswith(f"ehdmaps {command}: 3 problems\n")
+    for part in ("NU3", "FVA9", "got the unit 'N'"):
+        assert part in err
+    assert names(here) == ["mine.toml"]
+
+
+@pytest.mark.parametrize(
+    ("output", "message"),
+    [
+        ("missing/a.nc", "missing is no folder"),
+        ("mine.toml/a.nc", "mine.toml is no folder"),
+        (".", "a folder; allowed"),
+    ],
+)
+def test_an_output_that_cannot_be_written(here, capsys, output, message):
+    status, _, err = run(capsys, "generate", "mine.toml", "-o", output)
+    assert (status, names(here)) == (2, ["mine.toml"])
+    assert message in err
+
+
+def test_a_broken_store_leaves_the_good_map_alone(here, capsys):
+    run(capsys, "generate", "mine.toml", "--workers", "1")
+    good = (here / "mine.nc").read_bytes()
+    (here / "mine.nc.store").write_bytes(b"garbage" * 1000)
+    status, _, err = run(capsys, "generate", "mine.toml", "--workers", "1")
+    assert status == 2
+    assert "is not a readable store" in err and "--fresh" in err
+    assert (here / "mine.nc").read_bytes() == good
+    assert run(capsys, "generate", "mine.toml", "--workers", "1", "--fresh")[0] == 0
+
+
+def test_a_full_disk_while_the_map_is_written(here, capsys, monkeypatch):
+    run(capsys, "generate", "mine.toml", "--workers", "1")
+    good = (here / "mine.nc").read_bytes()
+
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", full)
+    status, _, err = run(capsys, "generate", "mine.toml", "--workers", "1", "--fresh")
+    assert status == 2
+    assert "No space left on device" in err
+    assert (here / "mine.nc").read_bytes() == good
+    monkeypatch.undo()
+    monkeypatch.chdir(here)
+    assert "48 taken over, 0 solved now" in run(capsys, "generate", "mine.toml", "--workers", "1")[1]
+
+
+def test_check_estimates(here, capsys):
+    status, out, _ = run(capsys, "check", "mine.toml")
+    assert status == 0
+    assert "points  48" in out and "time    about" in out and "memory  about" in out
+    assert names(here) == ["mine.toml"]
+
+
+def test_solve_prints_a_table(capsys):
+    status, out, _ = run(capsys, "solve", "n1014", *POINT, "--solver", "formula")
+    assert status == 0
+    assert out.splitlines()[1] == "88.89 N/mm, 3.297 m/s, 40 degC, slice of 0.45 mm (40 N)"
+    assert "k x length" in out
+
+
+def test_solve_json_is_the_contract_s(capsys):
+    status, out, _ = run(capsys, "solve", "n1014", *POINT, "--solver", "formula", "--json")
+    inner, outer = json.loads(out)
+    assert (status, inner["contact"], outer["contact"]) == (0, "inner", "outer")
+    assert set(inner) >= {
+        "approach", "film_offset", "stiffness", "damping", "central_film", "minimum_film", "max_pressure",
+        "film_offset_error", "film_compliance_error", "stiffness_error", "damping_error", "iterations",
+        "solve_seconds", "viscosity_extrapolated", "M", "L", "hertz_half_width", "hertz_pressure",
+        "load_per_length", "status", "reason",
+    }  # fmt: skip
+    assert inner["status"] == "converged"
+    assert inner["load_per_length"] == pytest.approx(40 / 0.45e-3, rel=1e-12)
+    assert inner["temperature"] == 313.15
+
+
+def test_the_length_converts_the_load_and_nothing_else(capsys):
+    one = json.loads(run(capsys, "solve", "n1014", *POINT, "--solver", "formula", "--json")[1])
+    two = json.loads(
+        run(
+            capsys,
+            "solve",
+            "n1014",
+            "--load",
+            "80 N",
+            "--length",
+            "0.9 mm",
+            *POINT[4:],
+            "--solver",
+            "formula",
+            "--json",
+        )[1]
+    )
+    for a, b in zip(one, two, strict=True):
+        a.pop("solve_seconds"), b.pop("solve_seconds")
+    assert one == two
+
+
+def test_solve_takes_a_load_per_length_and_a_frequency(capsys):
+    status, out, _ = run(
+        capsys,
+        "solve",
+        "n1014",
+        "--load",
+        "88 N/mm",
+        *POINT[4:],
+        "--frequency",
+        "1 kHz",
+        "--solver",
+        "formula",
+        "--json",
+    )
+    assert status == 0
+    assert {(record["load_per_length"], record["frequency"]) for record in json.loads(out)} == {(88000.0, 1000.0)}
+
+
+def test_solve_at_a_standstill_has_no_groups(capsys):
+    status, out, _ = run(
+        capsys,
+        "solve",
+        "n1014",
+        "--load",
+        "88 N/mm",
+        "--speed",
+        "0 m/s",
+        "--temperature",
+        "40 degC",
+        "--solver",
+        "formula",
+    )
+    assert status == 0
+    assert "asymptote" in out
+    assert [line.split() for line in out.splitlines() if line.startswith("  M ")] == [["M", "-", "-"]]
+
+
+def test_solve_says_when_there_is_no_solution(capsys, monkeypatch):
+    monkeypatch.setattr(solvers, "build", lambda *_: Light())
+    heavy = ["solve", "n1014", "--load", "101 N/mm", *POINT[4:]]
+    status, out, _ = run(capsys, *heavy, "--json")
+    records = json.loads(out)
+    assert status == 1
+    assert [record["status"] for record in records] == ["outside_validity", "outside_validity"]
+    assert all(record["stiffness"] is None and record["reason"] == "too heavy" for record in records)
+    assert "inner: too heavy" in run(capsys, *heavy)[1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "messages"),
+    [
+        (
+            ["nu309", "--load", "40 x", "--speed", "-1 m/s", "--temperature", "40"],
+            [
+                "did you mean 'nu308'?",
+                "--length: missing",
+                "--load: got the unit 'x'",
+                "--speed: got '-1 m/s'",
+                "--temperature: got '40' without",
+            ],
+        ),
+        (["nu308", *POINT[:4], "--speed", "1 m/s", "--temperature", "-20 degC"], ["--temperature: lubricant 'FVA3'"]),
+        (
+            ["nu308", "--load", "1 kN", "--length", "0.001 mm", *POINT[4:]],
+            ["--load over --length: got 1e+06 N/mm; allowed: 0.001 N/mm"],
+        ),
+        (["nu308", *POINT, "--frequency", "500 rpm"], ["--frequency: got the unit 'rpm'"]),
+        (["nu308", *POINT, "--solver", "foo"], ["--solver: got 'foo'; allowed: hertz"]),
+    ],
+)
+def test_solve_lists_every_problem(capsys, arguments, messages):
+    status, out, err = run(capsys, "solve", *arguments)
+    assert (status, out) == (2, "")
+    assert all(message in err for message in messages)
+    assert err.startswith(f"ehdmaps solve: {len(messages)} problem")
+
+
+def test_tradeoff_prints_its_table(here, capsys):
+    status, out, _ = run(capsys, "tradeoff", "mine.toml", "--lines", "1")
+    assert status == 0
+    assert "reynolds, density 6.5" in out
+    assert "errors relative to reynolds, density 26" in out
+
+
+@pytest.mark.parametrize("command", [["show", "none.nc"], ["plot", "none.nc"], ["compare", "none.nc", "none.nc"]])
+def test_a_map_that_is_not_there(here, capsys, command):
+    status, _, err = run(capsys, *command)
+    assert status == 2
+    assert "none.nc: cannot be read" in err
+
+
+@pytest.mark.parametrize("output", ["missing/page.png", "page.xyz"])
+def test_a_picture_that_cannot_be_written(here, capsys, output):
+    run(capsys, "generate", "mine.toml", "--workers", "1")
+    status, _, err = run(capsys, "plot", "mine.nc", "-o", output)
+    assert status == 2
+    assert "cannot be written" in err and "allowed: a .png, .pdf or .svg file" in err
+
+
+@pytest.mark.parametrize("workers", ["0", "-1", "two", "99999", "9" * 1000])
+def test_a_wrong_number_of_workers(capsys, workers):
+    with pytest.raises(SystemExit) as raised:
+        cli.main(["generate", "nu308", "--workers", workers])
+    assert raised.value.code == 2
+    assert "allowed: a whole number from 1 to 1024" in capsys.readouterr().err
+
+
+def test_ctrl_c_in_any_command_is_quiet(capsys, monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("ehdmaps.jobs.commands.show.open_map", interrupted)
+    assert run(capsys, "show", "a.nc") == (130, "", "\nstopped\n")
+
+
+def test_a_reader_that_closes_the_pipe_is_no_error(here, capsys):
+    run(capsys, "generate", "mine.toml", "--workers", "1")
+    show = subprocess.Popen(
+        [sys.executable, "-m", "ehdmaps.jobs.cli", "show", "mine.nc"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    show.stdout.close()
+    err = show.stderr.read()
+    show.stderr.close()
+    assert (show.wait(), err) == (0, b"")
+
+
+def test_help_loads_no_heavy_library():
+    script = (
+        "import sys\nfrom ehdmaps.jobs import cli\n"
+        "try:\n    cli.main(['--help'])\nexcept SystemExit:\n    pass\n"
+        "heavy = {'numpy', 'scipy', 'numba', 'xarray', 'matplotlib', 'pint', 'PyFoam', 'netCDF4'} & set(sys.modules)\n"
+        "sys.exit(f'loaded {heavy}' if heavy else 0)\n"
+    )
+    found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert (found.returncode, found.stderr) == (0, "")
+    for command in ("generate", "check", "show", "plot", "solve", "compare", "tradeoff"):
+        assert command in found.stdout
+
+
+def test_progress_on_a_terminal_is_a_bar(monkeypatch):
+    from ehdmaps.jobs.progress import progress
+
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    bar = progress(100)
+    bar.taken_over(40)
+    bar.solved(60)
+    assert "40/100" in terminal.getvalue() and "100/100" in terminal.getvalue()
+    assert "point/s" in terminal.getvalue()
+
+
+def test_progress_elsewhere_is_lines(monkeypatch, capsys):
+    from ehdmaps.jobs import progress
+
+    monkeypatch.setattr(progress, "LINE_SECONDS", 0.0)
+    lines = progress.Lines(10)
+    lines.taken_over(4)
+    lines.solved(3)
+    lines.solved(3)
+    err = capsys.readouterr().err.splitlines()
+    assert err[0] == "4 of 10 points taken over"
+    assert err[1].startswith("7 of 10 points, ") and err[1].endswith(" s left")
+    assert err[2].startswith("10 of 10 points, ") and err[2].endswith(" 0 s left")

@@ -1,0 +1,172 @@
+"""A night's run that is killed, interrupted or started twice."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from ehdmaps import errors
+from ehdmaps.maps.emap import open_map
+
+JOB = """
+schema = 1
+[bearing]
+name = "NU308"
+[lubricant]
+name = "FVA3"
+[grid]
+load = { from = "1 N/mm", to = "1000 N/mm", points = 5, spacing = "log" }
+entrainment_speed = { from = "0.1 m/s", to = "10 m/s", points = 10, spacing = "log" }
+temperature = ["20 degC", "40 degC", "60 degC", "80 degC"]
+[solver]
+name = "formula"
+structural_law = "iso16281"
+"""
+LINES = 80
+POINTS = 400
+
+# The command line with a solver that takes its time and writes down every line that it begins.
+DRIVER = """
+import os, sys, time
+from dataclasses import dataclass
+from ehdmaps.jobs import cli, solvers
+from ehdmaps.physics.closed_form import FormulaSolver
+
+@dataclass(frozen=True)
+class Patient(FormulaSolver):
+    version: str = "1"
+    pause: float = 0.03
+    def solve_line(self, contact, lubricant, loads, entrainment_speed, temperature, frequency=0.0):
+        with open("log", "a") as log:
+            log.write(f"{os.getpid()} {contact.name} {entrainment_speed!r} {temperature!r}\\n")
+        time.sleep(self.pause)
+        return super().solve_line(contact, lubricant, loads, entrainment_speed, temperature, frequency)
+
+if __name__ == "__main__":
+    solvers.build = lambda name, options: Patient()
+    sys.exit(cli.main(sys.argv[1:]))
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    # The commands run in another folder, where only an installed package would be found.
+    monkeypatch.setenv("PYTHONPATH", str(Path(errors.__file__).parents[1]))
+    (tmp_path / "job.toml").write_text(JOB)
+    (tmp_path / "driver.py").write_text(DRIVER)
+    return tmp_path
+
+
+def command(*arguments):
+    return [sys.executable, "driver.py", "generate", "job.toml", *arguments]
+
+
+def begun(folder):
+    log = folder / "log"
+    return [line.split() for line in log.read_text().splitlines()] if log.exists() else []
+
+
+def wait_for(condition, seconds=60.0):
+    """Wait for something that must happen; the limit only ends a test that hangs."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "it never happened"
+        time.sleep(0.01)
+
+
+def counts(out):
+    (line,) = [line for line in out.splitlines() if line.startswith("points: ")]
+    words = line.replace(",", "").split()
+    return int(words[1]), int(words[4])
+
+
+def alive(pid):
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    with open(f"/proc/{pid}/stat") as file:  # a zombie waits for nobody but its reaper
+        return file.read().rsplit(")", 1)[1].split()[0] != "Z"
+
+
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_kill_9_loses_at_most_what_ran(folder, workers):
+    first = subprocess.Popen(command("--workers", workers), cwd=folder, stderr=subprocess.DEVNULL)
+    wait_for(lambda: len(begun(folder)) >= 30)
+    first.kill()
+    first.wait()
+    killed_after = begun(folder)
+    assert 30 <= len(killed_after) < LINES
+    assert not (folder / "job.nc").exists()
+    wait_for(lambda: not any(alive(int(pid)) for pid, *_ in killed_after))  # no orphan waits for ever
+    killed_after = begun(folder)
+    (folder / "log").unlink()
+
+    again = subprocess.run(command("--workers", workers), cwd=folder, capture_output=True, text=True, check=True)
+    taken_over, solved = counts(again.stdout)
+    assert taken_over + solved == POINTS
+    # Every line that the second run did not begin was taken over: none was solved again.
+    assert len(begun(folder)) * 5 == solved
+    # At 0.03 s a line, a second holds 33 lines a worker; the store is committed four times as often.
+    assert taken_over >= 5 * (len(killed_after) - 15 * int(workers))
+
+    (folder / "other").mkdir()
+    whole = subprocess.run(
+        command("--workers", "2", "-o", "other/job.nc"), cwd=folder, capture_output=True, text=True, check=True
+    )
+    assert counts(whole.stdout) == (0, POINTS)
+    resumed, undisturbed = open_map(folder / "job.nc").dataset, open_map(folder / "other/job.nc").dataset
+    xr.testing.assert_identical(
+        resumed.drop_vars("solve_seconds").drop_attrs(), undisturbed.drop_vars("solve_seconds").drop_attrs()
+    )
+    assert np.isfinite(resumed["stiffness"].values).all()
+
+
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_ctrl_c_stops_cleanly_and_says_how_to_go_on(folder, workers):
+    run = subprocess.Popen(
+        command("--workers", workers), cwd=folder, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    wait_for(lambda: len(begun(folder)) >= 20)
+    os.killpg(run.pid, signal.SIGINT)  # as a terminal does: to the workers too
+    _, err = run.communicate(timeout=60)
+    assert run.returncode == 130
+    assert "stopped; what is solved is kept in job.nc.store: the same command goes on from there" in err
+    assert "Traceback" not in err
+    lines = len(begun(folder))
+    wait_for(lambda: not any(alive(int(pid)) for pid, *_ in begun(folder)))
+    again = subprocess.run(command("--workers", workers), cwd=folder, capture_output=True, text=True, check=True)
+    taken_over, solved = counts(again.stdout)
+    assert taken_over + solved == POINTS
+    assert taken_over >= 5 * (lines - 3 * int(workers) - 1)  # all but the lines that were out
+
+
+def test_a_second_job_on_the_same_store_is_refused(folder):
+    first = subprocess.Popen(
+        command("--workers", "1"), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    )
+    wait_for(lambda: len(begun(folder)) >= 5)
+    for further in ([], ["--fresh"]):
+        second = subprocess.run(
+            command("--workers", "1", *further), cwd=folder, capture_output=True, text=True, check=False
+        )
+        assert second.returncode == 2
+        assert "job.nc.store: is in use by another job" in second.stderr
+    out, _ = first.communicate(timeout=60)
+    assert (first.returncode, counts(out)) == (0, (0, POINTS))
+
+
+def test_a_killed_worker_is_not_the_end(folder):
+    run = subprocess.Popen(
+        command("--workers", "2"), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    )
+    wait_for(lambda: len(begun(folder)) >= 10)
+    os.kill(int(begun(folder)[0][0]), signal.SIGKILL)
+    out, _ = run.communicate(timeout=60)
+    assert (run.returncode, counts(out)) == (0, (0, POINTS))

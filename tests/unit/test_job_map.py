@@ -1,0 +1,403 @@
+"""Assembling, writing, opening, describing, comparing and drawing a map."""
+
+import json
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from ehdmaps.errors import InputError, MapError
+from ehdmaps.jobs import solvers
+from ehdmaps.jobs.assemble import assemble
+from ehdmaps.jobs.compare import compare
+from ehdmaps.jobs.describe import describe
+from ehdmaps.jobs.plot import plot_map
+from ehdmaps.jobs.reader import parse_job
+from ehdmaps.jobs.report import holes
+from ehdmaps.jobs.tasks import LONGEST_LINE, line_tasks, solver_version
+from ehdmaps.jobs.tradeoff import Contestant, contestants, measure, table
+from ehdmaps.jobs.write import write_map
+from ehdmaps.maps import schema
+from ehdmaps.maps.emap import open_map
+from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solution import FilmSolution, Status, contact_solution
+
+TEXT = """
+schema = 1
+[bearing]
+name = "NU308"
+[lubricant]
+name = "FVA3"
+[grid]
+load = { from = "1 N/mm", to = "1000 N/mm", points = 7, spacing = "log" }
+entrainment_speed = ["0.5 m/s", "1 m/s", "2 m/s"]
+temperature = ["20 degC", "40 degC"]
+[solver]
+name = "formula"
+structural_law = "iso16281"
+"""
+
+LINE = """
+schema = 1
+[contact]
+radius = "5 mm"
+reference_depth = "5 mm"
+[lubricant]
+viscosity_law = "barus"
+viscosity = "80 mPa s"
+pressure_viscosity = "20 1/GPa"
+density = "880 kg/m^3"
+[grid]
+load = ["1 N/mm", "10 N/mm", "100 N/mm"]
+entrainment_speed = ["0 m/s", "1 m/s"]
+temperature = ["40 degC"]
+[solver]
+name = "formula"
+structural_law = "half_space"
+"""
+
+
+@dataclass(frozen=True)
+class Holey:
+    """The formula solver with points that do not converge."""
+
+    lost: tuple[float, ...] = ()
+    slow: bool = False
+    version: str | None = None
+    name: str = "holey"
+
+    def solve_line(self, contact, lubricant, loads, entrainment_speed, temperature, frequency=0.0):
+        films = FormulaSolver().solve_line(contact, lubricant, loads, entrainment_speed, temperature, frequency)
+        return tuple(
+            FilmSolution(Status.STAGNATED, f"step {load:g} too small", film_offset=1.0)
+            if self._hit(load, entrainment_speed)
+            else film
+            for load, film in zip(loads, films, strict=True)
+        )
+
+    def _hit(self, load, speed):
+        return speed == 1.0 and any(abs(load / lost - 1) < 1e-9 for lost in self.lost)
+
+    def settings(self):
+        return {}
+
+
+def job_of(text=TEXT, **changes):
+    return replace(parse_job(text, "test", "test.toml"), **changes)
+
+
+def made(job, solver=None):
+    chosen = solver or solvers.build(job.solver, job.solver_options)
+    tasks = line_tasks(job, chosen)
+    return assemble(job, chosen, tasks, {task.key: task.run() for task in tasks})
+
+
+def test_every_point_is_in_its_place():
+    job = job_of()
+    dataset = made(job)
+    schema.validate(dataset)
+    assert dataset["stiffness"].dims == schema.DIMS
+    for i, j, k, n in [(0, 0, 0, 0), (1, 6, 2, 1), (0, 3, 1, 0)]:
+        (film,) = FormulaSolver().solve_line(
+            job.contacts[i], job.lubricant, (job.loads[j],), job.entrainment_speeds[k], job.temperatures[n]
+        )
+        point = OperatingPoint(job.loads[j], job.entrainment_speeds[k], job.temperatures[n])
+        expected = contact_solution(film, job.contacts[i], point)
+        for name in ("approach", "film_offset", "stiffness", "damping", "minimum_film"):
+            assert dataset[name].values[i, j, k, n] == getattr(expected, name)
+
+
+def test_long_axes_are_cut_into_tasks_that_meet():
+    text = TEXT.replace("points = 7", f"points = {2 * LONGEST_LINE + 5}")
+    job = job_of(text)
+    tasks = line_tasks(job, FormulaSolver())
+    assert max(task.points for task in tasks) == LONGEST_LINE
+    assert sum(task.points for task in tasks) == job.points
+    assert np.isfinite(made(job)["stiffness"].values).all()
+
+
+def test_slow_solvers_get_one_point_a_task():
+    tasks = line_tasks(job_of(), Holey(slow=True))
+    assert {task.points for task in tasks} == {1}
+    assert all(task.slow for task in tasks)
+    assert len(tasks) == job_of().points
+
+
+def test_the_key_holds_what_changes_the_numbers_and_nothing_else():
+    job = job_of()
+    task = line_tasks(job, FormulaSolver())[0]
+    same = replace(task, place=(1, 2, 3, 4), contact=replace(task.contact, structural_law="palmgren", name="x"))
+    assert same.key == task.key
+    others = [
+        replace(task, loads=task.loads[:-1]),
+        replace(task, entrainment_speed=7.0),
+        replace(task, temperature=300.0),
+        replace(task, contact=job.contacts[1]),
+        replace(task, lubricant=replace(job.lubricant, density_15=900.0)),
+        replace(task, solver=HertzSolver()),
+        replace(task, solver=FormulaSolver("pan-hamrock")),
+        replace(task, solver=Holey()),
+        replace(task, solver=Holey(version="2")),
+    ]
+    assert len({task.key, *(other.key for other in others)}) == 10
+
+
+def test_a_solver_s_own_version_counts_instead_of_the_sources():
+    assert solver_version(Holey(version="7")) == "7"
+    assert len(solver_version(FormulaSolver())) == 64
+
+
+def test_an_isolated_hole_is_filled_and_says_so():
+    job = job_of()
+    dataset, truth = made(job, Holey((job.loads[3],))), made(job)
+    here = {"load": 3, "entrainment_speed": 1}
+    assert (dataset["status"].isel(here) == int(Status.STAGNATED)).all()
+    assert (dataset["filled"].isel(here) == 1).all()
+    assert str(dataset["reason"].isel(here).values[0, 0]).startswith("step 31622.8 too small")
+    assert np.isnan(dataset["film_offset_error"].isel(here)).all()
+    assert int(dataset["filled"].sum()) == holes(dataset) == 4
+    # A step of 3.2 in load over the bend of the film: the interpolation is good to some 10 %, not more.
+    ratio = dataset["film_offset"].isel(here) / truth["film_offset"].isel(here)
+    assert np.allclose(ratio, 1.0, atol=0.15)
+    contact = job.contacts[0]
+    approach = contact.structural_approach(job.loads[3]) - dataset["film_offset"].values[0, 3, 1, 0]
+    assert dataset["approach"].values[0, 3, 1, 0] == pytest.approx(approach, rel=1e-14)
+    rest = dataset["status"] == int(Status.CONVERGED)
+    assert np.array_equal(dataset["stiffness"].where(rest), truth["stiffness"].where(rest), equal_nan=True)
+
+
+@pytest.mark.parametrize(("fill", "lost"), [("none", slice(3, 4)), ("neighbours", slice(3, 5))])
+def test_other_holes_hold_no_numbers(fill, lost):
+    text = TEXT.replace('"0.5 m/s", "1 m/s", "2 m/s"', '"0.5 m/s", "1 m/s"')  # the lost speed is at the edge
+    job = job_of(text, fill=fill)
+    dataset = made(job, Holey(job.loads[lost]))
+    hole = dataset["status"] == int(Status.STAGNATED)
+    assert int(hole.sum()) == 4 * len(job.loads[lost])
+    assert int(dataset["filled"].sum()) == 0
+    for name in ("approach", "film_offset", "stiffness", "damping", "central_film", "max_pressure", "stiffness_error"):
+        assert np.isnan(dataset[name].values[hole.values]).all()
+        assert np.isfinite(dataset[name].values[~hole.values]).all()
+
+
+def test_structural_scaling_is_recorded_for_other_materials():
+    text = TEXT.replace("[grid]", '[material]\nyoungs_modulus = "105 GPa"\n[grid]')
+    assert made(job_of(text)).attrs["structural_scaling"] == pytest.approx(2.0**0.9, rel=1e-12)  # round-off
+    assert made(job_of()).attrs["structural_scaling"] == 1.0
+    assert made(job_of(LINE)).attrs["structural_scaling"] == 1.0
+
+
+def test_a_map_file_comes_back_whole(tmp_path):
+    dataset = made(job_of(), Holey((1000.0, 1e6)))
+    path = tmp_path / "a.nc"
+    write_map(dataset, path)
+    again = open_map(path).dataset
+    xr.testing.assert_identical(again.drop_attrs(), dataset.drop_attrs())
+    assert again.attrs == dataset.attrs
+    assert again["status"].attrs["flag_meanings"] == "converged asymptote stagnated diverged outside_validity failed"
+    assert again["status"].attrs["flag_values"].tolist() == [0, 1, 2, 3, 4, 5]
+    for name in schema.DIMS + tuple(entry.name for entry in schema.VARIABLES if entry.required):
+        assert again[name].attrs["units"] and again[name].attrs["long_name"]
+    assert [p.name for p in tmp_path.iterdir()] == ["a.nc"]
+    assert open_map(path).backbone is None
+
+
+def test_a_group_is_written_with_the_map(tmp_path):
+    backbone = xr.Dataset({"loss": ("node", [1.0, 2.0])})
+    write_map(made(job_of()), tmp_path / "a.nc", {schema.BACKBONE_GROUP: backbone})
+    xr.testing.assert_identical(open_map(tmp_path / "a.nc").backbone, backbone)
+    text = describe(open_map(tmp_path / "a.nc").dataset, open_map(tmp_path / "a.nc").backbone, "a.nc")
+    assert "refinement lines of the contact law (group backbone)" in text
+
+
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), RuntimeError("NetCDF: HDF error")])
+def test_a_full_disk_leaves_the_good_map_alone(tmp_path, monkeypatch, error):
+    path = tmp_path / "a.nc"
+    dataset = made(job_of())
+    write_map(dataset, path)
+    before = path.read_bytes()
+
+    def half_written(self, target, **_):
+        target.write_bytes(b"half")
+        raise error
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", half_written)
+    with pytest.raises(MapError, match=r"a\.nc: cannot be written .*what was solved is kept"):
+        write_map(dataset, path)
+    assert path.read_bytes() == before
+    assert [p.name for p in tmp_path.iterdir()] == ["a.nc"]
+
+
+def test_a_file_that_is_no_map(tmp_path):
+    (tmp_path / "a.nc").write_text("hello")
+    with pytest.raises(MapError, match="cannot be read"):
+        open_map(tmp_path / "a.nc")
+    xr.Dataset({"x": ("y", [1.0])}).to_netcdf(tmp_path / "b.nc")
+    with pytest.raises(MapError, match="has no attribute schema_version"):
+        open_map(tmp_path / "b.nc")
+
+
+def test_validate_lists_every_problem():
+    dataset = made(job_of())
+    broken = dataset.drop_vars("damping").assign_coords(load=dataset["load"].values[::-1])
+    broken["stiffness"].attrs["units"] = "N/mm"
+    broken["status"] = broken["status"] + 9
+    broken["approach"] = broken["approach"].isel(load=0)
+    del broken.attrs["lubricant"]
+    with pytest.raises(MapError) as raised:
+        schema.validate(broken, "a.nc")
+    text = str(raised.value)
+    for part in (
+        "a.nc: attribute lubricant is missing",
+        "coordinate load has units None",
+        "coordinate load does not rise",
+        "variable damping is missing",
+        "variable stiffness has units 'N/mm'; expected 'N m-2'",
+        "variable approach has dims",
+        "status holds [9]",
+    ):
+        assert part in text
+    dataset.attrs["schema_version"] = 99
+    with pytest.raises(MapError, match="schema_version is 99; this ehdmaps reads 1"):
+        schema.validate(dataset)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda d: d.drop_vars("load"), "coordinate load is missing"),
+        (lambda d: d.assign_coords(contact=["a", "b"]), "contact holds a, b; expected inner, outer or line"),
+        (lambda d: d.isel(load=slice(0)), "coordinate load is empty"),
+    ],
+)
+def test_validate_refuses_broken_axes(change, message):
+    with pytest.raises(MapError, match=message):
+        schema.validate(change(made(job_of())))
+
+
+def test_describe_says_what_is_in_the_map():
+    job = job_of()
+    text = describe(made(job, Holey((job.loads[3], job.loads[0]))), None, "a.nc")
+    for part in (
+        "axes (84 points)",
+        "load                     7  1 to 1000 N/mm",
+        "temperature              2  20 to 40 degC",
+        "stagnated               8    9.52 %",
+        "8 x step 1000 too small (numbers differ)",
+        "inner and outer, 1 to 31.62 N/mm, 1 m/s, 20 to 40 degC",
+        "8 are isolated and filled from their neighbours",
+        "estimated relative error       median       95 %    largest",
+        "solver          holey",
+        "inner: reduced radius 5.5152 mm",
+        "vogel_factor 6.2e-05",
+    ):
+        assert part in text
+
+
+def test_describe_warns_of_an_oil_without_a_source():
+    assert "NOT VERIFIED" in describe(made(job_of(TEXT.replace("FVA3", "Spirax MA 80W"))), None, "a.nc")
+
+
+def test_compare_finds_the_difference_and_its_place():
+    first = made(job_of())
+    second = first.copy(deep=True)
+    second["damping"].values[1, 6, 2, 1] *= 1.25
+    second.attrs["solver"] = "other"
+    text = compare(first, second, ("a.nc", "b.nc"))
+    assert "differ in solver" in text
+    assert "84 points in common, 84 of them solved in both" in text
+    (line,) = [line for line in text.splitlines() if line.startswith("  damping")]
+    assert line.split()[1:4] == ["0", "0", "0.25"]
+    assert line.endswith("outer, 1000 N/mm, 2 m/s, 40 degC")
+    (line,) = [line for line in text.splitlines() if line.startswith("  stiffness")]
+    assert line.split()[1:4] == ["0", "0", "0"]
+
+
+def test_compare_takes_common_points_only():
+    first = made(job_of())
+    second = made(job_of(TEXT.replace('"1 m/s", "2 m/s"', '"1 m/s", "3 m/s"')))
+    assert "56 points in common, 56 of them solved in both (A has 84, B 84)" in compare(first, second, ("a", "b"))
+    holey = made(job_of(), Holey((job_of().loads[3],)))
+    assert "56 points in common, 52 of them solved in both" in compare(holey, second, ("a", "b"))
+
+
+def test_compare_leaves_zeros_out_and_says_so():
+    text = compare(made(job_of(), HertzSolver()), made(job_of()), ("a", "b"))
+    assert "damping                   no point to compare  (84 points where A is zero left out)" in text
+
+
+def test_compare_refuses_maps_without_common_points():
+    first = made(job_of())
+    with pytest.raises(MapError, match="contacts are inner, outer and line; allowed: maps that share a contact"):
+        compare(first, made(job_of(LINE)), ("a", "b"))
+    other = made(job_of(TEXT.replace('"20 degC", "40 degC"', '"30 degC"')))
+    with pytest.raises(MapError, match=r"no temperature in common \(2 values, 20 to 40 degC, against 1, 30 degC\)"):
+        compare(first, other, ("a", "b"))
+
+
+@pytest.mark.parametrize("text", [TEXT, LINE, TEXT.replace("points = 7", "points = 2")])
+@pytest.mark.parametrize("solver", [None, HertzSolver(), Holey((1e3, 1e4, 31622.776601683792), version="1")])
+def test_every_kind_of_map_can_be_drawn(tmp_path, text, solver):
+    plot_map(made(job_of(text), solver), tmp_path / "a.png")
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_page_names_what_it_shows(tmp_path, monkeypatch):
+    import matplotlib as mpl
+
+    monkeypatch.setitem(mpl.rcParams, "svg.fonttype", "none")
+    plot_map(made(job_of(), Holey((1e6,))), tmp_path / "a.svg")
+    text = (tmp_path / "a.svg").read_text()
+    for part in (
+        "EHD contact map: NU308, oil FVA3",
+        "structural law iso16281",
+        "stiffness k, N/(µm mm)",
+        "damping c, N s/(m mm)",
+        "central film, µm",
+        "entrainment speed, m/s",
+        "load, N/mm",
+        "20 °C",
+        "no solution, filled from neighbours",
+        "80 converged, 4 stagnated; 4 filled",
+        "zero or negative",
+    ):
+        assert part in text
+
+
+def test_tradeoff_measures_against_the_reference():
+    job = job_of()
+    entries = [
+        Contestant("same", FormulaSolver()),
+        Contestant("dry", HertzSolver()),
+        Contestant("holes", Holey(job.loads)),
+    ]
+    measured, truth = measure(job, 12, entries, Contestant("fine", FormulaSolver()))
+    same, dry, holey = measured
+    assert truth.solved == same.solved == dry.solved == 84
+    assert holey.solved == 56
+    assert same.errors["film_offset"].max() == 0.0
+    assert (dry.errors["film_compliance"] == 1.0).all()
+    text = table(measured, truth, 84)
+    assert "84 points; errors relative to fine" in text
+    assert "1.0e+00 / 1.0e+00" in text
+
+
+def test_tradeoff_knows_its_contestants():
+    entries, reference = contestants(job_of(TEXT.replace('"formula"', '"reynolds"\ndensity = 4.0')))
+    assert [entry.label for entry in entries][:2] == ["hertz", "formula, moes"]
+    assert "reynolds, density 4" in [entry.label for entry in entries]
+    assert reference.label == "reynolds, density 16"
+
+
+def test_a_solver_that_is_not_there():
+    with pytest.raises(InputError, match="solver: got 'openfoam' is not in this version"):
+        solvers.build("openfoam", {})
+    with pytest.raises(InputError, match="'openfoam' is not in this version"):
+        solvers.SOLVERS["openfoam"].build()
+
+
+def test_provenance_is_enough_to_know_the_contacts():
+    contacts = json.loads(made(job_of()).attrs["contacts"])
+    assert [contact["name"] for contact in contacts] == ["inner", "outer"]
+    assert contacts[0]["material"] == {"density": 7850.0, "poisson_ratio": 0.3, "youngs_modulus": 210e9}

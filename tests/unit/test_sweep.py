@@ -1,0 +1,131 @@
+import os
+import signal
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehdmaps.errors import SolverError
+from ehdmaps.jobs.store import Store
+from ehdmaps.jobs.sweep import sweep
+
+
+@dataclass(frozen=True)
+class Stub:
+    """A task that squares, gives up, breaks, or takes its process down."""
+
+    number: int
+    kind: str = "square"
+    marker: str = ""
+    slow: bool = False
+    points: int = 3
+
+    @property
+    def key(self):
+        return f"{self.kind} {self.number}"
+
+    def run(self):
+        if self.kind == "gives up":
+            raise SolverError("no film")
+        if self.kind == "bug":
+            raise ZeroDivisionError("a bug")
+        if self.kind == "dies" or (self.kind == "dies once" and not Path(self.marker).exists()):
+            if self.marker:
+                Path(self.marker).write_text("")
+            os.kill(os.getpid(), signal.SIGKILL)
+        if self.kind == "interrupted":
+            raise KeyboardInterrupt
+        return {"value": np.array([float(self.number) ** 2]), "reason": np.array([""])}
+
+    def failed(self, reason):
+        return {"value": np.array([np.nan]), "reason": np.array([reason])}
+
+
+@dataclass
+class Heard:
+    """A progress that remembers."""
+
+    before: int = -1
+    after: int = 0
+
+    def taken_over(self, points):
+        self.before = points
+
+    def solved(self, points):
+        self.after += points
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_every_task_is_run_kept_and_told(tmp_path, workers):
+    tasks = [Stub(number) for number in range(20)]
+    heard = Heard()
+    with Store(tmp_path / "s") as store:
+        result = sweep(tasks, store, workers, heard)
+        assert all(store.get(task.key)["value"] == task.number**2 for task in tasks)
+    assert [float(result.arrays[task.key]["value"][0]) for task in tasks] == [n**2 for n in range(20)]
+    assert (result.taken_over, result.solved, heard.before, heard.after) == (0, 60, 0, 60)
+
+
+def test_what_the_store_has_is_not_run_again(tmp_path):
+    with Store(tmp_path / "s") as store:
+        store.put("bug 7", {"value": np.array([49.0])})
+        result = sweep([Stub(7, "bug"), Stub(8)], store, 1)  # the bug would be raised if it ran
+    assert (result.taken_over, result.solved) == (3, 3)
+    assert result.arrays["bug 7"]["value"] == 49.0
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_solver_that_gives_up_is_a_result(tmp_path, workers):
+    with Store(tmp_path / "s") as store:
+        result = sweep([Stub(1), Stub(2, "gives up"), Stub(3)], store, workers)
+        assert store.get("gives up 2")["reason"] == ["no film"]
+    assert result.arrays["square 3"]["value"] == 9.0
+    assert result.solved == 9
+
+
+def test_a_dead_worker_costs_its_task_only(tmp_path):
+    tasks = [Stub(number) for number in range(10)]
+    tasks[4:4] = [Stub(4, "dies")]
+    with Store(tmp_path / "s") as store:
+        result = sweep(tasks, store, 2)
+        assert store.get("dies 4") is None  # the next run tries again
+    assert "worker process died" in str(result.arrays["dies 4"]["reason"][0])
+    assert [float(result.arrays[f"square {n}"]["value"][0]) for n in range(10)] == [n**2 for n in range(10)]
+    assert result.solved == 33
+
+
+def test_a_lone_task_cannot_take_the_sweep_down_either(tmp_path):
+    with Store(tmp_path / "s") as store:
+        result = sweep([Stub(4, "dies")], store, 2)
+    assert "worker process died" in str(result.arrays["dies 4"]["reason"][0])
+
+
+def test_a_worker_that_was_killed_by_chance_costs_nothing(tmp_path):
+    once = Stub(5, "dies once", marker=str(tmp_path / "marker"))
+    with Store(tmp_path / "s") as store:
+        result = sweep([Stub(1), once, Stub(2)], store, 2)
+        assert store.get(once.key)["value"] == 25.0
+    assert result.arrays[once.key]["value"] == 25.0
+
+
+@pytest.mark.parametrize(("kind", "error"), [("bug", ZeroDivisionError), ("interrupted", KeyboardInterrupt)])
+def test_what_is_solved_before_a_bug_or_ctrl_c_is_kept(tmp_path, kind, error):
+    with pytest.raises(error), Store(tmp_path / "s") as store:
+        sweep([Stub(1), Stub(2), Stub(3, kind)], store, 1)
+    with Store(tmp_path / "s") as store:
+        assert store.get("square 2")["value"] == 4.0
+
+
+def test_a_bug_in_a_worker_is_not_taken_for_a_failed_point(tmp_path):
+    with Store(tmp_path / "s") as store, pytest.raises(ZeroDivisionError, match="a bug"):
+        sweep([Stub(1), Stub(3, "bug")], store, 2)
+
+
+def test_the_environment_is_left_as_it_was(tmp_path, monkeypatch):
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
+    with Store(tmp_path / "s") as store:
+        sweep([Stub(1), Stub(2)], store, 2)
+    assert os.environ["OMP_NUM_THREADS"] == "7"
+    assert "MKL_NUM_THREADS" not in os.environ

@@ -1,0 +1,118 @@
+import math
+
+import pytest
+
+from ehdmaps.errors import InputError
+from ehdmaps.units import FILM, LOAD, TEMPERATURE, closest, quantity, short
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("62 N/mm", "N/m", 62000.0),
+        ("0.7 mm", "m", 0.0007),
+        ("3.5mm", "m", 0.0035),
+        ("40 degC", "K", 313.15),
+        ("40 °C", "K", 313.15),
+        ("-5 degC", "K", 268.15),
+        ("104 degF", "K", 313.15),
+        ("313.15 K", "K", 313.15),
+        ("22.4 1/GPa", "1/Pa", 2.24e-8),
+        ("84.5 mPa s", "Pa s", 0.0845),
+        ("84.5 mPa*s", "Pa s", 0.0845),
+        ("95 mm^2/s", "m^2/s", 9.5e-5),
+        ("95 mm²/s", "m^2/s", 9.5e-5),
+        ("880 kg/m**3", "kg/m^3", 880.0),
+        ("14 N/(um mm)", "N/m^2", 1.4e10),
+        ("1 kHz", "Hz", 1000.0),
+        ("  +1.5e-1 \t m/s ", "m/s", 0.15),
+    ],
+)
+def test_quantity_reads_what_people_write(text, unit, value):
+    # Decimal conversions are exact to the last digit written: a slip of 1e-15 would show in every file.
+    assert quantity(text, unit) == value
+
+
+def test_rotation_is_read_in_radians():
+    # 1e-13 bounds the rounding of the factor to 15 digits.
+    assert quantity("500 rpm", "rad/s") == pytest.approx(500 * 2 * math.pi / 60, rel=1e-13)
+
+
+@pytest.mark.parametrize("bare", [62, 62.5, True, None, [1], {"a": 1}, "62"])
+def test_a_bare_value_is_refused(bare):
+    with pytest.raises(InputError, match=r'got .* without a unit; allowed: .* such as "62 N/mm"'):
+        quantity(bare, "N/m")
+
+
+@pytest.mark.parametrize("text", ["nan m", "inf m", "m", "", "-", "١ m", "e5 m", "0x"[:0] + "x10 m"])
+def test_what_does_not_start_with_a_number_is_refused(text):
+    with pytest.raises(InputError, match="does not start with a number"):
+        quantity(text, "m")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "9**9**9 m",
+        "1_0 m",
+        "5 m^9^9^9",
+        "5 m^99999999",
+        "5 __import__('os')",
+        "1 -m",
+        "5 m/",
+        "5 m)",
+        "1 m²³",
+        "1 m;m",
+        "5 m\x00",
+    ],
+)
+def test_what_is_not_a_unit_never_reaches_the_unit_library(text, monkeypatch):
+    monkeypatch.setattr("ehdmaps.units._conversion", lambda *_: pytest.fail("reached the unit library"))
+    with pytest.raises(InputError, match="does not read as a unit"):
+        quantity(text, "m")
+
+
+@pytest.mark.parametrize("text", ["5 nan", "5 inf", "5 N", "5 (m", "3 e", "5 dBm", "1 kilokilom", "1 m/m", "5 %"])
+def test_a_wrong_unit_is_refused(text):
+    with pytest.raises(InputError, match=r'got the unit .*; allowed: a number with a unit of m, such as "0.7 mm"'):
+        quantity(text, "m")
+
+
+def test_long_text_is_refused_unread():
+    with pytest.raises(InputError, match="1000002 characters long"):
+        quantity("9" * 10**6 + " m", "m")
+
+
+@pytest.mark.parametrize("text", ["1e400 m", "1e999 m", "1e308 km"])
+def test_overflow_is_refused(text):
+    with pytest.raises(InputError, match="too large for a number"):
+        quantity(text, "m")
+
+
+def test_the_coulomb_is_explained():
+    with pytest.raises(InputError, match="C is the coulomb, write degC"):
+        quantity("40 C", "K")
+
+
+@pytest.mark.parametrize(("text", "unit"), [("500 rpm", "Hz"), ("8 Hz", "rad/s")])
+def test_cycles_and_angles_are_not_mixed(text, unit):
+    with pytest.raises(InputError, match="are not converted into each other"):
+        quantity(text, unit)
+
+
+def test_display_is_for_people():
+    assert LOAD.text(62000.0) == "62 N/mm"
+    assert TEMPERATURE.text(313.15) == "40 degC"
+    assert FILM.text(1.25e-6) == "1.25 um"
+
+
+def test_short_keeps_messages_short():
+    assert short("x" * 1000) == repr("x" * 50 + "...")
+    assert short(10**5000) == "a number of 16610 bits"
+    assert short([1, 2]) == "a list of 2 entries"
+    assert short({"a": 1}) == "a table of 1 entries"
+
+
+def test_closest_suggests_only_what_is_close():
+    assert closest("structural_lav", ("structural_law", "name")) == " (did you mean 'structural_law'?)"
+    assert closest("zzz", ("structural_law", "name")) == ""
