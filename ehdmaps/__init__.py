@@ -104,9 +104,7 @@ def solve(
         if solver not in SOLVER_NAMES:
             raise InputError(f"solver: got {solver!r}; allowed: {', '.join(SOLVER_NAMES)}")
         solver = build(solver, {})
-    (film,) = solver.solve_line(
-        contact, lubricant, (point.load,), point.entrainment_speed, point.temperature
-    )
+    (film,) = solver.solve_line(contact, lubricant, (point.load,), point.entrainment_speed, point.temperature)
     return contact_solution(film, contact, point)
 
 

@@ -39,14 +39,17 @@ def log_kernel(x: Array, step: Array) -> Array:
     """
     n = x.size
     kernel = np.empty((n, n))
+    weight = step / math.pi
     correction = ZETA_PRIME_MINUS_TWO
     for i in range(n):
-        row = kernel[i]
-        for j in range(n):
-            row[j] = math.log(abs(x[i] - x[j]) + (1.0 if i == j else 0.0)) * step[j] / math.pi
-        row[i] = (math.log(step[i] / (2.0 * math.pi)) - 2.0 * correction) * step[i] / math.pi
+        for j in range(i):
+            value = math.log(x[i] - x[j])
+            kernel[i, j] = value * weight[j]
+            kernel[j, i] = value * weight[i]
+    for i in range(n):
+        kernel[i, i] = (math.log(step[i] / (2.0 * math.pi)) - 2.0 * correction) * weight[i]
         if i > 0:
-            row[i - 1] += correction * step[i - 1] / math.pi
+            kernel[i, i - 1] += correction * weight[i - 1]
         if i < n - 1:
-            row[i + 1] += correction * step[i + 1] / math.pi
+            kernel[i, i + 1] += correction * weight[i + 1]
     return kernel

@@ -185,6 +185,6 @@ def _nodes(count: int, length: float, edge: float, blur: float, core: float, ter
             elif abs(move) * slope < 1e-7 * spacing:  # Newton: what is left is its square
                 break
         x[i] = trial
-        step[i] = spacing / _index(trial, edge, blur, core, terms)[1]
+        step[i] = spacing / slope
         growth = step[i] / step[i + 1]
     return x, step

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid, GridShape, Layout, Spike, lay_out, thick_film_exit, zone_width
-from ehdmaps.ehl.linearisation import Neighbours, Response, film_response
+from ehdmaps.ehl.linearisation import Neighbour, Response, film_response
 from ehdmaps.ehl.newton import CONVERGED, hertz_start, newton
 from ehdmaps.ehl.profile import Profile, films_of, front, front_node, moved, refined
 from ehdmaps.ehl.reynolds import LineProblem
@@ -26,6 +26,9 @@ LOAD = 0.5 * math.pi
 
 MOST_STEPS = 60
 """Newton steps on one grid after which a point counts as stagnated."""
+
+SPIKE_SHIFT = 1e-4
+"""Shift of the spike, in its widths, over which the effect of the grid's motion is differenced."""
 
 MOST_MOVES = 6
 """Coarse grids laid in search of the spike."""
@@ -271,21 +274,14 @@ def _with_spike(
 
 def _response(profile: Profile, resolution: Resolution, frequency: float) -> Response:
     """Linear response of one profile, its grid following the spike where there is one."""
-    neighbours = None
+    neighbour = None
     spike = profile.spike
     if spike is not None:
-        shift = 0.02 * spike.width
-        behind, ahead = (
-            lay_out(
-                profile.layout.film,
-                resolution.inlet_length,
-                resolution.shape,
-                Spike(spike.position + d, spike.width),
-            ).grid(profile.cells)
-            for d in (-shift, shift)
-        )
-        neighbours = Neighbours(behind, ahead, shift, front_node(profile))
-    return film_response(profile.problem, profile.grid, profile.kernel, profile.unknowns, LOAD, neighbours, frequency)
+        shift = SPIKE_SHIFT * spike.width
+        moved_spike = Spike(spike.position + shift, spike.width)
+        layout = lay_out(profile.layout.film, resolution.inlet_length, resolution.shape, moved_spike)
+        neighbour = Neighbour(layout.grid(profile.cells), shift, front_node(profile))
+    return film_response(profile.problem, profile.grid, profile.kernel, profile.unknowns, LOAD, neighbour, frequency)
 
 
 def _assembled(

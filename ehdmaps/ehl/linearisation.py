@@ -28,11 +28,10 @@ DRY_COMPLIANCE = math.log(2.0) / math.pi
 """a of the dry Hertz contact: what the log kernel with reference length b gives."""
 
 
-class Neighbours(NamedTuple):
-    """Two grids that differ from the solution's grid in the place of the spike only, by -/+ `shift` [b]."""
+class Neighbour(NamedTuple):
+    """A grid that differs from the solution's grid in the place of the spike only, by `shift` [b]."""
 
-    behind: Grid
-    ahead: Grid
+    grid: Grid
     shift: float
     node: int  # the node whose isobar the grid follows
 
@@ -50,7 +49,7 @@ def film_response(
     kernel: Array,
     unknowns: Array,
     load: float,
-    neighbours: Neighbours | None = None,
+    neighbour: Neighbour | None = None,
     frequency: float = 0.0,
 ) -> Response:
     """Film and loss compliance at a converged solution.
@@ -59,24 +58,24 @@ def film_response(
     ----------
     unknowns : ndarray, shape (n + 2,)
         Converged unknowns on `grid`.
-    neighbours : Neighbours, optional
+    neighbour : Neighbour, optional
         Needed where the grid has a spike term: the grid then follows the spike.
     frequency : float
         Omega = omega b/u; 0 is the low-frequency limit.
     """
     size = unknowns.size
     n = size - 2
-    total = size + (neighbours is not None)
+    total = size + (neighbour is not None)
     matrix = np.zeros((total, total))
     out = np.empty(size)
     jacobian = np.empty((size, size))
     residual(problem, grid.x, grid.step, grid.face_step, kernel, unknowns, load, out, jacobian)
     matrix[:size, :size] = jacobian
     grid_mass: Array | None = None
-    if neighbours is not None:
-        by_grid, grid_mass = _by_grid(problem, grid, kernel, unknowns, load, neighbours)
+    if neighbour is not None:
+        by_grid, grid_mass = _by_grid(problem, grid, kernel, unknowns, load, out, neighbour)
         matrix[:size, size] = by_grid
-        matrix[size, neighbours.node - 1] = 1.0
+        matrix[size, neighbour.node - 1] = 1.0
     unit = np.zeros(total)
     unit[n + 1] = 1.0
     _, carried = stored_mass(problem, grid.x, grid.step, kernel, unknowns)
@@ -101,29 +100,16 @@ def film_response(
 
 
 def _by_grid(
-    problem: LineProblem, grid: Grid, kernel: Array, unknowns: Array, load: float, neighbours: Neighbours
+    problem: LineProblem, grid: Grid, kernel: Array, unknowns: Array, load: float, here: Array, neighbour: Neighbour
 ) -> tuple[Array, Array]:
     """Derivatives of the residual and of the stored mass (as moving faces see it) with respect to the spike's place."""
-    size = unknowns.size
-    sides = []
-    for side in (neighbours.behind, neighbours.ahead):
-        side_kernel = log_kernel(side.x, side.step)
-        out = np.empty(size)
-        residual(
-            problem,
-            side.x,
-            side.step,
-            side.face_step,
-            side_kernel,
-            unknowns,
-            load,
-            out,
-            np.empty((size, size)),
-        )
-        mass, _ = stored_mass(problem, side.x, side.step, side_kernel, unknowns)
-        sides.append((out, mass, np.append(side.face, side.x[-1])))
-    (out_0, mass_0, face_0), (out_1, mass_1, face_1) = sides
-    _, carried = stored_mass(problem, grid.x, grid.step, kernel, unknowns)
-    width = 2.0 * neighbours.shift
-    by_grid: Array = (out_1 - out_0) / width
-    return by_grid, (mass_1 - mass_0) / width - carried * (face_1 - face_0) / width
+    moved, shift = neighbour.grid, neighbour.shift
+    moved_kernel = log_kernel(moved.x, moved.step)
+    there = np.empty(unknowns.size)
+    scratch = np.empty((1, unknowns.size))
+    residual(problem, moved.x, moved.step, moved.face_step, moved_kernel, unknowns, load, there, scratch)
+    mass, carried = stored_mass(problem, grid.x, grid.step, kernel, unknowns)
+    moved_mass, _ = stored_mass(problem, moved.x, moved.step, moved_kernel, unknowns)
+    face_shift = np.append(moved.face - grid.face, moved.x[-1] - grid.x[-1])
+    by_grid: Array = (there - here) / shift
+    return by_grid, (moved_mass - mass - carried * face_shift) / shift

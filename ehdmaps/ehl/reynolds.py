@@ -137,7 +137,10 @@ def residual(
     out: Array,
     jacobian: Array,
 ) -> float:
-    """Residual into `out`, shape (n + 2,), exact Jacobian into `jacobian`, shape (n + 2, n + 2); returns min H."""
+    """Residual into `out`, shape (n + 2,), and the smallest H as value.
+
+    The exact Jacobian goes into `jacobian`, shape (n + 2, n + 2); one of shape (1, n + 2) is scratch, and none is made.
+    """
     n = x.size - 1
     pressure = node_pressure(unknowns)
     outflow, exit_at = unknowns[n - 1], unknowns[n]
@@ -148,9 +151,10 @@ def residual(
     flow, left, right, jump = _cell_flow(log_eta, slope, pressure)
     limit4 = FITTED_STEP**4
     by_film = np.empty(5)  # dF_f/dH at nodes f-2 .. f+2
+    wanted = jacobian.shape[0] > 1
     for f in range(n):
         by_film[:] = 0.0
-        row = jacobian[f]
+        row = jacobian[f if wanted else 0]
         row[:] = 0.0
         # film at the face: central inside, one-sided at the exit
         if f == 0:
@@ -209,21 +213,23 @@ def residual(
         row[n - 1] = 1.0
         for k in range(5):
             c = by_film[k]
-            if c != 0.0:
+            if wanted and c != 0.0:
                 i = f - 2 + k
                 line = kernel[i]
                 for j in range(1, n):
                     row[j - 1] -= c * line[j]
                 row[n] += c * (exit_at + x[i])
                 row[n + 1] += c
-    last, total = jacobian[n], jacobian[n + 1]
     carried_load = 0.0
     for j in range(1, n):
-        last[j - 1] = -rho[n] * kernel[n, j]
-        total[j - 1] = step[j]
         carried_load += step[j] * pressure[j]
-    last[n - 1], last[n], last[n + 1] = -1.0, rho[n] * (exit_at + x[n]), rho[n]
-    total[n - 1], total[n], total[n + 1] = 0.0, 0.0, 0.0
+    if wanted:
+        last, total = jacobian[n], jacobian[n + 1]
+        for j in range(1, n):
+            last[j - 1] = -rho[n] * kernel[n, j]
+            total[j - 1] = step[j]
+        last[n - 1], last[n], last[n + 1] = -1.0, rho[n] * (exit_at + x[n]), rho[n]
+        total[n - 1], total[n], total[n + 1] = 0.0, 0.0, 0.0
     out[n] = mass[n] - outflow
     out[n + 1] = carried_load - load
     lowest: float = np.min(gap)

@@ -77,6 +77,11 @@ class ReynoldsSolver:
         return "reynolds"
 
     @property
+    def wants_backbone(self) -> bool:
+        """A map of this solver gets the lines that a contact law needs besides: they cost seconds."""
+        return True
+
+    @property
     def resolution(self) -> Resolution:
         """The same settings, as the solve in groups takes them."""
         return Resolution(density=self.density, inlet_length=self.inlet_length, tolerance=self.tolerance)

@@ -12,11 +12,14 @@ import xarray as xr
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.assemble import assemble
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.law_check import checked_laws, plan_check
+from ehdmaps.jobs.refinement import backbone_group, refinement
 from ehdmaps.jobs.store import Store, store_path
 from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
 from ehdmaps.jobs.tasks import line_tasks
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
+from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.solution import ContactSolver
 
 
@@ -69,12 +72,18 @@ def generate(
     """
     chosen = solver or solvers.build(job.solver, job.solver_options)
     tasks = line_tasks(job, chosen)
+    refined = refinement(job, chosen)
+    check = plan_check(job, chosen)
+    everything = (*tasks, *(refined.tasks if refined else ()), *(check.tasks if check else ()))
     with Store(store_path(output), fresh) as store:
-        told = progress(sum(task.points for task in tasks)) if progress else None
-        result = sweep(tasks, store, workers or available_cores(), told)
+        told = progress(sum(task.points for task in everything)) if progress else None
+        result = sweep(everything, store, workers or available_cores(), told)
         dataset = assemble(job, chosen, tasks, result.arrays)
         schema.validate(dataset, str(output))
-        write_map(dataset, output)
+        group = backbone_group(refined, result.arrays) if refined else None
+        if check:
+            dataset.attrs.update(checked_laws(check, EHDMap(dataset, group), result.arrays))
+        write_map(dataset, output, {schema.BACKBONE_GROUP: group} if group is not None else None)
     return Generated(dataset, result)
 
 

@@ -17,6 +17,9 @@ from ehdmaps.physics.lubricant import Lubricant
 MOST_POINTS = 2_000_000
 """Points of one map: a week of the default solver, and 300 MB. More is a slip in the job file."""
 
+MOST_CHECKS = 100_000
+"""Random points for the check of the contact laws."""
+
 
 @dataclass(frozen=True)
 class Job:
@@ -46,6 +49,10 @@ class Job:
         The solver's own keys, those that the file gives.
     fill : str
         "neighbours" or "none".
+    backbone : str
+        "law": solve the lines that a contact law needs, where the solver is made for it; "none": leave them out.
+    law_check : int
+        Random points at which the contact laws are compared with fresh solves.
     """
 
     name: str
@@ -59,6 +66,8 @@ class Job:
     solver: str
     solver_options: Mapping[str, Any]
     fill: str = "neighbours"
+    backbone: str = "law"
+    law_check: int = 0
 
     @property
     def sha256(self) -> str:

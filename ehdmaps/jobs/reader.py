@@ -6,11 +6,12 @@ import hashlib
 import tomllib
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.axes import LOAD_AXIS, SPEED_AXIS, TEMPERATURE_AXIS, AxisRule, read_axis
-from ehdmaps.jobs.job import MOST_POINTS, Job
+from ehdmaps.jobs.job import MOST_CHECKS, MOST_POINTS, Job
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
@@ -114,7 +115,7 @@ def _job(top: Table, text: str, name: str, override: str | None) -> Job | None:
         top.note("schema", f"got {schema!r:.60}; allowed: 1; this version of ehdmaps reads no other")
 
     section = top.table("solver", "[solver]", required="a table with name and structural_law")
-    solver, options, law, fill = _solver(section) if section else (None, {}, None, "neighbours")
+    solver, options, law, rest = _solver(section) if section else (None, {}, None, {})
     if override is not None and override not in solvers.SOLVER_NAMES:
         top.note("--solver", f"got {override!r:.60}; allowed: {', '.join(solvers.SOLVER_NAMES)}")
     elif override is not None and override != solver:
@@ -148,20 +149,24 @@ def _job(top: Table, text: str, name: str, override: str | None) -> Job | None:
         temperatures=temperatures,
         solver=solver,
         solver_options=options,
-        fill=fill,
+        **rest,
     )
 
 
-def _solver(section: Table) -> tuple[str | None, dict[str, object], str | None, str]:
-    """Read [solver]: name, its own keys, structural law, fill."""
+def _solver(section: Table) -> tuple[str | None, dict[str, object], str | None, dict[str, Any]]:
+    """Read [solver]: name, its own keys, structural law, and the keys that every solver has."""
     name = section.choice("name", solvers.SOLVER_NAMES, required=True)
     law = section.choice("structural_law", STRUCTURAL_LAWS, required=True)
-    fill = section.choice("fill", ("neighbours", "none")) or "neighbours"
+    rest: dict[str, Any] = {
+        "fill": section.choice("fill", ("neighbours", "none")) or "neighbours",
+        "backbone": section.choice("backbone", ("law", "none")) or "law",
+        "law_check": section.integer("law_check", 0, MOST_CHECKS) or 0,
+    }
     options: dict[str, object] = {}
     if name is not None:
         options = solvers.read_options(name, section)
         section.close()
-    return name, options, law, fill
+    return name, options, law, rest
 
 
 def _grid(grid: Table, contacts: int) -> list[tuple[float, ...] | None]:

@@ -71,9 +71,7 @@ def _forces(
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FAST)
-def evaluate_many_at(
-    point: Point, delta: FloatArray, rate: FloatArray, forces: FloatArray, counts: CountArray
-) -> None:
+def evaluate_many_at(point: Point, delta: FloatArray, rate: FloatArray, forces: FloatArray, counts: CountArray) -> None:
     """`kernel.evaluate_at` for arrays (n,), into `forces` (3, n)."""
     if point.film < 1.0 or point.centrifugal_load > 0.0:
         for i in range(delta.size):
@@ -99,9 +97,7 @@ def evaluate_many_at(
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FAST)
-def _speed_places(
-    speeds: FloatArray, lowest: float, start: float, step: float, cells: int, places: FloatArray
-) -> None:
+def _speed_places(speeds: FloatArray, lowest: float, start: float, step: float, cells: int, places: FloatArray) -> None:
     """Places on the axis of speed."""
     for i in range(speeds.size):
         size = abs(speeds[i])
@@ -110,9 +106,7 @@ def _speed_places(
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FAST)
-def _temperature_places(
-    temperatures: FloatArray, start: float, step: float, cells: int, places: FloatArray
-) -> None:
+def _temperature_places(temperatures: FloatArray, start: float, step: float, cells: int, places: FloatArray) -> None:
     """Places on the axis of temperature."""
     for i in range(temperatures.size):
         places[i] = place_within((1.0 / (temperatures[i] - COLDEST) - start) * step, cells)

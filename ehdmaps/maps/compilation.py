@@ -186,9 +186,7 @@ def _alignment(
             unit_load_number, oil_number = moes_groups(1.0, *oil)
             logs.append(math.log(_ALIGNED_LOAD_NUMBER / unit_load_number))
             film_number = moes_central(_ALIGNED_LOAD_NUMBER, oil_number)
-            films.append(
-                film_from_moes(film_number, speed, state.viscosity, contact.radius, contact.reduced_modulus)
-            )
+            films.append(film_from_moes(film_number, speed, state.viscosity, contact.radius, contact.reduced_modulus))
         load = min(math.exp(sum(logs) / len(logs)), most)
         offset[i, j] = sum(contact.structural_approach(load) for contact in contacts) - sum(films)
         scale[i, j] = _SCALE * load * sum(contact.structural_compliance(load) for contact in contacts)
@@ -228,10 +226,7 @@ def _sampled(
     ]
     root = np.concatenate((tail, np.cbrt(mapped_loads), np.cbrt(beyond_loads)))
     return root, Curve(
-        *(
-            np.concatenate([getattr(piece, name) for piece in pieces])
-            for name in ("approach", "slope", "loss_ratio")
-        )
+        *(np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("approach", "slope", "loss_ratio"))
     )
 
 

@@ -73,9 +73,7 @@ class ContactCurve:
         If the approach does not rise with load, or a damping is not positive.
     """
 
-    def __init__(
-        self, field: FilmField, contact: LineContact, speeds: FloatArray, temperatures: FloatArray
-    ) -> None:
+    def __init__(self, field: FilmField, contact: LineContact, speeds: FloatArray, temperatures: FloatArray) -> None:
         self._field = field
         self._contact = contact
         self._speeds = speeds
@@ -97,16 +95,12 @@ class ContactCurve:
         load = np.maximum(root, 0.0) ** 3
         with np.errstate(invalid="ignore"):
             dry_slope = np.where(root > 0.0, 3.0 * root**2 * self._contact.structural_compliance(load), 0.0)
-        curve = Curve(
-            self._contact.structural_approach(load) - film, dry_slope - film_slope, np.exp(log_ratio)
-        )
+        curve = Curve(self._contact.structural_approach(load) - film, dry_slope - film_slope, np.exp(log_ratio))
         return self._checked(curve, load)
 
     def mapped(self, load: FloatArray) -> Curve:
         """Within the mapped loads [N/m], (n, n_u, n_T)."""
-        film, film_compliance, loss = self._field.films(
-            self._contact.name, load, self._speeds, self._temperatures
-        )
+        film, film_compliance, loss = self._field.films(self._contact.name, load, self._speeds, self._temperatures)
         compliance = self._contact.structural_compliance(load) + film_compliance
         curve = Curve(
             self._contact.structural_approach(load) - film,
@@ -132,12 +126,8 @@ class ContactCurve:
     def _edge(self, load: float, direction: float) -> _Edge:
         """Film and damping at an end of the range; the exponent of c from inside it, to second order."""
         steps = load * np.exp(direction * _SMALL_STEP * np.arange(3.0))
-        loads = np.broadcast_to(
-            steps[:, None, None], (3, self._speeds.size, self._temperatures.size)
-        ).copy()
-        film, film_compliance, loss = self._field.films(
-            self._contact.name, loads, self._speeds, self._temperatures
-        )
+        loads = np.broadcast_to(steps[:, None, None], (3, self._speeds.size, self._temperatures.size)).copy()
+        film, film_compliance, loss = self._field.films(self._contact.name, loads, self._speeds, self._temperatures)
         damping = loss / (self._contact.structural_compliance(loads) + film_compliance) ** 2
         logs = np.log(damping)
         exponent = direction * (-1.5 * logs[0] + 2.0 * logs[1] - 0.5 * logs[2]) / _SMALL_STEP

@@ -11,6 +11,7 @@ import xarray as xr
 
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.maps import schema
+from ehdmaps.maps.backbone import BackboneField
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
@@ -95,9 +96,7 @@ class EHDMap:
             raise InputError(f"contact law, kind: got {kind!r}; allowed in this map: {', '.join(allowed)}")
         names = ("inner", "outer") if kind == "series" else (kind,)
         check_usable(self.dataset, names)
-        return ContactLaw(
-            kind, tuple(by_name[name] for name in names), self.lubricant, self.film_field(names), outside
-        )
+        return ContactLaw(kind, tuple(by_name[name] for name in names), self.lubricant, self.film_field(names), outside)
 
     def film_field(self, contacts: tuple[str, ...] | None = None) -> FilmField:
         """Film between the solved points, what a law is made from.
@@ -107,8 +106,9 @@ class EHDMap:
         contacts : tuple of str, optional
             Those that are wanted; all if left out.
         """
-        # Extension point: a field made from `self.backbone`, where the map has one, goes here.
         chosen = tuple(contact for contact in self.contacts if contacts is None or contact.name in contacts)
+        if self.backbone is not None:
+            return self._backbone_field(self.backbone, chosen)
         data = self.dataset.sel(contact=[contact.name for contact in chosen]).transpose(*schema.DIMS, ...)
         loads = data["load"].values.astype(np.float64)
         dry = np.array([contact.structural_compliance(loads) for contact in chosen])[:, :, None, None]
@@ -122,6 +122,23 @@ class EHDMap:
             film_offset=data["film_offset"].values.astype(np.float64),
             film_compliance=1.0 / stiffness - dry,
             loss_compliance=data["damping"].values / stiffness**2,
+        )
+
+    def _backbone_field(self, group: xr.Dataset, contacts: tuple[LineContact, ...]) -> FilmField:
+        """Field from the group of refinement lines."""
+        (reference,) = contacts_from_json(f"[{group.attrs['reference_contact']}]")
+        loads, speeds, temperatures = (
+            self.dataset[name].values.astype(np.float64) for name in ("load", "entrainment_speed", "temperature")
+        )
+        positive = speeds[speeds > 0.0]
+        return BackboneField(
+            group,
+            reference,
+            contacts,
+            self.lubricant,
+            load_range=(float(loads[0]), float(loads[-1])),
+            speed_range=(float(positive[0]), float(positive[-1])),
+            temperature_range=(float(temperatures[0]), float(temperatures[-1])),
         )
 
 

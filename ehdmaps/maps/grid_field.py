@@ -119,9 +119,7 @@ class GridField:
         offset = solids.radius * np.sqrt(speed_numbers) * np.exp(log_film)
         return offset, -offset * exponent / loads, np.exp(log_loss) / (modulus * speeds[:, None])
 
-    def _speed_numbers(
-        self, contact: LineContact, speeds: FloatArray, temperatures: FloatArray
-    ) -> FloatArray:
+    def _speed_numbers(self, contact: LineContact, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
         """Group eta0 us/(E'R) of each speed and temperature."""
         viscosities = [self.lubricant.at(float(temperature)).viscosity for temperature in temperatures]
         per_speed = [moes_speed_number(1.0, eta, contact.radius, contact.reduced_modulus) for eta in viscosities]
@@ -138,8 +136,7 @@ class GridField:
         numbers = self._speed_numbers(contact, speeds, self.temperatures)
         loads = self.loads[:, None, None]
         offset, compliance, loss = (
-            values[index][:, moving, :]
-            for values in (self.film_offset, self.film_compliance, self.loss_compliance)
+            values[index][:, moving, :] for values in (self.film_offset, self.film_compliance, self.loss_compliance)
         )
         modulus, radius = contact.reduced_modulus, contact.radius
         log_load = np.log(loads / (modulus * radius * np.sqrt(numbers)))
@@ -169,16 +166,12 @@ class GridField:
         return Lines(start, *tables)
 
 
-def _along(
-    place: FloatArray, start: float, values: FloatArray, slopes: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def _along(place: FloatArray, start: float, values: FloatArray, slopes: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Values and slopes at places of a uniform axis, line by line; tangents beyond its ends."""
     x = (place - start) / _STEP
     inside = np.clip(x, 0.0, values.shape[0] - 1)
     cell = np.minimum(inside.astype(np.intp), values.shape[0] - 2)
-    left, right = (
-        (np.take_along_axis(values, at, 0), np.take_along_axis(slopes, at, 0)) for at in (cell, cell + 1)
-    )
+    left, right = ((np.take_along_axis(values, at, 0), np.take_along_axis(slopes, at, 0)) for at in (cell, cell + 1))
     value, slope = hermite(left, right, inside - cell, _STEP)
     return value + _STEP * (x - inside) * slope, slope
 

@@ -429,9 +429,7 @@ def _collapsed(
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _within(
-    table: LawTable, entrainment_speed: float, temperature: float, counts: CountArray
-) -> tuple[float, float]:
+def _within(table: LawTable, entrainment_speed: float, temperature: float, counts: CountArray) -> tuple[float, float]:
     """Size of the speed, and temperature, held at the edges of the map and counted outside."""
     speed = abs(entrainment_speed)
     if speed > table.counted_speed * (1.0 + EDGE_TOLERANCE):
@@ -497,9 +495,7 @@ def collapse(
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def _table_state(
-    table: ApproachTable, delta: float, log_speed: float, temperature: float, sums: FloatArray
-) -> State:
+def _table_state(table: ApproachTable, delta: float, log_speed: float, temperature: float, sums: FloatArray) -> State:
     """State of a table at an approach, speed and temperature within it; `sums` is scratch for 8 numbers."""
     i, t, j, r = place_of(table, log_speed, temperature)
     along_u, along_t = quadratic_weights(t), quadratic_weights(r)
@@ -573,6 +569,4 @@ def evaluate(
         state = _table_state(table.own, delta, log(speed), temperature, workspace[3, 0])
         if state[0] <= table.highest_load:
             return force_of(state, rate)
-    return _through_point(
-        table, workspace, delta, rate, entrainment_speed, temperature, centrifugal_load, counts
-    )
+    return _through_point(table, workspace, delta, rate, entrainment_speed, temperature, centrifugal_load, counts)

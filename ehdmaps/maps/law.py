@@ -80,9 +80,7 @@ class ContactLaw:
         resolution: Resolution | None = None,
     ) -> None:
         if outside not in get_args(OutsidePolicy):
-            raise InputError(
-                f"contact law, outside: got {outside!r}; allowed: {', '.join(get_args(OutsidePolicy))}"
-            )
+            raise InputError(f"contact law, outside: got {outside!r}; allowed: {', '.join(get_args(OutsidePolicy))}")
         self.kind: LawKind = kind
         self.outside: OutsidePolicy = outside
         self.contacts = tuple(contacts)
@@ -172,9 +170,7 @@ class ContactLaw:
         self._settle(counts, named, flat)
         return tuple(force.reshape(shape)[()] for force in forces)
 
-    def at(
-        self, entrainment_speed: float, temperature: float, centrifugal_load: float = 0.0
-    ) -> LawAtPoint:
+    def at(self, entrainment_speed: float, temperature: float, centrifugal_load: float = 0.0) -> LawAtPoint:
         """Law at one speed [m/s], temperature [K] and centrifugal load [N/m]: equal values, faster.
 
         Raises
@@ -182,9 +178,7 @@ class ContactLaw:
         InputError, OutsideMapError
             As calling the law does.
         """
-        named = _floats(
-            entrainment_speed=entrainment_speed, temperature=temperature, centrifugal_load=centrifugal_load
-        )
+        named = _floats(entrainment_speed=entrainment_speed, temperature=temperature, centrifugal_load=centrifugal_load)
         for name, value in named.items():
             if value.ndim:
                 raise InputError(f"contact law, {name}: got an array; allowed: one number in `at`")
@@ -226,9 +220,7 @@ class ContactLaw:
 
     def _approach_table(self, contacts: Sequence[LineContact]) -> ApproachTable:
         """Table of some contacts in series."""
-        return compile_table(
-            self._field, contacts, self._lubricant, self._speeds, self._held_load, self._resolution
-        )
+        return compile_table(self._field, contacts, self._lubricant, self._speeds, self._held_load, self._resolution)
 
     def _check_centrifugal(self, values: FloatArray) -> None:
         """Refuse centrifugal loads that this law does not take."""
@@ -259,9 +251,7 @@ class ContactLaw:
             problems.append(self._load_problem(int(counts[LOAD]), flat))
         if counts[SPEED]:
             fastest = float(np.max(np.abs(named["entrainment_speed"])))
-            problems.append(
-                f"entrainment_speed: got {fastest:.6g} m/s; mapped: up to {self.speed_range[1]:.6g} m/s"
-            )
+            problems.append(f"entrainment_speed: got {fastest:.6g} m/s; mapped: up to {self.speed_range[1]:.6g} m/s")
         if counts[TEMPERATURE]:
             low, high = self.temperature_range
             values = named["temperature"]

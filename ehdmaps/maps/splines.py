@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from scipy.interpolate import make_interp_spline
-from scipy.linalg import solve_banded
 
 from ehdmaps.physics._values import FloatArray
 
@@ -28,33 +29,22 @@ def spline_coefficients(values: FloatArray, axis: int, degree: int) -> FloatArra
         continue the coefficients as a polynomial of that degree at both ends (not-a-knot), of degree n - 1 if
         there are too few. A single value becomes degree + 1 equal coefficients, a constant.
     """
-    rows = np.moveaxis(values, axis, 0)
-    n = rows.shape[0]
+    n = values.shape[axis]
     if n == 1:
-        return np.ascontiguousarray(np.moveaxis(np.repeat(rows, degree + 1, axis=0), 0, axis))
+        return np.ascontiguousarray(np.repeat(values, degree + 1, axis=axis))
+    matrix = np.zeros((n + 2, n + 2))
+    for i in range(1, n + 1):
+        matrix[i, i - 1 : i + 2] = _AT_NODE[degree]
+    # A difference of the coefficients vanishes at both ends.
     order = min(n, degree + 1)
-    end = _alternating_binomials(order)
-    bands = np.zeros((2 * order + 1, n + 2))
-    matrix_rows = [(0, 0, end), *((i, i - 1, _AT_NODE[degree]) for i in range(1, n + 1)), (n + 1, n + 1 - order, end)]
-    for row, first, entries in matrix_rows:
-        for column, entry in enumerate(entries, start=first):
-            bands[order + row - column, column] = entry
-    right = np.zeros((n + 2, rows[0].size))
-    right[1:-1] = rows.reshape(n, -1)
-    solved = solve_banded((order, order), bands, right)
-    return np.ascontiguousarray(np.moveaxis(solved.reshape((n + 2, *rows.shape[1:])), 0, axis))
+    end = [(-1.0) ** i * math.comb(order, i) for i in range(order + 1)]
+    matrix[0, : order + 1] = matrix[-1, -order - 1 :] = end
+    solved = np.tensordot(np.linalg.inv(matrix)[:, 1:-1], values, (1, axis))
+    return np.ascontiguousarray(np.moveaxis(solved, 0, axis))
 
 
 _AT_NODE = {2: (1.0 / 8.0, 6.0 / 8.0, 1.0 / 8.0), 3: (1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0)}
 """Values of the three B-splines that are not zero at a node."""
-
-
-def _alternating_binomials(order: int) -> tuple[float, ...]:
-    """Weights of a difference of that order."""
-    weights = [1.0]
-    for i in range(order):
-        weights.append(-weights[-1] * (order - i) / (i + 1))
-    return tuple(weights)
 
 
 def spline_weights(nodes: FloatArray, wanted: FloatArray) -> FloatArray:

@@ -27,7 +27,8 @@ THICK_FILM = 0.005
 _FADE_RATIO = 4.0
 _LEAST_COMPLIANCE = 1e-3
 _JOIN_POWER = 3.0
-_NEWTON_STEPS = 50
+_NEWTON_STEPS = 60
+_CLOSE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -96,18 +97,21 @@ class Tail:
             ln(c/w), c/w in s/m.
         """
         strength, pole, fade = self._strength, self._pole, self.fade_film
-        # Before the fade the hyperbola is inverted at once; in the fade tau goes from 1 at ha to 0 at 4 ha.
+        # Above the fade the hyperbola is inverted at once; in the fade tau goes from 1 at ha to 0 at 4 ha.
         unfaded = root >= np.cbrt(self.fade_load)
         safe = np.where(unfaded, root, 1.0)
         film = pole + strength / safe**3
         slope = -3.0 * strength / safe**4
 
-        span = (_FADE_RATIO - 1.0) * fade
-        scaled = np.where(unfaded, 0.0, root) / np.cbrt(strength)
-        tau = _faded_place(scaled, span, _FADE_RATIO * fade - pole)
-        _, tau_slope = _faded_root(tau, span, _FADE_RATIO * fade - pole)
-        film = np.where(unfaded, film, _FADE_RATIO * fade - span * tau)
-        slope = np.where(unfaded, slope, -span / (np.cbrt(strength) * tau_slope))
+        faded = np.nonzero(~unfaded)
+        lines = faded[1:]
+        start = fade[lines]
+        span, reach = (_FADE_RATIO - 1.0) * start, _FADE_RATIO * start - pole[lines]
+        unit = np.cbrt(strength[lines])
+        tau = _faded_place(root[faded] / unit, span, reach)
+        _, tau_slope = _faded_root(tau, span, reach)
+        film[faded] = _FADE_RATIO * start - span * tau
+        slope[faded] = -span / (unit * tau_slope)
 
         part = self.load * self._compliance / (film - pole)
         log_ratio = (
@@ -141,12 +145,10 @@ def _faded_place(wanted: FloatArray, span: FloatArray, reach: FloatArray) -> Flo
         value, slope = _faded_root(tau, span, reach)
         above = value > wanted
         high, low = np.where(above, tau, high), np.where(above, low, tau)
-        step = (value - wanted) / np.where(slope > 0.0, slope, np.inf)
-        newton = tau - step
-        inside = (newton > low) & (newton < high) & (slope > 0.0)
-        following = np.where(inside, newton, 0.5 * (low + high))
-        done = np.abs(following - tau) < 1e-15
+        newton = tau - (value - wanted) / np.where(slope > 0.0, slope, np.inf)
+        following = np.where((newton >= low) & (newton <= high), newton, 0.5 * (low + high))
+        moved = float(np.max(np.abs(following - tau), initial=0.0))
         tau = following
-        if bool(np.all(done)):
+        if moved < _CLOSE:
             break
     return tau

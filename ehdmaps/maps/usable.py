@@ -1,4 +1,4 @@
-"""Whether a law can be made from a map: no holes, no clusters of filled points, films and damping positive."""
+"""Whether a law can be made from a map: no holes, no clusters of filled points, films and stiffness positive."""
 
 from __future__ import annotations
 
@@ -73,12 +73,15 @@ def _clusters(filled: Mask) -> Mask:
 
 
 def _unphysical(chosen: xr.Dataset) -> list[str]:
-    """Values of which no law can be made; a map without any film is a dry one, which is fine."""
+    """Values of which no law can be made; a map without any film is a dry one, which is fine.
+
+    A damping that is negative at the bottom of its valley is for the film field to lift.
+    """
     if not np.any(chosen["film_offset"].values):
         return []
     moving = np.broadcast_to((chosen["entrainment_speed"].values > 0.0)[:, None], _shape(chosen))
     problems = []
-    for name, word in (("film_offset", "film offset"), ("stiffness", "stiffness"), ("damping", "damping")):
+    for name, word in (("film_offset", "film offset"), ("stiffness", "stiffness")):
         wrong = moving & ~(chosen[name].values > 0.0)
         if np.any(wrong):
             problems.append(
@@ -97,8 +100,7 @@ def _places(chosen: xr.Dataset, where: Mask) -> str:
             for name, index in (("load", j), ("entrainment_speed", k), ("temperature", m))
         )
         names.append(
-            f"{chosen['contact'].values[i]} at {LOAD.text(load)}, {SPEED.text(speed)}, "
-            f"{TEMPERATURE.text(temperature)}"
+            f"{chosen['contact'].values[i]} at {LOAD.text(load)}, {SPEED.text(speed)}, {TEMPERATURE.text(temperature)}"
         )
     more = np.count_nonzero(where) - len(names)
     return "; ".join(names) + (f"; and {more} more" if more > 0 else "")

@@ -54,9 +54,7 @@ def test_formula_is_the_formula():
     film, state = solve(FormulaSolver()), OIL.at(C40)
     groups = (88571.4, 1.7, state.viscosity, state.pressure_viscosity.pressure_viscosity)
     M, L = moes.moes_groups(*groups, INNER.radius, INNER.reduced_modulus)
-    expected = moes.film_from_moes(
-        films.moes_central(M, L), 1.7, state.viscosity, INNER.radius, INNER.reduced_modulus
-    )
+    expected = moes.film_from_moes(films.moes_central(M, L), 1.7, state.viscosity, INNER.radius, INNER.reduced_modulus)
     assert film.status is Status.CONVERGED
     assert film.film_offset == film.central_film == pytest.approx(expected, rel=ROUND_OFF)
     c = damping.rolling_film_damping(film.central_film, state.viscosity, INNER.radius)
@@ -130,9 +128,7 @@ def test_no_film_is_a_status_and_no_number():
     assert solve(FormulaSolver(), oil=isoviscous).status is Status.CONVERGED
 
 
-@pytest.mark.parametrize(
-    ("load", "speed"), [(1e-300, 1e-300), (1e300, 1e-300), (1e-300, 1e300), (1e300, 1e300)]
-)
+@pytest.mark.parametrize(("load", "speed"), [(1e-300, 1e-300), (1e300, 1e-300), (1e-300, 1e300), (1e300, 1e300)])
 def test_absurd_points_end_with_a_status(load, speed):
     film = solve(FormulaSolver(), load, speed)
     numbers = (film.film_offset, film.film_compliance, film.loss_compliance, film.max_pressure)
@@ -173,7 +169,5 @@ def test_a_temperature_without_an_oil_is_bad_input():
 
 
 def test_unknown_formula():
-    with pytest.raises(
-        InputError, match=r"film_formula: got 'grubin'; allowed: moes, dowson-toyoda, pan-hamrock"
-    ):
+    with pytest.raises(InputError, match=r"film_formula: got 'grubin'; allowed: moes, dowson-toyoda, pan-hamrock"):
         FormulaSolver("grubin")

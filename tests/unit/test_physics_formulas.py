@@ -81,9 +81,7 @@ def test_both_sets_of_groups_say_the_same(load, speed):
     U, W, G = moes.dowson_groups(load, speed, ETA, ALPHA, RADIUS, MODULUS)
     assert pytest.approx(W / math.sqrt(2 * U), rel=ROUND_OFF) == M
     assert pytest.approx(G * (2 * U) ** 0.25, rel=ROUND_OFF) == L
-    assert moes.viscosity_exponent(M, L) == pytest.approx(
-        ALPHA * hertz.max_pressure(load, RADIUS, MODULUS), rel=1e-11
-    )
+    assert moes.viscosity_exponent(M, L) == pytest.approx(ALPHA * hertz.max_pressure(load, RADIUS, MODULUS), rel=1e-11)
 
 
 @given(factor=st.floats(0.1, 10.0))
@@ -142,9 +140,7 @@ def test_formulas_take_arrays():
     M = np.array([1e-4, 1.0, 1e6])
     H, slope = films.moes_central_and_slope(M, 10.0)
     for index, value in enumerate(M):
-        assert (H[index], slope[index]) == pytest.approx(
-            films.moes_central_and_slope(value, 10.0), rel=ROUND_OFF
-        )
+        assert (H[index], slope[index]) == pytest.approx(films.moes_central_and_slope(value, 10.0), rel=ROUND_OFF)
     for formula in (
         films.dowson_higginson_minimum,
         films.dowson_toyoda_central,
@@ -248,9 +244,7 @@ def test_heating_reduces_the_film(loading, slip):
 
 
 def test_heating_is_never_clipped():
-    with pytest.raises(
-        InputError, match=r"inlet shear heating: got 13.2 .* = 1\.\d+, outside .*allowed: < 1"
-    ):
+    with pytest.raises(InputError, match=r"inlet shear heating: got 13.2 .* = 1\.\d+, outside .*allowed: < 1"):
         thermal.inlet_shear_heating_factor(3e9, MODULUS, 100.0)
 
 

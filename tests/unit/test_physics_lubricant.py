@@ -102,9 +102,7 @@ def test_impossible_families_are_refused(values, text):
 # --- named oils ------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("temperature", "viscosity", "alpha"), [(C40, 84.5e-3, 2.24e-8), (C100, 9.86e-3, 1.60e-8)]
-)
+@pytest.mark.parametrize(("temperature", "viscosity", "alpha"), [(C40, 84.5e-3, 2.24e-8), (C100, 9.86e-3, 1.60e-8)])
 def test_fva3_viscosity(temperature, viscosity, alpha):
     """Half a unit of the last of three printed digits."""
     state = Lubricant.named("FVA3").at(temperature)
@@ -131,9 +129,7 @@ def test_spirax_is_marked_as_a_guess():
 
 
 def test_unknown_oil():
-    with pytest.raises(
-        InputError, match=r"lubricant name: got 'FVA 3'; allowed: FVA3, Spirax MA 80W; give other"
-    ):
+    with pytest.raises(InputError, match=r"lubricant name: got 'FVA 3'; allowed: FVA3, Spirax MA 80W; give other"):
         Lubricant.named("FVA 3")
 
 
@@ -158,9 +154,7 @@ def test_constant_barus_oil():
 
 def test_astm_viscosity_hits_both_of_its_points():
     oil = Lubricant.barus(viscosity_40=100e-6, viscosity_100=11e-6, pressure_viscosity=2e-8, density=880.0)
-    assert oil.at(C40).viscosity == pytest.approx(
-        100e-6 * 880.0, rel=1e-11
-    )  # double exponential of round-off
+    assert oil.at(C40).viscosity == pytest.approx(100e-6 * 880.0, rel=1e-11)  # double exponential of round-off
     assert oil.at(C100).viscosity == pytest.approx(11e-6 * 880.0, rel=1e-11)
 
 
@@ -172,9 +166,7 @@ def test_kinematic_viscosity_takes_the_density_of_its_temperature():
 
 
 def test_coefficient_at_40_and_100_degc_is_log_linear():
-    oil = Lubricant.barus(
-        viscosity=0.1, pressure_viscosity_40=2.4e-8, pressure_viscosity_100=1.5e-8, density=880.0
-    )
+    oil = Lubricant.barus(viscosity=0.1, pressure_viscosity_40=2.4e-8, pressure_viscosity_100=1.5e-8, density=880.0)
     alpha = [oil.at(273.15 + theta).pressure_viscosity.pressure_viscosity for theta in (40.0, 70.0, 100.0)]
     assert alpha == pytest.approx([2.4e-8, math.sqrt(2.4e-8 * 1.5e-8), 1.5e-8], rel=ROUND_OFF)
 
@@ -249,13 +241,9 @@ def test_impossible_oils_are_refused(make, changes, text):
 
 
 def test_missing_coefficients():
-    with pytest.raises(
-        InputError, match=r"pressure_viscosity: got none; viscosity_law barus needs it; give it in 1/"
-    ):
+    with pytest.raises(InputError, match=r"pressure_viscosity: got none; viscosity_law barus needs it; give it in 1/"):
         Lubricant.barus(viscosity=0.1, density=880.0)
-    with pytest.raises(
-        InputError, match=r"roelands: got neither pressure_viscosity nor roelands_z; allowed: one of"
-    ):
+    with pytest.raises(InputError, match=r"roelands: got neither pressure_viscosity nor roelands_z; allowed: one of"):
         Lubricant.roelands(viscosity=0.1, density=880.0)
     with pytest.raises(InputError, match=r"roelands_z: got -0.6; allowed: finite and > 0"):
         Lubricant.roelands(viscosity=0.1, density=880.0, roelands_z=-0.6)
@@ -298,16 +286,12 @@ def test_impossible_kinematic_viscosities_are_refused(viscosities, text):
 
 @pytest.mark.parametrize("temperature", [0.0, -5.0, math.nan, math.inf])
 def test_impossible_temperatures(temperature):
-    with pytest.raises(
-        InputError, match=r"lubricant 'FVA3', temperature: got .* K; allowed: finite and > 0 K"
-    ):
+    with pytest.raises(InputError, match=r"lubricant 'FVA3', temperature: got .* K; allowed: finite and > 0 K"):
         Lubricant.named("FVA3").at(temperature)
 
 
 def test_vogel_breaks_down_in_the_cold():
-    with pytest.raises(
-        InputError, match=r"got -110 degC; Vogel's law breaks down at -101.552 degC; .* > -91.3347"
-    ):
+    with pytest.raises(InputError, match=r"got -110 degC; Vogel's law breaks down at -101.552 degC; .* > -91.3347"):
         VogelViscosity(0.062e-3, 1021.7, 101.5517).at(163.15, 900.0)
     with pytest.raises(InputError, match=r"lubricant 'FVA3', temperature: got -100 degC; Vogel's law"):
         Lubricant.named("FVA3").at(173.15)
@@ -329,25 +313,19 @@ def test_fva3_law_without_its_second_term_is_barus():
 
 def test_astm_overflows_in_the_cold():
     oil = Lubricant.barus(viscosity_40=100e-6, viscosity_100=11e-6, pressure_viscosity=2e-8, density=880.0)
-    with pytest.raises(
-        InputError, match=r"got -223.15 degC, where the viscosity of ASTM D341 overflows; .* raise it"
-    ):
+    with pytest.raises(InputError, match=r"got -223.15 degC, where the viscosity of ASTM D341 overflows; .* raise it"):
         oil.at(50.0)
 
 
 def test_roelands_needs_a_viscosity_above_its_pole():
     oil = Lubricant.roelands(viscosity=6e-5, pressure_viscosity=1e-8, density=880.0)
-    with pytest.raises(
-        InputError, match=r"viscosity: got 6e-05 Pa s at 40 degC; allowed: above 6.31e-05 Pa s .*barus"
-    ):
+    with pytest.raises(InputError, match=r"viscosity: got 6e-05 Pa s at 40 degC; allowed: above 6.31e-05 Pa s .*barus"):
         oil.at(C40)
 
 
 def test_density_must_stay_positive():
     oil = Lubricant.barus(viscosity=0.1, pressure_viscosity=2e-8, density=880.0, density_slope=-20.0)
-    with pytest.raises(
-        InputError, match=r"got 100 degC, where its density is -820 kg/m3; .* check density_slope"
-    ):
+    with pytest.raises(InputError, match=r"got 100 degC, where its density is -820 kg/m3; .* check density_slope"):
         oil.at(C100)
 
 
@@ -360,9 +338,7 @@ def test_density_over_pressure():
     assert state.density_ratio(0.59e9) == pytest.approx(0.5 * (1 + 1.34), rel=ROUND_OFF)
     step = 1e5
     difference = (state.density_ratio(5e8 + step) - state.density_ratio(5e8 - step)) / (2 * step)
-    assert state.density_ratio_slope(5e8) == pytest.approx(
-        difference, rel=1e-6
-    )  # round-off of the difference
+    assert state.density_ratio_slope(5e8) == pytest.approx(difference, rel=1e-6)  # round-off of the difference
 
 
 def test_incompressible_density():

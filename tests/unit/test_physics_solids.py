@@ -31,9 +31,7 @@ def test_reduced_modulus_of_steel():
 
 def test_reduced_modulus_against_a_rigid_body_is_doubled():
     rigid = Material(1e30, 0.3)
-    assert reduced_modulus(STEEL, rigid) == pytest.approx(
-        2 * 210e9 / 0.91, rel=1e-12
-    )  # 210e9/1e30: round-off
+    assert reduced_modulus(STEEL, rigid) == pytest.approx(2 * 210e9 / 0.91, rel=1e-12)  # 210e9/1e30: round-off
     assert reduced_modulus(STEEL, rigid) == reduced_modulus(rigid, STEEL)
 
 
@@ -207,11 +205,7 @@ def test_entrainment_speed():
     nu308 = BearingGeometry.named("NU308")
     omega = 500 * 2 * math.pi / 60
     assert nu308.entrainment_speed(omega) == pytest.approx(0.825, abs=5e-4)  # three printed digits
-    assert (
-        nu308.entrainment_speed(0.0, omega)
-        == nu308.entrainment_speed(omega)
-        == nu308.entrainment_speed(-omega)
-    )
+    assert nu308.entrainment_speed(0.0, omega) == nu308.entrainment_speed(omega) == nu308.entrainment_speed(-omega)
     assert nu308.entrainment_speed(omega, omega) == 0.0
 
 
@@ -287,8 +281,6 @@ def test_possible_bearings_pass():
 
 
 def test_unknown_bearing():
-    with pytest.raises(
-        InputError, match=r"bearing name: got '6308'; allowed: N1014, NU308; give other bearings"
-    ):
+    with pytest.raises(InputError, match=r"bearing name: got '6308'; allowed: N1014, NU308; give other bearings"):
         BearingGeometry.named("6308")
     assert all(BearingGeometry.named(name).name == name for name in BEARINGS)

@@ -1,0 +1,177 @@
+"""The contact laws of a map against fresh solves at random points: how good the law is between its nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.errors import MapError
+from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.store import Arrays
+from ehdmaps.jobs.tasks import LineTask
+from ehdmaps.maps.backbone import valley_load_number
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.law import ContactLaw
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.hertz import half_width
+from ehdmaps.physics.moes import moes_groups
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
+
+SEED = 20260
+
+VALLEY_SHARE = 0.2
+"""Share of the points that are drawn inside the damping valley."""
+
+VALLEY_WIDTH = (-0.6, 0.8)
+"""Range of ln(M/M_valley) from which they are drawn."""
+
+COMPLIANCE_BARS, DAMPING_BARS = (0.01, 1e-4), (0.05, 1e-3)
+"""An error is within its bar where it is below a share of the film compliance or of 1/k; of c or of k b/u."""
+
+QUANTILES = (0.5, 0.95, 0.99, 1.0)
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LawCheck:
+    """Random points of a map: the first `general` over its whole range, the others in the valley."""
+
+    contacts: tuple[LineContact, ...]
+    tasks: tuple[LineTask, ...]
+    general: int
+
+
+def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
+    """Draw the points: load and speed log-uniform, temperature uniform, contact by lot; None where none are wanted."""
+    count = job.law_check
+    speeds = [u for u in job.entrainment_speeds if u > 0.0]
+    if not count or not speeds or len(speeds) * len(job.loads) * len(job.temperatures) < 2:
+        return None
+    rng = np.random.default_rng(SEED)
+    valley = round(VALLEY_SHARE * count)
+    tasks = []
+    while len(tasks) < count:
+        contact = job.contacts[rng.integers(len(job.contacts))]
+        speed = _log_uniform(rng, min(speeds), max(speeds))
+        temperature = float(rng.uniform(min(job.temperatures), max(job.temperatures)))
+        load = _log_uniform(rng, min(job.loads), max(job.loads))
+        if len(tasks) >= count - valley:
+            load = _valley_load(job, contact, speed, temperature) * float(np.exp(rng.uniform(*VALLEY_WIDTH)))
+            load = float(np.clip(load, min(job.loads), max(job.loads)))
+        tasks.append(LineTask(contact, job.lubricant, (load,), speed, temperature, solver))
+    return LawCheck(job.contacts, tuple(tasks), count - valley)
+
+
+def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
+    """One number."""
+    return float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+
+def _valley_load(job: Job, contact: LineContact, speed: float, temperature: float) -> float:
+    """Load at the bottom of the damping valley [N/m]."""
+    state = job.lubricant.at(temperature)
+    alpha = state.pressure_viscosity.pressure_viscosity
+    unit, L = moes_groups(1.0, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
+    return float(valley_load_number(L)) / float(unit)
+
+
+def checked_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> dict[str, float | int | str]:
+    """Errors of the laws as attributes, or why there are none: a map with holes makes no law."""
+    try:
+        return check_laws(check, emap, results)
+    except MapError as error:
+        return {"law_check_points": len(check.tasks), "law_refused": str(error)}
+
+
+def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> dict[str, float | int | str]:
+    """Errors of the laws as attributes of the map.
+
+    Parameters
+    ----------
+    check : LawCheck
+        The points.
+    emap : EHDMap
+        The finished map; its laws are made here.
+    results : mapping
+        Arrays by key of the tasks.
+
+    Returns
+    -------
+    dict
+        Quantiles of the relative error in film compliance and damping of each contact's law (damping below zero counts
+        as zero, as in a law), and the shares of the points that are within the bars.
+    """
+    errors, within, valley = [], [], []
+    for contact in check.contacts:
+        chosen = [i for i, task in enumerate(check.tasks) if task.contact == contact]
+        usable = [i for i in chosen if Status(int(results[check.tasks[i].key]["status"][0])).usable]
+        if not usable:
+            continue
+        rows = _errors(emap.law(contact.name), [(check.tasks[i], results[check.tasks[i].key]) for i in usable])  # type: ignore[arg-type]
+        errors.append(rows[:, :2])
+        within.append(rows[:, 2:])
+        valley.append(np.array(usable) >= check.general)
+    record: dict[str, float | int | str] = {
+        "law_check_seed": SEED,
+        "law_check_points": len(check.tasks),
+        "law_check_usable": sum(len(rows) for rows in errors),
+    }
+    if not errors:
+        return record
+    table, passed, inside = np.concatenate(errors), np.concatenate(within), np.concatenate(valley)
+    for where, mask in (("", ~inside), ("_valley", inside)):
+        if not np.any(mask):
+            continue
+        for column, name in enumerate(("film_compliance", "damping")):
+            quantiles = np.quantile(table[mask, column], QUANTILES)
+            words = ("median", "95 %", "99 %", "largest")
+            text = ", ".join(f"{word} {value:.2g}" for word, value in zip(words, quantiles, strict=True))
+            record[f"law{where}_{name}_error"] = text
+            record[f"law{where}_{name}_within_bar"] = float(np.mean(passed[mask, column]))
+    return record
+
+
+def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> Array:
+    """Relative errors of film compliance and damping, and whether each is within its bar; shape (n, 4)."""
+    tasks = [task for task, _ in points]
+    fresh = [_solution(task, arrays) for task, arrays in points]
+    load = np.array([task.loads[0] for task in tasks])
+    speed = np.array([task.entrainment_speed for task in tasks])
+    temperature = np.array([task.temperature for task in tasks])
+    dry = np.array([task.contact.structural_compliance(task.loads[0]) for task in tasks])
+    half = np.array([float(half_width(t.loads[0], t.contact.radius, t.contact.reduced_modulus)) for t in tasks])
+    approach = np.array([one.approach for one in fresh])
+    for _ in range(8):  # the approach at which the law has the load
+        found, stiffness, damping = law(approach, 0.0, speed, temperature)
+        approach -= (found - load) / np.maximum(stiffness, 1e-12 / dry)
+    _, stiffness, damping = law(approach, 0.0, speed, temperature)
+    solved_k = np.array([one.stiffness for one in fresh])
+    solved_c = np.maximum([one.damping for one in fresh], 0.0)
+    compliance = 1.0 / solved_k - dry
+    wrong = np.abs(1.0 / stiffness - 1.0 / solved_k)
+    wrong_c = np.abs(damping - solved_c)
+    relative = wrong / np.maximum(np.abs(compliance), 1e-300)
+    relative_c = wrong_c / np.maximum(solved_c, 1e-300)
+    return np.column_stack(
+        [
+            relative,
+            relative_c,
+            (relative <= COMPLIANCE_BARS[0]) | (wrong * solved_k <= COMPLIANCE_BARS[1]),
+            (relative_c <= DAMPING_BARS[0]) | (wrong_c * speed <= DAMPING_BARS[1] * solved_k * half),
+        ]
+    )
+
+
+def _solution(task: LineTask, arrays: Arrays) -> ContactSolution:
+    """The fresh solve with its structure."""
+    film = FilmSolution(
+        **{name: array[0].item() for name, array in arrays.items() if name != "status"},
+        status=Status(int(arrays["status"][0])),
+    )
+    point = OperatingPoint(task.loads[0], task.entrainment_speed, task.temperature)
+    return contact_solution(film, task.contact, point)
