@@ -10,8 +10,9 @@ import time
 from dataclasses import dataclass
 
 from ehdmaps.ehl.grid import GridShape
-from ehdmaps.ehl.line import GroupSolution, Profile, Resolution, solve_groups
+from ehdmaps.ehl.line import GroupSolution, Resolution, solve_groups
 from ehdmaps.ehl.newton import CONVERGED, DIVERGED
+from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.errors import InputError
 from ehdmaps.physics.closed_form import THIN_FILM_LIMIT

@@ -7,9 +7,7 @@ from collections.abc import Iterator
 
 import xarray as xr
 
-from ehdmaps.jobs.report import AXES, error_lines, span, status_lines, value_lines
-
-_LAW_PREFIX = "law_"
+from ehdmaps.jobs.report import AXES, error_lines, law_lines, span, status_lines, value_lines
 
 
 def describe(dataset: xr.Dataset, backbone: xr.Dataset | None, name: str) -> str:
@@ -46,12 +44,10 @@ def _lines(dataset: xr.Dataset, backbone: xr.Dataset | None, name: str) -> Itera
     yield ""
     yield "accuracy of the points"
     yield from error_lines(dataset)
-    law = {key: value for key, value in attributes.items() if key.startswith(_LAW_PREFIX)}
+    law = list(law_lines(dataset))
     if law:
         yield ""
-        yield "accuracy of the contact law"
-        for key, value in law.items():
-            yield f"  {key.removeprefix(_LAW_PREFIX):30s} {value}"
+        yield from law
     if backbone is not None:
         yield ""
         yield "refinement lines of the contact law (group backbone)"

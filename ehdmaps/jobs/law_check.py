@@ -54,7 +54,7 @@ def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
         return None
     rng = np.random.default_rng(SEED)
     valley = round(VALLEY_SHARE * count)
-    tasks = []
+    tasks: list[LineTask] = []
     while len(tasks) < count:
         contact = job.contacts[rng.integers(len(job.contacts))]
         speed = _log_uniform(rng, min(speeds), max(speeds))
@@ -103,8 +103,9 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
     Returns
     -------
     dict
-        Quantiles of the relative error in film compliance and damping of each contact's law (damping below zero counts
-        as zero, as in a law), and the shares of the points that are within the bars.
+        Quantiles of the relative error in film compliance and damping of each contact's law, and the shares of the
+        points that are within the bars. A law has no damping below zero: where the solved one is, the law is held
+        against zero by the second bar, and the quantiles leave the point out.
     """
     errors, within, valley = [], [], []
     for contact in check.contacts:
@@ -128,7 +129,7 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
         if not np.any(mask):
             continue
         for column, name in enumerate(("film_compliance", "damping")):
-            quantiles = np.quantile(table[mask, column], QUANTILES)
+            quantiles = np.nanquantile(table[mask, column], QUANTILES)
             words = ("median", "95 %", "99 %", "largest")
             text = ", ".join(f"{word} {value:.2g}" for word, value in zip(words, quantiles, strict=True))
             record[f"law{where}_{name}_error"] = text
@@ -156,7 +157,7 @@ def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> Array:
     wrong = np.abs(1.0 / stiffness - 1.0 / solved_k)
     wrong_c = np.abs(damping - solved_c)
     relative = wrong / np.maximum(np.abs(compliance), 1e-300)
-    relative_c = wrong_c / np.maximum(solved_c, 1e-300)
+    relative_c = np.where(solved_c > 0.0, wrong_c / np.maximum(solved_c, 1e-300), np.nan)
     return np.column_stack(
         [
             relative,

@@ -15,6 +15,7 @@ from ehdmaps.units import DAMPING, FILM, LOAD, PRESSURE, SPEED, STIFFNESS, TEMPE
 AXES = (("load", LOAD), ("entrainment_speed", SPEED), ("temperature", TEMPERATURE))
 """Numeric axes and how people read them."""
 
+_LAW_PREFIX = "law_"
 ERRORS = ("film_offset_error", "film_compliance_error", "stiffness_error", "damping_error")
 _NUMBER = re.compile(r"[-+]?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]+)?")
 
@@ -97,3 +98,13 @@ def value_lines(dataset: xr.Dataset) -> Iterator[str]:
         if known.size:
             low, middle, high = (display.value(float(value)) for value in np.quantile(known, (0.0, 0.5, 1.0)))
             yield f"  {name:25s} {low:11.4g} {middle:10.4g} {high:10.4g}  {display.unit}"
+
+
+def law_lines(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield what the check of the contact laws against fresh solves found; nothing where there was none."""
+    law = {key: value for key, value in dataset.attrs.items() if key.startswith(_LAW_PREFIX)}
+    if law:
+        yield "accuracy of the contact laws, at random points against fresh solves"
+        for key, value in law.items():
+            text = f"{value:.2%}" if key.endswith("_within_bar") else value
+            yield f"  {key.removeprefix(_LAW_PREFIX).replace('_', ' '):36s} {text}"

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.jobs.generate import Generated
-from ehdmaps.jobs.report import error_lines, holes, status_lines
+from ehdmaps.jobs.report import error_lines, holes, law_lines, status_lines
 
 
 def summary(generated: Generated, output: Path) -> str:
@@ -34,6 +34,7 @@ def _lines(generated: Generated, output: Path) -> Iterator[str]:
     yield from status_lines(dataset)
     yield "accuracy"
     yield from error_lines(dataset)
+    yield from law_lines(dataset)
     seconds = float(np.nansum(dataset["solve_seconds"].values))
     yield f"time: {sweep.wall_seconds:.1f} s now; {seconds:.1f} s of solving in the whole map, all cores"
     if int(dataset.attrs["lubricant_verified"]) == 0:

@@ -42,10 +42,10 @@ VALLEY_STEP, OUTER_STEP = 0.06, 0.3
 VALLEY = (-1.1, 1.5)
 """zeta of the valley: from where film compliance and loss begin to fall to where they have recovered."""
 
-SPEED_STEP = 0.55
+SPEED_STEP = 0.6
 """Largest step of ln(reference speed)."""
 
-TEMPERATURE_STEP = 12.5
+TEMPERATURE_STEP = 14.5
 """Largest step of temperature [K]."""
 
 NEIGHBOURS = 6

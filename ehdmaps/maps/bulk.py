@@ -9,14 +9,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 from numba import njit
 
 from ehdmaps.maps.elementary import log
 from ehdmaps.maps.kernel import (
     cell_of,
+    collapse,
     collapsed_row,
     cubics,
-    evaluate,
     evaluate_at,
     force_of,
     place_within,
@@ -24,12 +25,21 @@ from ehdmaps.maps.kernel import (
     splines,
     state_of,
     stretched,
+    within_map,
 )
-from ehdmaps.maps.tables import COLDEST, ApproachTable, CountArray, LawTable, Line, Point
+from ehdmaps.maps.tables import COLDEST, NOT_FINITE, ApproachTable, CountArray, LawTable, Line, Point
 from ehdmaps.physics._values import FloatArray
 
 _FAST = {"contract", "reassoc", "nsz", "arcp"}
 _BLOCK = 256
+
+NodeArray = npt.NDArray[np.int64]
+
+
+@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
+def _finite(value: float) -> bool:
+    """Whether a value is neither NaN nor infinite."""
+    return abs(value) < math.inf
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FAST)
@@ -78,17 +88,16 @@ def evaluate_many_at(point: Point, delta: FloatArray, rate: FloatArray, forces: 
             forces[0, i], forces[1, i], forces[2, i] = evaluate_at(point, delta[i], rate[i], counts)
         return
     line: Line = point.own
-    scratch = np.empty((8, _BLOCK))
-    scratch[0, :] = line.offset
-    scratch[1, :] = line.inverse_scale
+    found, scratch = np.empty((4, _BLOCK)), np.empty((2, _BLOCK))
+    offset, inverse_scale = np.full(_BLOCK, line.offset), np.full(_BLOCK, line.inverse_scale)
     axis = (line.start, line.step, line.coefficients.shape[0])
     for first in range(0, delta.size, _BLOCK):
         last = min(first + _BLOCK, delta.size)
         n = last - first
-        places, scales, found = scratch[2, :n], scratch[3, :n], scratch[4:, :n]
+        places, scales = scratch[0, :n], scratch[1, :n]
         d, r = delta[first:last], rate[first:last]
         w, dw, dc = forces[0, first:last], forces[1, first:last], forces[2, first:last]
-        _places(d, scratch[0, :n], scratch[1, :n], axis, places, scales)
+        _places(d, offset, inverse_scale, axis, places, scales)
         _line_cubics(line.coefficients, places, found)
         _forces(found, scales, r, w, dw, dc)
         for i in range(n):
@@ -97,45 +106,57 @@ def evaluate_many_at(point: Point, delta: FloatArray, rate: FloatArray, forces: 
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FAST)
-def _speed_places(speeds: FloatArray, lowest: float, start: float, step: float, cells: int, places: FloatArray) -> None:
-    """Places on the axis of speed."""
-    for i in range(speeds.size):
-        size = abs(speeds[i])
-        size = size if size > lowest else lowest
-        places[i] = place_within((log(size) - start) * step, cells)
+def _speed_places(speeds: FloatArray, table: LawTable, nodes: NodeArray, weights: FloatArray) -> None:
+    """Nearest nodes of speeds, and weights (3, n) of the splines there."""
+    own: ApproachTable = table.own
+    start, step, last = own.log_speed_start, own.log_speed_step, own.place.shape[0] - 3
+    w0, w1, w2 = weights[0], weights[1], weights[2]
+    for n in range(speeds.size):
+        size = abs(speeds[n])
+        size = size if size > table.lowest_speed else table.lowest_speed
+        place = place_within((log(size) - start) * step, last)
+        nodes[n] = int(place + 0.5)
+        w0[n], w1[n], w2[n] = quadratic_weights(place - nodes[n])
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FAST)
-def _temperature_places(temperatures: FloatArray, start: float, step: float, cells: int, places: FloatArray) -> None:
-    """Places on the axis of temperature."""
-    for i in range(temperatures.size):
-        places[i] = place_within((1.0 / (temperatures[i] - COLDEST) - start) * step, cells)
+def _temperature_places(temperatures: FloatArray, own: ApproachTable, nodes: NodeArray, weights: FloatArray) -> None:
+    """Nearest nodes of temperatures, and weights (3, n) of the splines there."""
+    start, step, last = own.temperature_start, own.temperature_step, own.place.shape[1] - 3
+    w0, w1, w2 = weights[0], weights[1], weights[2]
+    for n in range(temperatures.size):
+        place = place_within((1.0 / (temperatures[n] - COLDEST) - start) * step, last)
+        nodes[n] = int(place + 0.5)
+        w0[n], w1[n], w2[n] = quadratic_weights(place - nodes[n])
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FAST)
-def _alignments(table: ApproachTable, along_u: FloatArray, along_t: FloatArray, found: FloatArray) -> None:
-    """Offsets and inverse scales at places in speed and temperature, into `found` (2, n)."""
+def _alignments(own: ApproachTable, count: int, nodes: NodeArray, weights: FloatArray, found: FloatArray) -> None:
+    """Offsets and inverse scales, into `found` (2, n); nodes (2, n) and weights (6, n) of speed and temperature."""
     sums = np.empty(2)
-    for n in range(along_u.size):
-        i, j = int(along_u[n] + 0.5), int(along_t[n] + 0.5)
-        weights_u, weights_t = quadratic_weights(along_u[n] - i), quadratic_weights(along_t[n] - j)
-        collapsed_row(table.place, i, j, weights_u, weights_t, 0, 2, sums)
-        found[0, n], found[1, n] = sums[0], sums[1]
+    i, j = nodes[0], nodes[1]
+    u0, u1, u2, t0, t1, t2 = weights[0], weights[1], weights[2], weights[3], weights[4], weights[5]
+    offset, inverse_scale = found[0], found[1]
+    for n in range(count):
+        along_u, along_t = (u0[n], u1[n], u2[n]), (t0[n], t1[n], t2[n])
+        collapsed_row(own.place, i[n], j[n], along_u, along_t, 0, 2, sums)
+        offset[n], inverse_scale[n] = sums[0], sums[1]
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FAST)
 def _table_splines(
-    table: ApproachTable, along_u: FloatArray, along_t: FloatArray, places: FloatArray, found: FloatArray
+    own: ApproachTable, places: FloatArray, nodes: NodeArray, weights: FloatArray, found: FloatArray
 ) -> None:
-    """Splines of a table and their slopes, into `found` (4, n)."""
-    values = table.coefficients
-    cells = values.shape[2] // 2 - 3
+    """Splines of a table and their slopes, into `found` (4, n); nodes and weights as in `_alignments`."""
+    cells = own.coefficients.shape[2] // 2 - 3
     sums = np.empty(8)
+    i, j = nodes[0], nodes[1]
+    u0, u1, u2, t0, t1, t2 = weights[0], weights[1], weights[2], weights[3], weights[4], weights[5]
     g, dg, q, dq = found[0], found[1], found[2], found[3]
     for n in range(places.size):
-        i, j, k = int(along_u[n] + 0.5), int(along_t[n] + 0.5), cell_of(places[n], cells)
-        weights_u, weights_t = quadratic_weights(along_u[n] - i), quadratic_weights(along_t[n] - j)
-        collapsed_row(values, i, j, weights_u, weights_t, 2 * k, 8, sums)
+        k = cell_of(places[n], cells)
+        along_u, along_t = (u0[n], u1[n], u2[n]), (t0[n], t1[n], t2[n])
+        collapsed_row(own.coefficients, i[n], j[n], along_u, along_t, 2 * k, 8, sums)
         g[n], dg[n], q[n], dq[n] = splines(sums, places[n] - k)
 
 
@@ -151,24 +172,28 @@ def evaluate_many(
     forces: FloatArray,
     counts: CountArray,
 ) -> None:
-    """`kernel.evaluate` for arrays (n,), into `forces` (3, n)."""
+    """`kernel.evaluate` for arrays (n,), into `forces` (3, n).
+
+    A speed, temperature and centrifugal load that stay from point to point are collapsed once.
+    """
     own: ApproachTable = table.own
-    values = own.coefficients
-    cells_u, cells_t = values.shape[0] - 3, values.shape[1] - 3
-    axis = (own.start, own.step, values.shape[2] // 2 - 3)
-    scratch = np.empty((10, _BLOCK))
+    axis = (own.start, own.step, own.coefficients.shape[2] // 2 - 3)
+    kept = (table.lowest_speed, table.lowest_temperature, 0.0)
+    point = collapse(table, workspace, kept[0], kept[1], kept[2], counts)
+    nodes = np.empty((2, _BLOCK), dtype=np.int64)
+    weights, alignment, found = np.empty((6, _BLOCK)), np.empty((2, _BLOCK)), np.empty((4, _BLOCK))
+    scratch = np.empty((2, _BLOCK))
     for first in range(0, delta.size, _BLOCK):
         last = min(first + _BLOCK, delta.size)
         n = last - first
-        along_u, along_t, places, scales = scratch[0, :n], scratch[1, :n], scratch[2, :n], scratch[3, :n]
-        alignment, found = scratch[4:6, :n], scratch[6:, :n]
+        places, scales = scratch[0, :n], scratch[1, :n]
         d, r, u, t = delta[first:last], rate[first:last], entrainment_speed[first:last], temperature[first:last]
         w, dw, dc = forces[0, first:last], forces[1, first:last], forces[2, first:last]
-        _speed_places(u, table.lowest_speed, own.log_speed_start, own.log_speed_step, cells_u, along_u)
-        _temperature_places(t, own.temperature_start, own.temperature_step, cells_t, along_t)
-        _alignments(own, along_u, along_t, alignment)
+        _speed_places(u, table, nodes[0], weights[:3])
+        _temperature_places(t, own, nodes[1], weights[3:])
+        _alignments(own, n, nodes, weights, alignment)
         _places(d, alignment[0], alignment[1], axis, places, scales)
-        _table_splines(own, along_u, along_t, places, found)
+        _table_splines(own, places, nodes, weights, found)
         _forces(found, scales, r, w, dw, dc)
         for i in range(n):
             size = abs(u[i])
@@ -180,6 +205,14 @@ def evaluate_many(
                 and abs(r[i]) < math.inf
                 and found[0, i] <= table.highest_root
             ):
-                w[i], dw[i], dc[i] = evaluate(
-                    table, workspace, d[i], r[i], u[i], t[i], centrifugal_load[first + i], counts
-                )
+                q = centrifugal_load[first + i]
+                if not (_finite(d[i]) and _finite(r[i]) and _finite(u[i]) and _finite(t[i]) and _finite(q)):
+                    counts[NOT_FINITE] += 1
+                    w[i], dw[i], dc[i] = math.nan, math.nan, math.nan
+                    continue
+                if u[i] == kept[0] and t[i] == kept[1] and q == kept[2]:
+                    within_map(table, u[i], t[i], counts)
+                else:
+                    point = collapse(table, workspace, u[i], t[i], q, counts)
+                    kept = u[i], t[i], q
+                w[i], dw[i], dc[i] = evaluate_at(point, d[i], r[i], counts)

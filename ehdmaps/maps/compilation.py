@@ -3,8 +3,8 @@
 Three choices make a small table exact enough:
 
 - The approach axis is stretched and aligned: s = asinh((delta - offset)/scale), with an offset and a scale that
-  follow the film over speed and temperature in closed form (approach and its change with load at Moes' M = 2.5).
-  What happens at constant M, such as the damping valley, stays at nearly constant s.
+  follow the film over speed and temperature in closed form: approach, and its change with load, at the bottom of the
+  damping valley. The valley stays at nearly constant s, and s is finest there.
 - The load is held as its cube root g: it fades out as the cube of the approach, so that g goes straight through
   zero, and w = max(g, 0)^3 is smooth and never negative.
 - The damping is held as ln(c/w), so that c is never negative.
@@ -19,12 +19,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline, CubicSpline
+from scipy.interpolate import CubicSpline
 
 from ehdmaps.errors import MapError
+from ehdmaps.maps.backbone import valley_load_number
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
 from ehdmaps.maps.film_field import FilmField
-from ehdmaps.maps.splines import spline_coefficients
+from ehdmaps.maps.splines import hermite, spline_coefficients
 from ehdmaps.maps.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.physics.contact import LineContact
@@ -32,7 +33,6 @@ from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import film_from_moes, moes_groups
 
-_ALIGNED_LOAD_NUMBER = 2.5
 _SCALE = 0.25
 _MARGIN = 4
 _BEYOND = 2.0
@@ -55,9 +55,9 @@ class Resolution:
         Distance of the samples of ln w from which the table is made.
     """
 
-    approach: float = 0.06
-    log_speed: float = 0.15
-    temperature: float = 0.2
+    approach: float = 0.08
+    log_speed: float = 0.13
+    temperature: float = 0.18
     log_load: float = 0.02
 
 
@@ -126,7 +126,7 @@ def compile_table(
     start = float(np.min(stretched[lifted])) - _MARGIN * resolution.approach
     held = np.count_nonzero(root[:, 0, 0] <= np.cbrt(held_load))
     end = float(np.max(stretched[held - 1])) + _MARGIN * resolution.approach
-    nodes = start + resolution.approach * np.arange(math.ceil((end - start) / resolution.approach) + 1)
+    nodes: FloatArray = start + resolution.approach * np.arange(math.ceil((end - start) / resolution.approach) + 1.0)
 
     values = np.empty((log_speeds.size, temperatures.size, nodes.size, 2))
     for i, j in np.ndindex(log_speeds.size, temperatures.size):
@@ -184,8 +184,9 @@ def _alignment(
         for contact in contacts:
             oil = (speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
             unit_load_number, oil_number = moes_groups(1.0, *oil)
-            logs.append(math.log(_ALIGNED_LOAD_NUMBER / unit_load_number))
-            film_number = moes_central(_ALIGNED_LOAD_NUMBER, oil_number)
+            load_number = float(valley_load_number(oil_number))
+            logs.append(math.log(load_number / unit_load_number))
+            film_number = moes_central(load_number, oil_number)
             films.append(film_from_moes(film_number, speed, state.viscosity, contact.radius, contact.reduced_modulus))
         load = min(math.exp(sum(logs) / len(logs)), most)
         offset[i, j] = sum(contact.structural_approach(load) for contact in contacts) - sum(films)
@@ -248,7 +249,10 @@ def _summed(curves: Sequence[Curve]) -> Curve:
 def _continued_root(line: FloatArray, root: FloatArray, slope: FloatArray, nodes: FloatArray) -> FloatArray:
     """g at the nodes of s; below the samples its tangent, above them ln g is linear."""
     inside = np.clip(nodes, line[0], line[-1])
-    values = CubicHermiteSpline(line, root, slope)(inside)
+    piece = np.clip(np.searchsorted(line, inside) - 1, 0, line.size - 2)
+    step = line[piece + 1] - line[piece]
+    ends = ((root[piece], slope[piece]), (root[piece + 1], slope[piece + 1]))
+    values, _ = hermite(*ends, (inside - line[piece]) / step, step)
     below, above = nodes - line[0], nodes - line[-1]
     values = np.where(below < 0.0, root[0] + slope[0] * below, values)
     growth = slope[-1] / root[-1]

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -19,8 +21,12 @@ from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 from ehdmaps.maps.splines import hermite, spline_weights
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_speed_number
+
+LOSS_FLOOR = 1e-4
+"""Smallest loss compliance, as a share of b/(u k) with Hertz' half-width b."""
 
 _STEP = 0.02
 _FORGOTTEN = 0.5
@@ -59,7 +65,8 @@ class GridField:
     loads, speeds, temperatures : array
         Axes [N/m], [m/s], [K]; only speeds above zero are used.
     film_offset, film_compliance, loss_compliance : array (contacts, n_w, n_u, n_T)
-        [m], [m2/N], [m2 s/N], positive where the speed is; all zero in a dry map.
+        [m], [m2/N], [m2 s/N]; the offset is positive where the speed is, or all zero in a dry map. The loss is
+        lifted smoothly to at least `LOSS_FLOOR` b/(u k): at the bottom of its valley it may be solved negative.
     """
 
     line_contacts: tuple[LineContact, ...]
@@ -70,9 +77,6 @@ class GridField:
     film_offset: FloatArray
     film_compliance: FloatArray
     loss_compliance: FloatArray
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "_lines", {} if self.dry else self._all_lines())
 
     @property
     def contacts(self) -> tuple[str, ...]:
@@ -105,7 +109,7 @@ class GridField:
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Film of one contact; see `FilmField.films`."""
         solids = self.line_contacts[self.contacts.index(contact)]
-        lines: Lines = self._lines[contact]  # type: ignore[attr-defined]
+        lines = self._lines[contact]
         along_u = spline_weights(np.log(self.speeds[self.speeds > 0.0]), np.log(speeds))
         along_t = spline_weights(self.temperatures, temperatures)
         film, film_slope, loss, loss_slope = (
@@ -123,9 +127,11 @@ class GridField:
         """Group eta0 us/(E'R) of each speed and temperature."""
         viscosities = [self.lubricant.at(float(temperature)).viscosity for temperature in temperatures]
         per_speed = [moes_speed_number(1.0, eta, contact.radius, contact.reduced_modulus) for eta in viscosities]
-        return speeds[:, None] * np.array(per_speed)
+        numbers: FloatArray = speeds[:, None] * np.array(per_speed)
+        return numbers
 
-    def _all_lines(self) -> Mapping[str, Lines]:
+    @cached_property
+    def _lines(self) -> Mapping[str, Lines]:
         """Lines of every contact."""
         return {contact.name: self._common_lines(i, contact) for i, contact in enumerate(self.line_contacts)}
 
@@ -142,7 +148,10 @@ class GridField:
         log_load = np.log(loads / (modulus * radius * np.sqrt(numbers)))
         log_film = np.log(offset / (radius * np.sqrt(numbers)))
         film_slope = -compliance * loads / offset
-        log_loss = np.log(loss * modulus * speeds[:, None])
+        compliances = compliance + contact.structural_compliance(self.loads)[:, None, None]
+        width = half_width(self.loads, radius, modulus)[:, None, None]
+        floor = LOSS_FLOOR * width / speeds[:, None] * compliances
+        log_loss = np.log(0.5 * (loss + np.hypot(loss, 2.0 * floor)) * modulus * speeds[:, None])
 
         start = float(np.min(log_load))
         nodes = start + _STEP * np.arange(int((np.max(log_load) - start) / _STEP) + 2)
@@ -193,7 +202,7 @@ def _complete(tables: FloatArray, ends: npt.NDArray[np.intp], rising: npt.NDArra
     """
     shape = ends.shape[1:]
     for order, end in ((rising[::-1], 0), (rising, 1)):
-        for leader, follower in zip(order[:-1], order[1:], strict=True):
+        for leader, follower in pairwise(order):
             a, b = np.unravel_index(leader, shape), np.unravel_index(follower, shape)
             last = ends[(end, *b)]
             beyond = slice(None, last) if end == 0 else slice(last + 1, None)

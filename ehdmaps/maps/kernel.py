@@ -49,7 +49,7 @@ Force = tuple[float, float, float]
 Triple = tuple[float, float, float]
 Quad = tuple[float, float, float, float]
 
-LOAD_TOLERANCE = 1e-4
+LOAD_TOLERANCE = 1e-3
 """Part of the highest load by which a load may pass it: the error of a table, not of a caller."""
 
 EDGE_TOLERANCE = 1e-6
@@ -429,7 +429,9 @@ def _collapsed(
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def _within(table: LawTable, entrainment_speed: float, temperature: float, counts: CountArray) -> tuple[float, float]:
+def within_map(
+    table: LawTable, entrainment_speed: float, temperature: float, counts: CountArray
+) -> tuple[float, float]:
     """Size of the speed, and temperature, held at the edges of the map and counted outside."""
     speed = abs(entrainment_speed)
     if speed > table.counted_speed * (1.0 + EDGE_TOLERANCE):
@@ -462,7 +464,7 @@ def collapse(
     counts : array (4,)
         int64, counted up.
     """
-    speed, temperature = _within(table, entrainment_speed, temperature, counts)
+    speed, temperature = within_map(table, entrainment_speed, temperature, counts)
     part = min(speed / table.film_speed, 1.0)
     film = part * part * part * (10.0 - part * (15.0 - 6.0 * part))
     log_speed = log(max(speed, table.lowest_speed))

@@ -166,9 +166,10 @@ class ContactLaw:
         table = self.table if np.any(named["centrifugal_load"]) else self._plain
         forces = np.empty((3, flat[0].size))
         counts = np.zeros(4, dtype=np.int64)
-        bulk.evaluate_many(table, _workspace(table), *flat, forces, counts)
+        _evaluate_many(table, flat, forces, counts)
         self._settle(counts, named, flat)
-        return tuple(force.reshape(shape)[()] for force in forces)
+        w, dw_ddelta, dw_drate = (force.reshape(shape)[()] for force in forces)
+        return w, dw_ddelta, dw_drate
 
     def at(self, entrainment_speed: float, temperature: float, centrifugal_load: float = 0.0) -> LawAtPoint:
         """Law at one speed [m/s], temperature [K] and centrifugal load [N/m]: equal values, faster.
@@ -270,7 +271,7 @@ class ContactLaw:
         forces, counts = np.empty((3, flat[0].size)), np.zeros(4, dtype=np.int64)
         table = self.table if np.any(flat[4]) else self._plain
         at_rest = np.zeros_like(flat[0])
-        bulk.evaluate_many(table, _workspace(table), flat[0], at_rest, *flat[2:], forces, counts)
+        _evaluate_many(table, (flat[0], at_rest, *flat[2:]), forces, counts)
         worst = int(np.argmax(forces[0]))
         return (
             f"load: got about {forces[0, worst]:.6g} N/m at the approach {flat[0][worst]:.6g} m, "
@@ -311,12 +312,19 @@ class LawAtPoint:
         flat = [np.ascontiguousarray(array).reshape(-1) for array in (deltas, rates)]
         forces = np.empty((3, flat[0].size))
         counts = np.zeros(4, dtype=np.int64)
-        bulk.evaluate_many_at(self.point, *flat, forces, counts)
+        bulk.evaluate_many_at(self.point, flat[0], flat[1], forces, counts)
         if np.any(counts):
             fixed = (self.entrainment_speed, self.temperature, self.centrifugal_load)
             flat += [np.full(flat[0].size, value) for value in fixed]
             self.law._settle(counts, named, flat)
-        return tuple(force.reshape(deltas.shape)[()] for force in forces)
+        w, dw_ddelta, dw_drate = (force.reshape(deltas.shape)[()] for force in forces)
+        return w, dw_ddelta, dw_drate
+
+
+def _evaluate_many(table: LawTable, flat: Sequence[FloatArray], forces: FloatArray, counts: CountArray) -> None:
+    """Evaluate flat arrays of approach, rate, speed, temperature and centrifugal load."""
+    delta, rate, speed, temperature, centrifugal_load = flat
+    bulk.evaluate_many(table, _workspace(table), delta, rate, speed, temperature, centrifugal_load, forces, counts)
 
 
 def _workspace(table: LawTable) -> FloatArray:

@@ -14,21 +14,6 @@ from ehdmaps.physics.pressure_viscosity import Barus, Fva3, PressureViscosityLaw
 from ehdmaps.physics.solids import Material
 from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw, VogelViscosity
 
-_VISCOSITY_LAWS: Mapping[str, tuple[type[Any], tuple[str, ...]]] = {
-    "constant": (ConstantViscosity, ("viscosity",)),
-    "astm-d341": (AstmViscosity, ("viscosity_40", "viscosity_100")),
-    "vogel": (VogelViscosity, ("factor", "slope", "offset")),
-}
-_OIL_KEYS = (
-    "name",
-    "verified",
-    "density_15",
-    "density_slope",
-    "density_law",
-    "fitted_pressure",
-    "thermal_conductivity",
-)
-
 
 def contacts_from_json(text: str) -> tuple[LineContact, ...]:
     """Contacts of a map, from its attribute `contacts`: a list of the fields of each `LineContact`.
@@ -74,11 +59,19 @@ def lubricant_from_json(text: str) -> Lubricant:
     True
     """
     try:
-        record = {key: float("inf") if value == "inf" else value for key, value in json.loads(text).items()}
+        record: dict[str, Any] = {
+            key: float("inf") if value == "inf" else value for key, value in json.loads(text).items()
+        }
         return Lubricant(
+            name=record["name"],
+            verified=record["verified"],
             viscosity=_viscosity(record),
             pressure_viscosity=_isotherms(record),
-            **{key: record[key] for key in _OIL_KEYS if key in record},
+            density_15=record["density_15"],
+            density_slope=record["density_slope"],
+            density_law=record["density_law"],
+            fitted_pressure=record["fitted_pressure"],
+            thermal_conductivity=record.get("thermal_conductivity"),
         )
     except (ValueError, KeyError, TypeError, AttributeError, InputError) as error:
         raise _broken("lubricant", error) from error
@@ -91,9 +84,14 @@ def _contact(record: Mapping[str, Any]) -> LineContact:
 
 def _viscosity(record: Mapping[str, Any]) -> ViscosityLaw:
     """Viscosity over temperature."""
-    law, keys = _VISCOSITY_LAWS[record["viscosity_over_temperature"]]
-    built: ViscosityLaw = law(**{key: record[key] for key in keys})
-    return built
+    word = record["viscosity_over_temperature"]
+    if word == "constant":
+        return ConstantViscosity(record["viscosity"])
+    if word == "astm-d341":
+        return AstmViscosity(record["viscosity_40"], record["viscosity_100"])
+    if word == "vogel":
+        return VogelViscosity(record["vogel_factor"], record["vogel_slope"], record["vogel_offset"])
+    raise KeyError(word)
 
 
 def _isotherms(record: Mapping[str, Any]) -> PressureViscosityLaw:

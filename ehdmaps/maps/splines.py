@@ -74,7 +74,10 @@ def spline_weights(nodes: FloatArray, wanted: FloatArray) -> FloatArray:
 
 
 def hermite(
-    left: tuple[FloatArray, FloatArray], right: tuple[FloatArray, FloatArray], part: FloatArray, step: float
+    left: tuple[FloatArray, FloatArray],
+    right: tuple[FloatArray, FloatArray],
+    part: FloatArray,
+    step: float | FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
     """Cubic with given values and slopes at both ends: its value and slope in between.
 
@@ -84,7 +87,7 @@ def hermite(
         At the ends of the piece.
     part : array
         Place in the piece, 0 to 1.
-    step : float
+    step : float or array
         Length of the piece.
     """
     (y0, m0), (y1, m1) = left, right

@@ -9,6 +9,7 @@ from ehdmaps.jobs import solvers
 from ehdmaps.jobs.generate import available_cores
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.reader import read_job
+from ehdmaps.jobs.refinement import refinement
 from ehdmaps.jobs.report import AXES, span
 from ehdmaps.jobs.tasks import is_slow, line_tasks
 from ehdmaps.physics.solution import ContactSolver
@@ -32,19 +33,21 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         for (name, display), axis in zip(AXES, values, strict=True)
     ]
     names = ", ".join(contact.name for contact in job.contacts)
+    refined = refinement(job, solver)
+    extra = (refined.points if refined else 0) + job.law_check
     lines = [
         f"{arguments.job}: no problems",
         f"  {job.title}, {job.lubricant.name}, solver {job.solver}, structural law {job.contacts[0].structural_law}",
         f"  {'contact':20s} {len(job.contacts):6d}  {names}",
         *axes,
-        f"  points  {job.points}",
-        f"  time    {_time(job, solver)}",
-        f"  memory  about {max(100.0 + job.points * _BYTES_PER_POINT / 1e6, 1.0):.0f} MB",
+        f"  points  {job.points} of the map, {extra} for its contact laws",
+        f"  time    {_time(job, solver, job.points + extra)}",
+        f"  memory  about {max(100.0 + (job.points + extra) * _BYTES_PER_POINT / 1e6, 1.0):.0f} MB",
     ]
     return "\n".join(lines), 0
 
 
-def _time(job: Job, solver: ContactSolver) -> str:
+def _time(job: Job, solver: ContactSolver, points: int) -> str:
     """Estimate the time of a run by solving a few lines of it."""
     if is_slow(solver):
         return "not estimated: one point of this solver takes minutes"
@@ -56,5 +59,5 @@ def _time(job: Job, solver: ContactSolver) -> str:
         task.run()
     per_point = (time.perf_counter() - begin) / sum(task.points for task in sample)
     cores = available_cores()
-    seconds = job.points * (per_point / cores + _SECONDS_PER_POINT)
+    seconds = points * (per_point / cores + _SECONDS_PER_POINT)
     return f"about {seconds:.2g} s on {cores} cores ({per_point * 1e3:.2g} ms a point, from {len(sample)} lines)"
