@@ -77,7 +77,7 @@ def films_of(profile: Profile) -> tuple[float, float]:
     centre = min(max(int(np.argmin(np.abs(position))), 1), last)
     lowest = min(max(int(np.argmin(gap)), 1), last)
     value, slope, curvature = _parabola(position, gap, centre)
-    away = -position[centre]
+    away = -float(position[centre])
     central = value + slope * away + 0.5 * curvature * away * away
     value, slope, curvature = _parabola(position, gap, lowest)
     return central, value - 0.5 * slope * slope / curvature if curvature > 0.0 else value

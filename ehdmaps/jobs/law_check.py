@@ -32,6 +32,9 @@ VALLEY_WIDTH = (-0.6, 0.8)
 COMPLIANCE_BARS, DAMPING_BARS = (0.01, 1e-4), (0.05, 1e-3)
 """An error is within its bar where it is below a share of the film compliance or of 1/k; of c or of k b/u."""
 
+MOST_TRIES = 10
+"""Draws per point in the valley: a map may hold a part of it, or none."""
+
 QUANTILES = (0.5, 0.95, 0.99, 1.0)
 
 Array = npt.NDArray[np.float64]
@@ -54,17 +57,26 @@ def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
         return None
     rng = np.random.default_rng(SEED)
     valley = round(VALLEY_SHARE * count)
-    tasks: list[LineTask] = []
-    while len(tasks) < count:
-        contact = job.contacts[rng.integers(len(job.contacts))]
-        speed = _log_uniform(rng, min(speeds), max(speeds))
-        temperature = float(rng.uniform(min(job.temperatures), max(job.temperatures)))
-        load = _log_uniform(rng, min(job.loads), max(job.loads))
-        if len(tasks) >= count - valley:
-            load = _valley_load(job, contact, speed, temperature) * float(np.exp(rng.uniform(*VALLEY_WIDTH)))
-            load = float(np.clip(load, min(job.loads), max(job.loads)))
-        tasks.append(LineTask(contact, job.lubricant, (load,), speed, temperature, solver))
-    return LawCheck(job.contacts, tuple(tasks), count - valley)
+    general = [_draw(job, rng) for _ in range(count - valley)]
+    inside = [drawn for _ in range(MOST_TRIES * valley) if (drawn := _draw_in_valley(job, rng)) is not None][:valley]
+    tasks = tuple(LineTask(contact, job.lubricant, (w,), u, T, solver) for contact, w, u, T in (*general, *inside))
+    return LawCheck(job.contacts, tasks, len(general))
+
+
+def _draw(job: Job, rng: np.random.Generator) -> tuple[LineContact, float, float, float]:
+    """Contact, load, speed and temperature of a random point."""
+    contact = job.contacts[rng.integers(len(job.contacts))]
+    speeds = [u for u in job.entrainment_speeds if u > 0.0]
+    speed = _log_uniform(rng, min(speeds), max(speeds))
+    temperature = float(rng.uniform(min(job.temperatures), max(job.temperatures)))
+    return contact, _log_uniform(rng, min(job.loads), max(job.loads)), speed, temperature
+
+
+def _draw_in_valley(job: Job, rng: np.random.Generator) -> tuple[LineContact, float, float, float] | None:
+    """The same with a load in the damping valley; None where the map's loads do not reach it."""
+    contact, _, speed, temperature = _draw(job, rng)
+    load = _valley_load(job, contact, speed, temperature) * float(np.exp(rng.uniform(*VALLEY_WIDTH)))
+    return (contact, load, speed, temperature) if min(job.loads) < load < max(job.loads) else None
 
 
 def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:

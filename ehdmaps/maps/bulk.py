@@ -179,7 +179,7 @@ def evaluate_many(
     own: ApproachTable = table.own
     axis = (own.start, own.step, own.coefficients.shape[2] // 2 - 3)
     kept = (table.lowest_speed, table.lowest_temperature, 0.0)
-    point = collapse(table, workspace, kept[0], kept[1], kept[2], counts)
+    point = collapse(table, workspace, kept[0], kept[1], kept[2], counts.copy())
     nodes = np.empty((2, _BLOCK), dtype=np.int64)
     weights, alignment, found = np.empty((6, _BLOCK)), np.empty((2, _BLOCK)), np.empty((4, _BLOCK))
     scratch = np.empty((2, _BLOCK))

@@ -65,8 +65,9 @@ class GridField:
     loads, speeds, temperatures : array
         Axes [N/m], [m/s], [K]; only speeds above zero are used.
     film_offset, film_compliance, loss_compliance : array (contacts, n_w, n_u, n_T)
-        [m], [m2/N], [m2 s/N]; the offset is positive where the speed is, or all zero in a dry map. The loss is
-        lifted smoothly to at least `LOSS_FLOOR` b/(u k): at the bottom of its valley it may be solved negative.
+        [m], [m2/N], [m2 s/N]; the offset is positive where the speed is, or all zero in a dry map. Where
+        the loss of a contact is not positive everywhere (at the bottom of its valley it may be solved negative), it
+        is lifted smoothly to at least `LOSS_FLOOR` b/(u k).
     """
 
     line_contacts: tuple[LineContact, ...]
@@ -148,10 +149,9 @@ class GridField:
         log_load = np.log(loads / (modulus * radius * np.sqrt(numbers)))
         log_film = np.log(offset / (radius * np.sqrt(numbers)))
         film_slope = -compliance * loads / offset
-        compliances = compliance + contact.structural_compliance(self.loads)[:, None, None]
-        width = half_width(self.loads, radius, modulus)[:, None, None]
-        floor = LOSS_FLOOR * width / speeds[:, None] * compliances
-        log_loss = np.log(0.5 * (loss + np.hypot(loss, 2.0 * floor)) * modulus * speeds[:, None])
+        if np.any(loss <= 0.0):
+            loss = self._lifted(contact, loss, compliance, speeds)
+        log_loss = np.log(loss * modulus * speeds[:, None])
 
         start = float(np.min(log_load))
         nodes = start + _STEP * np.arange(int((np.max(log_load) - start) / _STEP) + 2)
@@ -173,6 +173,16 @@ class GridField:
             ends[:, j, k] = np.searchsorted(nodes, line[0]), np.searchsorted(nodes, line[-1], side="right") - 1
         _complete(tables, ends, np.argsort(numbers, axis=None))
         return Lines(start, *tables)
+
+    def _lifted(
+        self, contact: LineContact, loss: FloatArray, film_compliance: FloatArray, speeds: FloatArray
+    ) -> FloatArray:
+        """Loss compliance made positive, (n_w, n_u, n_T); see `loss_compliance`."""
+        compliance = film_compliance + contact.structural_compliance(self.loads)[:, None, None]
+        width = half_width(self.loads, contact.radius, contact.reduced_modulus)[:, None, None]
+        floor = LOSS_FLOOR * width / speeds[:, None] * compliance
+        lifted: FloatArray = 0.5 * (loss + np.hypot(loss, 2.0 * floor))
+        return lifted
 
 
 def _along(place: FloatArray, start: float, values: FloatArray, slopes: FloatArray) -> tuple[FloatArray, FloatArray]:

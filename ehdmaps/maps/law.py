@@ -156,13 +156,7 @@ class ContactLaw:
             centrifugal_load=centrifugal_load,
         )
         self._check_centrifugal(named["centrifugal_load"])
-        try:
-            arrays = np.broadcast_arrays(*named.values())
-        except ValueError:
-            shapes = ", ".join(f"{name} {array.shape}" for name, array in named.items())
-            raise InputError(f"contact law: got shapes that do not broadcast: {shapes}") from None
-        shape = arrays[0].shape
-        flat = [np.ascontiguousarray(array).reshape(-1) for array in arrays]
+        shape, flat = _broadcast(named)
         table = self.table if np.any(named["centrifugal_load"]) else self._plain
         forces = np.empty((3, flat[0].size))
         counts = np.zeros(4, dtype=np.int64)
@@ -196,7 +190,8 @@ class ContactLaw:
         """Everything but the single contacts of a series."""
         highest = self.load_range[1]
         low, high = self.speed_range if self.speed_range[0] > 0.0 else (1.0, 1.0)
-        held = highest * (1.0 + kernel.LOAD_TOLERANCE)
+        # The policy `error` lets the error of the table pass without a kink.
+        held = highest if self.outside == "clamp" else highest * (1.0 + kernel.LOAD_TOLERANCE)
         if self.outside == "asymptote":
             high = SPEED_REACH * high if high > low else high
             most = min(highest_structural_load(contact) for contact in self.contacts)
@@ -302,14 +297,7 @@ class LawAtPoint:
     def __call__(self, delta: npt.ArrayLike, rate: npt.ArrayLike) -> tuple[Any, Any, Any]:
         """Load and its derivatives; as calling the `ContactLaw`."""
         named = _floats(delta=delta, rate=rate)
-        try:
-            deltas, rates = np.broadcast_arrays(*named.values())
-        except ValueError:
-            raise InputError(
-                f"contact law: got shapes that do not broadcast: delta {named['delta'].shape}, "
-                f"rate {named['rate'].shape}"
-            ) from None
-        flat = [np.ascontiguousarray(array).reshape(-1) for array in (deltas, rates)]
+        shape, flat = _broadcast(named)
         forces = np.empty((3, flat[0].size))
         counts = np.zeros(4, dtype=np.int64)
         bulk.evaluate_many_at(self.point, flat[0], flat[1], forces, counts)
@@ -317,7 +305,7 @@ class LawAtPoint:
             fixed = (self.entrainment_speed, self.temperature, self.centrifugal_load)
             flat += [np.full(flat[0].size, value) for value in fixed]
             self.law._settle(counts, named, flat)
-        w, dw_ddelta, dw_drate = (force.reshape(deltas.shape)[()] for force in forces)
+        w, dw_ddelta, dw_drate = (force.reshape(shape)[()] for force in forces)
         return w, dw_ddelta, dw_drate
 
 
@@ -342,6 +330,23 @@ def _floats(**values: npt.ArrayLike) -> dict[str, FloatArray]:
         except (TypeError, ValueError):
             raise InputError(f"contact law, {name}: got {value!r}; allowed: real numbers") from None
     return arrays
+
+
+def _broadcast(named: Mapping[str, FloatArray]) -> tuple[tuple[int, ...], list[FloatArray]]:
+    """Common shape, and flat arrays of it that compiled code takes: contiguous and writeable."""
+    try:
+        shape = np.broadcast_shapes(*(array.shape for array in named.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in named.items())
+        raise InputError(f"contact law: got shapes that do not broadcast: {shapes}") from None
+    flat = []
+    for array in named.values():
+        ready = array.shape == shape and array.flags.c_contiguous and array.flags.writeable
+        full = array if ready else np.empty(shape)
+        if not ready:
+            full[...] = array
+        flat.append(full.reshape(-1))
+    return shape, flat
 
 
 def _check_finite(named: Mapping[str, FloatArray]) -> None:

@@ -178,9 +178,7 @@ def main() -> None:
         count = sum(len(solver.solve_line(CONTACT, OIL, *line)) for line in sample)
         rates[density] = count / (time.perf_counter() - started)
         print(f"{density:7.1f}  {rates[density]:8.0f}                          {errors(solver, sample)}")
-    print(
-        "\nfilm only, one fine grid, from the same coarse solution: time relative to ehdmaps' own Newton, same equations"
-    )
+    print("\nfilm only, one fine grid, from the same coarse solution; time relative to ehdmaps' own Newton")
     starts = []
     for loads, speed, temperature in sample:
         for load in loads[::6]:

@@ -1,0 +1,15 @@
+"""The EHL line contact by finite differences, in the order of the data.
+
+| module | one idea |
+|---|---|
+| `grid` | nodes graded by a smooth map: inlet, exit, Hertz zone, pressure spike |
+| `elastic` | deflection of the half-spaces: logarithmic kernel, fifth order |
+| `reynolds` | the discrete equations, their exact Jacobian, and the mass they store |
+| `newton` | damped Newton with the dense Jacobian |
+| `profile` | a converged solution, and how it starts the next one |
+| `linearisation` | stiffness and damping: linear response, on a grid that follows the spike |
+| `line` | the story of one solve: coarse grid, place of the spike, fine grid, response, error estimate |
+| `solver` | `ReynoldsSolver`: operating points in SI, one line of loads after another |
+
+Kernels take and return arrays in the groups of the problem; units appear in `solver` only.
+"""
