@@ -39,6 +39,9 @@ LOOSE_TOLERANCE = 1e-2
 COLD_START_BELOW = 1.0
 """Load M below which the cold start is as good as any other."""
 
+VALLEY_REFINEMENT = 1.5
+"""Density of cells at the bottom of the damping valley, relative to the density elsewhere."""
+
 THIN_FILM = 20.0
 """Load M above which a negative loss can only be a numerical one."""
 
@@ -126,6 +129,8 @@ def solve_groups(
     frequency : float
         Omega = omega b/u of the response.
     """
+    if _at_valley_bottom(M, L):
+        resolution = replace(resolution, density=VALLEY_REFINEMENT * resolution.density)
     solution = _solve_once(problem, M, L, resolution, previous, frequency)
     if solution.outcome == CONVERGED and (solution.loss > 0.0 or M < THIN_FILM):
         return solution
@@ -134,6 +139,11 @@ def solve_groups(
     again = _solve_once(problem, M, L, finer, solution.profile, frequency)
     steps = solution.steps + again.steps
     return replace(again if again.outcome == CONVERGED else solution, steps=steps)
+
+
+def _at_valley_bottom(M: float, L: float) -> bool:
+    """Whether film compliance and loss are small differences of large parts: the bottom of the damping valley."""
+    return L > 10.0 and abs(math.log(M * (1.0 + L / 12.0) / 2.2)) < 0.45
 
 
 def _solve_once(

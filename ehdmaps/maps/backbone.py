@@ -36,7 +36,7 @@ from ehdmaps.physics.moes import moes_groups, moes_speed_number
 Array = NDArray[np.float64]
 IndexArray = NDArray[np.int64]
 
-VALLEY_STEP, OUTER_STEP = 0.06, 0.3
+VALLEY_STEP, OUTER_STEP = 0.05, 0.3
 """Steps of zeta inside and outside the valley."""
 
 VALLEY = (-1.1, 1.5)
@@ -51,15 +51,20 @@ TEMPERATURE_STEP = 14.5
 NEIGHBOURS = 6
 """Lines in each direction that the interpolation between lines uses."""
 
-TIE_NODES = 10
-"""Nodes of zeta over which the values of a line are averaged."""
+TIE_SPAN = 3.0
+"""Distance of the knots in zeta of the spline that ties a line to its values: errors of 1e-4 in the film offset then bend
+the slope by less than 1e-4 of the film over the load."""
 
 HEAVY = 2.5
 """zeta above which the slope of the film offset comes from its values: steps are long there, and film compliance is so
 small a part of the compliance that it is solved less accurately than the offset."""
 
-LOSS_SCALE = 1e-3
-"""Loss, as a share of film offset over speed, below which its interpolation turns from logarithmic to linear."""
+FEWEST_NODES = 8
+"""Solved points that a line needs at least."""
+
+LOSS_SCALE = 6e-2
+"""Loss, as a share of film offset over speed, below which its interpolation turns from logarithmic to linear: at the
+valley it runs through zero, where a logarithm has no slope to follow."""
 
 LOSS_FLOOR = 1e-4
 """Smallest loss compliance of a field, as a share of b/(u k): a tenth of what the solver's damping is good to."""
@@ -243,13 +248,13 @@ class _OffsetLine:
 
     @classmethod
     def through(cls, zeta: Array, value: Array, slope: Array) -> _OffsetLine:
-        """Line through slopes at the nodes, and through values on the average over TIE_NODES of them."""
+        """Line through slopes at the nodes, and through values on the average over TIE_SPAN."""
         heavy = zeta > HEAVY
         if np.any(heavy):
             slope = np.where(heavy, CubicSpline(zeta, value)(zeta, 1), slope)
         steep = CubicSpline(zeta, slope)
         integral = steep.antiderivative()
-        inner = zeta[TIE_NODES:-TIE_NODES:TIE_NODES]
+        inner = np.arange(zeta[0] + TIE_SPAN, zeta[-1] - 0.5 * TIE_SPAN, TIE_SPAN)
         knots = np.concatenate([[zeta[0]] * 4, inner, [zeta[-1]] * 4])
         return cls(steep, integral, make_lsq_spline(zeta, value - integral(zeta), knots, k=3))
 
@@ -326,10 +331,10 @@ class BackboneField:
         """One line on the common lattice, shape (nodes, 5), linear beyond the line's own ends."""
         speed, temperature = math.exp(self._log_speeds[j]), float(self._temperatures[k])
         solved = np.isfinite(offset) & np.isfinite(compliance) & np.isfinite(loss) & (offset > 0.0)
-        if np.count_nonzero(solved) <= 2 * TIE_NODES:
+        if np.count_nonzero(solved) < FEWEST_NODES:
             raise MapError(
                 f"backbone: {np.count_nonzero(solved)} solved points at reference speed {speed:.4g} m/s and "
-                f"{temperature:.2f} K; at least {2 * TIE_NODES + 1} are needed; generate the map again"
+                f"{temperature:.2f} K; at least {FEWEST_NODES} are needed; generate the map again"
             )
         z, h, s, b = zeta[solved], offset[solved], compliance[solved], loss[solved]
         unit, valley, scale = self._scales(self._reference, speed, temperature)

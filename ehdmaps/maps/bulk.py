@@ -34,12 +34,7 @@ _FAST = {"contract", "reassoc", "nsz", "arcp"}
 _BLOCK = 256
 
 NodeArray = npt.NDArray[np.int64]
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def _finite(value: float) -> bool:
-    """Whether a value is neither NaN nor infinite."""
-    return abs(value) < math.inf
+MarkArray = npt.NDArray[np.uint8]
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FAST)
@@ -161,6 +156,68 @@ def _table_splines(
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FAST)
+def _others(
+    table: LawTable,
+    delta: FloatArray,
+    rate: FloatArray,
+    entrainment_speed: FloatArray,
+    temperature: FloatArray,
+    centrifugal_load: FloatArray,
+    roots: FloatArray,
+    others: MarkArray,
+) -> int:
+    """Mark the points that the table alone does not answer, and count them."""
+    count = 0
+    slowest, fastest = table.film_speed, table.counted_speed
+    coldest, hottest, highest = table.lowest_temperature, table.highest_temperature, table.highest_root
+    for i in range(delta.size):
+        size, t, d, r = abs(entrainment_speed[i]), temperature[i], delta[i], rate[i]
+        within = (size >= slowest) & (size <= fastest) & (t >= coldest) & (t <= hottest) & (roots[i] <= highest)
+        finite = (abs(d) < math.inf) & (abs(r) < math.inf)
+        others[i] = 0 if within & finite & (centrifugal_load[i] == 0.0) else 1
+        count += others[i]
+    return count
+
+
+@njit(cache=True, error_model="numpy", fastmath=_FAST)
+def _one_by_one(
+    table: LawTable,
+    workspace: FloatArray,
+    delta: FloatArray,
+    rate: FloatArray,
+    entrainment_speed: FloatArray,
+    temperature: FloatArray,
+    centrifugal_load: FloatArray,
+    others: MarkArray,
+    forces: FloatArray,
+    counts: CountArray,
+) -> None:
+    """`kernel.evaluate` for the marked points; what stays the same from one to the next is collapsed once."""
+    u, t, q = table.lowest_speed, table.lowest_temperature, 0.0
+    point = collapse(table, workspace, u, t, q, counts.copy())
+    for i in range(delta.size):
+        if not others[i]:
+            continue
+        d, r = delta[i], rate[i]
+        if not (
+            abs(d) < math.inf
+            and abs(r) < math.inf
+            and abs(entrainment_speed[i]) < math.inf
+            and abs(temperature[i]) < math.inf
+            and abs(centrifugal_load[i]) < math.inf
+        ):
+            counts[NOT_FINITE] += 1
+            forces[:, i] = math.nan
+            continue
+        if u == entrainment_speed[i] and t == temperature[i] and q == centrifugal_load[i]:
+            within_map(table, u, t, counts)
+        else:
+            u, t, q = entrainment_speed[i], temperature[i], centrifugal_load[i]
+            point = collapse(table, workspace, u, t, q, counts)
+        forces[0, i], forces[1, i], forces[2, i] = evaluate_at(point, d, r, counts)
+
+
+@njit(cache=True, error_model="numpy", fastmath=_FAST)
 def evaluate_many(
     table: LawTable,
     workspace: FloatArray,
@@ -172,47 +229,27 @@ def evaluate_many(
     forces: FloatArray,
     counts: CountArray,
 ) -> None:
-    """`kernel.evaluate` for arrays (n,), into `forces` (3, n).
-
-    A speed, temperature and centrifugal load that stay from point to point are collapsed once.
-    """
+    """`kernel.evaluate` for arrays (n,), into `forces` (3, n)."""
     own: ApproachTable = table.own
     axis = (own.start, own.step, own.coefficients.shape[2] // 2 - 3)
-    kept = (table.lowest_speed, table.lowest_temperature, 0.0)
-    point = collapse(table, workspace, kept[0], kept[1], kept[2], counts.copy())
     nodes = np.empty((2, _BLOCK), dtype=np.int64)
     weights, alignment, found = np.empty((6, _BLOCK)), np.empty((2, _BLOCK)), np.empty((4, _BLOCK))
     scratch = np.empty((2, _BLOCK))
+    others = np.empty(delta.size, dtype=np.uint8)
+    count = 0
     for first in range(0, delta.size, _BLOCK):
         last = min(first + _BLOCK, delta.size)
         n = last - first
         places, scales = scratch[0, :n], scratch[1, :n]
         d, r, u, t = delta[first:last], rate[first:last], entrainment_speed[first:last], temperature[first:last]
-        w, dw, dc = forces[0, first:last], forces[1, first:last], forces[2, first:last]
         _speed_places(u, table, nodes[0], weights[:3])
         _temperature_places(t, own, nodes[1], weights[3:])
         _alignments(own, n, nodes, weights, alignment)
         _places(d, alignment[0], alignment[1], axis, places, scales)
         _table_splines(own, places, nodes, weights, found)
-        _forces(found, scales, r, w, dw, dc)
-        for i in range(n):
-            size = abs(u[i])
-            if not (
-                table.film_speed <= size <= table.counted_speed
-                and table.lowest_temperature <= t[i] <= table.highest_temperature
-                and centrifugal_load[first + i] == 0.0
-                and abs(d[i]) < math.inf
-                and abs(r[i]) < math.inf
-                and found[0, i] <= table.highest_root
-            ):
-                q = centrifugal_load[first + i]
-                if not (_finite(d[i]) and _finite(r[i]) and _finite(u[i]) and _finite(t[i]) and _finite(q)):
-                    counts[NOT_FINITE] += 1
-                    w[i], dw[i], dc[i] = math.nan, math.nan, math.nan
-                    continue
-                if u[i] == kept[0] and t[i] == kept[1] and q == kept[2]:
-                    within_map(table, u[i], t[i], counts)
-                else:
-                    point = collapse(table, workspace, u[i], t[i], q, counts)
-                    kept = u[i], t[i], q
-                w[i], dw[i], dc[i] = evaluate_at(point, d[i], r[i], counts)
+        _forces(found, scales, r, forces[0, first:last], forces[1, first:last], forces[2, first:last])
+        count += _others(table, d, r, u, t, centrifugal_load[first:last], found[0], others[first:last])
+    if count > 0:
+        _one_by_one(
+            table, workspace, delta, rate, entrainment_speed, temperature, centrifugal_load, others, forces, counts
+        )

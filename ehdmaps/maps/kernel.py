@@ -60,6 +60,7 @@ _FAST = {"contract", "reassoc", "nsz", "arcp"}
 
 _STEPS = 100
 _LEAST_LOAD = 1e-200
+_LIGHT = 0.3
 
 
 @njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
@@ -227,20 +228,20 @@ def _line_approach(line: Line, load: float) -> float:
     return approach
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
 def _structural(structure: FloatArray, centrifugal_load: float, load: float) -> tuple[float, float]:
     """Structural approach of the contacts at a load, and its derivative; the last one carries more."""
     approach = compliance = 0.0
     last = structure.shape[0] - 1
     for i in range(last + 1):
         w = load + centrifugal_load if i == last else load
-        if w > 0.0:
+        if w > _LEAST_LOAD:
             kind, a, b = structure[i, 0], structure[i, 1], structure[i, 2]
             if kind == HALF_SPACE:
-                part = a * w * (b - 0.5 * math.log(w))
+                part = a * w * (b - 0.5 * log(w))
                 compliance += part / w - 0.5 * a
             else:
-                part = a * math.pow(w, b)
+                part = a * exp(b * log(w))
                 compliance += b * part / w
             approach += part
     return approach, compliance
@@ -257,10 +258,13 @@ def _balanced_state(point: Point, delta: float) -> State:
         return 0.0, 0.0, 0.0, 0.0
     inner, outer, q = point.inner, point.outer, point.centrifugal_load
     low, high = _line_approach(inner, 0.0), delta - _line_approach(outer, q)
-    share = outer.inverse_scale / (inner.inverse_scale + outer.inverse_scale)
-    a = inner.offset + (delta - inner.offset - outer.offset) * share
     scale = 1.0 / inner.inverse_scale
-    state_i = state_o = (0.0, 0.0, 0.0, 0.0)
+    state_i, state_o = _line_state(inner, high), _line_state(outer, point.outer_start)
+    if state_i[0] < _LIGHT * q:  # the outer contact hardly moves
+        a = high - state_i[0] / (state_i[1] + state_o[1])
+    else:  # both alike, as their scales are
+        share = outer.inverse_scale / (inner.inverse_scale + outer.inverse_scale)
+        a = inner.offset + (delta - inner.offset - outer.offset) * share
     last = False
     for _ in range(_STEPS):
         if not low <= a <= high:
@@ -293,7 +297,7 @@ def _balanced_state(point: Point, delta: float) -> State:
     return w, k_i * part_i, r_i * part_i**2 + w_o / w * r_o * part_o**2, dc
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
 def _full_state(point: Point, delta: float) -> State:
     """State with the whole film."""
     if point.centrifugal_load > 0.0:
@@ -301,7 +305,7 @@ def _full_state(point: Point, delta: float) -> State:
     return _line_state(point.own, delta)
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
 def _faded_state(point: Point, delta: float) -> State:
     """State with a part of the film: film offset and c at equal load are that part of the whole ones.
 
@@ -312,14 +316,16 @@ def _faded_state(point: Point, delta: float) -> State:
     if delta <= (1.0 - part) * empty + part * point.lift_off:
         return 0.0, 0.0, 0.0, 0.0
     offset, scale = point.own.offset, 1.0 / point.own.inverse_scale
-    low = math.asinh((point.lift_off - offset) / scale)
-    high = max(math.asinh((delta - offset) / scale), low)
+    low, _ = stretched((point.lift_off - offset) * point.own.inverse_scale)
+    high, _ = stretched((delta - offset) * point.own.inverse_scale)
+    high = max(high, low)
     place = high
     state = (0.0, 0.0, 0.0, 0.0)
     slope = 1.0
     last = False
     for _ in range(_STEPS):
-        y = offset + scale * math.sinh(place)
+        growth = exp(place)
+        y = offset + 0.5 * scale * (growth - 1.0 / growth)
         state = _full_state(point, y)
         dry, compliance = _structural(structure, q, state[0])
         excess = (1.0 - part) * dry + part * y - delta
@@ -334,7 +340,7 @@ def _faded_state(point: Point, delta: float) -> State:
             low = place
             if place >= high:  # only a table's error makes y > delta
                 high = place + 1.0
-        per_place = slope * scale * math.cosh(place)
+        per_place = 0.5 * slope * scale * (growth + 1.0 / growth)
         following = place - excess / per_place if per_place > 0.0 else low - 1.0
         if not low <= following <= high:
             following = 0.5 * (low + high)
@@ -361,7 +367,7 @@ def _held(point: Point, delta: float) -> State:
     return w, point.held_stiffness, point.held_damping / w, 0.0
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
 def evaluate_at(point: Point, delta: float, rate: float, counts: CountArray) -> Force:
     """Load and derivatives at a point of speed, temperature and centrifugal load.
 
@@ -475,24 +481,26 @@ def collapse(
     held_load = table.held_load - q
     sums = workspace[3].reshape(-1)
     own = _collapsed(table.own, workspace[0], sums, log_speed, temperature)
-    inner, outer = own, own
+    inner, outer, inner_lift_off, outer_start = own, own, 0.0, 0.0
     if q > 0.0:
         inner = _collapsed(table.inner, workspace[1], sums, log_speed, temperature)
         outer = _collapsed(table.outer, workspace[2], sums, log_speed, temperature)
-        lift_off = _line_approach(inner, 0.0) + _line_approach(outer, q)
+        inner_lift_off, outer_start = _line_approach(inner, 0.0), _line_approach(outer, q)
+        lift_off = inner_lift_off + outer_start
         held = _line_approach(inner, held_load) + _line_approach(outer, table.held_load)
     else:
         lift_off = _line_approach(own, 0.0)
         held = _line_approach(own, held_load)
     dry, compliance = _structural(table.structure, q, held_load)
-    point = Point(
-        own, inner, outer, table.structure, film, q, lift_off, table.highest_load - q,
-        held_load, (1.0 - film) * dry + film * held, 1.0 / compliance, 0.0,
+    held = (1.0 - film) * dry + film * held
+    unheld = Point(
+        own, inner, outer, table.structure, film, q, inner_lift_off, outer_start, lift_off,
+        table.highest_load - q, held_load, held, 1.0 / compliance, 0.0,
     )  # fmt: skip
-    state = _rest_state(point, point.held_approach)
+    _, _, ratio, _ = _rest_state(unheld, held)
     return Point(
-        own, inner, outer, table.structure, film, q, lift_off, table.highest_load - q,
-        held_load, point.held_approach, 1.0 / compliance, state[2] * state[0],
+        own, inner, outer, table.structure, film, q, inner_lift_off, outer_start, lift_off,
+        table.highest_load - q, held_load, held, 1.0 / compliance, ratio * held_load,
     )  # fmt: skip
 
 

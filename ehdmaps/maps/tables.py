@@ -133,8 +133,10 @@ class Point(NamedTuple):
         Part of the film that is there, 1 at and above the lowest mapped speed, 0 at standstill.
     centrifugal_load : float
         q [N/m].
+    inner_lift_off, outer_start : float
+        Approach of the inner contact without load, of the outer one under the centrifugal load alone [m].
     lift_off : float
-        Approach at and below which there is no load [m].
+        Approach at and below which there is no load, with the whole film [m].
     highest_load : float
         Loads above it are counted [N/m].
     held_load, held_approach, held_stiffness, held_damping : float
@@ -147,6 +149,8 @@ class Point(NamedTuple):
     structure: FloatArray
     film: float
     centrifugal_load: float
+    inner_lift_off: float
+    outer_start: float
     lift_off: float
     highest_load: float
     held_load: float
