@@ -18,6 +18,7 @@ from ehdmaps.ehl.newton import CONVERGED, hertz_start, newton
 from ehdmaps.ehl.profile import Profile, films_of, front, front_node, moved, refined
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.physics.films import moes_central
+from ehdmaps.physics.moes import valley_load_number
 
 Array = NDArray[np.float64]
 
@@ -39,7 +40,7 @@ LOOSE_TOLERANCE = 1e-2
 COLD_START_BELOW = 1.0
 """Load M below which the cold start is as good as any other."""
 
-VALLEY_REFINEMENT = 1.5
+VALLEY_REFINEMENT = 1.2
 """Density of cells at the bottom of the damping valley, relative to the density elsewhere."""
 
 THIN_FILM = 20.0
@@ -84,7 +85,7 @@ class Resolution:
 class GroupSolution:
     """Film of one point in units of b, p_H, b^2/R and b/u, with estimated relative errors (> 0: value too large).
 
-    `profile` is the fine solution (the coarse one where the fine one failed, None where both did).
+    `profile` is the fine solution, None where there is none.
     """
 
     outcome: int
@@ -143,7 +144,7 @@ def solve_groups(
 
 def _at_valley_bottom(M: float, L: float) -> bool:
     """Whether film compliance and loss are small differences of large parts: the bottom of the damping valley."""
-    return L > 10.0 and abs(math.log(M * (1.0 + L / 12.0) / 2.2)) < 0.45
+    return L > 10.0 and abs(math.log(M / valley_load_number(L))) < 0.35
 
 
 def _solve_once(

@@ -12,12 +12,11 @@ from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
-from ehdmaps.maps.backbone import valley_load_number
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
-from ehdmaps.physics.moes import moes_groups
+from ehdmaps.physics.moes import moes_groups, valley_load_number
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
 

@@ -9,13 +9,18 @@ emap           `EHDMap`, `open_map`: a map file as a value
 usable         whether a law can be made from a map
 film_field     `FilmField`: film of each contact at any load, speed and temperature
 grid_field     the film field of the map's own grid
+backbone       the film field of refinement lines, and the plan of those lines
+mixing         the compiled inner loop of the backbone
 dry            stand-in for the film of a dry map
 tail           film below the lowest mapped load
 contact_curve  approach and damping of one contact over load
 splines        cubic splines on uniform axes
 compilation    curves -> table over approach, speed and temperature
 tables         the arrays of a compiled law
-kernel         the law at run time, for compiled code
+elementary     exp and log for compiled code
+lines          splines and states in compiled code
+kernel         the law at run time, one point at a time, for compiled code
+bulk           the law at run time, many points
 law            `ContactLaw`, `LawAtPoint`
 =============  =======================================================================================
 

@@ -3,7 +3,7 @@
 At one temperature the film of every contact of a bearing depends on Moes' M and L alone, exactly: the same oil and the
 same E' leave no other group. So one reference contact is solved for all of them, over reference speed, temperature and
 
-    zeta = ln(M/M_valley(L)),      M_valley = 2.2/(1 + L/12),
+    zeta = ln(M/M_valley(L)),
 
 densely around zeta = 0, where damping dives through a valley far narrower than a step of any load axis, sparsely
 elsewhere. Load, speed and radius of a real contact lead to (zeta, speed, temperature) of the reference contact; what is
@@ -31,29 +31,29 @@ from ehdmaps.errors import MapError
 from ehdmaps.maps.mixing import mix_lines
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import moes_groups, moes_speed_number
+from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_number
 
 Array = NDArray[np.float64]
 IndexArray = NDArray[np.int64]
 
-VALLEY_STEP, OUTER_STEP = 0.05, 0.3
+VALLEY_STEP, OUTER_STEP = 0.06, 0.35
 """Steps of zeta inside and outside the valley."""
 
 VALLEY = (-1.1, 1.5)
 """zeta of the valley: from where film compliance and loss begin to fall to where they have recovered."""
 
-SPEED_STEP = 0.6
+SPEED_STEP = 0.66
 """Largest step of ln(reference speed)."""
 
-TEMPERATURE_STEP = 14.5
+TEMPERATURE_STEP = 17.0
 """Largest step of temperature [K]."""
 
 NEIGHBOURS = 6
 """Lines in each direction that the interpolation between lines uses."""
 
 TIE_SPAN = 3.0
-"""Distance of the knots in zeta of the spline that ties a line to its values: errors of 1e-4 in the film offset then bend
-the slope by less than 1e-4 of the film over the load."""
+"""Distance of the knots in zeta of the spline that ties a line to its values: errors of 1e-4 in the film offset
+then bend the slope by less than 1e-4 of the film over the load."""
 
 HEAVY = 2.5
 """zeta above which the slope of the film offset comes from its values: steps are long there, and film compliance is so
@@ -74,11 +74,6 @@ LATTICE_STEP = 0.02
 
 NAME = "backbone"
 GROUP_VARIABLES = ("film_offset", "film_compliance", "loss_compliance")
-
-
-def valley_load_number(oil_number: Array | float) -> Array | float:
-    """Moes' M at the bottom of the damping valley, found over L = 3 to 48 with FVA 3; used as a coordinate only."""
-    return 2.2 / (1.0 + oil_number / 12.0)
 
 
 @dataclass(frozen=True)
@@ -274,8 +269,8 @@ class _OffsetLine:
 class BackboneField:
     """Films of any contact of the map from its backbone; a `FilmField`.
 
-    The loss compliance is kept positive: where the solved one falls below LOSS_FLOOR, or below zero at the bottom of the
-    valley, it runs smoothly into a small positive value, so that a contact law is passive.
+    The loss compliance is kept positive: where the solved one falls below LOSS_FLOOR, or below zero at the bottom of
+    the valley, it runs smoothly into a small positive value, so that a contact law is passive.
 
     Parameters
     ----------

@@ -13,31 +13,29 @@ import numpy.typing as npt
 from numba import njit
 
 from ehdmaps.maps.elementary import log
-from ehdmaps.maps.kernel import (
+from ehdmaps.maps.kernel import collapse, evaluate_at, within_map
+from ehdmaps.maps.lines import (
+    FAST,
     cell_of,
-    collapse,
     collapsed_row,
     cubics,
-    evaluate_at,
     force_of,
     place_within,
     quadratic_weights,
     splines,
     state_of,
     stretched,
-    within_map,
 )
 from ehdmaps.maps.tables import COLDEST, NOT_FINITE, ApproachTable, CountArray, LawTable, Line, Point
 from ehdmaps.physics._values import FloatArray
 
-_FAST = {"contract", "reassoc", "nsz", "arcp"}
 _BLOCK = 256
 
 NodeArray = npt.NDArray[np.int64]
 MarkArray = npt.NDArray[np.uint8]
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _places(
     delta: FloatArray,
     offset: FloatArray,
@@ -54,7 +52,7 @@ def _places(
         scales[i] = step * ds * inverse_scale[i]
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _line_cubics(coefficients: FloatArray, places: FloatArray, found: FloatArray) -> None:
     """Splines of a line and their slopes, into `found` (4, n)."""
     cells = coefficients.shape[0]
@@ -64,7 +62,7 @@ def _line_cubics(coefficients: FloatArray, places: FloatArray, found: FloatArray
         g[i], dg[i], q[i], dq[i] = cubics(coefficients, cell, places[i] - cell)
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _forces(
     found: FloatArray, scales: FloatArray, rate: FloatArray, w: FloatArray, dw: FloatArray, dc: FloatArray
 ) -> None:
@@ -75,7 +73,7 @@ def _forces(
         w[i], dw[i], dc[i] = force_of(state, rate[i])
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def evaluate_many_at(point: Point, delta: FloatArray, rate: FloatArray, forces: FloatArray, counts: CountArray) -> None:
     """`kernel.evaluate_at` for arrays (n,), into `forces` (3, n)."""
     if point.film < 1.0 or point.centrifugal_load > 0.0:
@@ -100,7 +98,7 @@ def evaluate_many_at(point: Point, delta: FloatArray, rate: FloatArray, forces: 
                 w[i], dw[i], dc[i] = evaluate_at(point, d[i], r[i], counts)
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _speed_places(speeds: FloatArray, table: LawTable, nodes: NodeArray, weights: FloatArray) -> None:
     """Nearest nodes of speeds, and weights (3, n) of the splines there."""
     own: ApproachTable = table.own
@@ -114,7 +112,7 @@ def _speed_places(speeds: FloatArray, table: LawTable, nodes: NodeArray, weights
         w0[n], w1[n], w2[n] = quadratic_weights(place - nodes[n])
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _temperature_places(temperatures: FloatArray, own: ApproachTable, nodes: NodeArray, weights: FloatArray) -> None:
     """Nearest nodes of temperatures, and weights (3, n) of the splines there."""
     start, step, last = own.temperature_start, own.temperature_step, own.place.shape[1] - 3
@@ -125,7 +123,7 @@ def _temperature_places(temperatures: FloatArray, own: ApproachTable, nodes: Nod
         w0[n], w1[n], w2[n] = quadratic_weights(place - nodes[n])
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _alignments(own: ApproachTable, count: int, nodes: NodeArray, weights: FloatArray, found: FloatArray) -> None:
     """Offsets and inverse scales, into `found` (2, n); nodes (2, n) and weights (6, n) of speed and temperature."""
     sums = np.empty(2)
@@ -138,7 +136,7 @@ def _alignments(own: ApproachTable, count: int, nodes: NodeArray, weights: Float
         offset[n], inverse_scale[n] = sums[0], sums[1]
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _table_splines(
     own: ApproachTable, places: FloatArray, nodes: NodeArray, weights: FloatArray, found: FloatArray
 ) -> None:
@@ -155,7 +153,7 @@ def _table_splines(
         g[n], dg[n], q[n], dq[n] = splines(sums, places[n] - k)
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _others(
     table: LawTable,
     delta: FloatArray,
@@ -179,7 +177,7 @@ def _others(
     return count
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _one_by_one(
     table: LawTable,
     workspace: FloatArray,
@@ -217,7 +215,7 @@ def _one_by_one(
         forces[0, i], forces[1, i], forces[2, i] = evaluate_at(point, d, r, counts)
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def evaluate_many(
     table: LawTable,
     workspace: FloatArray,

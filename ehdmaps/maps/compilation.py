@@ -9,7 +9,8 @@ Three choices make a small table exact enough:
   zero, and w = max(g, 0)^3 is smooth and never negative.
 - The damping is held as ln(c/w), so that c is never negative.
 
-Both are tensor products of cubic B-splines, hence C2, with their coefficients side by side in memory.
+Both are tensor products of B-splines, cubic over s and quadratic over ln u and 1/(T - `COLDEST`), in which they are
+smooth: C1 with a stencil of 3 x 3 x 4, whose coefficients for both lie side by side in memory.
 """
 
 from __future__ import annotations
@@ -22,7 +23,6 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ehdmaps.errors import MapError
-from ehdmaps.maps.backbone import valley_load_number
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.splines import hermite, spline_coefficients
@@ -31,7 +31,7 @@ from ehdmaps.physics._values import FloatArray
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import film_from_moes, moes_groups
+from ehdmaps.physics.moes import film_from_moes, moes_groups, valley_load_number
 
 _SCALE = 0.25
 _MARGIN = 4

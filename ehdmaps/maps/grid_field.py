@@ -8,6 +8,7 @@ interpolated in ln u and T at constant M, then each wanted load is found on the 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -32,6 +33,9 @@ _STEP = 0.02
 _FORGOTTEN = 0.5
 
 
+NodeArray = npt.NDArray[np.intp]
+
+
 class Lines(NamedTuple):
     """Film of one contact over ln M (first axis), speed and temperature, in Moes' scaling.
 
@@ -43,6 +47,8 @@ class Lines(NamedTuple):
         ln H and d ln H/d ln M, H = h_eff/R (eta0 us/(E'R))^(-1/2).
     loss, loss_slope : array (n, n_u, n_T)
         ln B and d ln B/d ln M, B = E' u times the loss compliance.
+    trends : array (4, n, n_T)
+        How the four go on beyond the highest speed, by ln u.
     """
 
     start: float
@@ -50,6 +56,7 @@ class Lines(NamedTuple):
     film_slope: FloatArray
     loss: FloatArray
     loss_slope: FloatArray
+    trends: FloatArray
 
 
 @dataclass(frozen=True)
@@ -111,10 +118,14 @@ class GridField:
         """Film of one contact; see `FilmField.films`."""
         solids = self.line_contacts[self.contacts.index(contact)]
         lines = self._lines[contact]
-        along_u = spline_weights(np.log(self.speeds[self.speeds > 0.0]), np.log(speeds))
+        log_speeds = np.log(speeds)
+        inside = np.minimum(log_speeds, math.log(self.speed_range[1]))
+        along_u = spline_weights(np.log(self.speeds[self.speeds > 0.0]), inside)
         along_t = spline_weights(self.temperatures, temperatures)
         film, film_slope, loss, loss_slope = (
-            np.einsum("mjk,uj,tk->mut", values, along_u, along_t, optimize=True) for values in lines[1:]
+            np.einsum("mjk,uj,tk->mut", values, along_u, along_t, optimize=True)
+            + np.einsum("mk,u,tk->mut", trend, log_speeds - inside, along_t, optimize=True)
+            for values, trend in zip(lines[1:5], lines.trends, strict=True)
         )
         speed_numbers = self._speed_numbers(solids, speeds, temperatures)
         modulus = solids.reduced_modulus
@@ -172,7 +183,8 @@ class GridField:
                     tables[2 * row + 1, :, j, k] = slope
             ends[:, j, k] = np.searchsorted(nodes, line[0]), np.searchsorted(nodes, line[-1], side="right") - 1
         _complete(tables, ends, np.argsort(numbers, axis=None))
-        return Lines(start, *tables)
+        trends = _trends(tables, ends[:, -1, :], np.log(speeds))
+        return Lines(start, tables[0], tables[1], tables[2], tables[3], trends)
 
     def _lifted(
         self, contact: LineContact, loss: FloatArray, film_compliance: FloatArray, speeds: FloatArray
@@ -185,6 +197,31 @@ class GridField:
         return lifted
 
 
+def _trends(tables: FloatArray, ends: NodeArray, log_speeds: FloatArray) -> FloatArray:
+    """Change of the lines with ln u at the highest speed and constant M, (4, n, n_T).
+
+    A parabola in ln M over the range of the line of the highest speed, constant beyond: what lies between two lines
+    (a valley that moves a little) must not grow out of proportion far beyond them.
+    """
+    trends = np.zeros((4, tables.shape[1], tables.shape[3]))
+    if log_speeds.size == 1:
+        return trends
+    step = 1e-3 * (log_speeds[-1] - log_speeds[-2])
+    last_two = np.array([log_speeds[-1] - step, log_speeds[-1]])
+    quotient = np.diff(spline_weights(log_speeds, last_two), axis=0)[0] / step
+    places = _STEP * np.arange(tables.shape[1])
+    for k in range(tables.shape[3]):
+        first, last = ends[:, k]
+        inside = np.clip(places, places[first], places[last])
+        covered = slice(first, last + 1)
+        for row in (0, 2):
+            change = np.einsum("mj,j->m", tables[row, covered, :, k], quotient)
+            parabola = np.polynomial.Polynomial.fit(places[covered], change, min(2, int(last - first)))
+            trends[row, :, k] = parabola(inside)
+            trends[row + 1, :, k] = np.where(inside == places, parabola.deriv()(inside), 0.0)
+    return trends
+
+
 def _along(place: FloatArray, start: float, values: FloatArray, slopes: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Values and slopes at places of a uniform axis, line by line; tangents beyond its ends."""
     x = (place - start) / _STEP
@@ -195,7 +232,7 @@ def _along(place: FloatArray, start: float, values: FloatArray, slopes: FloatArr
     return value + _STEP * (x - inside) * slope, slope
 
 
-def _complete(tables: FloatArray, ends: npt.NDArray[np.intp], rising: npt.NDArray[np.intp]) -> None:
+def _complete(tables: FloatArray, ends: NodeArray, rising: NodeArray) -> None:
     """Continue each line beyond its own loads in the shape of the next line that goes there.
 
     Of two lines the one with the larger speed number reaches lower M, the other one higher M. The shape is

@@ -25,29 +25,32 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
 
 from ehdmaps.maps.elementary import exp, log
+from ehdmaps.maps.lines import (
+    FAST,
+    Force,
+    State,
+    collapsed_line,
+    force_of,
+    line_approach,
+    line_curvature,
+    line_state,
+    stretched,
+    table_state,
+)
 from ehdmaps.maps.tables import (
-    COLDEST,
     HALF_SPACE,
     LOAD,
     NOT_FINITE,
     SPEED,
     TEMPERATURE,
-    ApproachTable,
     CountArray,
     LawTable,
-    Line,
     Point,
 )
 from ehdmaps.physics._values import FloatArray
-
-State = tuple[float, float, float, float]
-Force = tuple[float, float, float]
-Triple = tuple[float, float, float]
-Quad = tuple[float, float, float, float]
 
 LOAD_TOLERANCE = 1e-3
 """Part of the highest load by which a load may pass it: the error of a table, not of a caller."""
@@ -55,180 +58,12 @@ LOAD_TOLERANCE = 1e-3
 EDGE_TOLERANCE = 1e-6
 """Part of the highest speed, and of the temperatures, by which they may be passed: single precision."""
 
-_FAST = {"contract", "reassoc", "nsz", "arcp"}
-"""What the compiler may rearrange; NaN and infinity keep their meaning."""
-
 _STEPS = 100
 _LEAST_LOAD = 1e-200
 _LIGHT = 0.3
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def quadratic_weights(t: float) -> Triple:
-    """Quadratic B-splines around a node, at t steps from it, -1/2 <= t <= 1/2."""
-    low, high = 0.5 - t, 0.5 + t
-    return 0.5 * low * low, 0.75 - t * t, 0.5 * high * high
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def spline_weights(t: float) -> Quad:
-    """Cubic B-splines over a cell, at its part t."""
-    r = 1.0 - t
-    tt, rr = t * t, r * r
-    return (
-        rr * r * (1.0 / 6.0),
-        (2.0 / 3.0) - tt * (1.0 - 0.5 * t),
-        (2.0 / 3.0) - rr * (1.0 - 0.5 * r),
-        tt * t * (1.0 / 6.0),
-    )
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def spline_slopes(t: float) -> Quad:
-    """Derivatives of the cubic B-splines by t."""
-    r = 1.0 - t
-    return (-0.5 * r * r, t * (1.5 * t - 2.0), -r * (1.5 * r - 2.0), 0.5 * t * t)
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def place_within(x: float, cells: int) -> float:
-    """Place x, in steps from the first node, held to so many cells; zero for NaN."""
-    last = float(cells)
-    x = x if x > 0.0 else 0.0
-    return x if x < last else last
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def cell_of(x: float, cells: int) -> int:
-    """Cell of a place within an axis."""
-    return min(int(x), max(cells - 1, 0))
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def stretched(z: float) -> tuple[float, float]:
-    """Return asinh(z), with a small absolute error, and its derivative."""
-    root = math.sqrt(1.0 + z * z)
-    size = log(abs(z) + root)
-    return (size if z >= 0.0 else -size), 1.0 / root
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def state_of(g: float, dg: float, log_ratio: float, dlog_ratio: float) -> State:
-    """State at rest from g, ln(c/w) and their derivatives by the approach; zero for g < 0."""
-    g = g if g > 0.0 else 0.0
-    w, dw = g * g * g, 3.0 * g * g * dg
-    ratio = exp(log_ratio)
-    return w, dw, ratio, ratio * (dw + w * dlog_ratio)
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def force_of(state: State, rate: float) -> Force:
-    """Force at a rate: w (1 + x) with x = c rate/w, -w/(4 x) below x = -1/2, and its derivatives."""
-    w, dw, ratio, dc = state
-    x = ratio * rate
-    moderate = x >= -0.5
-    part = 1.0 + x if moderate else -0.25 / x
-    return (
-        w * part,
-        dw + dc * rate if moderate else part * (2.0 * dw - dc / ratio),
-        w * ratio if moderate else -w * part / rate,
-    )
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def collapsed_row(
-    values: FloatArray, i: int, j: int, along_u: Triple, along_t: Triple, k: int, count: int, sums: FloatArray
-) -> None:
-    """Collapse `count` neighbouring numbers from k on of the last axis, over 3 x 3 speeds and temperatures."""
-    u0, u1, u2 = along_u
-    t0, t1, t2 = along_t
-    i0, j0, k0 = np.uint64(i), np.uint64(j), np.uint64(k)
-    i1, i2 = i0 + np.uint64(1), i0 + np.uint64(2)
-    j1, j2 = j0 + np.uint64(1), j0 + np.uint64(2)
-    for n in range(count):
-        m = k0 + np.uint64(n)
-        v = values
-        sums[n] = (
-            u0 * (t0 * v[i0, j0, m] + t1 * v[i0, j1, m] + t2 * v[i0, j2, m])
-            + u1 * (t0 * v[i1, j0, m] + t1 * v[i1, j1, m] + t2 * v[i1, j2, m])
-            + u2 * (t0 * v[i2, j0, m] + t1 * v[i2, j1, m] + t2 * v[i2, j2, m])
-        )
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def _line_state(line: Line, delta: float) -> State:
-    """State of a line at an approach."""
-    s, ds = stretched((delta - line.offset) * line.inverse_scale)
-    cells = line.coefficients.shape[0]
-    x = place_within((s - line.start) * line.step, cells)
-    cell = cell_of(x, cells)
-    t = x - cell
-    g, dg, q, dq = cubics(line.coefficients, cell, t)
-    scale = line.step * ds * line.inverse_scale
-    return state_of(g, dg * scale, q, dq * scale)
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def cubics(coefficients: FloatArray, cell: int, t: float) -> tuple[float, float, float, float]:
-    """Both cubics of a cell of a line, and their derivatives by t."""
-    c, k = coefficients, np.uint64(cell)
-    a1, a2, a3 = c[k, np.uint64(1)], c[k, np.uint64(2)], c[k, np.uint64(3)]
-    b1, b2, b3 = c[k, np.uint64(5)], c[k, np.uint64(6)], c[k, np.uint64(7)]
-    return (
-        c[k, np.uint64(0)] + t * (a1 + t * (a2 + t * a3)),
-        a1 + t * (2.0 * a2 + 3.0 * t * a3),
-        c[k, np.uint64(4)] + t * (b1 + t * (b2 + t * b3)),
-        b1 + t * (2.0 * b2 + 3.0 * t * b3),
-    )
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
-def _curvature(line: Line, delta: float, state: State) -> float:
-    """Second derivative of the load of a line by the approach, where it carries load."""
-    z = (delta - line.offset) * line.inverse_scale
-    s, ds = stretched(z)
-    c = line.coefficients
-    x = place_within((s - line.start) * line.step, c.shape[0])
-    i = cell_of(x, c.shape[0])
-    g, _, _, _ = cubics(c, i, x - i)
-    dg = state[1] / (3.0 * g * g)
-    per_s = ds * line.inverse_scale
-    ddg = (2.0 * c[i, 2] + 6.0 * (x - i) * c[i, 3]) * (line.step * per_s) ** 2 - dg * z * ds * per_s
-    curvature: float = 6.0 * g * dg * dg + 3.0 * g * g * ddg
-    return curvature
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
-def _line_approach(line: Line, load: float) -> float:
-    """Approach at which a line carries a load; the highest with none for zero."""
-    c = line.coefficients
-    wanted = math.pow(load, 1.0 / 3.0)
-    low, high = 0, c.shape[0]
-    while high - low > 1:
-        middle = (low + high) // 2
-        if c[middle, 0] <= wanted:
-            low = middle
-        else:
-            high = middle
-    left, right, t = 0.0, 1.0, 0.5
-    for _ in range(_STEPS):
-        g, slope, _, _ = cubics(c, low, t)
-        if g > wanted:
-            right = t
-        else:
-            left = t
-        following = t - (g - wanted) / slope if slope > 0.0 else -1.0
-        if not left <= following <= right:
-            following = 0.5 * (left + right)
-        moved = abs(following - t)
-        t = following
-        if moved < 1e-15:
-            break
-    approach: float = line.offset + math.sinh(line.start + (low + t) / line.step) / line.inverse_scale
-    return approach
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _structural(structure: FloatArray, centrifugal_load: float, load: float) -> tuple[float, float]:
     """Structural approach of the contacts at a load, and its derivative; the last one carries more."""
     approach = compliance = 0.0
@@ -247,7 +82,7 @@ def _structural(structure: FloatArray, centrifugal_load: float, load: float) -> 
     return approach, compliance
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _balanced_state(point: Point, delta: float) -> State:
     """State of a roller between its two contacts, the outer one carrying the centrifugal load besides.
 
@@ -257,9 +92,9 @@ def _balanced_state(point: Point, delta: float) -> State:
     if delta <= point.lift_off:
         return 0.0, 0.0, 0.0, 0.0
     inner, outer, q = point.inner, point.outer, point.centrifugal_load
-    low, high = _line_approach(inner, 0.0), delta - _line_approach(outer, q)
+    low, high = line_approach(inner, 0.0), delta - line_approach(outer, q)
     scale = 1.0 / inner.inverse_scale
-    state_i, state_o = _line_state(inner, high), _line_state(outer, point.outer_start)
+    state_i, state_o = line_state(inner, high), line_state(outer, point.outer_start)
     if state_i[0] < _LIGHT * q:  # the outer contact hardly moves
         a = high - state_i[0] / (state_i[1] + state_o[1])
     else:  # both alike, as their scales are
@@ -269,7 +104,7 @@ def _balanced_state(point: Point, delta: float) -> State:
     for _ in range(_STEPS):
         if not low <= a <= high:
             a = 0.5 * (low + high)
-        state_i, state_o = _line_state(inner, a), _line_state(outer, delta - a)
+        state_i, state_o = line_state(inner, a), line_state(outer, delta - a)
         if last:
             break
         if state_o[0] <= 0.0:
@@ -290,22 +125,22 @@ def _balanced_state(point: Point, delta: float) -> State:
         return 0.0, 0.0, 0.0, 0.0
     part_i, part_o = k_o / (k_i + k_o), k_i / (k_i + k_o)
     c_i, c_o = w * r_i, w_o * r_o
-    bend_i = _curvature(inner, a, state_i) * part_i
-    bend_o = _curvature(outer, delta - a, state_o) * part_o
+    bend_i = line_curvature(inner, a, state_i) * part_i
+    bend_o = line_curvature(outer, delta - a, state_o) * part_o
     change = (bend_o * k_i - k_o * bend_i) / (k_i + k_o) ** 2
     dc = dc_i * part_i**3 + dc_o * part_o**3 + 2.0 * change * (c_i * part_i - c_o * part_o)
     return w, k_i * part_i, r_i * part_i**2 + w_o / w * r_o * part_o**2, dc
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _full_state(point: Point, delta: float) -> State:
     """State with the whole film."""
     if point.centrifugal_load > 0.0:
         return _balanced_state(point, delta)
-    return _line_state(point.own, delta)
+    return line_state(point.own, delta)
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _faded_state(point: Point, delta: float) -> State:
     """State with a part of the film: film offset and c at equal load are that part of the whole ones.
 
@@ -352,7 +187,7 @@ def _faded_state(point: Point, delta: float) -> State:
     return w, dw / slope, part * ratio, part * dc / slope
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _rest_state(point: Point, delta: float) -> State:
     """State at rest, before the hold above the highest load."""
     if point.film < 1.0:
@@ -360,14 +195,14 @@ def _rest_state(point: Point, delta: float) -> State:
     return _full_state(point, delta)
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def _held(point: Point, delta: float) -> State:
     """State on the tangent above the held load."""
     w = point.held_load + point.held_stiffness * (delta - point.held_approach)
     return w, point.held_stiffness, point.held_damping / w, 0.0
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def evaluate_at(point: Point, delta: float, rate: float, counts: CountArray) -> Force:
     """Load and derivatives at a point of speed, temperature and centrifugal load.
 
@@ -391,7 +226,7 @@ def evaluate_at(point: Point, delta: float, rate: float, counts: CountArray) -> 
     if delta > point.held_approach:
         state = _held(point, delta)
     elif point.film == 1.0 and point.centrifugal_load == 0.0:
-        state = _line_state(point.own, delta)
+        state = line_state(point.own, delta)
     else:
         state = _rest_state(point, delta)
     if state[0] <= 0.0:
@@ -399,39 +234,6 @@ def evaluate_at(point: Point, delta: float, rate: float, counts: CountArray) -> 
     if state[0] > point.highest_load * (1.0 + LOAD_TOLERANCE):
         counts[LOAD] += 1
     return force_of(state, rate)
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def place_of(table: ApproachTable, log_speed: float, temperature: float) -> tuple[int, float, int, float]:
-    """Nearest nodes of a speed and a temperature, and the steps from them."""
-    last_u, last_t = table.coefficients.shape[0] - 3, table.coefficients.shape[1] - 3
-    x = place_within((log_speed - table.log_speed_start) * table.log_speed_step, last_u)
-    cold = 1.0 / (temperature - COLDEST)
-    y = place_within((cold - table.temperature_start) * table.temperature_step, last_t)
-    i, j = int(x + 0.5), int(y + 0.5)
-    return i, x - i, j, y - j
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
-def _collapsed(
-    table: ApproachTable, cubics: FloatArray, sums: FloatArray, log_speed: float, temperature: float
-) -> Line:
-    """A table at one speed and temperature, written into `cubics`."""
-    i, t, j, r = place_of(table, log_speed, temperature)
-    along_u, along_t = quadratic_weights(t), quadratic_weights(r)
-    collapsed_row(table.place, i, j, along_u, along_t, 0, 2, sums)
-    offset, inverse_scale = sums[0], sums[1]
-    width = table.coefficients.shape[2]
-    collapsed_row(table.coefficients, i, j, along_u, along_t, 0, width, sums)
-    cells = width // 2 - 3
-    for k in range(cells):
-        for f in range(2):
-            c0, c1, c2, c3 = sums[2 * k + f], sums[2 * k + 2 + f], sums[2 * k + 4 + f], sums[2 * k + 6 + f]
-            cubics[k, 4 * f] = (c0 + 4.0 * c1 + c2) / 6.0
-            cubics[k, 4 * f + 1] = 0.5 * (c2 - c0)
-            cubics[k, 4 * f + 2] = 0.5 * (c0 + c2) - c1
-            cubics[k, 4 * f + 3] = (c3 - c0) / 6.0 + 0.5 * (c1 - c2)
-    return Line(cubics[:cells], offset, inverse_scale, table.start, table.step)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -448,7 +250,7 @@ def within_map(
     return min(speed, table.highest_speed), min(max(temperature, low), high)
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def collapse(
     table: LawTable,
     workspace: FloatArray,
@@ -480,17 +282,17 @@ def collapse(
         q = 0.5 * table.held_load
     held_load = table.held_load - q
     sums = workspace[3].reshape(-1)
-    own = _collapsed(table.own, workspace[0], sums, log_speed, temperature)
+    own = collapsed_line(table.own, workspace[0], sums, log_speed, temperature)
     inner, outer, inner_lift_off, outer_start = own, own, 0.0, 0.0
     if q > 0.0:
-        inner = _collapsed(table.inner, workspace[1], sums, log_speed, temperature)
-        outer = _collapsed(table.outer, workspace[2], sums, log_speed, temperature)
-        inner_lift_off, outer_start = _line_approach(inner, 0.0), _line_approach(outer, q)
+        inner = collapsed_line(table.inner, workspace[1], sums, log_speed, temperature)
+        outer = collapsed_line(table.outer, workspace[2], sums, log_speed, temperature)
+        inner_lift_off, outer_start = line_approach(inner, 0.0), line_approach(outer, q)
         lift_off = inner_lift_off + outer_start
-        held = _line_approach(inner, held_load) + _line_approach(outer, table.held_load)
+        held = line_approach(inner, held_load) + line_approach(outer, table.held_load)
     else:
-        lift_off = _line_approach(own, 0.0)
-        held = _line_approach(own, held_load)
+        lift_off = line_approach(own, 0.0)
+        held = line_approach(own, held_load)
     dry, compliance = _structural(table.structure, q, held_load)
     held = (1.0 - film) * dry + film * held
     unheld = Point(
@@ -504,37 +306,7 @@ def collapse(
     )  # fmt: skip
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def _table_state(table: ApproachTable, delta: float, log_speed: float, temperature: float, sums: FloatArray) -> State:
-    """State of a table at an approach, speed and temperature within it; `sums` is scratch for 8 numbers."""
-    i, t, j, r = place_of(table, log_speed, temperature)
-    along_u, along_t = quadratic_weights(t), quadratic_weights(r)
-    collapsed_row(table.place, i, j, along_u, along_t, 0, 2, sums)
-    inverse_scale = sums[1]
-    s, ds = stretched((delta - sums[0]) * inverse_scale)
-    cells = table.coefficients.shape[2] // 2 - 3
-    x = place_within((s - table.start) * table.step, cells)
-    k = cell_of(x, cells)
-    collapsed_row(table.coefficients, i, j, along_u, along_t, 2 * k, 8, sums)
-    g, dg, q, dq = splines(sums, x - k)
-    scale = table.step * ds * inverse_scale
-    return state_of(g, dg * scale, q, dq * scale)
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST, forceinline=True)
-def splines(sums: FloatArray, t: float) -> tuple[float, float, float, float]:
-    """Both splines from their coefficients side by side, and their derivatives by t."""
-    b0, b1, b2, b3 = spline_weights(t)
-    d0, d1, d2, d3 = spline_slopes(t)
-    return (
-        b0 * sums[0] + b1 * sums[2] + b2 * sums[4] + b3 * sums[6],
-        d0 * sums[0] + d1 * sums[2] + d2 * sums[4] + d3 * sums[6],
-        b0 * sums[1] + b1 * sums[3] + b2 * sums[5] + b3 * sums[7],
-        d0 * sums[1] + d1 * sums[3] + d2 * sums[5] + d3 * sums[7],
-    )
-
-
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _through_point(
     table: LawTable,
     workspace: FloatArray,
@@ -550,7 +322,7 @@ def _through_point(
     return evaluate_at(point, delta, rate, counts)
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FAST)
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def evaluate(
     table: LawTable,
     workspace: FloatArray,
@@ -576,7 +348,7 @@ def evaluate(
         and table.lowest_temperature <= temperature <= table.highest_temperature
         and centrifugal_load == 0.0
     ):
-        state = _table_state(table.own, delta, log(speed), temperature, workspace[3, 0])
+        state = table_state(table.own, delta, log(speed), temperature, workspace[3, 0])
         if state[0] <= table.highest_load:
             return force_of(state, rate)
     return _through_point(table, workspace, delta, rate, entrainment_speed, temperature, centrifugal_load, counts)

@@ -30,8 +30,8 @@ class ApproachTable(NamedTuple):
     """g = w^(1/3) and ln(c/w) of one contact, or of two in series, over speed, temperature and approach.
 
     The axes are uniform in ln u, in 1/(T - `COLDEST`), in which ln eta0 of an oil is nearly straight, and in
-    s = asinh((delta - offset)/scale). Between the nodes i and i + 1 of an axis the cubic B-splines have the
-    coefficients i to i + 3.
+    s = asinh((delta - offset)/scale). Over u and T the B-splines are quadratic, with the coefficients i to i + 2 around
+    the node i; over s they are cubic, with the coefficients i to i + 3 between the nodes i and i + 1.
 
     Attributes
     ----------

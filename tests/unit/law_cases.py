@@ -91,10 +91,13 @@ def exact_law(field, contacts, loads, speed, temperature):
     return curve.approach, 3.0 * np.cbrt(loads) ** 2 / curve.slope, curve.loss_ratio * loads
 
 
+LOADS = tuple(np.geomspace(1e3, 1e6, 19))
+
+
 def dataset_of(
     solver=None,
     contacts=CONTACTS,
-    loads=tuple(np.geomspace(1e3, 1e6, 19)),
+    loads=LOADS,
     speeds=(0.3, 0.6, 1.2, 2.4),
     temperatures=(313.15, 323.15, 333.15, 343.15),
     bearing=NU308,

@@ -121,7 +121,7 @@ def test_holes_are_refused(emap):
         with pytest.raises(MapError, match="1 holes"):
             EHDMap(changed(data, name, (0, 3, 1, 2), np.nan)).law("inner")
     many = changed(data, "status", (1, slice(3, 8), 1, 2), int(Status.FAILED))
-    with pytest.raises(MapError, match="5 holes, outer at .*; and 2 more"):
+    with pytest.raises(MapError, match=r"5 holes, outer at .*; and 2 more"):
         EHDMap(many).law("series")
 
 
@@ -194,7 +194,7 @@ def test_oils_come_back_from_their_records(oil):
 @pytest.mark.parametrize("key", ["viscosity_law", "viscosity_over_temperature"])
 def test_unknown_laws_of_an_oil_are_refused(key):
     record = OIL.record() | {key: "own"}
-    with pytest.raises(MapError, match="attribute lubricant: does not read .*own"):
+    with pytest.raises(MapError, match=r"attribute lubricant: does not read .*own"):
         lubricant_from_json(json.dumps(record))
 
 

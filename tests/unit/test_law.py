@@ -234,6 +234,24 @@ def test_law_at_a_point_equals_the_law():
                 assert b == pytest.approx(a, rel=1e-11, abs=1e-300)  # round-off
 
 
+def test_points_of_every_kind_in_one_call():
+    clamped = law(outside="clamp")
+    random = np.random.default_rng(11)
+    delta, rate = random.uniform(-1e-5, 6e-5, 600), random.normal(0.0, 1e-3, 600)
+    speed = random.choice([0.0, 0.1, 0.5, 0.5, 2.0, 5.0], 600)
+    temperature = random.choice([300.0, 320.0, 330.0], 600)
+    q = random.choice([0.0, 0.0, 250.0], 600)
+    clamped.reset_counts()
+    together = np.array(clamped(delta, rate, speed, temperature, q))
+    counted = clamped.outside_counts
+    clamped.reset_counts()
+    alone = np.array([clamped(*point) for point in zip(delta, rate, speed, temperature, q, strict=True)]).T
+    assert together == pytest.approx(alone, rel=1e-11, abs=1e-300)
+    assert counted == clamped.outside_counts
+    assert counted["entrainment_speed"] == np.count_nonzero(speed == 5.0)
+    assert counted["temperature"] == np.count_nonzero(temperature == 300.0)
+
+
 def test_compiled_code_can_call_the_law():
     series = law()
 

@@ -255,6 +255,25 @@ def test_grid_field_lifts_a_negative_loss():
     assert 0.0 < got[2] < 1e-2 * grid.loss_compliance[0, 10, 5, 3]
 
 
+@pytest.mark.parametrize("factor", [1.5, 4.0, 9.0])
+def test_grid_field_goes_on_beyond_the_highest_speed_at_constant_load_number(factor):
+    field = ValleyField()
+    grid = grid_of(field, LOADS, SPEEDS, TEMPERATURES)
+    for load in (1e3, 2e4, 2e5, 1e6):
+        got, wanted = (films_at(each, "inner", load, 10.0 * factor, 330.0) for each in (grid, field))
+        # The trend at the end against the field, which bends: a model error that grows with the distance.
+        assert got[0] == pytest.approx(wanted[0], rel=0.015 * factor)
+        assert got[1] == pytest.approx(wanted[1], rel=0.1, abs=0.02 * factor * wanted[0] / load)
+        assert got[2] > 0.0
+        low, high = (films_at(grid, "inner", load * (1.0 + e), 10.0 * factor, 330.0)[0] for e in (-1e-5, 1e-5))
+        assert got[1] == pytest.approx((low - high) / (2e-5 * load), rel=1e-4)
+
+
+def test_grid_field_of_one_speed():
+    grid = grid_of(SMALL_FIELD, np.geomspace(1e3, 1e6, 9), [1.0], [330.0])
+    assert films_at(grid, "inner", 1e4, 2.0, 330.0)[1] > 0.0
+
+
 def test_dry_field_keeps_the_ranges():
     field = DryField(SMALL_FIELD)
     assert field.contacts == SMALL_FIELD.contacts

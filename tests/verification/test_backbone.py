@@ -17,12 +17,11 @@ from ehdmaps.maps.backbone import (
     BackbonePlan,
     _lagrange,
     plan_backbone,
-    valley_load_number,
 )
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import load_and_speed, moes_groups
+from ehdmaps.physics.moes import load_and_speed, moes_groups, valley_load_number
 from ehdmaps.physics.solids import STEEL
 
 OIL = Lubricant.named("FVA3")

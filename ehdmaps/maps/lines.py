@@ -1,0 +1,253 @@
+"""Splines of a table and of a line, and the states of a contact that they give, in compiled code.
+
+The state of a contact at rest is (w, dw/ddelta, c/w, dc/ddelta) throughout.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from ehdmaps.maps.elementary import exp, log
+from ehdmaps.maps.tables import COLDEST, ApproachTable, Line
+from ehdmaps.physics._values import FloatArray
+
+State = tuple[float, float, float, float]
+Force = tuple[float, float, float]
+Triple = tuple[float, float, float]
+Quad = tuple[float, float, float, float]
+
+FAST = {"contract", "reassoc", "nsz", "arcp"}
+"""What the compiler may rearrange; NaN and infinity keep their meaning."""
+
+_STEPS = 100
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def quadratic_weights(t: float) -> Triple:
+    """Quadratic B-splines around a node, at t steps from it, -1/2 <= t <= 1/2."""
+    low, high = 0.5 - t, 0.5 + t
+    return 0.5 * low * low, 0.75 - t * t, 0.5 * high * high
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def spline_weights(t: float) -> Quad:
+    """Cubic B-splines over a cell, at its part t."""
+    r = 1.0 - t
+    tt, rr = t * t, r * r
+    return (
+        rr * r * (1.0 / 6.0),
+        (2.0 / 3.0) - tt * (1.0 - 0.5 * t),
+        (2.0 / 3.0) - rr * (1.0 - 0.5 * r),
+        tt * t * (1.0 / 6.0),
+    )
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def spline_slopes(t: float) -> Quad:
+    """Derivatives of the cubic B-splines by t."""
+    r = 1.0 - t
+    return (-0.5 * r * r, t * (1.5 * t - 2.0), -r * (1.5 * r - 2.0), 0.5 * t * t)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def place_within(x: float, cells: int) -> float:
+    """Place x, in steps from the first node, held to so many cells; zero for NaN."""
+    last = float(cells)
+    x = x if x > 0.0 else 0.0
+    return x if x < last else last
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def cell_of(x: float, cells: int) -> int:
+    """Cell of a place within an axis."""
+    return min(int(x), max(cells - 1, 0))
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def stretched(z: float) -> tuple[float, float]:
+    """Return asinh(z), with a small absolute error, and its derivative."""
+    root = math.sqrt(1.0 + z * z)
+    size = log(abs(z) + root)
+    return (size if z >= 0.0 else -size), 1.0 / root
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def state_of(g: float, dg: float, log_ratio: float, dlog_ratio: float) -> State:
+    """State at rest from g, ln(c/w) and their derivatives by the approach; zero for g < 0."""
+    g = g if g > 0.0 else 0.0
+    w, dw = g * g * g, 3.0 * g * g * dg
+    ratio = exp(log_ratio)
+    return w, dw, ratio, ratio * (dw + w * dlog_ratio)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def force_of(state: State, rate: float) -> Force:
+    """Force at a rate: w (1 + x) with x = c rate/w, -w/(4 x) below x = -1/2, and its derivatives."""
+    w, dw, ratio, dc = state
+    x = ratio * rate
+    moderate = x >= -0.5
+    part = 1.0 + x if moderate else -0.25 / x
+    return (
+        w * part,
+        dw + dc * rate if moderate else part * (2.0 * dw - dc / ratio),
+        w * ratio if moderate else -w * part / rate,
+    )
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def collapsed_row(
+    values: FloatArray, i: int, j: int, along_u: Triple, along_t: Triple, k: int, count: int, sums: FloatArray
+) -> None:
+    """Collapse `count` neighbouring numbers from k on of the last axis, over 3 x 3 speeds and temperatures."""
+    u0, u1, u2 = along_u
+    t0, t1, t2 = along_t
+    i0, j0, k0 = np.uint64(i), np.uint64(j), np.uint64(k)
+    i1, i2 = i0 + np.uint64(1), i0 + np.uint64(2)
+    j1, j2 = j0 + np.uint64(1), j0 + np.uint64(2)
+    for n in range(count):
+        m = k0 + np.uint64(n)
+        v = values
+        sums[n] = (
+            u0 * (t0 * v[i0, j0, m] + t1 * v[i0, j1, m] + t2 * v[i0, j2, m])
+            + u1 * (t0 * v[i1, j0, m] + t1 * v[i1, j1, m] + t2 * v[i1, j2, m])
+            + u2 * (t0 * v[i2, j0, m] + t1 * v[i2, j1, m] + t2 * v[i2, j2, m])
+        )
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def cubics(coefficients: FloatArray, cell: int, t: float) -> tuple[float, float, float, float]:
+    """Both cubics of a cell of a line, and their derivatives by t."""
+    c, k = coefficients, np.uint64(cell)
+    a1, a2, a3 = c[k, np.uint64(1)], c[k, np.uint64(2)], c[k, np.uint64(3)]
+    b1, b2, b3 = c[k, np.uint64(5)], c[k, np.uint64(6)], c[k, np.uint64(7)]
+    return (
+        c[k, np.uint64(0)] + t * (a1 + t * (a2 + t * a3)),
+        a1 + t * (2.0 * a2 + 3.0 * t * a3),
+        c[k, np.uint64(4)] + t * (b1 + t * (b2 + t * b3)),
+        b1 + t * (2.0 * b2 + 3.0 * t * b3),
+    )
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def splines(sums: FloatArray, t: float) -> tuple[float, float, float, float]:
+    """Both splines from their coefficients side by side, and their derivatives by t."""
+    b0, b1, b2, b3 = spline_weights(t)
+    d0, d1, d2, d3 = spline_slopes(t)
+    return (
+        b0 * sums[0] + b1 * sums[2] + b2 * sums[4] + b3 * sums[6],
+        d0 * sums[0] + d1 * sums[2] + d2 * sums[4] + d3 * sums[6],
+        b0 * sums[1] + b1 * sums[3] + b2 * sums[5] + b3 * sums[7],
+        d0 * sums[1] + d1 * sums[3] + d2 * sums[5] + d3 * sums[7],
+    )
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def place_of(table: ApproachTable, log_speed: float, temperature: float) -> tuple[int, float, int, float]:
+    """Nearest nodes of a speed and a temperature, and the steps from them."""
+    last_u, last_t = table.coefficients.shape[0] - 3, table.coefficients.shape[1] - 3
+    x = place_within((log_speed - table.log_speed_start) * table.log_speed_step, last_u)
+    cold = 1.0 / (temperature - COLDEST)
+    y = place_within((cold - table.temperature_start) * table.temperature_step, last_t)
+    i, j = int(x + 0.5), int(y + 0.5)
+    return i, x - i, j, y - j
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def collapsed_line(
+    table: ApproachTable, cubics: FloatArray, sums: FloatArray, log_speed: float, temperature: float
+) -> Line:
+    """A table at one speed and temperature, written into `cubics`."""
+    i, t, j, r = place_of(table, log_speed, temperature)
+    along_u, along_t = quadratic_weights(t), quadratic_weights(r)
+    collapsed_row(table.place, i, j, along_u, along_t, 0, 2, sums)
+    offset, inverse_scale = sums[0], sums[1]
+    width = table.coefficients.shape[2]
+    collapsed_row(table.coefficients, i, j, along_u, along_t, 0, width, sums)
+    cells = width // 2 - 3
+    for k in range(cells):
+        for f in range(2):
+            c0, c1, c2, c3 = sums[2 * k + f], sums[2 * k + 2 + f], sums[2 * k + 4 + f], sums[2 * k + 6 + f]
+            cubics[k, 4 * f] = (c0 + 4.0 * c1 + c2) / 6.0
+            cubics[k, 4 * f + 1] = 0.5 * (c2 - c0)
+            cubics[k, 4 * f + 2] = 0.5 * (c0 + c2) - c1
+            cubics[k, 4 * f + 3] = (c3 - c0) / 6.0 + 0.5 * (c1 - c2)
+    return Line(cubics[:cells], offset, inverse_scale, table.start, table.step)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def table_state(table: ApproachTable, delta: float, log_speed: float, temperature: float, sums: FloatArray) -> State:
+    """State of a table at an approach, speed and temperature within it; `sums` is scratch for 8 numbers."""
+    i, t, j, r = place_of(table, log_speed, temperature)
+    along_u, along_t = quadratic_weights(t), quadratic_weights(r)
+    collapsed_row(table.place, i, j, along_u, along_t, 0, 2, sums)
+    inverse_scale = sums[1]
+    s, ds = stretched((delta - sums[0]) * inverse_scale)
+    cells = table.coefficients.shape[2] // 2 - 3
+    x = place_within((s - table.start) * table.step, cells)
+    k = cell_of(x, cells)
+    collapsed_row(table.coefficients, i, j, along_u, along_t, 2 * k, 8, sums)
+    g, dg, q, dq = splines(sums, x - k)
+    scale = table.step * ds * inverse_scale
+    return state_of(g, dg * scale, q, dq * scale)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def line_state(line: Line, delta: float) -> State:
+    """State of a line at an approach."""
+    s, ds = stretched((delta - line.offset) * line.inverse_scale)
+    cells = line.coefficients.shape[0]
+    x = place_within((s - line.start) * line.step, cells)
+    cell = cell_of(x, cells)
+    t = x - cell
+    g, dg, q, dq = cubics(line.coefficients, cell, t)
+    scale = line.step * ds * line.inverse_scale
+    return state_of(g, dg * scale, q, dq * scale)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def line_curvature(line: Line, delta: float, state: State) -> float:
+    """Second derivative of the load of a line by the approach, where it carries load."""
+    z = (delta - line.offset) * line.inverse_scale
+    s, ds = stretched(z)
+    c = line.coefficients
+    x = place_within((s - line.start) * line.step, c.shape[0])
+    i = cell_of(x, c.shape[0])
+    g, _, _, _ = cubics(c, i, x - i)
+    dg = state[1] / (3.0 * g * g)
+    per_s = ds * line.inverse_scale
+    ddg = (2.0 * c[i, 2] + 6.0 * (x - i) * c[i, 3]) * (line.step * per_s) ** 2 - dg * z * ds * per_s
+    curvature: float = 6.0 * g * dg * dg + 3.0 * g * g * ddg
+    return curvature
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def line_approach(line: Line, load: float) -> float:
+    """Approach at which a line carries a load; the highest with none for zero."""
+    c = line.coefficients
+    wanted = math.pow(load, 1.0 / 3.0)
+    low, high = 0, c.shape[0]
+    while high - low > 1:
+        middle = (low + high) // 2
+        if c[middle, 0] <= wanted:
+            low = middle
+        else:
+            high = middle
+    left, right, t = 0.0, 1.0, 0.5
+    for _ in range(_STEPS):
+        g, slope, _, _ = cubics(c, low, t)
+        if g > wanted:
+            right = t
+        else:
+            left = t
+        following = t - (g - wanted) / slope if slope > 0.0 else -1.0
+        if not left <= following <= right:
+            following = 0.5 * (left + right)
+        moved = abs(following - t)
+        t = following
+        if moved < 1e-15:
+            break
+    approach: float = line.offset + math.sinh(line.start + (low + t) / line.step) / line.inverse_scale
+    return approach
