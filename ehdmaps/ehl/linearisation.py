@@ -16,10 +16,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import lu_factor, lu_solve
 
 from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid
-from ehdmaps.ehl.newton import solve_scaled
 from ehdmaps.ehl.reynolds import LineProblem, residual, stored_mass, stored_mass_rate
 
 Array = NDArray[np.float64]
@@ -91,8 +91,10 @@ def film_response(
         return added
 
     if frequency == 0.0:
-        static = solve_scaled(matrix.copy(), unit.copy())
-        slow = solve_scaled(matrix, -storage(static))
+        scale = 1.0 / np.max(np.abs(matrix), axis=1)
+        factors = lu_factor(matrix * scale[:, None], overwrite_a=True, check_finite=False)
+        static = lu_solve(factors, scale * unit, check_finite=False)
+        slow = lu_solve(factors, -scale * storage(static), check_finite=False)
         return Response(compliance=-float(static[n + 1]) - DRY_COMPLIANCE, loss=float(slow[n + 1]))
     rates = np.column_stack([storage(column) for column in np.eye(total)])
     dynamic = np.linalg.solve(matrix + 1j * frequency * rates, unit.astype(complex))[n + 1]

@@ -36,7 +36,7 @@ from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_num
 Array = NDArray[np.float64]
 IndexArray = NDArray[np.int64]
 
-VALLEY_STEP, OUTER_STEP = 0.06, 0.35
+VALLEY_STEP, OUTER_STEP = 0.06, 0.45
 """Steps of zeta inside and outside the valley."""
 
 VALLEY = (-1.1, 1.5)
