@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+import xarray as xr
 
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
@@ -30,6 +31,9 @@ VALLEY_WIDTH = (-0.6, 0.8)
 
 COMPLIANCE_BARS, DAMPING_BARS = (0.01, 1e-4), (0.05, 1e-3)
 """An error is within its bar where it is below a share of the film compliance or of 1/k; of c or of k b/u."""
+
+SHARES = {"law_": 0.99, "law_valley_": 0.95}
+"""Share of the points that should be within the bars, over the whole map and in the valley."""
 
 MOST_TRIES = 10
 """Draws per point in the valley: a map may hold a part of it, or none."""
@@ -97,6 +101,23 @@ def checked_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -
         return check_laws(check, emap, results)
     except MapError as error:
         return {"law_check_points": len(check.tasks), "law_refused": str(error)}
+
+
+def unmet(dataset: xr.Dataset) -> list[str]:
+    """What the laws of a map miss, a line each; nothing where they were not checked."""
+    missed = []
+    if "law_refused" in dataset.attrs:
+        missed.append(f"no contact law: {dataset.attrs['law_refused']}")
+    for prefix, share in SHARES.items():
+        for name in ("film_compliance", "damping"):
+            found = dataset.attrs.get(f"{prefix}{name}_within_bar")
+            if found is not None and found < share:
+                where = "in the damping valley" if "valley" in prefix else "over the map"
+                missed.append(
+                    f"unmet: {name.replace('_', ' ')} of the contact laws is within its bar at {found:.1%} of the "
+                    f"points {where}; wanted {share:.0%}; more temperatures, speeds or loads, or a finer grid, help"
+                )
+    return missed
 
 
 def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> dict[str, float | int | str]:

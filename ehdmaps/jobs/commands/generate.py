@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.generate import generate
+from ehdmaps.jobs.law_check import unmet
 from ehdmaps.jobs.progress import progress
 from ehdmaps.jobs.reader import is_map, read_job
 from ehdmaps.jobs.report import holes
@@ -19,7 +20,7 @@ INTERRUPTED = 130
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Make the map; status 1 if points have no solution."""
+    """Make the map; status 1 if points have no solution, or a contact law is not as good as it should be."""
     job = read_job(arguments.job, arguments.solver)
     if arguments.output is None and is_map(arguments.job):
         raise InputError(f"-o: missing; {arguments.job} is a map itself; give the map to write with -o")
@@ -35,4 +36,5 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             f"\nstopped; what is solved is kept in {store_path(output)}: the same command goes on from there\n"
         )
         return "", INTERRUPTED
-    return summary(generated, output), 1 if holes(generated.dataset) else 0
+    missed = unmet(generated.dataset)
+    return "\n".join([summary(generated, output), *missed]), 1 if holes(generated.dataset) or missed else 0
