@@ -11,7 +11,7 @@ import xarray as xr
 from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
-from ehdmaps.maps.backbone import BackbonePlan, plan_backbone
+from ehdmaps.maps.backbone_plan import BackbonePlan, plan_backbone
 from ehdmaps.physics.solution import ContactSolver, Status
 
 _VARIABLES = (

@@ -9,7 +9,8 @@ emap           `EHDMap`, `open_map`: a map file as a value
 usable         whether a law can be made from a map
 film_field     `FilmField`: film of each contact at any load, speed and temperature
 grid_field     the film field of the map's own grid
-backbone       the film field of refinement lines, and the plan of those lines
+backbone_plan  which lines are solved for a contact law besides the map
+backbone       the film field of those lines
 mixing         the compiled inner loop of the backbone
 dry            stand-in for the film of a dry map
 tail           film below the lowest mapped load

@@ -14,10 +14,9 @@ from ehdmaps.errors import MapError
 from ehdmaps.maps.backbone import (
     GROUP_VARIABLES,
     BackboneField,
-    BackbonePlan,
     _lagrange,
-    plan_backbone,
 )
+from ehdmaps.maps.backbone_plan import BackbonePlan, plan_backbone
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
