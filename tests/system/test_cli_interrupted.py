@@ -46,6 +46,8 @@ class Patient(FormulaSolver):
         with open("log", "a") as log:
             log.write(f"{os.getpid()} {contact.name} {entrainment_speed!r} {temperature!r}\\n")
         time.sleep(self.pause)
+        while "HOLD" in os.environ and not os.path.exists("release"):
+            time.sleep(self.pause)
         return super().solve_line(contact, lubricant, loads, entrainment_speed, temperature, frequency)
 
 if __name__ == "__main__":
@@ -149,16 +151,24 @@ def test_ctrl_c_stops_cleanly_and_says_how_to_go_on(folder, workers):
 
 def test_a_second_job_on_the_same_store_is_refused(folder):
     first = subprocess.Popen(
-        command("--workers", "1"), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+        command("--workers", "1"),
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        env={**os.environ, "HOLD": "until the file release is there"},
     )
-    wait_for(lambda: len(begun(folder)) >= 5)
-    for further in ([], ["--fresh"]):
-        second = subprocess.run(
-            command("--workers", "1", *further), cwd=folder, capture_output=True, text=True, check=False
-        )
-        assert second.returncode == 2
-        assert "job.nc.store: is in use by another job" in second.stderr
-    out, _ = first.communicate(timeout=60)
+    try:
+        wait_for(lambda: len(begun(folder)) >= 1)
+        for further in ([], ["--fresh"]):
+            second = subprocess.run(
+                command("--workers", "1", *further), cwd=folder, capture_output=True, text=True, check=False
+            )
+            assert second.returncode == 2
+            assert "job.nc.store: is in use by another job" in second.stderr
+    finally:
+        (folder / "release").touch()
+        out, _ = first.communicate(timeout=60)
     assert (first.returncode, counts(out)) == (0, (0, POINTS))
 
 
