@@ -9,11 +9,10 @@ densely around zeta = 0, where damping dives through a valley far narrower than 
 elsewhere. Load, speed and radius of a real contact lead to (zeta, speed, temperature) of the reference contact; what is
 read there is scaled back by the groups.
 
-Between nodes: along zeta the film offset is the integral of its solved slope (the film compliance), tied to its solved
-values by a spline that varies slowly, because offsets of neighbouring loads carry independent grid errors, whose
-quotient with a small step would drown the slope; cubic spline for the loss; six-point Lagrange in ln(speed) and
-temperature at
-constant zeta.
+Between nodes: along zeta the film offset is the integral of its solved slope (the film compliance), bent outside the
+valley to meet its solved values on the average. Offsets of neighbouring loads carry independent grid errors; their
+quotient with a small step would drown the slope, which is nearly zero at the bottom of the valley. Cubic spline for the
+loss; six-point Lagrange in ln(speed) and temperature at constant zeta.
 """
 
 from __future__ import annotations
@@ -25,10 +24,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline, CubicSpline, PPoly, make_lsq_spline
+from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.errors import MapError
-from ehdmaps.maps.backbone_plan import NEIGHBOURS
+from ehdmaps.maps.backbone_plan import NEIGHBOURS, VALLEY
 from ehdmaps.maps.mixing import mix_lines
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
@@ -36,10 +35,6 @@ from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_num
 
 Array = NDArray[np.float64]
 IndexArray = NDArray[np.int64]
-
-TIE_SPAN = 3.0
-"""Distance of the knots in zeta of the spline that ties a line to its values: errors of 1e-4 in the film offset
-then bend the slope by less than 1e-4 of the film over the load."""
 
 HEAVY = 2.5
 """zeta above which the slope of the film offset comes from its values: steps are long there, and film compliance is so
@@ -63,35 +58,43 @@ GROUP_VARIABLES = ("film_offset", "film_compliance", "loss_compliance")
 
 @dataclass(frozen=True)
 class _OffsetLine:
-    """ln(film offset) along one line: integral of its slope plus a slow tie to its values."""
+    """ln(film offset) along one line: integral of its slope, bent outside the valley to meet its values."""
 
     steep: CubicSpline
     integral: PPoly
-    tie: BSpline
+    bend: Array
 
     @classmethod
     def through(cls, zeta: Array, value: Array, slope: Array) -> _OffsetLine:
-        """Line through slopes at the nodes, and through values on the average over TIE_SPAN."""
+        """Line through the slopes at the nodes, exactly in the valley, and through the values on the average."""
         heavy = zeta > HEAVY
         if np.any(heavy):
             slope = np.where(heavy, CubicSpline(zeta, value)(zeta, 1), slope)
         steep = CubicSpline(zeta, slope)
         integral = steep.antiderivative()
-        inner = np.arange(zeta[0] + TIE_SPAN, zeta[-1] - 0.5 * TIE_SPAN, TIE_SPAN)
-        knots = np.concatenate([[zeta[0]] * 4, inner, [zeta[-1]] * 4])
-        return cls(steep, integral, make_lsq_spline(zeta, value - integral(zeta), knots, k=3))
+        bend, *_ = np.linalg.lstsq(_bends(zeta, 0), value - integral(zeta), rcond=None)
+        return cls(steep, integral, bend)
 
     def value(self, zeta: Array) -> Array:
-        """ln(film offset)."""
-        return np.asarray(self.integral(zeta) + self.tie(zeta))
+        """Value of ln(film offset)."""
+        return np.asarray(self.integral(zeta) + _bends(zeta, 0) @ self.bend)
 
     def slope(self, zeta: Array) -> Array:
         """Its derivative."""
-        return np.asarray(self.steep(zeta) + self.tie(zeta, 1))
+        return np.asarray(self.steep(zeta) + _bends(zeta, 1) @ self.bend)
 
     def curvature(self, zeta: Array) -> Array:
         """Its second derivative."""
-        return np.asarray(self.steep(zeta, 1) + self.tie(zeta, 2))
+        return np.asarray(self.steep(zeta, 1) + _bends(zeta, 2) @ self.bend)
+
+
+def _bends(zeta: Array, order: int) -> Array:
+    """Derivatives of a constant, and of a square and a cube on either side of the valley; shape (n, 5)."""
+    columns = [np.full_like(zeta, float(order == 0))]
+    for away in (np.minimum(zeta - VALLEY[0], 0.0), np.maximum(zeta - VALLEY[1], 0.0)):
+        beyond = (away != 0.0).astype(float)
+        columns += [(away**2, 2.0 * away, 2.0 * beyond)[order], (away**3, 3.0 * away**2, 6.0 * away)[order]]
+    return np.column_stack(columns)
 
 
 class BackboneField:
