@@ -311,7 +311,7 @@ def _assembled(
     central, minimum = films_of(fine)
 
     def error(value: float, rough_value: float, share: float, lost: float) -> float:
-        """Signed: what refinement would take away; a short inlet makes all three too small in magnitude."""
+        """Relative, > 0 where refinement lowers the value; what the inlet's end loses is added in magnitude."""
         grid = (rough_value - value) * share / value
         return math.copysign(abs(grid) + lost * inlet, grid)
 

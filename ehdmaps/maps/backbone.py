@@ -28,8 +28,10 @@ from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.errors import MapError
 from ehdmaps.maps.backbone_plan import NEIGHBOURS, VALLEY
+from ehdmaps.maps.film_field import lifted_loss
 from ehdmaps.maps.mixing import mix_lines
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_number
 
@@ -46,9 +48,6 @@ FEWEST_NODES = 8
 LOSS_SCALE = 6e-2
 """Loss, as a share of film offset over speed, below which its interpolation turns from logarithmic to linear: at the
 valley it runs through zero, where a logarithm has no slope to follow."""
-
-LOSS_FLOOR = 1e-4
-"""Smallest loss compliance of a field, as a share of b/(u k): a tenth of what the solver's damping is good to."""
 
 LATTICE_STEP = 0.02
 """Step of zeta to which lines are refined for reading."""
@@ -100,8 +99,7 @@ def _bends(zeta: Array, order: int) -> Array:
 class BackboneField:
     """Films of any contact of the map from its backbone; a `FilmField`.
 
-    The loss compliance is kept positive: where the solved one falls below LOSS_FLOOR, or below zero at the bottom of
-    the valley, it runs smoothly into a small positive value, so that a contact law is passive.
+    The loss compliance is kept positive, see `lifted_loss`.
 
     Parameters
     ----------
@@ -165,7 +163,7 @@ class BackboneField:
         z, h, s, b = zeta[solved], offset[solved], compliance[solved], loss[solved]
         unit, valley, scale = self._scales(self._reference, speed, temperature)
         loads = np.exp(z) * valley / unit
-        share = b * speed * loads / (h * _half_width(self._reference, loads))
+        share = b * speed * loads / (h * half_width(loads, self._reference.radius, self._reference.reduced_modulus))
         film = _OffsetLine.through(z, np.log(h / scale), -s * loads / h)
         damping = CubicSpline(z, np.arcsinh(share / LOSS_SCALE))
         places = self._first + LATTICE_STEP * np.arange(nodes)
@@ -227,15 +225,10 @@ class BackboneField:
         mix_lines(self._lattice, self._first, LATTICE_STEP, lines, weights, zeta, mixed)
         offset = scale * np.exp(mixed[0])
         compliance = -mixed[1] * offset / loads
-        time = _half_width(contact, loads) / speed
-        loss = LOSS_SCALE * np.sinh(mixed[2]) * offset / loads * time
-        floor = LOSS_FLOOR * time * (contact.structural_compliance(loads) + compliance)
-        return np.stack([offset, compliance, 0.5 * (loss + np.hypot(loss, 2.0 * floor))])
-
-
-def _half_width(contact: LineContact, loads: Array) -> Array:
-    """Hertz half-width [m]."""
-    return np.sqrt(8.0 * loads * contact.radius / (math.pi * contact.reduced_modulus))
+        width = half_width(loads, contact.radius, contact.reduced_modulus)
+        loss = LOSS_SCALE * np.sinh(mixed[2]) * offset / loads * width / speed
+        total = contact.structural_compliance(loads) + compliance
+        return np.stack([offset, compliance, lifted_loss(loss, width, speed, total)])
 
 
 def _lagrange(nodes: Array, at: float) -> tuple[IndexArray, Array]:

@@ -4,7 +4,29 @@ from __future__ import annotations
 
 from typing import Protocol
 
+import numpy as np
+
 from ehdmaps.physics._values import FloatArray
+
+LOSS_FLOOR = 1e-4
+"""Smallest loss compliance of a field, as a share of b/(u k): a tenth of what the solver's damping is good to."""
+
+
+def lifted_loss(
+    loss: FloatArray, half_width: FloatArray, speed: FloatArray | float, compliance: FloatArray
+) -> FloatArray:
+    """Loss compliance made positive, smoothly: a contact law is passive, and takes logarithms of it.
+
+    Parameters
+    ----------
+    loss : array
+        Loss compliance c/k^2 [m2 s/N]; below zero at the bottom of some damping valleys.
+    half_width, speed, compliance : arrays that broadcast
+        b [m], u [m/s] and 1/k [m2/N].
+    """
+    floor = LOSS_FLOOR * half_width / speed * compliance
+    lifted: FloatArray = 0.5 * (loss + np.hypot(loss, 2.0 * floor))
+    return lifted
 
 
 class FilmField(Protocol):

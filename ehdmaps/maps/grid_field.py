@@ -19,15 +19,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
+from ehdmaps.maps.film_field import lifted_loss
 from ehdmaps.maps.splines import hermite, spline_weights
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_speed_number
-
-LOSS_FLOOR = 1e-4
-"""Smallest loss compliance, as a share of b/(u k) with Hertz' half-width b."""
 
 _STEP = 0.02
 _FORGOTTEN = 0.5
@@ -74,7 +72,7 @@ class GridField:
     film_offset, film_compliance, loss_compliance : array (contacts, n_w, n_u, n_T)
         [m], [m2/N], [m2 s/N]; the offset is positive where the speed is, or all zero in a dry map. Where
         the loss of a contact is not positive everywhere (at the bottom of its valley it may be solved negative), it
-        is lifted smoothly to at least `LOSS_FLOOR` b/(u k).
+        is lifted smoothly, see `lifted_loss`.
     """
 
     line_contacts: tuple[LineContact, ...]
@@ -192,9 +190,7 @@ class GridField:
         """Loss compliance made positive, (n_w, n_u, n_T); see `loss_compliance`."""
         compliance = film_compliance + contact.structural_compliance(self.loads)[:, None, None]
         width = half_width(self.loads, contact.radius, contact.reduced_modulus)[:, None, None]
-        floor = LOSS_FLOOR * width / speeds[:, None] * compliance
-        lifted: FloatArray = 0.5 * (loss + np.hypot(loss, 2.0 * floor))
-        return lifted
+        return lifted_loss(loss, width, speeds[:, None], compliance)
 
 
 def _trends(tables: FloatArray, ends: NodeArray, log_speeds: FloatArray) -> FloatArray:

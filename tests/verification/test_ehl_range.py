@@ -219,8 +219,15 @@ def test_beyond_reach_is_a_status() -> None:
     assert SOLVER.solve_line(contact, OIL, (1e9,), 1.0, 313.15)[0].status is Status.OUTSIDE_VALIDITY
     assert SOLVER.solve_line(contact, OIL, (1e6,), 1e-12, 313.15)[0].status is Status.OUTSIDE_VALIDITY
     assert SOLVER.solve_line(contact, OIL, (1e4,), 1e4, 260.0)[0].status is Status.OUTSIDE_VALIDITY
+
+
+def test_the_lightest_loads_are_martins() -> None:
+    """A load of 1e-6 N/m (M = 7e-11) is still solved, and is the rigid isoviscous film w h = 4.895 eta u R."""
+    contact = CONTACTS[0]
     tiny = SOLVER.solve_line(contact, OIL, (1e-6,), 1.0, 313.15)[0]
-    assert tiny.status in (Status.ASYMPTOTE, Status.OUTSIDE_VALIDITY, Status.STAGNATED)
+    assert tiny.status is Status.ASYMPTOTE
+    martin = 4.894968 * OIL.at(313.15).viscosity * 1.0 * contact.radius / 1e-6
+    assert tiny.minimum_film == pytest.approx(martin, rel=1e-3)  # bar of the default grid
 
 
 @pytest.mark.parametrize("settings", [{"density": 1.0}, {"inlet_length": 1.0}, {"tolerance": 0.1}])
