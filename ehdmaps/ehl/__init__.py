@@ -10,6 +10,7 @@
 | `linearisation` | stiffness and damping: linear response, on a grid that follows the spike |
 | `line` | the story of one solve: coarse grid, place of the spike, fine grid, response, error estimate |
 | `solver` | `ReynoldsSolver`: operating points in SI, one line of loads after another |
+| `start` | what the solution of a point gives to another solver |
 
 Kernels take and return arrays in the groups of the problem; units appear in `solver` only.
 """

@@ -2,32 +2,34 @@
 
 The modules in the order in which data pass through them:
 
-==========  =====================================================================================
-job         `Job`, what a job file asks for, in SI
-table       one table of a TOML file, read key by key with all its problems
-axes        the axes of the grid
-problem     bearing or contact, material, lubricant
-reader      job file, shipped job or map file -> `Job`
-solvers     names and settings of the solvers
-tasks       `Job` -> `LineTask`, the units of work, each with the key of everything that shapes it
-store       results by key in a file beside the map; survives kill -9
-sweep       tasks -> results, over all cores, past dead workers and Ctrl-C
-refinement  the lines that a contact law needs besides the map, and the group they become
-law_check   the contact laws against fresh solves at random points
-holes       isolated holes filled from their neighbours
-assemble    results -> dataset of the map
-write       dataset -> map file, aside and renamed
-generate    the whole story: job -> map file
-progress    a bar on a terminal, lines elsewhere
-report      statuses by cause and error estimates, for the next two
-summary     what happened, in words
-describe    what a map file holds, in words
-plot        what a map file holds, on one page
-compare     differences between two maps
-tradeoff    speed against accuracy, measured
-commands    one module a command
-cli         the command line
-==========  =====================================================================================
+===========  ====================================================================================
+job          `Job`, what a job file asks for, in SI
+table        one table of a TOML file, read key by key with all its problems
+axes         the axes of the grid
+problem      bearing or contact, material, lubricant
+reader       job file, shipped job or map file -> `Job`
+solvers      names and settings of the solvers
+tasks        `Job` -> `LineTask`, the units of work, each with the key of everything that shapes it
+store        results by key in a file beside the map; survives kill -9
+sweep        tasks -> results, over all cores, past dead workers and Ctrl-C
+refinement   the lines that a contact law needs besides the map, and the group they become
+law_check    the contact laws against fresh solves at random points
+holes        isolated holes filled from their neighbours
+assemble     results -> dataset of the map
+write        dataset -> map file, aside and renamed
+generate     the whole story: job -> map file
+progress     a bar on a terminal, lines elsewhere
+report       statuses by cause and error estimates, for the next two
+summary      what happened, in words
+describe     what a map file holds, in words
+plot         what a map file holds, on one page
+film_output  files with the film itself, beside the numbers of one point
+film_plot    pressure, film and velocities of one point, on one page
+compare      differences between two maps
+tradeoff     speed against accuracy, measured
+commands     one module a command
+cli          the command line
+===========  ====================================================================================
 
 Nothing is imported here: take the names from their modules.
 """

@@ -23,7 +23,7 @@ from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
 
-_PACKAGES = ("ehdmaps", "numpy", "scipy", "numba", "xarray", "netCDF4")
+_PACKAGES = ("ehdmaps", "numpy", "scipy", "numba", "xarray", "netCDF4", "PyFoam")
 _FILLED_FIELDS = (
     "film_offset",
     "film_compliance",
@@ -132,6 +132,7 @@ def _attributes(job: Job, solver: ContactSolver) -> dict[str, Any]:
         "solver": solver.name,
         "solver_settings": record_json(solver.settings()),
         "solver_version": solver_version(solver),
+        **getattr(solver, "provenance", {}),
         "structural_law": job.contacts[0].structural_law,
         "structural_scaling": _structural_scaling(job.contacts[0]),
         "fill": job.fill,

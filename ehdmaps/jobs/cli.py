@@ -13,6 +13,7 @@ from ehdmaps.errors import EhdmapsError, InputError
 DONE, NOT_DONE = 0, 2
 """0: done; 1, from commands: done, with failed points or an unmet tolerance; 2: nothing written."""
 
+_KEEP = "openfoam: keep the case folders of all runs; default folder: ehdmaps-cases"
 _SOLVER = "hertz | formula | reynolds | openfoam; instead of the job's, with its default settings"
 
 
@@ -21,7 +22,8 @@ def parser() -> argparse.ArgumentParser:
     top = argparse.ArgumentParser(
         prog="ehdmaps",
         description="Elastohydrodynamic contact maps for roller bearings.",
-        epilog="JOB is a job file, a map (its job is repeated), or the name of a shipped job: nu308, n1014. "
+        epilog="JOB is a job file, a map (its job is repeated), or the name of a shipped job: nu308, n1014, "
+        "nu308_openfoam. "
         "Exit status: 0 done; 1 done, with failed points or an unmet tolerance; 2 bad input, nothing "
         "written.",
     )
@@ -33,6 +35,7 @@ def parser() -> argparse.ArgumentParser:
     generate.add_argument("--solver", metavar="NAME", help=_SOLVER)
     generate.add_argument("--workers", metavar="N", type=_workers, help="processes; default: all cores")
     generate.add_argument("--fresh", action="store_true", help="forget what is solved already")
+    generate.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
 
     check = commands.add_parser("check", help="list every problem of a job; estimate points, time, memory")
     check.add_argument("job", metavar="JOB")
@@ -54,6 +57,13 @@ def parser() -> argparse.ArgumentParser:
     solve.add_argument("--frequency", help='of small oscillations, such as "1 kHz"; default: the low-frequency limit')
     solve.add_argument("--solver", metavar="NAME", help=_SOLVER)
     solve.add_argument("--json", action="store_true", help="one object a contact, SI, per unit length")
+    solve.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
+    solve.add_argument(
+        "--fields", metavar="FILE", help="openfoam: fields of the film as .vtu or .xdmf, a file a contact"
+    )
+    solve.add_argument(
+        "--plot", metavar="FIG.png", help="openfoam: pressure, film and velocity profiles; also .pdf, .svg"
+    )
 
     compare = commands.add_parser("compare", help="differences between two maps")
     compare.add_argument("first", metavar="A.nc")

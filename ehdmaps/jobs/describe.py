@@ -58,6 +58,8 @@ def _lines(dataset: xr.Dataset, backbone: xr.Dataset | None, name: str) -> Itera
     yield "provenance (records in SI units)"
     yield f"  job             {attributes.get('job_name', '')} (sha256 {attributes['job_sha256'][:12]}...)"
     yield f"  solver          {attributes['solver']} {_record(attributes['solver_settings'])}"
+    if "openfoam_build" in attributes:
+        yield f"  OpenFOAM        {attributes['openfoam_version']}; ehlFoam built with {attributes['openfoam_build']}"
     scaling = float(attributes.get("structural_scaling", 1.0))
     scaled = f", times {scaling:.6g} for the material" if scaling != 1.0 else ""
     yield f"  structural law  {attributes['structural_law']}{scaled}"

@@ -31,7 +31,7 @@ def shipped_jobs() -> tuple[str, ...]:
     return tuple(sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml")))
 
 
-def read_job(source: str, solver: str | None = None) -> Job:
+def read_job(source: str, solver: str | None = None, to_run: bool = False) -> Job:
     """Read a job.
 
     Parameters
@@ -40,6 +40,8 @@ def read_job(source: str, solver: str | None = None) -> Job:
         Name of a shipped job ("nu308"), path of a job file, or path of a map file, whose job is read again.
     solver : str, optional
         Takes the place of the job's solver; its own keys have their defaults then.
+    to_run : bool
+        Whether the job is to be run here: what its solver lacks on this machine is a problem then.
 
     Raises
     ------
@@ -48,7 +50,7 @@ def read_job(source: str, solver: str | None = None) -> Job:
     """
     if source in shipped_jobs():
         text = (resources.files("ehdmaps.jobs") / "shipped" / f"{source}.toml").read_text(encoding="utf-8")
-        return parse_job(text, name=source, where=f"{source} (shipped)", solver=solver)
+        return parse_job(text, name=source, where=f"{source} (shipped)", solver=solver, to_run=to_run)
     path = Path(source)
     try:
         with path.open("rb") as file:
@@ -61,7 +63,7 @@ def read_job(source: str, solver: str | None = None) -> Job:
         ) from error
     if head.startswith(_SIGNATURES):
         text, name, of_map = _job_of_map(path)
-        return parse_job(text, name=name, where=f"{source} (job of the map)", solver=solver or of_map)
+        return parse_job(text, name=name, where=f"{source} (job of the map)", solver=solver or of_map, to_run=to_run)
     if len(head) > LONGEST_FILE:
         raise InputError(
             f"{source}: longer than {LONGEST_FILE} bytes; allowed: a job file; write long axes as from, to, points"
@@ -72,10 +74,10 @@ def read_job(source: str, solver: str | None = None) -> Job:
         raise InputError(
             f"{source}: is not UTF-8 text (byte {error.start}); allowed: a TOML file or a map file"
         ) from error
-    return parse_job(text, name=path.stem, where=source, solver=solver)
+    return parse_job(text, name=path.stem, where=source, solver=solver, to_run=to_run)
 
 
-def parse_job(text: str, name: str, where: str, solver: str | None = None) -> Job:
+def parse_job(text: str, name: str, where: str, solver: str | None = None, to_run: bool = False) -> Job:
     """Read a job from the text of its file.
 
     Parameters
@@ -88,6 +90,8 @@ def parse_job(text: str, name: str, where: str, solver: str | None = None) -> Jo
         How messages call the file.
     solver : str, optional
         Takes the place of the job's solver.
+    to_run : bool
+        As for `read_job`.
 
     Raises
     ------
@@ -102,13 +106,13 @@ def parse_job(text: str, name: str, where: str, solver: str | None = None) -> Jo
             f"{where}: is not TOML: {error}; allowed: TOML 1.0; strings with units stand in quotes"
         ) from error
     problems: list[str] = []
-    job = _job(Table(values, "job file", problems), text, name, solver)
+    job = _job(Table(values, "job file", problems), text, name, solver, to_run)
     if problems or job is None:
         raise InputError([f"{where}: {problem}" for problem in problems])
     return job
 
 
-def _job(top: Table, text: str, name: str, override: str | None) -> Job | None:
+def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -> Job | None:
     """Read all tables; None where a problem was noted."""
     schema = top.get("schema", required="schema = 1")
     if "schema" in top and (isinstance(schema, bool) or schema != 1):
@@ -120,8 +124,9 @@ def _job(top: Table, text: str, name: str, override: str | None) -> Job | None:
         top.note("--solver", f"got {override!r:.60}; allowed: {', '.join(solvers.SOLVER_NAMES)}")
     elif override is not None and override != solver:
         solver, options = override, {}
-    if solver is not None and solver in solvers.SOLVERS and solvers.SOLVERS[solver].missing:
-        top.note("[solver] name", f"got {solvers.SOLVERS[solver].missing}")
+    if to_run and solver is not None:
+        for problem in solvers.SOLVERS[solver].missing():
+            top.note("[solver] name", f"got {solver!r}, which needs more than is here: {problem}")
 
     bearing, contacts = read_contacts(top, law)
     oil_section = top.table("lubricant", "[lubricant]", required="a table with the name of an oil, or its data")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from ehdmaps.errors import InputError
@@ -39,6 +40,37 @@ class Word:
 
 
 @dataclass(frozen=True)
+class Whole:
+    """A key that takes a whole number within [low, high]."""
+
+    key: str
+    low: int
+    high: int
+    meaning: str
+
+    def read(self, table: Table) -> Any:
+        """Return the number, or None if absent or wrong."""
+        return table.integer(self.key, self.low, self.high)
+
+
+@dataclass(frozen=True)
+class Switch:
+    """A key that takes true or false."""
+
+    key: str
+    meaning: str
+
+    def read(self, table: Table) -> Any:
+        """Return the switch, or None if absent or wrong."""
+        return table.switch(self.key)
+
+
+def _nothing() -> tuple[str, ...]:
+    """Nothing is missing."""
+    return ()
+
+
+@dataclass(frozen=True)
 class SolverEntry:
     """One solver: its own keys in [solver], and how it is made from them.
 
@@ -48,13 +80,17 @@ class SolverEntry:
         Its keys; a key that a job leaves out has the solver's own default.
     build : callable
         Makes the solver from the keys; imports it only then.
-    missing : str
-        Why this version does not have it; empty if it has.
+    missing : callable
+        Returns what it needs and this machine does not have, one sentence each; looked up only when the solver is asked
+        for.
+    keeps_cases : bool
+        Whether it works in case folders, which it can keep, and has fields of the film.
     """
 
-    options: tuple[Number | Word, ...]
+    options: tuple[Number | Whole | Word | Switch, ...]
     build: Callable[..., ContactSolver]
-    missing: str = ""
+    missing: Callable[[], tuple[str, ...]] = _nothing
+    keeps_cases: bool = False
 
 
 def _hertz() -> ContactSolver:
@@ -75,8 +111,17 @@ def _reynolds(**options: Any) -> ContactSolver:
     return ReynoldsSolver(**options)
 
 
-def _openfoam() -> ContactSolver:
-    raise InputError(SOLVERS["openfoam"].missing)
+def _openfoam(start: str = "reynolds", **options: Any) -> ContactSolver:
+    from ehdmaps.ehl.start import reynolds_start
+    from ehdmaps.openfoam.solver import OpenFoamSolver
+
+    return OpenFoamSolver(starter=reynolds_start if start == "reynolds" else None, **options)
+
+
+def _openfoam_missing() -> tuple[str, ...]:
+    from ehdmaps.openfoam.installation import missing
+
+    return missing()
 
 
 SOLVERS: Mapping[str, SolverEntry] = {
@@ -93,9 +138,20 @@ SOLVERS: Mapping[str, SolverEntry] = {
         _reynolds,
     ),
     "openfoam": SolverEntry(
-        (),
+        (
+            Word("flow", ("thin_film", "full_stress"), "stress of thin films, or all of it"),
+            Whole("columns", 40, 4000, "cells along the film"),
+            Whole("rows", 4, 64, "cells across the film"),
+            Word("shear", ("newtonian", "eyring", "limiting"), "law of the shear stress"),
+            Number("shear_stress", 1e3, 1e10, "Eyring stress or limiting stress [Pa]"),
+            Switch("inertia", "whether the momentum equation has its inertia"),
+            Number("slide_to_roll", -2.0, 2.0, "difference of the surface speeds over the entrainment speed"),
+            Word("start", ("reynolds", "hertz"), "what a point starts from"),
+            Number("timeout", 1.0, 1e6, "seconds after which a point is stopped"),
+        ),
         _openfoam,
-        missing="'openfoam' is not in this version of ehdmaps; use 'reynolds', 'formula' or 'hertz'",
+        missing=_openfoam_missing,
+        keeps_cases=True,
     ),
 }
 SOLVER_NAMES = tuple(SOLVERS)
@@ -113,9 +169,28 @@ def build(name: str, options: Mapping[str, Any]) -> ContactSolver:
     Raises
     ------
     InputError
-        If this version does not have it.
+        If this machine does not have what it needs.
     """
     entry = SOLVERS[name]
-    if entry.missing:
-        raise InputError(f"solver: got {entry.missing}")
+    lacking = entry.missing()
+    if lacking:
+        raise InputError([f"solver {name!r}: {problem}" for problem in lacking])
     return entry.build(**options)
+
+
+def case_options(name: str, keep_cases: str | None) -> dict[str, Any]:
+    """Options of a solver that is to keep its cases in a folder; none where it is not.
+
+    Raises
+    ------
+    InputError
+        If the solver has no cases, or the folder is none.
+    """
+    if keep_cases is None:
+        return {}
+    if not SOLVERS[name].keeps_cases:
+        raise InputError(f"--keep-cases: the solver {name!r} works without cases; allowed: with the solver openfoam")
+    folder = Path(keep_cases)
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"--keep-cases: got {folder}, a file; allowed: a folder, which is made if it is not there")
+    return {"keep_cases": folder.absolute()}

@@ -54,6 +54,10 @@ class Task(Protocol):
         """Return the arrays that say it failed."""
         ...
 
+    def is_final(self, arrays: Arrays) -> bool:
+        """Whether a result is kept; one that is not is tried again by the next run."""
+        ...
+
 
 class Progress(Protocol):
     """Where the sweep tells how far it is."""
@@ -142,7 +146,7 @@ def sweep(tasks: Sequence[Task], store: Store, workers: int, progress: Progress 
     outcomes = _in_process(todo) if workers <= 1 else _in_pool(todo, min(workers, len(todo)), store)
     try:
         for task, arrays, final in outcomes:
-            if final:
+            if final and task.is_final(arrays):
                 store.put(task.key, arrays, at_once=task.slow)
             result.arrays[task.key] = arrays
             result.solved += task.points

@@ -99,6 +99,10 @@ class LineTask:
         """Return the result of a line that gave none."""
         return film_arrays([FilmSolution(Status.FAILED, reason)] * self.points)
 
+    def is_final(self, arrays: Arrays) -> bool:
+        """Whether no point failed: a crash, a kill or an end of time may not happen again."""
+        return not (arrays["status"] == int(Status.FAILED)).any()
+
 
 def film_arrays(films: list[FilmSolution] | tuple[FilmSolution, ...]) -> Arrays:
     """Turn films into arrays by field name."""

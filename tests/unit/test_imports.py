@@ -1,4 +1,4 @@
-"""The direction of imports: errors <- physics <- (ehl | maps) <- jobs; maps, physics <- mbs."""
+"""The direction of imports: errors <- physics <- (ehl | openfoam | maps) <- jobs; maps, physics <- mbs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,16 @@ ALLOWED = {
     "ehdmaps.physics": {"ehdmaps.errors"},
     "ehdmaps.ehl": {"ehdmaps.errors", "ehdmaps.physics"},
     "ehdmaps.maps": {"ehdmaps.errors", "ehdmaps.units", "ehdmaps.physics"},
-    "ehdmaps.jobs": {"ehdmaps", "ehdmaps.errors", "ehdmaps.units", "ehdmaps.physics", "ehdmaps.ehl", "ehdmaps.maps"},
+    "ehdmaps.openfoam": {"ehdmaps.errors", "ehdmaps.units", "ehdmaps.physics"},
+    "ehdmaps.jobs": {
+        "ehdmaps",
+        "ehdmaps.errors",
+        "ehdmaps.units",
+        "ehdmaps.physics",
+        "ehdmaps.ehl",
+        "ehdmaps.openfoam",
+        "ehdmaps.maps",
+    },
     "mbs": {"ehdmaps.errors", "ehdmaps.units", "ehdmaps.physics", "ehdmaps.maps"},
 }
 """What each layer may import besides itself and other distributions. `ehdmaps` itself is the shop window of all."""
@@ -57,13 +66,20 @@ def test_imports_point_one_way(path: Path) -> None:
     assert foreign <= ALLOWED[own], f"{path}: imports {sorted(foreign - ALLOWED[own])}"
 
 
+def test_pyfoam_has_one_door() -> None:
+    users = [path for path in FILES if any(name.partition(".")[0] == "PyFoam" for name in _imported(path))]
+    assert users == [ROOT / "ehdmaps" / "openfoam" / "pyfoam.py"]
+
+
 def test_every_file_is_looked_at() -> None:
     assert len(FILES) > 40
 
 
-@pytest.mark.parametrize("statement", ["import ehdmaps", "import ehdmaps.physics.closed_form"])
+@pytest.mark.parametrize(
+    "statement", ["import ehdmaps", "import ehdmaps.physics.closed_form", "import ehdmaps.openfoam"]
+)
 def test_import_is_light(statement: str) -> None:
-    heavy = ("numba", "matplotlib", "PyFoam", "xarray", "scipy", "pint")
+    heavy = ("numba", "matplotlib", "PyFoam", "meshio", "xarray", "scipy", "pint")
     code = f"{statement}; import sys; print([m for m in {heavy!r} if m in sys.modules])"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert result.stdout.strip() == "[]"

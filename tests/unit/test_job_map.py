@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from ehdmaps.errors import InputError, MapError
+from ehdmaps.errors import MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.assemble import assemble
 from ehdmaps.jobs.compare import compare
@@ -388,13 +388,6 @@ def test_tradeoff_knows_its_contestants():
     assert [entry.label for entry in entries][:2] == ["hertz", "formula, moes"]
     assert "reynolds, density 4" in [entry.label for entry in entries]
     assert reference.label == "reynolds, density 16"
-
-
-def test_a_solver_that_is_not_there():
-    with pytest.raises(InputError, match="solver: got 'openfoam' is not in this version"):
-        solvers.build("openfoam", {})
-    with pytest.raises(InputError, match="'openfoam' is not in this version"):
-        solvers.SOLVERS["openfoam"].build()
 
 
 def test_provenance_is_enough_to_know_the_contacts():

@@ -41,6 +41,9 @@ class Stub:
     def failed(self, reason):
         return {"value": np.array([np.nan]), "reason": np.array([reason])}
 
+    def is_final(self, arrays):
+        return self.kind != "unlucky"
+
 
 @dataclass
 class Heard:
@@ -73,6 +76,15 @@ def test_what_the_store_has_is_not_run_again(tmp_path):
         result = sweep([Stub(7, "bug"), Stub(8)], store, 1)  # the bug would be raised if it ran
     assert (result.taken_over, result.solved) == (3, 3)
     assert result.arrays["bug 7"]["value"] == 49.0
+
+
+def test_a_result_that_is_not_final_is_tried_again(tmp_path):
+    for _ in range(2):
+        with Store(tmp_path / "s") as store:
+            result = sweep([Stub(1), Stub(2, "unlucky")], store, 1)
+            assert store.get("unlucky 2") is None
+            assert result.arrays["unlucky 2"]["value"] == 4.0
+    assert (result.taken_over, result.solved) == (3, 3)
 
 
 @pytest.mark.parametrize("workers", [1, 2])

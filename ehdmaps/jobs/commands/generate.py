@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs import solvers
 from ehdmaps.jobs.generate import generate
 from ehdmaps.jobs.law_check import unmet
 from ehdmaps.jobs.progress import progress
@@ -21,7 +22,7 @@ INTERRUPTED = 130
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Make the map; status 1 if points have no solution, or a contact law is not as good as it should be."""
-    job = read_job(arguments.job, arguments.solver)
+    job = read_job(arguments.job, arguments.solver, to_run=True)
     if arguments.output is None and is_map(arguments.job):
         raise InputError(f"-o: missing; {arguments.job} is a map itself; give the map to write with -o")
     output = Path(arguments.output or f"{job.name}.nc")
@@ -29,8 +30,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         raise InputError(f"-o: got {output}, a folder; allowed: the name of a map file")
     if not output.parent.is_dir():
         raise InputError(f"-o: got {output}, but {output.parent} is no folder; allowed: a file in a folder that exists")
+    solver = solvers.build(job.solver, {**job.solver_options, **solvers.case_options(job.solver, arguments.keep_cases)})
     try:
-        generated = generate(job, output, arguments.workers, arguments.fresh, progress)
+        generated = generate(job, output, arguments.workers, arguments.fresh, progress, solver)
     except KeyboardInterrupt:
         sys.stderr.write(
             f"\nstopped; what is solved is kept in {store_path(output)}: the same command goes on from there\n"

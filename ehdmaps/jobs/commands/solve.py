@@ -5,11 +5,13 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import sys
 from collections.abc import Iterator
 from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
+from ehdmaps.jobs.film_output import film_outputs
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.physics import hertz
@@ -17,7 +19,7 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.solution import ContactSolution, ContactSolver, Status, contact_solution
+from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
 from ehdmaps.units import FILM, LENGTH, LOAD, PRESSURE, TEMPERATURE, Display, quantity
 
 _SOLUTION_FIELDS = (
@@ -41,8 +43,18 @@ _SOLUTION_FIELDS = (
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Solve the point for every contact; status 1 if one of them has no solution."""
     job, point, length, frequency = _read(arguments)
-    solver = solvers.build(job.solver, job.solver_options)
-    records = [_record(solver, contact, job.lubricant, point, frequency) for contact in job.contacts]
+    outputs = film_outputs(job, arguments.fields, arguments.plot)
+    options = {**job.solver_options, **solvers.case_options(job.solver, arguments.keep_cases)}
+    solver = solvers.build(job.solver, options)
+    if outputs:
+        films, written = outputs.solve(solver, job, point, frequency)
+        sys.stderr.writelines(f"{line}\n" for line in written)
+    else:
+        films = [_film(solver, contact, job.lubricant, point, frequency) for contact in job.contacts]
+    records = [
+        _record(film, contact, job.lubricant, point, frequency)
+        for film, contact in zip(films, job.contacts, strict=True)
+    ]
     usable = all(Status[str(record["status"]).upper()].usable for record in records)
     text = json.dumps(records, indent=2, allow_nan=False) if arguments.json else _table(job, records, point, length)
     return text, 0 if usable else 1
@@ -53,7 +65,7 @@ def _read(arguments: argparse.Namespace) -> tuple[Job, OperatingPoint, float | N
     problems: list[str] = []
     job: Job | None = None
     try:
-        job = read_job(arguments.job, arguments.solver)
+        job = read_job(arguments.job, arguments.solver, to_run=True)
     except InputError as error:
         problems.extend(error.problems)
 
@@ -107,13 +119,20 @@ def _is_per_length(load: str) -> bool:
     return True
 
 
-def _record(
+def _film(
     solver: ContactSolver, contact: LineContact, oil: Lubricant, point: OperatingPoint, frequency: float
-) -> dict[str, Any]:
-    """Return one contact's solution as plain values, SI; None where there is no number."""
+) -> FilmSolution:
+    """Solve one contact."""
     (film,) = solver.solve_line(
         contact, oil, (point.load,), point.entrainment_speed, point.temperature, frequency=frequency
     )
+    return film
+
+
+def _record(
+    film: FilmSolution, contact: LineContact, oil: Lubricant, point: OperatingPoint, frequency: float
+) -> dict[str, Any]:
+    """Return one contact's solution as plain values, SI; None where there is no number."""
     solution = contact_solution(film, contact, point, frequency)
     modulus = contact.reduced_modulus
     record: dict[str, Any] = {

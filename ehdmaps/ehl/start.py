@@ -1,0 +1,85 @@
+"""What the Reynolds solution of a point gives to another solver: a pressure to start from, and a place for its grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ehdmaps.ehl.line import Resolution, solve_groups
+from ehdmaps.ehl.newton import CONVERGED
+from ehdmaps.ehl.profile import films_of
+from ehdmaps.ehl.solver import _beyond_reach, line_problem
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.hertz import half_width, max_pressure
+from ehdmaps.physics.lubricant import Lubricant
+
+
+@dataclass(frozen=True)
+class ReynoldsStart:
+    """A start from a solution of the Reynolds equation.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n,)
+        Positions from the contact centre, increasing; the last one is the exit of the film [m].
+    pressure : ndarray, shape (n,)
+        [Pa].
+    central_film : float
+        [m].
+    expected_film : float
+        Film H about which the grid is laid [b^2/R].
+    spike_position, spike_width : float
+        Place of the pressure spike from the contact centre, and width of the finest cells around it [b]; a width of
+        zero says that there is no spike.
+    """
+
+    x: NDArray[np.float64]
+    pressure: NDArray[np.float64]
+    central_film: float
+    expected_film: float
+    spike_position: float
+    spike_width: float
+
+
+def reynolds_start(
+    contact: LineContact, lubricant: Lubricant, load: float, entrainment_speed: float, temperature: float
+) -> ReynoldsStart | None:
+    """Solve a point for the start of another solver.
+
+    Parameters
+    ----------
+    contact, lubricant
+        What is solved.
+    load : float
+        [N/m].
+    entrainment_speed : float
+        > 0 [m/s].
+    temperature : float
+        [K].
+
+    Returns
+    -------
+    ReynoldsStart or None
+        None where the Reynolds equation has no converged solution.
+    """
+    peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
+    problem, M, L = line_problem(contact, lubricant.at(temperature), load, entrainment_speed)
+    if _beyond_reach(peak, M, L):
+        return None
+    solution = solve_groups(problem, M, L, Resolution())
+    profile = solution.profile
+    if solution.outcome != CONVERGED or profile is None:
+        return None
+    half = float(half_width(load, contact.radius, contact.reduced_modulus))
+    spike = profile.spike
+    exit_at = float(profile.position[-1])
+    return ReynoldsStart(
+        x=profile.position * half,
+        pressure=profile.pressure * peak,
+        central_film=films_of(profile)[0] * half * half / contact.radius,
+        expected_film=profile.layout.film,
+        spike_position=0.0 if spike is None else exit_at + spike.position,
+        spike_width=0.0 if spike is None else spike.width,
+    )

@@ -1,0 +1,119 @@
+"""Films of one operating point on one page: pressure, film, and velocity across the film, a row a contact."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ehdmaps.openfoam.solver import GridSolution
+from ehdmaps.units import FILM, PRESSURE
+
+ROW = (11.69, 3.6)
+"""Size of a row [inch]."""
+
+RESOLUTION = 200
+_FONT: Any = {"font.size": 8.5, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6}
+_PLACES = (("inlet", "#1b6ca8"), ("centre", "#444444"), ("spike", "#c8102e"))
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FilmRow:
+    """What a row shows.
+
+    Attributes
+    ----------
+    title : str
+        Of the row.
+    half_width : float
+        b [m].
+    surface_speeds : tuple of float
+        Of the lower and the upper surface [m/s].
+    grid : GridSolution
+        With its fields.
+    """
+
+    title: str
+    half_width: float
+    surface_speeds: tuple[float, float]
+    grid: GridSolution
+
+
+def plot_films(rows: Sequence[FilmRow], heading: str, output: Path) -> None:
+    """Draw the page and write it.
+
+    Parameters
+    ----------
+    rows : sequence of FilmRow
+        One a contact.
+    heading : str
+        Of the page.
+    output : Path
+        The picture; its ending decides the format (png, pdf, svg).
+
+    Raises
+    ------
+    OSError, ValueError
+        If it cannot be written, or the ending is not known.
+    """
+    import matplotlib as mpl
+
+    with mpl.rc_context(_FONT):
+        figure = Figure(figsize=(ROW[0], ROW[1] * len(rows) + 0.4), layout="constrained")
+        figure.suptitle(heading, fontsize=10, fontweight="bold")
+        panels = figure.subplots(len(rows), 3, squeeze=False)
+        for row, axes in zip(rows, panels, strict=True):
+            _row(row, *axes)
+        figure.savefig(output, dpi=RESOLUTION)
+
+
+def places(x: Floats, pressure: Floats) -> dict[str, float]:
+    """Return where velocities are shown [m].
+
+    The inlet is where the pressure first comes to a tenth of its largest; the spike is the last local maximum of the
+    pressure above that, which is the largest pressure where there is no spike.
+    """
+    high = pressure > 0.1 * pressure.max()
+    peaks = np.flatnonzero((pressure[1:-1] > pressure[:-2]) & (pressure[1:-1] >= pressure[2:]) & high[1:-1]) + 1
+    spike = peaks[-1] if peaks.size else int(np.argmax(pressure))
+    return {"inlet": float(x[np.argmax(high)]), "centre": 0.0, "spike": float(x[spike])}
+
+
+def _row(row: FilmRow, pressures: Axes, films: Axes, velocities: Axes) -> None:
+    """Draw the three panels of a contact."""
+    table, fields = row.grid.film, row.grid.fields
+    x = table.x / row.half_width
+    shown = places(table.x, table.pressure)
+    loaded = x[table.pressure > 1e-2 * table.pressure.max()]
+    margin = 0.25 * (loaded[-1] - loaded[0])
+    window = (x >= loaded[0] - margin) & (x <= loaded[-1] + margin)
+    pressures.plot(x[window], PRESSURE.factor * table.pressure[window], color="black", lw=1.0)
+    films.plot(x[window], FILM.factor * table.film[window], color="black", lw=1.0)
+    films.set_ylim(bottom=0.0)
+    for axes, label in ((pressures, f"pressure, {PRESSURE.unit}"), (films, f"film, {FILM.unit.replace('um', 'µm')}")):
+        axes.set_xlabel("x/b, from the contact centre")
+        axes.set_ylabel(label)
+        axes.grid(color="0.88", lw=0.4)
+        for name, colour in _PLACES:
+            axes.axvline(shown[name] / row.half_width, color=colour, lw=0.7, ls=(0, (4, 2)))
+    pressures.set_title(row.title, fontsize=8.5, fontweight="bold", loc="left")
+    if fields is not None:
+        rows = fields.quads.shape[0] // x.size
+        lower, upper = row.surface_speeds
+        for name, colour in _PLACES:
+            height, velocity = fields.velocity_profile(shown[name], rows)
+            label = f"{name}, x/b = {shown[name] / row.half_width:.3g}"
+            across, along = np.r_[0.0, height, 1.0], np.r_[lower, velocity, upper]
+            velocities.plot(along, across, color=colour, lw=1.0, marker=".", ms=3, label=label)
+        velocities.legend(frameon=False, fontsize=7.5)
+    velocities.set_xlabel("velocity along the film, m/s")
+    velocities.set_ylabel("y/h, from the lower surface")
+    velocities.grid(color="0.88", lw=0.4)

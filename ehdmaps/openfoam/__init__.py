@@ -1,0 +1,15 @@
+"""The EHL line contact by OpenFOAM, in the order of the data.
+
+| module | one idea |
+|---|---|
+| `installation` | where OpenFOAM and `ehlFoam` are, what is missing, and the command that builds it |
+| `parameters` | the one file that Python writes into a case: checked numbers and known words only |
+| `case` | a working folder: copied from the template, removed when its run succeeded |
+| `pyfoam` | the only door to PyFoam: runs a program without a shell, parses small dictionaries |
+| `run` | one program in one case: time limit, crash, kill, last lines of its log |
+| `results` | what a run wrote: the dictionary `results`, the table `film.dat` |
+| `fields` | mesh and fields of the film by numpy; VTU or XDMF through meshio |
+| `solver` | `OpenFoamSolver`: coarse and fine grid of each point, error estimates, statuses |
+
+The solver itself is C++, in `openfoam_cases`. Nothing is imported here, so that ehdmaps works without OpenFOAM.
+"""

@@ -1,0 +1,195 @@
+"""Mesh and fields of the film, read by numpy from the ascii files of a case; written as VTU or XDMF."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ehdmaps.errors import InputError, SolverError
+from ehdmaps.openfoam.pyfoam import parse
+
+Floats = NDArray[np.float64]
+
+TIME = "1"
+"""Name of the folder with the solution."""
+
+_ASCII = re.compile(rb"format\s+ascii\s*;")
+_LIST = re.compile(rb"\}.*?\s(\d+)\s*\(", re.DOTALL)
+_INTERNAL = re.compile(rb"internalField\s+(?:(uniform)\s+(\([^)]*\)|[^;\s]+)|nonuniform\s+List<\w+>\s*(\d+)\s*\()")
+_BRACKETS = bytes.maketrans(b"()", b"  ")
+
+
+@dataclass(frozen=True)
+class FilmFields:
+    """The film between both surfaces, a plane mesh of quadrangles with a value of each field a cell.
+
+    Attributes
+    ----------
+    points : ndarray, shape (points, 3)
+        x along, y across the film, from the contact centre; z = 0 [m].
+    quads : ndarray, shape (cells, 4)
+        Indices of the corners.
+    p : ndarray, shape (cells,)
+        Pressure [Pa].
+    U : ndarray, shape (cells, 3)
+        Velocity [m/s].
+    mu : ndarray, shape (cells,)
+        Viscosity [Pa s].
+    rho : ndarray, shape (cells,)
+        Density [kg/m3].
+    liquid_fraction : ndarray, shape (cells,)
+        1 where there is oil only.
+    """
+
+    points: Floats
+    quads: NDArray[np.int64]
+    p: Floats
+    U: Floats
+    mu: Floats
+    rho: Floats
+    liquid_fraction: Floats
+
+    def velocity_profile(self, x: float, rows: int) -> tuple[Floats, Floats]:
+        """Velocity along the film in the column of cells nearest to a place.
+
+        Parameters
+        ----------
+        x : float
+            From the contact centre [m].
+        rows : int
+            Cells across the film.
+
+        Returns
+        -------
+        height : ndarray, shape (rows,)
+            y/h of the cell centres, rising from the lower surface.
+        velocity : ndarray, shape (rows,)
+            [m/s].
+        """
+        corners = self.points[self.quads]
+        centres = corners.mean(axis=1)
+        nearest = np.argsort(np.abs(centres[:, 0] - x), kind="stable")[0]
+        column = np.argsort(np.abs(centres[:, 0] - centres[nearest, 0]), kind="stable")[:rows]
+        column = column[np.argsort(centres[column, 1])]
+        heights = np.sort(corners[column, :, 1], axis=1)
+        low, high = heights[0, :2].mean(), heights[-1, 2:].mean()
+        return (centres[column, 1] - low) / (high - low), self.U[column, 0]
+
+
+def read_fields(case: Path) -> FilmFields:
+    """Read the fields of a case that has run with `writeFields true`.
+
+    The mesh is one cell thick; the film is that side of it on which every cell has its first face of type empty.
+
+    Raises
+    ------
+    SolverError
+        If a file is missing, not ascii, or has other than the expected numbers.
+    """
+    mesh, last = case / "constant" / "polyMesh", case / TIME
+    moved = last / "polyMesh" / "points"
+    points = _list(moved if moved.exists() else mesh / "points", 3)
+    owner = _list(mesh / "owner", 1).astype(np.int64)
+    faces = _list(mesh / "faces", 5).astype(np.int64)
+    cells = int(owner.max()) + 1
+    sides = [patch for patch in parse(mesh / "boundary", boundary=True).values() if patch.get("type") == "empty"]
+    if len(sides) != 1 or sides[0]["nFaces"] != 2 * cells or (faces[:, 0] != 4).any():
+        raise SolverError(
+            f"{mesh}: got another mesh; allowed: one cell thick, of hexahedra, with one patch of type empty"
+        )
+    first = int(sides[0]["startFace"])
+    cell, face = np.unique(owner[first : first + 2 * cells], return_index=True)
+    if cell.size != cells:
+        raise SolverError(f"{mesh}: got {cell.size} cells with an empty face; allowed: {cells}, all of them")
+    used, quads = np.unique(faces[first + face, 1:], return_inverse=True)
+    plane = points[used]
+    thickness = int(np.argmin(np.ptp(plane[:, 1:], axis=0))) + 1
+    flat = np.column_stack([plane[:, 0], plane[:, 3 - thickness], np.zeros(used.size)])
+    velocity = _field(last / "U", cells, 3)
+    velocity = np.column_stack([velocity[:, 0], velocity[:, 3 - thickness], np.zeros(cells)])
+    return FilmFields(
+        points=flat,
+        quads=quads.reshape(cells, 4),
+        p=_field(last / "p", cells, 1),
+        U=velocity,
+        mu=_field(last / "mu", cells, 1),
+        rho=_field(last / "rho", cells, 1),
+        liquid_fraction=_field(last / "liquidFraction", cells, 1),
+    )
+
+
+def write_fields(fields: FilmFields, path: Path) -> None:
+    """Write the fields as VTU or XDMF, by the ending of the file, for ParaView: coordinates in m, all data a cell.
+
+    A film is a thousand times longer than thick: look at it with its y scaled.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    import meshio
+
+    mesh = meshio.Mesh(
+        fields.points,
+        [("quad", fields.quads)],
+        cell_data={name: [getattr(fields, name)] for name in ("p", "U", "mu", "rho", "liquid_fraction")},
+    )
+    # XML keeps an XDMF file in one piece, without HDF5
+    options: dict[str, Any] = {"data_format": "XML"} if path.suffix == ".xdmf" else {}
+    try:
+        mesh.write(path, **options)
+    except OSError as error:
+        raise InputError(
+            f"{path}: cannot be written ({error.strerror}); allowed: a file in a folder that may be written"
+        ) from error
+
+
+def _list(path: Path, width: int) -> Floats:
+    """A list of numbers, vectors or faces, shape (n,) or (n, width)."""
+    data = _ascii(path)
+    head = _LIST.search(data)
+    if head is None:
+        raise SolverError(f"{path}: got no list; allowed: an ascii list of OpenFOAM")
+    return _values(path, data[head.end() :], int(head[1]), width)
+
+
+def _field(path: Path, cells: int, width: int) -> Floats:
+    """Values of a field in the cells, shape (cells,) or (cells, width)."""
+    data = _ascii(path)
+    head = _INTERNAL.search(data)
+    if head is None:
+        raise SolverError(f"{path}: got no internalField; allowed: an ascii field of OpenFOAM")
+    if head[1]:
+        return np.broadcast_to(_values(path, head[2], 1, width), (cells, width) if width > 1 else (cells,)).copy()
+    if int(head[3]) != cells:
+        raise SolverError(f"{path}: got {int(head[3])} values; allowed: {cells}, one a cell")
+    return _values(path, data[head.end() :], cells, width)
+
+
+def _ascii(path: Path) -> bytes:
+    """Text of a file of OpenFOAM."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise SolverError(f"{path}: cannot be read ({error.strerror})") from error
+    if not _ASCII.search(data[:2000]):
+        raise SolverError(f"{path}: got another format; allowed: a file of OpenFOAM with format ascii")
+    return data
+
+
+def _values(path: Path, text: bytes, count: int, width: int) -> Floats:
+    """Numbers at the beginning of a text."""
+    words = text.translate(_BRACKETS).split(None, count * width)[: count * width]
+    try:
+        values = np.array(words, dtype=np.bytes_).astype(np.float64)
+    except ValueError:
+        values = np.empty(0)
+    if values.size != count * width or not np.isfinite(values).all():
+        raise SolverError(f"{path}: got something else than {count * width} finite numbers; the run was cut short?")
+    return values.reshape(count, width) if width > 1 else values

@@ -1,0 +1,161 @@
+"""Where OpenFOAM and `ehlFoam` are, which build it is, what is missing, and the command that builds it."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import shutil
+import sysconfig
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from ehdmaps.errors import InputError
+from ehdmaps.openfoam.case import NO_PATH
+
+BUILD_COMMAND = "openfoam_cases/build"
+"""Command in a clone of the project that installs what is needed and builds `ehlFoam`."""
+
+FOLDER_VARIABLE = "EHDMAPS_OPENFOAM"
+"""Environment variable with the folder of the build."""
+
+DEBIAN = Path("/usr/share/openfoam")
+"""Project folder of the distribution's package, which sets no environment of its own."""
+
+DEBIAN_ENVIRONMENT = {"WM_PROJECT_DIR": str(DEBIAN), "WM_PROJECT_VERSION": "v1912"}
+
+_CLONE = Path(__file__).parents[2] / "openfoam_cases"
+_SHARED = Path(sysconfig.get_path("data")) / "share" / "ehdmaps"
+_CASE = "lineContact"
+_VERSION = re.compile(r"OpenFOAM\W+(?:version\W+)?(v?\d[\w.+-]*)", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Installation:
+    """What runs a case.
+
+    Attributes
+    ----------
+    solver, block_mesh : Path
+        The programs.
+    template : Path
+        The case that is copied.
+    build : str
+        Record of the build: OpenFOAM version, compiler, hash of the sources.
+    template_hash : str
+        Of the template's files.
+    environment : tuple of (str, str)
+        What the programs need besides the environment of this process.
+    """
+
+    solver: Path
+    block_mesh: Path
+    template: Path
+    build: str
+    template_hash: str
+    environment: tuple[tuple[str, str], ...]
+
+    @property
+    def openfoam_version(self) -> str:
+        """Version of OpenFOAM for which `ehlFoam` was built, as its record says."""
+        found = _VERSION.search(self.build)
+        return found[1] if found else "unknown"
+
+    @property
+    def version(self) -> str:
+        """What tells one build, or one template, from the next."""
+        return f"{self.build}; template {self.template_hash}"
+
+    def full_environment(self) -> dict[str, str]:
+        """Environment of the programs: one thread each, no colours."""
+        return {**os.environ, **dict(self.environment), "TERM": "dumb", "OMP_NUM_THREADS": "1"}
+
+
+def installation(environment: Mapping[str, str] | None = None) -> Installation:
+    """Find OpenFOAM and `ehlFoam`.
+
+    Parameters
+    ----------
+    environment : mapping, optional
+        That of this process if left out.
+
+    Raises
+    ------
+    InputError
+        With everything that is missing, and what to do.
+    """
+    known = os.environ if environment is None else environment
+    folder = build_folder(known)
+    solver, record = folder / "bin" / "ehlFoam", folder / "bin" / "ehlFoam.build"
+    block_mesh = shutil.which("blockMesh", path=known.get("PATH"))
+    template = next((cases / _CASE for cases in (folder, _CLONE, _SHARED) if (cases / _CASE / "system").is_dir()), None)
+    extra = () if "WM_PROJECT_DIR" in known else tuple(DEBIAN_ENVIRONMENT.items())
+    problems = []
+    if block_mesh is None:
+        problems.append(
+            "OpenFOAM: blockMesh is not in PATH; the solver 'openfoam' needs OpenFOAM v1912; "
+            "install the package openfoam, or source etc/bashrc of an installation"
+        )
+    elif extra and not DEBIAN.is_dir():
+        problems.append(
+            f"OpenFOAM: WM_PROJECT_DIR is not set and there is no {DEBIAN}; source etc/bashrc of the installation"
+        )
+    if shutil.which("setpriv", path=known.get("PATH")) is None:
+        problems.append("setpriv is not in PATH; install the package util-linux")
+    if not os.access(solver, os.X_OK):
+        problems.append(
+            f"ehlFoam: there is no program {solver}; build it with `{BUILD_COMMAND}` in a clone of the project, "
+            f"or set {FOLDER_VARIABLE} to the folder of a build"
+        )
+    elif not record.is_file():
+        problems.append(f"ehlFoam: there is no record {record} of its build; build it again with `{BUILD_COMMAND}`")
+    if template is None:
+        problems.append(
+            f"case {_CASE}: is in none of {folder}, {_CLONE}, {_SHARED}; install ehdmaps again, or copy "
+            f"openfoam_cases/{_CASE} of the project into the first"
+        )
+    if NO_PATH.search(tempfile.gettempdir()):
+        problems.append(
+            f"the folder for temporary files: got {tempfile.gettempdir()!r}; OpenFOAM takes no spaces or quotes in it; "
+            "set TMPDIR to another folder"
+        )
+    if problems or block_mesh is None or template is None:
+        raise InputError(problems)
+    return Installation(
+        solver=solver,
+        block_mesh=Path(block_mesh),
+        template=template,
+        build=" ".join(record.read_text(encoding="utf-8", errors="replace").split())[:500],
+        template_hash=_hash(template),
+        environment=extra,
+    )
+
+
+def missing() -> tuple[str, ...]:
+    """Return what is missing, one sentence each; empty if cases can run."""
+    try:
+        installation()
+    except InputError as error:
+        return error.problems
+    return ()
+
+
+def build_folder(environment: Mapping[str, str]) -> Path:
+    """Return the folder of the build, as the build command has it."""
+    if own := environment.get(FOLDER_VARIABLE):
+        return Path(own).expanduser()
+    cache = environment.get("XDG_CACHE_HOME") or "~/.cache"
+    return Path(cache).expanduser() / "ehdmaps" / "openfoam"
+
+
+def _hash(template: Path) -> str:
+    """Hash the files of the template that a run uses; its parameter file is replaced and does not count."""
+    digest = hashlib.sha256()
+    for part in ("system", "0", "constant"):
+        for path in sorted((template / part).rglob("*")):
+            if path.is_file() and "polyMesh" not in path.parts and path.name != "ehlProperties":
+                digest.update(str(path.relative_to(template)).encode())
+                digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]

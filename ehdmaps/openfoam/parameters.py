@@ -1,0 +1,267 @@
+"""The file `constant/ehlProperties`: all that a case of `ehlFoam` is told about its point.
+
+OpenFOAM dictionaries can execute code. So nothing is written but finite numbers, by `repr`, and words of fixed tables.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from numbers import Real
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics.lubricant import LubricantState
+
+Flow = Literal["thin_film", "full_stress"]
+Shear = Literal["newtonian", "eyring", "limiting"]
+
+FLOWS: Mapping[Flow, str] = {"thin_film": "thinFilm", "full_stress": "fullStress"}
+"""Words of a job file and those of the dictionary."""
+
+SHEARS: Mapping[Shear, str] = {"newtonian": "Newtonian", "eyring": "Eyring", "limiting": "limiting"}
+"""Words of a job file and those of the dictionary."""
+
+HEADER = "FoamFile { version 2.0; format ascii; class dictionary; object ehlProperties; }"
+
+
+@dataclass(frozen=True)
+class Start:
+    """A film to start from.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n,)
+        Positions from the contact centre, increasing [m].
+    pressure : ndarray, shape (n,)
+        [Pa].
+    central_film : float
+        [m].
+    """
+
+    x: NDArray[np.float64]
+    pressure: NDArray[np.float64]
+    central_film: float
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Where the columns of cells stand.
+
+    Attributes
+    ----------
+    film : float
+        Expected film H = h R/b^2.
+    inlet_length : float
+        Length of the inlet in units of sqrt(2 h R).
+    outlet_length : float
+        Length beyond the exit in widths of the exit zone.
+    spike_position, spike_width : float
+        Pressure spike from the contact centre, and width of the finest columns around it [b]; width 0: no spike.
+    """
+
+    film: float
+    inlet_length: float = 100.0
+    outlet_length: float = 3.0
+    spike_position: float = 0.0
+    spike_width: float = 0.0
+
+
+@dataclass(frozen=True)
+class Oscillation:
+    """A small oscillation of the approach, integrated in time.
+
+    Attributes
+    ----------
+    frequency : float
+        [Hz].
+    amplitude : float
+        Over the central film.
+    steps_per_cycle, cycles : int
+        Of the time integration.
+    """
+
+    frequency: float
+    amplitude: float = 1e-3
+    steps_per_cycle: int = 200
+    cycles: int = 3
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """One run of `ehlFoam`.
+
+    Attributes
+    ----------
+    reduced_radius : float
+        R [m].
+    reduced_modulus : float
+        E' = 2/(...) [Pa].
+    load : float
+        w [N/m].
+    lower_speed, upper_speed : float
+        Of the surfaces [m/s].
+    oil : LubricantState
+        At the temperature of the point.
+    cavitation_range : float
+        Range of pressure over which liquid turns into the cavitated mixture [Pa].
+    mesh : Mesh
+        Where the columns stand.
+    columns, rows : int
+        Cells along and across the film.
+    flow : {"thin_film", "full_stress"}
+        Stress of thin films, or all of it with the pressure across the film.
+    shear : {"newtonian", "eyring", "limiting"}
+        Law of the shear stress.
+    shear_stress : float
+        Eyring stress, or limiting stress [Pa]; the Newtonian law has none.
+    inertia : bool
+        Whether the momentum equation has its inertia.
+    start : Start, optional
+        None starts from the dry contact.
+    frequencies : tuple of float
+        Of the linear response [Hz]; 0 is the low-frequency limit.
+    oscillation : Oscillation, optional
+        Oscillation in time, the independent check of the response.
+    max_iterations : int
+        After which a run counts as stagnated.
+    tolerance : float
+        Relative, of the balances.
+    write_fields : bool
+        Whether the fields are written when the run is done.
+    """
+
+    reduced_radius: float
+    reduced_modulus: float
+    load: float
+    lower_speed: float
+    upper_speed: float
+    oil: LubricantState
+    cavitation_range: float
+    mesh: Mesh
+    columns: int
+    rows: int
+    flow: Flow = "thin_film"
+    shear: Shear = "newtonian"
+    shear_stress: float = 0.0
+    inertia: bool = False
+    start: Start | None = None
+    frequencies: tuple[float, ...] = (0.0,)
+    oscillation: Oscillation | None = None
+    max_iterations: int = 60
+    tolerance: float = 1e-9
+    write_fields: bool = False
+
+    def text(self) -> str:
+        """Return the dictionary.
+
+        Raises
+        ------
+        InputError
+            For anything but a finite number where a number belongs, or an unknown word.
+        """
+        return "\n".join([HEADER, "", *self._lines(), ""])
+
+    def _lines(self) -> Iterator[str]:
+        yield _entry("reducedRadius", self.reduced_radius)
+        yield _entry("reducedModulus", self.reduced_modulus)
+        yield _entry("load", self.load)
+        yield _entry("lowerSpeed", self.lower_speed)
+        yield _entry("upperSpeed", self.upper_speed)
+        yield from _block("viscosity", _viscosity(self.oil))
+        density = "DowsonHigginson" if self.oil.compressible else "incompressible"
+        yield from _block("density", [f"type {density};", _entry("density", self.oil.density)])
+        shear = [f"type {_word('shear', self.shear, SHEARS)};"]
+        if self.shear != "newtonian":
+            shear.append(_entry("stress", self.shear_stress))
+        yield from _block("shear", shear)
+        yield from _block("cavitation", [_entry("pressureRange", self.cavitation_range)])
+        yield f"flow {_word('flow', self.flow, FLOWS)};"
+        yield _switch("inertia", self.inertia)
+        yield _count("columns", self.columns)
+        yield _count("rows", self.rows)
+        mesh = [
+            _entry("film", self.mesh.film),
+            _entry("inletLength", self.mesh.inlet_length),
+            _entry("outletLength", self.mesh.outlet_length),
+            _entry("spikePosition", self.mesh.spike_position),
+            _entry("spikeWidth", self.mesh.spike_width),
+        ]
+        yield from _block("mesh", mesh)
+        if self.start is not None:
+            start = [
+                _list("x", self.start.x),
+                _list("pressure", self.start.pressure),
+                _entry("centralFilm", self.start.central_film),
+            ]
+            yield from _block("start", start)
+        yield from _block("response", [_list("frequencies", self.frequencies)])
+        if self.oscillation is not None:
+            oscillation = [
+                _entry("frequency", self.oscillation.frequency),
+                _entry("amplitude", self.oscillation.amplitude),
+                _count("stepsPerCycle", self.oscillation.steps_per_cycle),
+                _count("cycles", self.oscillation.cycles),
+            ]
+            yield from _block("oscillation", oscillation)
+        yield _count("maxIterations", self.max_iterations)
+        yield _entry("tolerance", self.tolerance)
+        yield _switch("writeFields", self.write_fields)
+
+
+def _viscosity(oil: LubricantState) -> list[str]:
+    """The isotherm (alpha p_c/z) [(1 + p/p_c)^z - 1] under the name of its law."""
+    law = oil.pressure_viscosity
+    entries = [_entry("viscosity", oil.viscosity), _entry("pressureViscosity", law.pressure_viscosity)]
+    if law.exponent == 1.0:
+        return ["type Barus;", *entries]
+    scale = _entry("pressureScale", law.pressure_scale)
+    if law.exponent == -1.0:
+        return ["type FVA3;", *entries, scale]
+    return ["type Roelands;", *entries, _entry("exponent", law.exponent), scale]
+
+
+def _block(name: str, entries: Sequence[str]) -> Iterator[str]:
+    """A sub-dictionary."""
+    yield f"{name} {{ {' '.join(entries)} }}"
+
+
+def _entry(key: str, value: object) -> str:
+    """A key and its number."""
+    # repr of a float is exact and has no character that a dictionary could take for anything else
+    if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
+        raise InputError(f"ehlProperties, {key}: got {value!r:.60}; allowed: a finite number")
+    return f"{key} {float(value)!r};"
+
+
+def _count(key: str, value: object) -> str:
+    """A key and its whole number."""
+    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+        raise InputError(f"ehlProperties, {key}: got {value!r:.60}; allowed: a whole number >= 1")
+    return f"{key} {int(value)!r};"
+
+
+def _switch(key: str, value: object) -> str:
+    """A key and true or false."""
+    if not isinstance(value, bool):
+        raise InputError(f"ehlProperties, {key}: got {value!r:.60}; allowed: true or false")
+    return f"{key} {'true' if value else 'false'};"
+
+
+def _list(key: str, values: ArrayLike) -> str:
+    """A key and its list of numbers."""
+    array = np.asarray(values)
+    if array.ndim != 1 or (array.size and array.dtype.kind not in "iuf") or not np.isfinite(array.astype(float)).all():
+        raise InputError(f"ehlProperties, {key}: got {array.ravel()[:3]!r:.60}; allowed: a list of finite numbers")
+    return f"{key} ({' '.join(map(repr, array.astype(float).tolist()))});"
+
+
+def _word(key: str, value: object, table: Mapping[Any, str]) -> str:
+    """The dictionary's word for a word of the job file."""
+    if not isinstance(value, str) or value not in table:
+        raise InputError(f"ehlProperties, {key}: got {value!r:.60}; allowed: {', '.join(table)}")
+    return table[value]

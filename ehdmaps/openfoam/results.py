@@ -1,0 +1,190 @@
+"""What a run of `ehlFoam` wrote: the dictionary `results` and the table `film.dat`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from numbers import Real
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ehdmaps.errors import SolverError
+from ehdmaps.openfoam.pyfoam import parse
+from ehdmaps.physics.solution import Status
+
+STATUSES: Mapping[str, Status] = {
+    "converged": Status.CONVERGED,
+    "stagnated": Status.STAGNATED,
+    "diverged": Status.DIVERGED,
+    "outsideValidity": Status.OUTSIDE_VALIDITY,
+}
+"""Words of `ehlFoam` for how a run ended."""
+
+COLUMNS = ("x", "pressure", "film", "flux", "density", "liquid_fraction")
+"""Columns of `film.dat`."""
+
+
+@dataclass(frozen=True)
+class Results:
+    """Numbers of one run; NaN in one that did not converge.
+
+    Attributes
+    ----------
+    status, reason
+        How the run ended.
+    iterations : int
+        Of the coupled solve.
+    central_film, minimum_film, film_offset : float
+        [m].
+    max_pressure : float
+        [Pa].
+    frequencies : tuple of float
+        Of the responses that follow [Hz].
+    film_compliance : tuple of float
+        1/k - 1/k_dry at each frequency [m2/N].
+    loss_compliance : tuple of float
+        At each frequency [m2 s/N].
+    load_defect, flux_defect, outlet_defect, cell_continuity : float
+        Relative defects of the balances: load, mass flux before and behind the rupture of the film, mass of the cells.
+    seconds : float
+        Time of the run as it says itself.
+    oscillation_film_compliance, oscillation_loss_compliance : float or None
+        From an oscillation in time, where one was asked for [m2/N], [m2 s/N].
+    """
+
+    status: Status
+    reason: str = ""
+    iterations: int = 0
+    central_film: float = math.nan
+    minimum_film: float = math.nan
+    max_pressure: float = math.nan
+    film_offset: float = math.nan
+    frequencies: tuple[float, ...] = ()
+    film_compliance: tuple[float, ...] = ()
+    loss_compliance: tuple[float, ...] = ()
+    load_defect: float = math.nan
+    flux_defect: float = math.nan
+    outlet_defect: float = math.nan
+    cell_continuity: float = math.nan
+    seconds: float = math.nan
+    oscillation_film_compliance: float | None = None
+    oscillation_loss_compliance: float | None = None
+
+
+@dataclass(frozen=True)
+class FilmTable:
+    """The film over the columns of cells, each of shape (columns,).
+
+    Attributes
+    ----------
+    x : ndarray
+        Centres of the columns from the contact centre [m].
+    pressure : ndarray
+        [Pa].
+    film : ndarray
+        h [m].
+    flux : ndarray
+        Mass flux per width [kg/(m s)].
+    density : ndarray
+        [kg/m3].
+    liquid_fraction : ndarray
+        1 where there is oil only.
+    """
+
+    x: NDArray[np.float64]
+    pressure: NDArray[np.float64]
+    film: NDArray[np.float64]
+    flux: NDArray[np.float64]
+    density: NDArray[np.float64]
+    liquid_fraction: NDArray[np.float64]
+
+
+def read_results(case: Path) -> Results:
+    """Read the dictionary `results` of a case.
+
+    Raises
+    ------
+    SolverError
+        If it is not there or is not what `ehlFoam` writes: where, what was got, what is allowed.
+    """
+    path = case / "results"
+    entries = parse(path)
+    word = entries.get("status")
+    if not isinstance(word, str) or word not in STATUSES:
+        raise SolverError(f"{path}, status: got {word!r:.60}; allowed: {', '.join(STATUSES)}")
+    status = STATUSES[word]
+    reason = str(entries.get("reason", "")).strip('"')
+    iterations = int(_number(path, entries, "iterations"))
+    if status is not Status.CONVERGED:
+        return Results(status, reason, iterations)
+    frequencies = _numbers(path, entries, "frequencies", None)
+    oscillated = "oscillationFilmCompliance" in entries
+    return Results(
+        status=status,
+        reason=reason,
+        iterations=iterations,
+        central_film=_number(path, entries, "centralFilm"),
+        minimum_film=_number(path, entries, "minimumFilm"),
+        max_pressure=_number(path, entries, "maximumPressure"),
+        film_offset=_number(path, entries, "filmOffset"),
+        frequencies=frequencies,
+        film_compliance=_numbers(path, entries, "filmCompliance", len(frequencies)),
+        loss_compliance=_numbers(path, entries, "lossCompliance", len(frequencies)),
+        load_defect=_number(path, entries, "loadDefect"),
+        flux_defect=_number(path, entries, "fluxDefect"),
+        outlet_defect=_number(path, entries, "outletDefect"),
+        cell_continuity=_number(path, entries, "cellContinuity"),
+        seconds=_number(path, entries, "seconds"),
+        oscillation_film_compliance=_number(path, entries, "oscillationFilmCompliance") if oscillated else None,
+        oscillation_loss_compliance=_number(path, entries, "oscillationLossCompliance") if oscillated else None,
+    )
+
+
+def read_film(case: Path, columns: int) -> FilmTable:
+    """Read the table `film.dat` of a case with so many columns of cells.
+
+    Raises
+    ------
+    SolverError
+        If it is not there or is not a table of finite numbers with the columns of `COLUMNS`.
+    """
+    path = case / "film.dat"
+    try:
+        with path.open(encoding="ascii") as file:
+            header = file.readline().lstrip("#").split()
+            table = np.loadtxt(file, ndmin=2)
+    except FileNotFoundError as error:
+        raise SolverError(f"{path}: is not there") from error
+    except ValueError as error:
+        raise SolverError(f"{path}: is no table of numbers ({error})") from error
+    if tuple(header) != COLUMNS or table.shape != (columns, len(COLUMNS)) or not np.isfinite(table).all():
+        raise SolverError(
+            f"{path}: got an array of shape {table.shape} under {' '.join(header):.80}; "
+            f"allowed: {columns} lines of finite numbers under {' '.join(COLUMNS)}"
+        )
+    return FilmTable(*np.ascontiguousarray(table.T))
+
+
+def _number(path: Path, entries: Mapping[str, Any], key: str) -> float:
+    """A finite number."""
+    value = entries.get(key)
+    if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
+        raise SolverError(f"{path}, {key}: got {value!r:.60}; allowed: a finite number")
+    return float(value)
+
+
+def _numbers(path: Path, entries: Mapping[str, Any], key: str, length: int | None) -> tuple[float, ...]:
+    """A list of finite numbers; the parser takes three of them for a vector."""
+    value = entries.get(key)
+    try:
+        numbers = tuple(float(number) for number in value)  # type: ignore[union-attr]
+    except (TypeError, ValueError):
+        numbers = (math.nan,)
+    if not all(map(math.isfinite, numbers)) or length not in (None, len(numbers)):
+        what = "finite numbers" if length is None else f"{length} finite numbers"
+        raise SolverError(f"{path}, {key}: got {value!s:.60}; allowed: {what} in brackets")
+    return numbers

@@ -1,0 +1,447 @@
+"""The solver `openfoam`: every point on two grids by `ehlFoam`, a C++ solver of the film between elastic surfaces."""
+
+from __future__ import annotations
+
+import math
+import re
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ehdmaps.errors import InputError, SolverError
+from ehdmaps.openfoam.case import NO_PATH, working_case
+from ehdmaps.openfoam.fields import FilmFields, read_fields
+from ehdmaps.openfoam.installation import Installation, installation
+from ehdmaps.openfoam.parameters import FLOWS, SHEARS, Flow, Mesh, Parameters, Shear, Start
+from ehdmaps.openfoam.results import FilmTable, Results, read_film, read_results
+from ehdmaps.openfoam.run import KilledError, RunError, log_tail, run
+from ehdmaps.physics.closed_form import THIN_FILM_LIMIT, HertzSolver
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.films import moes_central
+from ehdmaps.physics.hertz import half_width, max_pressure
+from ehdmaps.physics.lubricant import Lubricant, LubricantState
+from ehdmaps.physics.moes import film_from_moes, moes_groups
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solution import FilmSolution, Status
+
+LARGEST_PRESSURE = 10e9
+"""Hertz pressure above which no run is tried [Pa]; steel yields long before."""
+
+CAVITATION_RANGE = 1e-6
+"""Pressure over which liquid turns into the cavitated mixture, in Hertz pressures."""
+
+PARAMETER_VERSION = 1
+"""Raised when a change of this package changes numbers: results of another version are not taken over."""
+
+StartWord = Literal["reynolds", "hertz"]
+
+
+class Guess(Protocol):
+    """What a start offers: a film, and where the columns of cells should stand."""
+
+    @property
+    def x(self) -> NDArray[np.float64]:
+        """Positions from the contact centre [m]."""
+        ...
+
+    @property
+    def pressure(self) -> NDArray[np.float64]:
+        """Pressure there [Pa]."""
+        ...
+
+    @property
+    def central_film(self) -> float:
+        """Film at the centre [m]."""
+        ...
+
+    @property
+    def expected_film(self) -> float:
+        """Film H = h R/b^2 about which a grid is laid."""
+        ...
+
+    @property
+    def spike_position(self) -> float:
+        """Pressure spike from the contact centre [b]."""
+        ...
+
+    @property
+    def spike_width(self) -> float:
+        """Width of the finest cells around it [b]; 0 where there is none."""
+        ...
+
+
+Starter = Callable[[LineContact, Lubricant, float, float, float], Guess | None]
+"""From contact, lubricant, load [N/m], entrainment speed [m/s], temperature [K] to a start; None where it has none."""
+
+
+@dataclass(frozen=True)
+class GridSolution:
+    """What one run gave; `note` says so where it took two tries."""
+
+    results: Results
+    film: FilmTable
+    fields: FilmFields | None
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class OpenFoamSolver:
+    """Film-resolved line contact with elastic surfaces; a point costs seconds.
+
+    Each point is solved on a grid of half the cells each way, then on the grid itself from there; a third of the
+    difference is the error estimate, as for a scheme of second order.
+
+    Attributes
+    ----------
+    flow : {"thin_film", "full_stress"}
+        Stress of thin films, or all of it with the pressure across the film.
+    columns, rows : int
+        Cells along and across the film.
+    shear : {"newtonian", "eyring", "limiting"}
+        Law of the shear stress.
+    shear_stress : float
+        Eyring stress, or limiting stress [Pa].
+    inertia : bool
+        Whether the momentum equation has its inertia.
+    slide_to_roll : float
+        (u_upper - u_lower)/u.
+    inlet_length : float
+        Length of the inlet in units of sqrt(2 h R).
+    tolerance : float
+        Relative, of the balances.
+    max_iterations : int
+        After which a run counts as stagnated.
+    starter : callable, optional
+        Gives a start to each point; without one it starts from the dry contact.
+    timeout : float
+        Time of a point, both grids together, after which it is stopped and failed [s].
+    keep_cases : Path, optional
+        Folder in which the cases of all runs are kept, with their fields.
+    installed : Installation
+        The programs; found if left out.
+
+    Raises
+    ------
+    InputError
+        If a setting is outside its range, or OpenFOAM or `ehlFoam` is missing.
+    """
+
+    flow: Flow = "thin_film"
+    columns: int = 400
+    rows: int = 16
+    shear: Shear = "newtonian"
+    shear_stress: float | None = None
+    inertia: bool = False
+    slide_to_roll: float = 0.0
+    inlet_length: float = 100.0
+    tolerance: float = 1e-9
+    max_iterations: int = 60
+    starter: Starter | None = None
+    timeout: float = 120.0
+    keep_cases: Path | None = None
+    installed: Installation = field(default_factory=installation)
+
+    slow = True
+
+    def __post_init__(self) -> None:
+        limits = {
+            "columns": (40, 4000),
+            "rows": (4, 64),
+            "slide_to_roll": (-2.0, 2.0),
+            "inlet_length": (20.0, 1e5),
+            "tolerance": (1e-13, 1e-3),
+            "max_iterations": (1, 100_000),
+            "timeout": (0.1, 1e6),
+        }
+        problems = [
+            f"openfoam solver, {name}: got {getattr(self, name)!r}; allowed: {low:g} to {high:g}; "
+            "leave it out for the default"
+            for name, (low, high) in limits.items()
+            if not low <= getattr(self, name) <= high
+        ]
+        problems += [
+            f"openfoam solver, {name}: got {getattr(self, name)}; allowed: an even number; its half is the coarse grid"
+            for name in ("columns", "rows")
+            if getattr(self, name) % 2
+        ]
+        problems += [
+            f"openfoam solver, {name}: got {getattr(self, name)!r:.60}; allowed: {', '.join(words)}"
+            for name, words in (("flow", FLOWS), ("shear", SHEARS))
+            if getattr(self, name) not in words
+        ]
+        if self.shear == "newtonian" and self.shear_stress is not None:
+            problems.append(
+                f"openfoam solver, shear_stress: got {self.shear_stress!r} Pa with shear newtonian, which has none; "
+                "leave it out, or choose shear eyring or limiting"
+            )
+        elif self.shear != "newtonian" and not 1e3 <= (self.shear_stress or 0.0) <= 1e10:
+            problems.append(
+                f"openfoam solver, shear_stress: got {self.shear_stress!r} Pa; allowed: 1e3 to 1e10 Pa with shear "
+                f"{self.shear}; Eyring stresses are some 1e6 Pa"
+            )
+        if self.keep_cases is not None and NO_PATH.search(str(self.keep_cases.absolute())):
+            problems.append(
+                f"openfoam solver, keep_cases: got {str(self.keep_cases.absolute())!r}; OpenFOAM takes no spaces or "
+                "quotes in the path of a case; choose another folder"
+            )
+        if problems:
+            raise InputError(problems)
+
+    @property
+    def name(self) -> str:
+        """Name of the solver."""
+        return "openfoam"
+
+    @property
+    def version(self) -> str:
+        """What tells results of one build from those of the next."""
+        return f"{PARAMETER_VERSION}; {self.installed.version}"
+
+    @property
+    def provenance(self) -> dict[str, str]:
+        """Further attributes of a map: OpenFOAM and the build."""
+        return {"openfoam_version": self.installed.openfoam_version, "openfoam_build": self.installed.build}
+
+    def settings(self) -> dict[str, float | int | str]:
+        """Everything that changes the numbers; a longer timeout only makes more of them."""
+        return {
+            "flow": self.flow,
+            "columns": self.columns,
+            "rows": self.rows,
+            "shear": self.shear,
+            "shear_stress": self.shear_stress or 0.0,
+            "inertia": int(self.inertia),
+            "slide_to_roll": self.slide_to_roll,
+            "inlet_length": self.inlet_length,
+            "tolerance": self.tolerance,
+            "max_iterations": self.max_iterations,
+            "start": "hertz" if self.starter is None else "reynolds",
+        }
+
+    def solve_line(
+        self,
+        contact: LineContact,
+        lubricant: Lubricant,
+        loads: tuple[float, ...],
+        entrainment_speed: float,
+        temperature: float,
+        frequency: float = 0.0,
+    ) -> tuple[FilmSolution, ...]:
+        """Films at each load [N/m], each on its own; a run that fails is a point with a status and its cause."""
+        return tuple(
+            self.solve_fields(contact, lubricant, OperatingPoint(load, entrainment_speed, temperature), frequency)[0]
+            for load in loads
+        )
+
+    def solve_fields(
+        self,
+        contact: LineContact,
+        lubricant: Lubricant,
+        point: OperatingPoint,
+        frequency: float = 0.0,
+        with_fields: bool = False,
+    ) -> tuple[FilmSolution, GridSolution | None]:
+        """Solve one point.
+
+        Parameters
+        ----------
+        contact, lubricant, point
+            What is solved.
+        frequency : float
+            Of the response [Hz]; 0 is the low-frequency limit.
+        with_fields : bool
+            Whether to read the fields of the fine grid.
+
+        Returns
+        -------
+        film : FilmSolution
+            With status and cause where it failed.
+        grid : GridSolution or None
+            What the run on the fine grid gave; None where there is none.
+        """
+        if point.entrainment_speed == 0.0:
+            (dry,) = HertzSolver().solve_line(contact, lubricant, (point.load,), 0.0, point.temperature)
+            return replace(dry, status=Status.ASYMPTOTE, reason="no entrainment: dry contact"), None
+        peak = float(max_pressure(point.load, contact.radius, contact.reduced_modulus))
+        if not peak <= LARGEST_PRESSURE:
+            reason = f"Hertz pressure {peak / 1e9:.3g} GPa above {LARGEST_PRESSURE / 1e9:g} GPa"
+            return FilmSolution(Status.OUTSIDE_VALIDITY, reason), None
+        state = lubricant.at(point.temperature)
+        began = time.perf_counter()
+        end = time.monotonic() + self.timeout
+        stage, done = "coarse grid", 0
+        try:
+            fine = self.parameters(contact, lubricant, point, frequency)
+            halved = replace(fine, columns=fine.columns // 2, rows=fine.rows // 2)
+            name = _case_name(contact, point)
+            coarse = self.run_case(halved, name, end=end)
+            done = coarse.results.iterations
+            stage = "fine grid"
+            start = Start(coarse.film.x, coarse.film.pressure, coarse.results.central_film)
+            grid = self.run_case(replace(fine, start=start), name, with_fields, end)
+        except InputError as error:
+            return FilmSolution(Status.OUTSIDE_VALIDITY, str(error)), None
+        except SolverError as error:
+            seconds = time.perf_counter() - began
+            status, iterations = Status.FAILED, done
+            if isinstance(error, RunError):
+                status, iterations = error.status, done + error.iterations
+            return FilmSolution(status, f"{stage}: {error}", iterations=iterations, solve_seconds=seconds), None
+        return _film(contact, state, coarse, grid, time.perf_counter() - began), grid
+
+    def parameters(
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequency: float = 0.0
+    ) -> Parameters:
+        """Return the parameters of a run on the fine grid, with the starter's start if there is one."""
+        state = lubricant.at(point.temperature)
+        guess = self.starter and self.starter(
+            contact, lubricant, point.load, point.entrainment_speed, point.temperature
+        )
+        mesh = Mesh(film=_expected_film(contact, state, point), inlet_length=self.inlet_length)
+        start = None
+        if guess is not None:
+            mesh = replace(
+                mesh,
+                film=guess.expected_film,
+                spike_position=guess.spike_position,
+                spike_width=guess.spike_width,
+            )
+            start = Start(guess.x, guess.pressure, guess.central_film)
+        lower, upper = self.surface_speeds(point.entrainment_speed)
+        peak = float(max_pressure(point.load, contact.radius, contact.reduced_modulus))
+        return Parameters(
+            reduced_radius=contact.radius,
+            reduced_modulus=contact.reduced_modulus,
+            load=point.load,
+            lower_speed=lower,
+            upper_speed=upper,
+            oil=state,
+            cavitation_range=CAVITATION_RANGE * peak,
+            mesh=mesh,
+            columns=self.columns,
+            rows=self.rows,
+            flow=self.flow,
+            shear=self.shear,
+            shear_stress=self.shear_stress or 0.0,
+            inertia=self.inertia,
+            start=start,
+            frequencies=(frequency,),
+            max_iterations=self.max_iterations,
+            tolerance=self.tolerance,
+        )
+
+    def surface_speeds(self, entrainment_speed: float) -> tuple[float, float]:
+        """Speeds of the lower and the upper surface [m/s]."""
+        half = 0.5 * self.slide_to_roll
+        return entrainment_speed * (1.0 - half), entrainment_speed * (1.0 + half)
+
+    def run_case(
+        self, parameters: Parameters, name: str = "case", with_fields: bool = False, end: float | None = None
+    ) -> GridSolution:
+        """Run one case; one that was killed from outside is tried a second time.
+
+        Parameters
+        ----------
+        parameters : Parameters
+            Of the run.
+        name : str
+            Of the folder, if cases are kept.
+        with_fields : bool
+            Whether to read the fields.
+        end : float, optional
+            On the clock `time.monotonic`, after which it is stopped [s]; left out, it has the whole timeout.
+
+        Raises
+        ------
+        RunError
+            If it gives no converged solution.
+        SolverError
+            If no case can be made.
+        """
+        end = time.monotonic() + self.timeout if end is None else end
+        try:
+            return self._run_once(parameters, name, with_fields, end)
+        except KilledError as first:
+            try:
+                second = self._run_once(parameters, name, with_fields, end)
+            except KilledError as error:
+                raise RunError(f"killed twice: {error}") from error
+            return replace(second, note=f"solved at the second try, the first {first}")
+
+    def _run_once(self, parameters: Parameters, name: str, with_fields: bool, end: float) -> GridSolution:
+        """One run in a folder of its own."""
+        kept = self.keep_cases
+        text = replace(parameters, write_fields=with_fields or kept is not None).text()
+        folder = f"{name}_{parameters.columns}x{parameters.rows}"
+        environment = self.installed.full_environment()
+        with working_case(self.installed.template, text, folder, kept) as case:
+            run(self.installed.block_mesh, case, environment, end)
+            log = run(self.installed.solver, case, environment, end)
+            try:
+                results = read_results(case)
+                if results.status is Status.CONVERGED and len(results.frequencies) != len(parameters.frequencies):
+                    raise SolverError(
+                        f"{case / 'results'}: got responses at {results.frequencies} Hz; allowed: as asked"
+                    )
+                if results.status is Status.CONVERGED:
+                    return GridSolution(
+                        results, read_film(case, parameters.columns), read_fields(case) if with_fields else None
+                    )
+            except SolverError as error:
+                raise RunError(f"{error}; {log_tail(log)}") from error
+            message = f"ehlFoam {results.status.word}: {results.reason}; {log_tail(log)}"
+            raise RunError(message, results.status, results.iterations)
+
+
+def _case_name(contact: LineContact, point: OperatingPoint) -> str:
+    """Name of a kept case."""
+    place = f"w{point.load:.6g}_u{point.entrainment_speed:.6g}_T{point.temperature:.6g}"
+    return f"{re.sub('[^A-Za-z0-9]', '_', contact.name)}_{place}"
+
+
+def _expected_film(contact: LineContact, state: LubricantState, point: OperatingPoint) -> float:
+    """Film H = h R/b^2 after Moes, for a grid without a better guess."""
+    alpha, modulus = state.pressure_viscosity.pressure_viscosity, contact.reduced_modulus
+    speed, radius = point.entrainment_speed, contact.radius
+    M, L = moes_groups(point.load, speed, state.viscosity, alpha, radius, modulus)
+    film = film_from_moes(moes_central(M, max(L, 1e-6)), speed, state.viscosity, radius, modulus)
+    return float(film * radius / half_width(point.load, radius, modulus) ** 2)
+
+
+def _film(
+    contact: LineContact, state: LubricantState, coarse: GridSolution, fine: GridSolution, seconds: float
+) -> FilmSolution:
+    """The fine solution with its errors, estimated as a third of the difference between both."""
+    found, rough = fine.results, coarse.results
+
+    def error(value: float, of_coarse: float) -> float:
+        """Relative, > 0 where refinement lowers the value."""
+        return (of_coarse - value) / (3.0 * value) if value else math.nan
+
+    status, notes = Status.CONVERGED, [coarse.note, fine.note]
+    if found.film_offset / contact.radius > THIN_FILM_LIMIT:
+        status = Status.ASYMPTOTE
+        notes.append("film thicker than 1 % of the radius: the gap is that of a parabola")
+    elif found.loss_compliance[0] < 0.0:
+        notes.append("negative damping at the valley of an isothermal film; a contact law takes zero")
+    return FilmSolution(
+        status=status,
+        reason="; ".join(filter(None, notes)),
+        film_offset=found.film_offset,
+        film_compliance=found.film_compliance[0],
+        loss_compliance=found.loss_compliance[0],
+        central_film=found.central_film,
+        minimum_film=found.minimum_film,
+        max_pressure=found.max_pressure,
+        film_offset_error=error(found.film_offset, rough.film_offset),
+        film_compliance_error=error(found.film_compliance[0], rough.film_compliance[0]),
+        loss_compliance_error=error(found.loss_compliance[0], rough.loss_compliance[0]),
+        iterations=rough.iterations + found.iterations,
+        solve_seconds=seconds,
+        viscosity_extrapolated=found.max_pressure > state.fitted_pressure,
+    )

@@ -1,0 +1,333 @@
+/*---------------------------------------------------------------------------*\
+  ehlFoam - film-resolved elastohydrodynamic line contacts
+  Copyright (C) 2026 the ehdmaps authors
+  SPDX-License-Identifier: GPL-3.0-or-later
+\*---------------------------------------------------------------------------*/
+
+/*-
+    One lubricated line contact: the film as CFD cells between two elastic
+    half-spaces, its steady state, its stiffness and its damping.
+
+    constant/ehlProperties says what is solved; the answer goes to `results`
+    (an OpenFOAM dictionary), film.dat (a table over the columns) and, if asked,
+    to the fields p, U, mu, rho, liquidFraction of the time folder 1.
+*/
+
+#include "oscillation.H"
+#include "response.H"
+#include "columnLayout.H"
+#include "thinFilm.H"
+#include "positive.H"
+#include "argList.H"
+#include "Time.H"
+#include "OFstream.H"
+#include "StringStream.H"
+#include "clockTime.H"
+#include "interpolateXY.H"
+#include <functional>
+#include <memory>
+
+using namespace Foam;
+
+
+//- Hertz' pressure [-] at x [b] with its edges rounded by a film H; a hump of the film's own width if it is thick
+scalar roundedHertz(const scalar x, const scalar H)
+{
+    if (H > 0.3)
+    {
+        const scalar width = Foam::sqrt(1 + 2*H);
+        return sqr(max(1 - x/width, scalar(0)))/Foam::pow(1 + sqr(x/width), 2.5);
+    }
+    const scalar zone = Foam::pow(H, scalar(2)/3), rounding = 0.15*zone;
+    if (x < -1 + rounding)
+    {
+        return Foam::sqrt(2*rounding)*Foam::exp(max((x + 1 - rounding)/(0.6*zone), scalar(-40)));
+    }
+    return Foam::sqrt(max(1 - sqr(x), scalar(0)));
+}
+
+
+//- Pressures [Pa] in the columns to start from: given, or those of Hertz; they carry the load
+scalarField startPressure(const dictionary& dict, const lineContact& contact, const scalarField& x)
+{
+    scalarField middle(x.size() - 1), length(x.size() - 1), pressure(x.size() - 1);
+    forAll(middle, i)
+    {
+        middle[i] = 0.5*(x[i] + x[i + 1]);
+        length[i] = x[i + 1] - x[i];
+    }
+    if (dict.found("start"))
+    {
+        const dictionary& start = dict.subDict("start");
+        const scalarField places(start.lookup("x")), values(start.lookup("pressure"));
+        if (places.size() < 2 || places.size() != values.size())
+        {
+            FatalIOErrorInFunction(start)
+                << "x, pressure: got lists of " << places.size() << " and " << values.size()
+                << ", allowed are lists of the same length of at least 2" << exit(FatalIOError);
+        }
+        pressure = interpolateXY(middle, places, values);
+        forAll(middle, i)
+        {
+            if (middle[i] > places.last()) pressure[i] = 0;
+        }
+    }
+    else
+    {
+        const scalar H = dict.subDict("mesh").get<scalar>("film");
+        forAll(middle, i) pressure[i] = roundedHertz(middle[i]/contact.halfWidth, H);
+    }
+    // upstream the film is full, and a column at rest would not know it
+    const scalar least = 1e-9*max(pressure);
+    forAll(middle, i)
+    {
+        pressure[i] = max(pressure[i], middle[i] < 0 ? least : scalar(0));
+    }
+    return pressure*contact.load/sum(pressure*length);
+}
+
+
+//- Film at x = 0 of films at the faces
+scalar centralFilm(const filmState& film)
+{
+    return interpolateXY(scalar(0), film.x, film.h);
+}
+
+
+word wordOf(const outcome end)
+{
+    return end == outcome::converged ? "converged"
+         : end == outcome::stagnated ? "stagnated"
+         : end == outcome::diverged ? "diverged" : "outsideValidity";
+}
+
+
+//- A solved film, and the equations that it solves
+struct solvedFilm
+{
+    autoPtr<filmFlow> flow;
+    std::unique_ptr<slice> contact;
+    newtonResult result;
+};
+
+
+/*-  The steady state, by easy steps: the Newtonian thin film; its shear stress
+     limited more and more; then all stresses
+*/
+solvedFilm steadyState
+(
+    const dictionary& dict,
+    const lineContact& contact,
+    filmMesh& film,
+    const scalarField& x,
+    const newtonControls& controls
+)
+{
+    const dictionary& shear = dict.subDict("shear");
+    const word flow(dict.get<word>("flow"));
+    const scalar filmScale = dict.subDict("mesh").get<scalar>("film")*contact.filmUnit();
+    scalarField pressure(startPressure(dict, contact, x));
+    scalar central = dict.found("start") ? positive(dict.subDict("start"), "centralFilm") : filmScale;
+    label iterations = 0;
+    solvedFilm found;
+
+    auto solve = [&](const word& type, const dictionary& shearLaw)
+    {
+        dictionary stage(dict);
+        stage.set("shear", shearLaw);
+        found.contact.reset();
+        found.flow = filmFlow::New(type, stage, film, contact);
+        found.contact.reset(new slice(*found.flow, contact, x, filmScale));
+        Info<< type << ", " << shearLaw.get<word>("type");
+        if (shearLaw.found("stress")) Info<< " " << shearLaw.get<scalar>("stress") << " Pa";
+        Info<< endl;
+        std::unique_ptr<linearisation> none;
+        found.result = newton
+        (
+            *found.contact, found.contact->start(pressure, central), contact.load, controls, none
+        );
+        iterations += found.result.iterations;
+        found.result.iterations = iterations;
+        const filmState state(found.contact->film(found.result.state));
+        forAll(pressure, i) pressure[i] = found.flow->loadPressure(state.column[i]);
+        central = centralFilm(state);
+        return found.result.end == outcome::converged;
+    };
+
+    dictionary newtonian(shear);
+    newtonian.set("type", word("Newtonian"));
+    newtonian.remove("stress");
+    if (!solve("thinFilm", newtonian)) return found;
+    if (shear.get<word>("type") != "Newtonian")
+    {
+        for (scalar factor = 64; factor >= 1; factor /= 4)
+        {
+            dictionary eased(shear);
+            eased.set("stress", factor*positive(shear, "stress"));
+            if (!solve("thinFilm", eased)) return found;
+        }
+    }
+    if (flow == "thinFilm") return found;
+
+    found.contact->residual(found.result.state, nullptr);
+    const scalar rise = refCast<const thinFilm>(*found.flow).stressByPressure();
+    Info<< "shear stress rises by " << rise << " times the pressure at most" << endl;
+    if (flow == "fullStress" && rise >= 1)
+    {
+        OStringStream reason;
+        reason << "the shear stress of this liquid rises " << rise
+            << " times as fast as pressure; from 1 on slow flow with all stresses has no elliptic"
+               " equations: take thinFilm, or a shear law that limits the stress";
+        found.result.end = outcome::outsideValidity;
+        found.result.reason = reason.str();
+        return found;
+    }
+    solve(flow, shear);
+    return found;
+}
+
+
+int main(int argc, char* argv[])
+{
+    argList::addNote("Elastohydrodynamic line contact, film-resolved");
+    argList::noParallel();
+    const argList args(argc, argv);
+    Time runTime(Time::controlDictName, args);
+    const clockTime clock;
+
+    // the problem
+    const IOdictionary dict
+    (
+        IOobject("ehlProperties", runTime.constant(), runTime, IOobject::MUST_READ, IOobject::NO_WRITE)
+    );
+    const lineContact contact(dict);
+    const label columns = dict.get<label>("columns"), rows = dict.get<label>("rows");
+    const newtonControls controls{positive(dict, "tolerance"), dict.get<label>("maxIterations")};
+    const dictionary& meshDict = dict.subDict("mesh");
+    const scalarField x(contact.halfWidth*columnLayout(meshDict).faces(columns));
+    const scalar filmScale = positive(meshDict, "film")*contact.filmUnit();
+    fvMesh mesh
+    (
+        IOobject(fvMesh::defaultRegion, runTime.timeName(), runTime, IOobject::MUST_READ)
+    );
+    filmMesh film(mesh, columns, rows, dict.lookupOrDefault<scalar>("lowerShare", 0.5));
+    Info<< "b " << contact.halfWidth << " m, p_H " << contact.pressure << " Pa, film expected "
+        << filmScale << " m, " << columns << " x " << rows << " cells" << nl << endl;
+
+    // the steady state
+    solvedFilm found(steadyState(dict, contact, film, x, controls));
+    newtonResult& solved = found.result;
+    slice& s = *found.contact;
+    label iterations = solved.iterations;
+    s.residual(solved.state, nullptr);
+
+    OFstream results(runTime.path()/"results");
+    results.precision(15);
+    IOobject::writeBanner(results) << "FoamFile { version 2.0; format ascii; class dictionary; object results; }" << nl;
+    auto write = [&](const word& key, const scalar value) { results << key << ' ' << value << ";" << nl; };
+
+    // what it is: films and defects
+    const filmState state(s.film(solved.state));
+    const scalarField flux(s.flow().columnFlux()), fraction(s.flow().columnFraction());
+    const scalarField density(s.flow().columnDensity());
+    label ruptured = 0;
+    while (ruptured < columns && fraction[ruptured] >= 1) ++ruptured;
+    scalar least = GREAT, fluxDefect = 0, greatest = 0;
+    // upstream of rupture
+    for (label k = 0; k <= columns; ++k)
+    {
+        least = min(least, state.h[k]);
+        if (k < ruptured) fluxDefect = max(fluxDefect, mag(flux[k]/flux[0] - 1));
+    }
+    for (label i = 0; i < columns; ++i)
+    {
+        greatest = max(greatest, s.flow().loadPressure(state.column[i]));
+    }
+    const halfSpace::dryContact dry(s.solid().dry());
+    const scalar h0 = solved.state.offset*filmScale;
+    write("centralFilm", centralFilm(state));
+    write("minimumFilm", least);
+    write("maximumPressure", greatest);
+    write("filmOffset", h0 - dry.offset);
+    write("loadDefect", mag(s.load(solved.state)/contact.load - 1));
+    write("fluxDefect", fluxDefect);
+    write("outletDefect", mag(flux.last()/flux[0] - 1));
+    write("cellContinuity", s.flow().cellContinuity());
+
+    if (solved.end == outcome::converged)
+    {
+        const scalar defects[] = {mag(s.load(solved.state)/contact.load - 1), fluxDefect, s.flow().cellContinuity()};
+        const word names[] = {"load", "mass flux upstream of rupture", "continuity of a cell"};
+        const scalar most[] = {1e-8, 1e-8, 1e-6};
+        for (label i = 0; i < 3; ++i)
+        {
+            if (defects[i] <= most[i]) continue;
+            OStringStream reason;
+            reason << names[i] << " has a relative defect of " << defects[i] << ", allowed is " << most[i];
+            solved.end = outcome::stagnated;
+            solved.reason = reason.str();
+        }
+    }
+
+    OFstream table(runTime.path()/"film.dat");
+    table.precision(12);
+    table << "# x pressure film flux density liquid_fraction" << nl;
+    for (label i = 0; i < columns; ++i)
+    {
+        table
+            << 0.5*(state.x[i] + state.x[i + 1]) << ' '
+            << s.flow().loadPressure(state.column[i]) << ' '
+            << 0.5*(state.h[i] + state.h[i + 1]) << ' '
+            << flux[i + 1] << ' ' << density[i] << ' ' << fraction[i] << nl;
+    }
+    if (dict.lookupOrDefault<bool>("writeFields", true))
+    {
+        runTime.setTime(1, 1);
+        mesh.setInstance(runTime.timeName());
+        mesh.write();
+        s.flow().write();
+    }
+
+    // how it moves: linear response, and the check in time
+    if (solved.end == outcome::converged && dict.found("response"))
+    {
+        const scalarField frequencies(dict.subDict("response").lookup("frequencies"));
+        const scalar spike = meshDict.get<scalar>("spikePosition");
+        label isobar = -1;
+        if (positive(meshDict, "film") > 0 && meshDict.get<scalar>("spikeWidth") > 0)
+        {
+            isobar = frontColumn(s, solved.state, spike);
+            dictionary shifted(meshDict);
+            const scalar step = 1e-4*meshDict.get<scalar>("spikeWidth");
+            shifted.set("spikePosition", spike + step);
+            if (isobar >= 0) s.follow(contact.halfWidth*columnLayout(shifted).faces(columns), step);
+        }
+        const List<filmResponse> found(response(s, solved.state, frequencies, isobar));
+        scalarField compliance(found.size()), loss(found.size());
+        forAll(found, f)
+        {
+            compliance[f] = found[f].filmCompliance;
+            loss[f] = found[f].lossCompliance;
+        }
+        results << "frequencies " << frequencies << ";" << nl
+            << "filmCompliance " << compliance << ";" << nl
+            << "lossCompliance " << loss << ";" << nl;
+    }
+    if (solved.end == outcome::converged && dict.found("oscillation"))
+    {
+        const oscillationResult found(oscillation(s, solved.state, dict.subDict("oscillation"), controls));
+        iterations += found.last.iterations;
+        solved.end = found.last.end;
+        solved.reason = found.last.reason;
+        write("oscillationFilmCompliance", found.filmCompliance);
+        write("oscillationLossCompliance", found.lossCompliance);
+    }
+
+    results << "status " << wordOf(solved.end) << ";" << nl
+        << "reason " << solved.reason << ";" << nl
+        << "iterations " << iterations << ";" << nl;
+    write("seconds", clock.elapsedTime());
+    Info<< nl << wordOf(solved.end) << " " << solved.reason << " in " << iterations << " steps, "
+        << clock.elapsedTime() << " s" << nl << "End" << endl;
+    return 0;
+}

@@ -1,0 +1,143 @@
+/*---------------------------------------------------------------------------*\
+  ehlFoam - film-resolved elastohydrodynamic line contacts
+  Copyright (C) 2026 the ehdmaps authors
+  SPDX-License-Identifier: GPL-3.0-or-later
+\*---------------------------------------------------------------------------*/
+
+#include "filmFlow.H"
+#include "linear.H"
+#include "fvcSurfaceIntegrate.H"
+
+namespace Foam
+{
+    defineTypeNameAndDebug(filmFlow, 0);
+    defineRunTimeSelectionTable(filmFlow, dictionary);
+}
+
+
+Foam::autoPtr<Foam::filmFlow> Foam::filmFlow::New
+(
+    const word& flow,
+    const dictionary& dict,
+    filmMesh& film,
+    const lineContact& contact
+)
+{
+    auto entry = dictionaryConstructorTablePtr_->cfind(flow);
+    if (!entry.found())
+    {
+        FatalIOErrorInLookup
+        (
+            dict, "flow", flow, *dictionaryConstructorTablePtr_
+        ) << exit(FatalIOError);
+    }
+    return autoPtr<filmFlow>(entry()(dict, film, contact));
+}
+
+
+Foam::filmFlow::filmFlow(const dictionary& dict, filmMesh& film, const lineContact& contact)
+:
+    film_(film),
+    contact_(contact),
+    oil_(dict, contact.pressure),
+    massUnit_
+    (
+        oil_.density(0)*contact.entrainment()*film.depth
+       *contact.filmUnit()*dict.subDict("mesh").get<scalar>("film")
+    )
+{}
+
+
+Foam::scalar Foam::filmFlow::densitySlope(const scalar v) const
+{
+    const scalar step = 1e-6;
+    auto mass = [&](const scalar u) { return oil_.fraction(u)*oil_.density(u); };
+    return v > 0
+      ? (mass(v + step) - mass(v))/step
+      : (mass(v) - mass(v - step))/step;
+}
+
+
+Foam::tmp<Foam::surfaceScalarField> Foam::filmFlow::mobilityOnFaces
+(
+    const volScalarField& mobility,
+    const volScalarField& viscosity
+) const
+{
+    // mobility x viscosity is a matter of shape alone
+    tmp<surfaceScalarField> tface
+    (
+        linear<scalar>(film_.mesh()).interpolate(mobility*viscosity)
+       /linear<scalar>(film_.mesh()).interpolate(viscosity)
+    );
+    surfaceScalarField& face = tface.ref();
+    forAll(face, f)
+    {
+        if (film_.columnFace(f) < 0) continue;
+        const label P = film_.mesh().owner()[f], N = film_.mesh().neighbour()[f];
+        const scalar muP = viscosity[P], muN = viscosity[N];
+        const scalar rise = Foam::log(muN/muP);
+        const scalar fluidity = mag(rise) < 1e-4
+          ? (1 - rise/2 + sqr(rise)/6)/muP
+          : (1/muP - 1/muN)/rise;
+        const scalar weight = film_.mesh().weights()[f];
+        face[f] = fluidity*(weight*mobility[P]*muP + (1 - weight)*mobility[N]*muN);
+    }
+    return tface;
+}
+
+
+Foam::tmp<Foam::scalarField> Foam::filmFlow::gathered
+(
+    const surfaceScalarField& massFlux,
+    const volScalarField& density,
+    const scalarField& densityRate,
+    const filmState* rate
+) const
+{
+    const fvMesh& mesh = film_.mesh();
+    tmp<scalarField> tmass(fvc::surfaceIntegrate(massFlux)().primitiveField()*mesh.V());
+    if (rate)
+    {
+        tmass.ref() += densityRate*mesh.V()
+          + density.primitiveField()*film_.volumeRate(rate->x, rate->h);
+    }
+    return tmass;
+}
+
+
+Foam::scalarField Foam::filmFlow::filmOfCells() const
+{
+    scalarField h(film_.mesh().nCells());
+    forAll(h, c)
+    {
+        h[c] = film_.film(c/film_.rows());
+    }
+    return h;
+}
+
+
+Foam::scalarField Foam::filmFlow::columnFlux(const surfaceScalarField& massFlux) const
+{
+    scalarField flux(film_.columns() + 1, Zero);
+    forAll(massFlux, face)
+    {
+        const label k = film_.columnFace(face);
+        if (k > 0) flux[k] += massFlux[face]/film_.depth;
+    }
+    flux.first() = -sum(massFlux.boundaryField()[film_.inlet()])/film_.depth;
+    flux.last() = sum(massFlux.boundaryField()[film_.outlet()])/film_.depth;
+    return flux;
+}
+
+
+Foam::scalar Foam::filmFlow::velocityStep
+(
+    const scalar viscosity,
+    const label column,
+    const label row
+) const
+{
+    const scalar rate = contact_.entrainment()/(film_.film(column)*film_.share(row));
+    return min(scalar(1e-6), 1e-3*oil_.shearStress()/(viscosity*rate));
+}

@@ -1,0 +1,299 @@
+/*---------------------------------------------------------------------------*\
+  ehlFoam - film-resolved elastohydrodynamic line contacts
+  Copyright (C) 2026 the ehdmaps authors
+  SPDX-License-Identifier: GPL-3.0-or-later
+\*---------------------------------------------------------------------------*/
+
+#include "linearisation.H"
+
+namespace Foam
+{
+
+//- Columns in a block of the inner system: as many as a residual reaches
+static constexpr label group = 2;
+
+//- How far column unknowns and films reach, in columns
+static constexpr label columnReach = 2, filmReach = 3;
+
+//- Steps of the difference quotients, of pressures in Hertz pressures, and relative to the film
+static constexpr scalar pressureStep = 1e-7, filmStep = 1e-7;
+
+} // End namespace Foam
+
+
+Foam::linearisation::linearisation
+(
+    slice& s,
+    const slice::unknowns& state,
+    const slice::unknowns* rate,
+    const scalar rateFactor,
+    const label isobar
+)
+:
+    slice_(s),
+    state_(state),
+    inner_((s.columns() + group - 1)/group, group*s.flow().blockSize()),
+    outer_
+    (
+        Eigen::MatrixXd::Zero
+        (
+            (s.columns() + group - 1)/group*group*s.flow().blockSize(),
+            s.columns() + 1 + (isobar >= 0)
+        )
+    )
+{
+    const filmState film(s.film(state));
+    filmState filmRate;
+    if (rate) filmRate = s.filmRate(state, *rate);
+    else if (rateFactor != 0)
+    {
+        slice::unknowns still(state);
+        filmRate = s.filmRate(state, still.plus(-1, state));
+    }
+    const filmState* base = (rate || rateFactor != 0) ? &filmRate : nullptr;
+    const List<scalarField> here(s.flow().residual(film, base));
+
+    addCellUnknowns(film, base, rateFactor, here);
+    addColumnUnknowns(film, base, rateFactor, here);
+    addFilms(film, base, rateFactor, here);
+    if (isobar >= 0) addShift(here);
+    // a last column without a partner
+    for (label i = s.columns(); i % group != 0; ++i)
+    {
+        block(i, i).setIdentity();
+    }
+    reduce(isobar);
+}
+
+
+Eigen::Block<Eigen::MatrixXd> Foam::linearisation::block(const label row, const label column)
+{
+    const label size = slice_.flow().blockSize();
+    return inner_.block(row/group, column/group)
+        .block(row % group*size, column % group*size, size, size);
+}
+
+
+Eigen::VectorXd Foam::linearisation::difference
+(
+    const List<scalarField>& there,
+    const List<scalarField>& here,
+    const label column,
+    const label firstRow,
+    const label lastRow,
+    const scalar step
+) const
+{
+    const filmFlow& flow = slice_.flow();
+    const label size = flow.cellSize();
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(flow.blockSize());
+    for (label j = max(firstRow, 0); j <= min(lastRow, flow.film().rows() - 1); ++j)
+    {
+        const label c = flow.film().cell(column, j);
+        for (label equation = 0; equation < size; ++equation)
+        {
+            change[j*size + equation] = (there[equation][c] - here[equation][c])/step;
+        }
+        change[flow.blockSize() - 1] += (there[size][c] - here[size][c])/step;
+    }
+    return change;
+}
+
+
+void Foam::linearisation::addCellUnknowns
+(
+    const filmState& film,
+    const filmState* rate,
+    const scalar rateFactor,
+    const List<scalarField>& here
+)
+{
+    filmFlow& flow = slice_.flow();
+    const label rows = flow.film().rows(), size = flow.cellSize(), n = slice_.columns();
+    const label across = flow.rowReach(), along = flow.columnReach();
+
+    for (label kind = 0; kind < size; ++kind)
+    {
+        for (label firstColumn = 0; firstColumn <= 2*along; ++firstColumn)
+        {
+            for (label firstRow = 0; firstRow <= 2*across; ++firstRow)
+            {
+                filmState moved(film), movedRate(rate ? *rate : film);
+                for (label i = firstColumn; i < n; i += 2*along + 1)
+                {
+                    for (label j = firstRow; j < rows; j += 2*across + 1)
+                    {
+                        const label place = i*flow.blockSize() + j*size + kind;
+                        const scalar step = flow.cellStep(film, kind, i, j);
+                        moved.local[place] += step;
+                        movedRate.local[place] += rateFactor*step;
+                    }
+                }
+                const List<scalarField> there(flow.residual(moved, rate ? &movedRate : nullptr));
+                for (label i = firstColumn; i < n; i += 2*along + 1)
+                {
+                    for (label j = firstRow; j < rows; j += 2*across + 1)
+                    {
+                        const scalar step = flow.cellStep(film, kind, i, j);
+                        for (label row = max(i - along, 0); row <= min(i + along, n - 1); ++row)
+                        {
+                            block(row, i).col(j*size + kind) =
+                                difference(there, here, row, j - across, j + across, step);
+                        }
+                    }
+                }
+            }
+        }
+    }
+    for (label i = 0; i < n; ++i)
+    {
+        const label source = flow.blockSize() - 1;
+        for (label j = 0; j < rows; ++j)
+        {
+            for (label equation = 0; equation < size; ++equation)
+            {
+                block(i, i)(j*size + equation, source) = flow.sourceInCell(j, equation);
+            }
+        }
+        block(i, i)(source, source) = flow.sourceInColumn();
+    }
+}
+
+
+void Foam::linearisation::addColumnUnknowns
+(
+    const filmState& film,
+    const filmState* rate,
+    const scalar rateFactor,
+    const List<scalarField>& here
+)
+{
+    filmFlow& flow = slice_.flow();
+    const label n = slice_.columns(), size = flow.blockSize(), stride = 2*columnReach + 1;
+    for (label i = 0; i < n; ++i)
+    {
+        outer_((i + 1)*size - 1, i) += flow.columnInColumn();
+    }
+    if (!flow.columnInResidual()) return;
+
+    for (label first = 0; first < stride; ++first)
+    {
+        filmState moved(film), movedRate(rate ? *rate : film);
+        for (label i = first; i < n; i += stride)
+        {
+            moved.column[i] += pressureStep;
+            movedRate.column[i] += rateFactor*pressureStep;
+        }
+        const List<scalarField> there(flow.residual(moved, rate ? &movedRate : nullptr));
+        for (label i = first; i < n; i += stride)
+        {
+            for (label row = max(i - columnReach, 0); row <= min(i + columnReach, n - 1); ++row)
+            {
+                outer_.block(row*size, i, size, 1) +=
+                    difference(there, here, row, 0, flow.film().rows(), pressureStep);
+            }
+        }
+    }
+}
+
+
+void Foam::linearisation::addFilms
+(
+    const filmState& film,
+    const filmState* rate,
+    const scalar rateFactor,
+    const List<scalarField>& here
+)
+{
+    filmFlow& flow = slice_.flow();
+    const label n = slice_.columns(), size = flow.blockSize(), stride = 2*filmReach;
+    const Eigen::MatrixXd byUnknowns = slice_.filmByUnknowns(state_);
+
+    for (label first = 0; first < stride; ++first)
+    {
+        filmState moved(film), movedRate(rate ? *rate : film);
+        for (label k = first; k <= n; k += stride)
+        {
+            moved.h[k] += filmStep*film.h[k];
+            movedRate.h[k] += rateFactor*filmStep*film.h[k];
+        }
+        const List<scalarField> there(flow.residual(moved, rate ? &movedRate : nullptr));
+        for (label k = first; k <= n; k += stride)
+        {
+            for (label row = max(k - filmReach, 0); row < min(k + filmReach, n); ++row)
+            {
+                outer_.block(row*size, 0, size, n + 1).noalias() +=
+                    difference(there, here, row, 0, flow.film().rows(), filmStep*film.h[k])
+                   *byUnknowns.row(k);
+            }
+        }
+    }
+}
+
+
+void Foam::linearisation::addShift(const List<scalarField>& here)
+{
+    filmFlow& flow = slice_.flow();
+    const List<scalarField> there(flow.residual(slice_.shiftedFilm(state_), nullptr));
+    const label size = flow.blockSize();
+    for (label row = 0; row < slice_.columns(); ++row)
+    {
+        outer_.block(row*size, slice_.columns() + 1, size, 1) =
+            difference(there, here, row, 0, flow.film().rows(), slice_.shiftStep());
+    }
+}
+
+
+void Foam::linearisation::reduce(const label isobar)
+{
+    const label n = slice_.columns(), size = slice_.flow().blockSize();
+    inner_.factorise();
+    Eigen::MatrixXd response(outer_);
+    inner_.solve(response);
+
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(outer_.cols(), outer_.cols());
+    for (label i = 0; i < n; ++i)
+    {
+        matrix.row(i) = response.row((i + 1)*size - 1);
+    }
+    matrix.row(n).head(n) = slice_.loadByColumn(state_)/slice_.contact().load;
+    if (isobar >= 0)
+    {
+        matrix(n, n + 1) = slice_.loadByShift(state_)/slice_.contact().load;
+        matrix(n + 1, isobar) = 1;
+    }
+    rowScale_ = matrix.cwiseAbs().rowwise().maxCoeff().cwiseMax(VSMALL).cwiseInverse();
+    reduced_.compute(rowScale_.asDiagonal()*matrix);
+}
+
+
+Foam::slice::unknowns Foam::linearisation::solve
+(
+    const Eigen::VectorXd& residual,
+    const Eigen::VectorXd& source,
+    const scalar load
+) const
+{
+    const label n = slice_.columns(), size = slice_.flow().blockSize();
+    Eigen::MatrixXd inner = Eigen::MatrixXd::Zero(outer_.rows(), 1);
+    inner.col(0).head(residual.size()) = residual;
+    const Eigen::MatrixXd right(inner);
+    inner_.solve(inner);
+
+    Eigen::VectorXd reduced = Eigen::VectorXd::Zero(outer_.cols());
+    for (label i = 0; i < n; ++i)
+    {
+        reduced[i] = inner((i + 1)*size - 1, 0) - source[i];
+    }
+    reduced[n] = load;
+    const Eigen::VectorXd outer = reduced_.solve(rowScale_.cwiseProduct(reduced));
+
+    slice::unknowns change;
+    change.column = outer.head(n);
+    change.offset = outer[n];
+    change.shift = outer.size() > n + 1 ? outer[n + 1] : 0;
+    inner = right - outer_*outer;
+    inner_.solve(inner);
+    change.local = inner.col(0).head(residual.size());
+    return change;
+}

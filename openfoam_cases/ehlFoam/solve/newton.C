@@ -1,0 +1,213 @@
+/*---------------------------------------------------------------------------*\
+  ehlFoam - film-resolved elastohydrodynamic line contacts
+  Copyright (C) 2026 the ehdmaps authors
+  SPDX-License-Identifier: GPL-3.0-or-later
+\*---------------------------------------------------------------------------*/
+
+#include "newton.H"
+#include "clockTime.H"
+
+namespace Foam
+{
+
+//- A linearisation is renewed when a step is not below this part of the one before
+static constexpr scalar slow = 0.3;
+
+//- Most that one step changes pressures [Hertz pressures] and ln(viscosity), least it leaves of a film
+static constexpr scalar mostPressure = 0.25, mostViscosity = 5, leastFilm = 0.4;
+
+//- v of a column that a step takes from film to mixture, or back: just past the edge,
+//  since the derivatives on one side say nothing of the other
+static constexpr scalar intoMixture = -0.01, intoFilm = 1e-7;
+
+
+//- v after a step from film to mixture or back: beyond its edge the step means nothing
+static scalar edged(const scalar before, const scalar after)
+{
+    const scalar least = -1 + 2*lubricant::leastFraction;
+    if (before >= 0) return max(after, intoMixture);
+    return after > 0 ? min(after, intoFilm) : max(after, least);
+}
+
+
+//- The unknowns after part of a step
+static slice::unknowns stepped
+(
+    const slice& s,
+    const slice::unknowns& u,
+    const scalar part,
+    const slice::unknowns& step
+)
+{
+    const filmFlow& flow = s.flow();
+    slice::unknowns next(u.plus(part, step));
+    for (label i = 0; i < s.columns(); ++i)
+    {
+        if (flow.columnInResidual())
+        {
+            next.column[i] = edged(u.column[i], next.column[i]);
+            continue;
+        }
+        for (label j = 0; j < flow.film().rows(); ++j)
+        {
+            const label place = i*flow.blockSize() + flow.cellSize()*(j + 1) - 1;
+            next.local[place] = edged(u.local[place], next.local[place]);
+        }
+    }
+    return next;
+}
+
+
+//- Whether a step takes oil from film to mixture or back
+static bool crossed(const slice& s, const slice::unknowns& before, const slice::unknowns& after)
+{
+    const filmFlow& flow = s.flow();
+    for (label i = 0; i < s.columns(); ++i)
+    {
+        if (flow.columnInResidual())
+        {
+            if ((before.column[i] > 0) != (after.column[i] > 0)) return true;
+            continue;
+        }
+        for (label j = 0; j < flow.film().rows(); ++j)
+        {
+            const label place = i*flow.blockSize() + flow.cellSize()*(j + 1) - 1;
+            if ((before.local[place] > 0) != (after.local[place] > 0)) return true;
+        }
+    }
+    return false;
+}
+
+
+//- Part of a step that may be taken
+static scalar allowedPart(const slice& s, const slice::unknowns& u, const slice::unknowns& step)
+{
+    const filmFlow& flow = s.flow();
+    auto v = [&](const scalar column) { return flow.oil().unknown(flow.loadPressure(column)); };
+    auto pressureChange = [&](const slice::unknowns& next)
+    {
+        scalar most = 0;
+        for (label i = 0; i < s.columns(); ++i)
+        {
+            most = max(most, mag(max(v(next.column[i]), scalar(0)) - max(v(u.column[i]), scalar(0))));
+        }
+        return most;
+    };
+    scalar part = min(scalar(1), mostPressure/max(pressureChange(stepped(s, u, 1, step)), VSMALL));
+
+    const filmState before(s.film(u)), after(s.film(stepped(s, u, part, step)));
+    scalar keep = 1;
+    forAll(before.h, k)
+    {
+        const scalar fall = before.h[k] - after.h[k];
+        if (fall > (1 - leastFilm)*before.h[k])
+        {
+            keep = min(keep, (1 - leastFilm)*before.h[k]/fall);
+        }
+    }
+    part *= keep;
+    const slice::unknowns next(stepped(s, u, part, step));
+    scalar most = 0;
+    for (label i = 0; i < s.columns(); ++i)
+    {
+        most = max
+        (
+            most,
+            mag(Foam::log(flow.oil().viscosity(v(next.column[i]))/flow.oil().viscosity(v(u.column[i]))))
+        );
+    }
+    return most > mostViscosity ? part*mostViscosity/most : part;
+}
+
+} // End namespace Foam
+
+
+Foam::newtonResult Foam::newton
+(
+    slice& s,
+    const slice::unknowns& start,
+    const scalar load,
+    const newtonControls& controls,
+    std::unique_ptr<linearisation>& kept,
+    const std::function<slice::unknowns(const slice::unknowns&)>& rateOf,
+    const scalar rateFactor
+)
+{
+    const clockTime clock;
+    slice::unknowns u(start);
+    const label n = s.columns(), size = s.flow().blockSize();
+    scalar previous = GREAT;
+    label backAndForth = 0;
+    for (label iteration = 1; iteration <= controls.maxIterations; ++iteration)
+    {
+        slice::unknowns rate;
+        if (rateOf) rate = rateOf(u);
+        auto step = [&]()
+        {
+            Eigen::VectorXd source(n);
+            for (label i = 0; i < n; ++i) source[i] = -u.local[(i + 1)*size - 1];
+            return kept->solve
+            (
+                -s.residual(u, rateOf ? &rate : nullptr),
+                source,
+                (load - s.load(u))/s.contact().load
+            );
+        };
+        auto length = [&](const slice::unknowns& after)
+        {
+            return max((after.column - u.column).cwiseAbs().maxCoeff(), mag(after.offset - u.offset));
+        };
+
+        bool fresh = false;
+        if (!kept)
+        {
+            kept.reset(new linearisation(s, u, rateOf ? &rate : nullptr, rateFactor));
+            fresh = true;
+        }
+        slice::unknowns change(step());
+        slice::unknowns next(stepped(s, u, 1, change));
+        if (!fresh && !(length(next) < slow*previous))
+        {
+            kept.reset(new linearisation(s, u, rateOf ? &rate : nullptr, rateFactor));
+            fresh = true;
+            change = step();
+            next = stepped(s, u, 1, change);
+        }
+        if (!(change.column.cwiseAbs().maxCoeff() < GREAT && mag(change.offset) < GREAT))
+        {
+            return {outcome::diverged, "Newton's step has no finite length", iteration, u};
+        }
+        scalar part = allowedPart(s, u, change);
+        // a column at the edge of the mixture that goes back and forth is met half-way
+        if (backAndForth > 2) part *= 0.5;
+        if (part < 1) next = stepped(s, u, part, change);
+        const scalar moved = length(next);
+        Eigen::Index most = 0;
+        (next.column - u.column).cwiseAbs().maxCoeff(&most);
+        const bool edge = crossed(s, u, next);
+        u = next;
+        Info<< "  " << (fresh ? "Newton" : "chord ") << " step " << iteration
+            << ": length " << moved << ", part taken " << part
+            << ", most at x/b " << s.flow().film().x()[most]/s.contact().halfWidth
+            << ", " << clock.elapsedTime() << " s" << endl;
+        if (part == 1 && moved < controls.tolerance)
+        {
+            return {outcome::converged, "", iteration, u};
+        }
+        if (part < 1e-6)
+        {
+            return {outcome::stagnated, "Newton's steps are cut to nothing", iteration, u};
+        }
+        backAndForth = edge && moved > slow*previous ? backAndForth + 1 : 0;
+        // a step that was cut, or took columns from film to mixture, says nothing about how fast steps shrink
+        previous = moved;
+        if (part < 1 || edge) kept.reset();
+    }
+    return
+    {
+        outcome::stagnated,
+        "no convergence in " + std::to_string(controls.maxIterations) + " steps",
+        controls.maxIterations,
+        u
+    };
+}

@@ -1,0 +1,213 @@
+/*---------------------------------------------------------------------------*\
+  ehlFoam - film-resolved elastohydrodynamic line contacts
+  Copyright (C) 2026 the ehdmaps authors
+  SPDX-License-Identifier: GPL-3.0-or-later
+\*---------------------------------------------------------------------------*/
+
+#include "slice.H"
+
+namespace
+{
+
+Foam::scalarField toField(const Eigen::VectorXd& v)
+{
+    Foam::scalarField f(v.size());
+    forAll(f, i) f[i] = v[i];
+    return f;
+}
+
+} // End anonymous namespace
+
+
+Foam::slice::unknowns Foam::slice::unknowns::plus(const scalar factor, const unknowns& other) const
+{
+    unknowns sum(*this);
+    sum.local += factor*other.local;
+    sum.column += factor*other.column;
+    sum.offset += factor*other.offset;
+    sum.shift += factor*other.shift;
+    return sum;
+}
+
+
+Foam::slice::slice
+(
+    filmFlow& flow,
+    const lineContact& contact,
+    const scalarField& x,
+    const scalar filmScale
+)
+:
+    flow_(flow),
+    contact_(contact),
+    solid_(contact, x),
+    x_(x),
+    filmScale_(filmScale),
+    faceShift_(x.size(), Zero),
+    shiftStep_(0)
+{}
+
+
+void Foam::slice::follow(const scalarField& shiftedFaces, const scalar shiftStep)
+{
+    shiftStep_ = shiftStep;
+    faceShift_ = (shiftedFaces - x_)/shiftStep;
+    shifted_.reset(new halfSpace(contact_, shiftedFaces));
+}
+
+
+Eigen::VectorXd Foam::slice::pressure(const unknowns& u) const
+{
+    Eigen::VectorXd p(columns());
+    for (label i = 0; i < columns(); ++i) p[i] = flow_.loadPressure(u.column[i]);
+    return p;
+}
+
+
+Foam::slice::unknowns Foam::slice::start
+(
+    const scalarField& pressure,
+    const scalar centralFilm
+) const
+{
+    unknowns u;
+    u.column.resize(columns());
+    Eigen::VectorXd p(columns());
+    forAll(pressure, i)
+    {
+        u.column[i] = flow_.columnUnknown(pressure[i]);
+        p[i] = pressure[i];
+    }
+    u.offset = solid_.offsetOf(p, centralFilm)/filmScale_;
+    const scalarField local
+    (
+        flow_.start(x_, toField(solid_.film(p, u.offset*filmScale_)), toField(u.column))
+    );
+    u.local.resize(local.size());
+    forAll(local, i) u.local[i] = local[i];
+    return u;
+}
+
+
+Foam::scalar Foam::slice::load(const unknowns& u) const
+{
+    scalar sum = 0;
+    for (label i = 0; i < columns(); ++i)
+    {
+        sum += flow_.loadPressure(u.column[i])*(x_[i + 1] - x_[i]);
+    }
+    return sum;
+}
+
+
+Eigen::RowVectorXd Foam::slice::loadByColumn(const unknowns& u) const
+{
+    Eigen::RowVectorXd slope(columns());
+    for (label i = 0; i < columns(); ++i)
+    {
+        slope[i] = flow_.loadPressureSlope(u.column[i])*(x_[i + 1] - x_[i]);
+    }
+    return slope;
+}
+
+
+Foam::scalar Foam::slice::loadByShift(const unknowns& u) const
+{
+    scalar sum = 0;
+    for (label i = 0; i < columns(); ++i)
+    {
+        sum += flow_.loadPressure(u.column[i])*(faceShift_[i + 1] - faceShift_[i]);
+    }
+    return sum;
+}
+
+
+Eigen::MatrixXd Foam::slice::filmByUnknowns(const unknowns& u) const
+{
+    const label n = columns();
+    Eigen::MatrixXd H(n + 1, n + 1);
+    for (label j = 0; j < n; ++j)
+    {
+        H.col(j) = flow_.loadPressureSlope(u.column[j])*solid_.kernel().col(j);
+    }
+    H.col(n).setConstant(filmScale_);
+    return H;
+}
+
+
+Foam::filmState Foam::slice::film(const unknowns& u) const
+{
+    return
+    {
+        x_,
+        toField(solid_.film(pressure(u), u.offset*filmScale_)),
+        toField(u.column),
+        toField(u.local)
+    };
+}
+
+
+Foam::filmState Foam::slice::shiftedFilm(const unknowns& u) const
+{
+    return
+    {
+        x_ + shiftStep_*faceShift_,
+        toField(shifted_->film(pressure(u), u.offset*filmScale_)),
+        toField(u.column),
+        toField(u.local)
+    };
+}
+
+
+Foam::filmState Foam::slice::filmRate(const unknowns& u, const unknowns& rate) const
+{
+    Eigen::VectorXd pressureRate(columns());
+    for (label i = 0; i < columns(); ++i)
+    {
+        pressureRate[i] = flow_.loadPressureSlope(u.column[i])*rate.column[i];
+    }
+    Eigen::VectorXd hRate = solid_.kernel()*pressureRate;
+    hRate.array() += rate.offset*filmScale_;
+    if (rate.shift != 0)
+    {
+        const Eigen::VectorXd p = pressure(u);
+        hRate += rate.shift/shiftStep_
+           *(shifted_->film(p, u.offset*filmScale_) - solid_.film(p, u.offset*filmScale_));
+    }
+    return {rate.shift*faceShift_, toField(hRate), toField(rate.column), toField(rate.local)};
+}
+
+
+Eigen::VectorXd Foam::slice::assembled(const List<scalarField>& raw, const unknowns& u) const
+{
+    const label rows = flow_.film().rows(), size = flow_.cellSize(), block = flow_.blockSize();
+    Eigen::VectorXd result(localSize());
+    for (label i = 0; i < columns(); ++i)
+    {
+        const scalar source = u.local[(i + 1)*block - 1];
+        scalar column = flow_.sourceInColumn()*source + flow_.columnInColumn()*u.column[i];
+        for (label j = 0; j < rows; ++j)
+        {
+            const label c = flow_.film().cell(i, j);
+            for (label equation = 0; equation < size; ++equation)
+            {
+                result[i*block + j*size + equation] =
+                    raw[equation][c] + flow_.sourceInCell(j, equation)*source;
+            }
+            column += raw[size][c];
+        }
+        result[(i + 1)*block - 1] = column;
+    }
+    return result;
+}
+
+
+Eigen::VectorXd Foam::slice::residual(const unknowns& u, const unknowns* rate)
+{
+    if (rate)
+    {
+        const filmState filmRates(filmRate(u, *rate));
+        return assembled(flow_.residual(film(u), &filmRates), u);
+    }
+    return assembled(flow_.residual(film(u), nullptr), u);
+}

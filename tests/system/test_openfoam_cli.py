@@ -1,0 +1,262 @@
+"""Jobs of the solver `openfoam` from the command line, with a stand-in for ehlFoam: kills, ends, resumption."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+from ehdmaps import errors
+from ehdmaps.maps.emap import open_map
+from tests.unit import openfoam_fake
+
+JOB = """
+schema = 1
+[bearing]
+name = "NU308"
+[lubricant]
+name = "FVA3"
+[grid]
+load = { from = "2 N/mm", to = "200 N/mm", points = 3, spacing = "log" }
+entrainment_speed = ["1 m/s", "2 m/s"]
+temperature = ["40 degC"]
+[solver]
+name = "openfoam"
+structural_law = "iso16281"
+columns = 40
+rows = 4
+start = "hertz"
+fill = "none"
+"""
+POINTS = 12
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Folder with a job; a fake build beside it; `build` is where its mode stands."""
+    for key, value in openfoam_fake.build(tmp_path / "build").items():
+        monkeypatch.setenv(key, value)
+    monkeypatch.setenv("PYTHONPATH", str(Path(errors.__file__).parents[1]))
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    here = tmp_path / "here"
+    here.mkdir()
+    (here / "job.toml").write_text(JOB)
+    return here
+
+
+def command(*arguments):
+    return [sys.executable, "-m", "ehdmaps.jobs.cli", *arguments]
+
+
+def done(folder, *arguments, status=0):
+    result = subprocess.run(command(*arguments), cwd=folder, capture_output=True, text=True, check=False)
+    assert result.returncode == status, result.stderr
+    return result
+
+
+def counts(out):
+    (line,) = [line for line in out.splitlines() if line.startswith("points: ")]
+    words = line.replace(",", "").split()
+    return int(words[1]), int(words[4]), int(words[7])
+
+
+def build_of(folder):
+    return folder.parent / "build"
+
+
+def wait_for(condition, seconds=60.0):
+    """Wait for something that must happen; the limit only ends a test that hangs."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "it never happened"
+        time.sleep(0.01)
+
+
+def alive(pid):
+    try:
+        with open(f"/proc/{pid}/stat") as file:
+            return file.read().rsplit(")", 1)[1].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def left_cases(folder):
+    return sorted(folder.parent.glob("ehdmaps-openfoam-*"))
+
+
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_a_map_and_the_same_command_again(folder, workers):
+    first = done(folder, "generate", "job.toml", "--workers", workers)
+    assert counts(first.stdout) == (0, POINTS, 0)
+    dataset = open_map(folder / "job.nc").dataset
+    assert dataset.attrs["openfoam_version"] == "v1912"
+    assert dataset.attrs["openfoam_build"] == "OpenFOAM v1912 compiler g++ 12.2.0 sources 0123abcd"
+    assert np.isfinite(dataset["film_compliance_error"].values).all()
+    assert "OpenFOAM        v1912; ehlFoam built with OpenFOAM v1912" in done(folder, "show", "job.nc").stdout
+    assert counts(done(folder, "generate", "job.toml", "--workers", workers).stdout) == (POINTS, 0, 0)
+    # another build solves its own points
+    (build_of(folder) / "bin" / "ehlFoam.build").write_text("OpenFOAM v1912 sources 4567\n")
+    assert counts(done(folder, "generate", "job.toml", "--workers", workers).stdout) == (0, POINTS, 0)
+    assert sorted(os.listdir(folder)) == ["job.nc", "job.nc.store", "job.toml"]
+    assert left_cases(folder) == []
+    assert not (folder.parent / "home").exists()
+
+
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_kill_9_of_a_running_solver_costs_nothing(folder, workers):
+    openfoam_fake.set_mode(build_of(folder), "patient 0.3")
+    job = subprocess.Popen(
+        command("generate", "job.toml", "--workers", workers), cwd=folder, stdout=subprocess.PIPE, text=True
+    )
+    wait_for(lambda: len(openfoam_fake.starts(build_of(folder))) >= 3)
+    os.kill(int(openfoam_fake.starts(build_of(folder))[-1][0]), signal.SIGKILL)
+    out, _ = job.communicate(timeout=60)
+    assert job.returncode == 0
+    assert counts(out) == (0, POINTS, 0)
+    assert "1 x solved at the second try, the first ehlFoam was killed by signal 9 (SIGKILL); last lines" in out
+    assert len(left_cases(folder)) == 1  # that of the killed run, whose log the summary names
+    assert str(left_cases(folder)[0]) in out
+
+
+def test_failed_points_are_summed_up_and_tried_again_by_the_next_run(folder):
+    openfoam_fake.set_mode(build_of(folder), "fatal")
+    failed = done(folder, "generate", "job.toml", "--workers", "2", status=1)
+    assert counts(failed.stdout) == (0, POINTS, POINTS)
+    assert (
+        "12 x coarse grid: ehlFoam ended with status 1; last lines of the log: viscosity is negative" in failed.stdout
+    )
+    openfoam_fake.set_mode(build_of(folder), "stagnated")
+    stagnated = done(folder, "generate", "job.toml", "--workers", "2", status=1)
+    assert counts(stagnated.stdout) == (0, POINTS, POINTS)
+    openfoam_fake.set_mode(build_of(folder), "good")
+    # a failure may not happen again; how a run converges is a result
+    assert counts(done(folder, "generate", "job.toml", status=1).stdout) == (POINTS, 0, POINTS)
+    assert counts(done(folder, "generate", "job.toml", "--fresh").stdout) == (0, POINTS, 0)
+
+
+@pytest.mark.parametrize("workers", ["1", "2"])
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGKILL], ids=["ctrl-c", "kill -9"])
+def test_the_end_of_a_job_is_the_end_of_its_solvers(folder, workers, end):
+    openfoam_fake.set_mode(build_of(folder), "hang")
+    job = subprocess.Popen(
+        command("generate", "job.toml", "--workers", workers),
+        cwd=folder,
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    wait_for(lambda: len(openfoam_fake.starts(build_of(folder))) >= int(workers))
+    if end is signal.SIGINT:
+        os.killpg(job.pid, end)  # as a terminal does: to the workers too
+    else:
+        job.kill()
+    out, err = job.communicate(timeout=60)
+    assert job.returncode == (130 if end is signal.SIGINT else -9)
+    assert out == ""
+    assert "Traceback" not in err
+    if end is signal.SIGINT:
+        assert "stopped; what is solved is kept in job.nc.store" in err
+    wait_for(lambda: not any(alive(pid) for pid, *_ in openfoam_fake.starts(build_of(folder))), seconds=10.0)
+    openfoam_fake.set_mode(build_of(folder), "good")
+    assert counts(done(folder, "generate", "job.toml", "--workers", workers).stdout) == (0, POINTS, 0)
+
+
+def test_a_hanging_solver_is_stopped_after_its_time(folder):
+    openfoam_fake.set_mode(build_of(folder), "hang")
+    (folder / "job.toml").write_text(JOB.replace("points = 3", "points = 2").replace(', "2 m/s"', "") + "timeout = 1\n")
+    result = done(folder, "generate", "job.toml", "--workers", "2", status=1)
+    assert "4 x coarse grid: ehlFoam did not end within" in result.stdout
+    assert not any(alive(pid) for pid, *_ in openfoam_fake.starts(build_of(folder)))
+
+
+POINT = ("--load", "62 N/mm", "--speed", "1.7 m/s", "--temperature", "40 degC")
+
+
+def test_one_point_with_fields_and_pictures(folder):
+    result = done(folder, "solve", "job.toml", *POINT, "--fields", "film.vtu", "--plot", "film.png", "--json")
+    assert [record["status"] for record in json.loads(result.stdout)] == ["converged", "converged"]
+    assert result.stderr.splitlines() == [
+        "film-inner.vtu: written",
+        "film-outer.vtu: written",
+        "film.png: written",
+    ]
+    assert meshio.read(folder / "film-inner.vtu").cells_dict["quad"].shape == (160, 4)
+    assert (folder / "film.png").stat().st_size > 10_000
+    plain = done(folder, "solve", "job.toml", *POINT, "--json")
+    first, second = json.loads(result.stdout)[0], json.loads(plain.stdout)[0]
+    assert {**first, "solve_seconds": 0} == {**second, "solve_seconds": 0}
+
+
+def test_one_point_of_a_bare_contact_has_one_file(folder):
+    bare = JOB.replace('[bearing]\nname = "NU308"', '[contact]\nradius = "5 mm"\nreference_depth = "5 mm"')
+    (folder / "job.toml").write_text(bare.replace("iso16281", "half_space"))
+    done(folder, "solve", "job.toml", *POINT, "--fields", "film.xdmf", "--keep-cases", "cases")
+    assert meshio.read(folder / "film.xdmf").cell_data["p"][0].size == 160
+    assert sorted(os.listdir(folder / "cases")) == [f"line_w62000_u1.7_T313.15_{grid}" for grid in ("20x2", "40x4")]
+
+
+def test_one_point_that_fails_has_no_files(folder):
+    openfoam_fake.set_mode(build_of(folder), "segv")
+    result = done(folder, "solve", "job.toml", *POINT, "--fields", "film.vtu", "--plot", "film.png", status=1)
+    assert "inner: coarse grid: ehlFoam crashed with signal 11 (SIGSEGV)" in result.stdout
+    assert "inner: failed, no film to write" in result.stderr
+    assert sorted(os.listdir(folder)) == ["job.toml"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--fields", "film.stl"], "--fields: got film.stl; allowed: a .vtu, .xdmf file in a folder that exists"),
+        (["--plot", "none/film.png"], "--plot: got none/film.png; allowed: a .png, .pdf, .svg file in a folder that"),
+        (["--plot", "a.png", "--solver", "hertz"], "--plot: the solver 'hertz' has no fields across the film; allowed"),
+        (["--keep-cases", "--solver", "hertz"], "--keep-cases: the solver 'hertz' works without cases; allowed: with"),
+        (["--keep-cases", "job.toml"], "--keep-cases: got job.toml, a file; allowed: a folder"),
+        (["--keep-cases", "my cases"], "OpenFOAM takes no spaces or quotes in the path of a case; choose another"),
+    ],
+)
+def test_options_that_cannot_be(folder, arguments, message):
+    assert message in done(folder, "solve", "job.toml", *POINT, *arguments, status=2).stderr
+    assert openfoam_fake.starts(build_of(folder)) == []
+
+
+def test_a_picture_that_cannot_be_written(folder):
+    (folder / "film.png").mkdir()
+    result = done(folder, "solve", "job.toml", *POINT, "--plot", "film.png", status=2)
+    assert "--plot: film.png cannot be written (Is a directory); allowed: a file in a folder" in result.stderr
+
+
+def test_check_tries_a_point(folder):
+    assert "for one point in the middle of the map: converged)" in done(folder, "check", "job.toml").stdout
+    openfoam_fake.set_mode(build_of(folder), "fatal")
+    assert "time    not estimated; " in done(folder, "check", "job.toml").stdout
+
+
+def test_check_names_what_is_missing_beside_other_problems(folder):
+    (build_of(folder) / "bin" / "ehlFoam").unlink()
+    (folder / "job.toml").write_text(JOB.replace('"FVA3"', '"FVA9"'))
+    err = done(folder, "check", "job.toml", status=2).stderr
+    assert "2 problems" in err
+    assert "which needs more than is here: ehlFoam: there is no program" in err
+    assert "build it with `openfoam_cases/build`" in err
+    assert "FVA9" in err
+    for arguments in (["generate", "job.toml"], ["solve", "job.toml", *POINT]):
+        assert "openfoam_cases/build" in done(folder, *arguments, status=2).stderr
+
+
+def test_everything_else_works_without_openfoam(folder, monkeypatch):
+    monkeypatch.setenv("EHDMAPS_OPENFOAM", str(folder / "none"))
+    (folder / "job.toml").write_text(JOB.replace("[solver]", "[solver]\nbackbone = 'none'"))
+    assert counts(done(folder, "generate", "job.toml", "--solver", "reynolds").stdout) == (0, POINTS, 0)
+    code = (
+        "import sys; from ehdmaps.jobs.cli import main; status = main(sys.argv[1:]); "
+        "assert not [name for name in sys.modules if name.split('.')[0] in ('PyFoam', 'meshio')]; sys.exit(status)"
+    )
+    arguments = ["solve", "job.toml", *POINT, "--solver", "reynolds"]
+    subprocess.run([sys.executable, "-c", code, *arguments], cwd=folder, check=True, capture_output=True)

@@ -1,0 +1,163 @@
+"""The parameter file: what it says, and that nothing else can get into it."""
+
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ehdmaps.errors import InputError
+from ehdmaps.openfoam.parameters import Mesh, Oscillation, Parameters, Start
+from ehdmaps.openfoam.pyfoam import parse
+from ehdmaps.physics.lubricant import Lubricant
+
+OIL = Lubricant.named("FVA3").at(313.15)
+GOOD = Parameters(
+    reduced_radius=5.5e-3,
+    reduced_modulus=2.3e11,
+    load=1e4,
+    lower_speed=0.5,
+    upper_speed=1.5,
+    oil=OIL,
+    cavitation_range=500.0,
+    mesh=Mesh(film=0.2, spike_position=0.8, spike_width=0.05),
+    columns=400,
+    rows=16,
+    start=Start(np.array([-1e-4, 0.0, 1e-4]), np.array([0.0, 5e8, 0.0]), 1e-7),
+)
+
+
+def entries(parameters, tmp_path):
+    path = tmp_path / "ehlProperties"
+    path.write_text(parameters.text())
+    return parse(path)
+
+
+def test_the_file_says_what_the_parameters_say(tmp_path):
+    found = entries(GOOD, tmp_path)
+    assert (found["reducedRadius"], found["load"], found["upperSpeed"]) == (5.5e-3, 1e4, 1.5)
+    assert (found["flow"], found["inertia"], found["columns"], found["rows"]) == ("thinFilm", False, 400, 16)
+    assert found["viscosity"]["type"] == "FVA3"
+    assert found["viscosity"]["viscosity"] == OIL.viscosity
+    assert found["viscosity"]["pressureScale"] == OIL.pressure_viscosity.pressure_scale
+    assert dict(found["density"]) == {"type": "DowsonHigginson", "density": OIL.density}
+    assert dict(found["shear"]) == {"type": "Newtonian"}
+    assert dict(found["mesh"]) == {
+        "film": 0.2,
+        "inletLength": 100.0,
+        "outletLength": 3.0,
+        "spikePosition": 0.8,
+        "spikeWidth": 0.05,
+    }
+    assert list(found["start"]["x"]) == [-1e-4, 0.0, 1e-4]
+    assert found["start"]["centralFilm"] == 1e-7
+    assert list(found["response"]["frequencies"]) == [0.0]
+    assert "oscillation" not in found
+    assert found["writeFields"] is False or found["writeFields"] == "false"
+
+
+def test_what_is_not_asked_for_is_left_out(tmp_path):
+    found = entries(replace(GOOD, start=None, frequencies=()), tmp_path)
+    assert "start" not in found
+    assert list(found["response"]["frequencies"]) == []
+
+
+def test_an_oscillation(tmp_path):
+    found = entries(replace(GOOD, oscillation=Oscillation(1000.0, 1e-3, 80, 4)), tmp_path)
+    assert dict(found["oscillation"]) == {"frequency": 1000.0, "amplitude": 1e-3, "stepsPerCycle": 80, "cycles": 4}
+
+
+@pytest.mark.parametrize(
+    ("oil", "words"),
+    [
+        (Lubricant.barus(viscosity=0.1, pressure_viscosity=2e-8, density=880.0), "type Barus;"),
+        (Lubricant.roelands(viscosity=0.1, roelands_z=0.6, density=880.0), "type Roelands; .* exponent 0.6;"),
+        (
+            Lubricant.barus(viscosity=0.1, pressure_viscosity=2e-8, density=880.0, density_law="incompressible"),
+            "density { type incompressible; density 880.0; }",
+        ),
+    ],
+)
+def test_the_laws_of_the_oil(oil, words):
+    assert re.search(words, replace(GOOD, oil=oil.at(313.15)).text())
+
+
+@pytest.mark.parametrize("shear", ["eyring", "limiting"])
+def test_a_shear_law_has_its_stress(tmp_path, shear):
+    found = entries(replace(GOOD, shear=shear, shear_stress=5e6), tmp_path)
+    assert dict(found["shear"]) == {"type": {"eyring": "Eyring", "limiting": "limiting"}[shear], "stress": 5e6}
+
+
+HOSTILE = [
+    '1; #calc "system(\\"touch /tmp/owned\\")"; x 1',
+    '#codeStream { code #{ system("id"); #}; }',
+    '#include "/etc/passwd"',
+    "$load",
+    "1e4;",
+    "",
+    math.nan,
+    math.inf,
+    -math.inf,
+    None,
+    True,
+    [1.0],
+    np.float64("nan"),
+]
+
+
+@pytest.mark.parametrize("value", HOSTILE, ids=repr)
+@pytest.mark.parametrize("key", ["load", "reduced_radius", "upper_speed", "cavitation_range", "tolerance"])
+def test_only_finite_numbers_get_in(key, value):
+    with pytest.raises(InputError, match=r"ehlProperties, \w+: got .*; allowed: a finite number"):
+        replace(GOOD, **{key: value}).text()
+
+
+@pytest.mark.parametrize("value", [value for value in HOSTILE if value is not True], ids=repr)
+def test_only_finite_numbers_get_into_nested_entries(value):
+    oil = replace(OIL, viscosity=value)
+    for parameters in (replace(GOOD, oil=oil), replace(GOOD, mesh=Mesh(film=value))):
+        with pytest.raises(InputError, match="allowed: a finite number"):
+            parameters.text()
+
+
+@pytest.mark.parametrize("value", [HOSTILE[0], 1.5, 0, -1, True, None, math.nan], ids=repr)
+def test_only_whole_numbers_count(value):
+    with pytest.raises(InputError, match=r"columns: got .*; allowed: a whole number >= 1"):
+        replace(GOOD, columns=value).text()
+
+
+@pytest.mark.parametrize("value", ["yes", 1, None, HOSTILE[0]], ids=repr)
+def test_only_booleans_switch(value):
+    with pytest.raises(InputError, match=r"inertia: got .*; allowed: true or false"):
+        replace(GOOD, inertia=value).text()
+
+
+@pytest.mark.parametrize("value", ["thinFilm; #calc", "thinFilm", None, ["thin_film"], 3], ids=repr)
+def test_only_known_words_get_in(value):
+    with pytest.raises(InputError, match=r"flow: got .*; allowed: thin_film, full_stress"):
+        replace(GOOD, flow=value).text()
+    with pytest.raises(InputError, match=r"shear: got .*; allowed: newtonian, eyring, limiting"):
+        replace(GOOD, shear=value).text()
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        np.array([0.0, math.nan]),
+        np.array([math.inf]),
+        np.array(["0", "1; #calc"]),
+        np.array([[0.0, 1.0]]),
+        np.array([object()]),
+        "#calc",
+    ],
+    ids=repr,
+)
+def test_only_lists_of_finite_numbers_get_in(value):
+    with pytest.raises(InputError, match=r"x: got .*; allowed: a list of finite numbers"):
+        replace(GOOD, start=Start(value, np.zeros(1), 1e-7)).text()
+
+
+def test_the_file_has_no_character_that_could_do_more():
+    text = replace(GOOD, oscillation=Oscillation(1000.0)).text()
+    assert re.fullmatch(r"[A-Za-z0-9_ {}();.+\n-]*", text)

@@ -1,0 +1,405 @@
+"""The solver `openfoam` with a stand-in for ehlFoam: statuses, errors, what is missing, what is left behind."""
+
+import os
+import re
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehdmaps.ehl.start import reynolds_start
+from ehdmaps.errors import InputError
+from ehdmaps.jobs import solvers
+from ehdmaps.jobs.film_plot import places
+from ehdmaps.jobs.reader import parse_job, read_job
+from ehdmaps.jobs.tasks import line_tasks
+from ehdmaps.openfoam import installation as installed
+from ehdmaps.openfoam.pyfoam import parse
+from ehdmaps.openfoam.run import RunError, run
+from ehdmaps.openfoam.solver import OpenFoamSolver
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solution import Status
+from tests.unit import openfoam_fake
+
+JOB = read_job("nu308_openfoam")
+CONTACT, OIL = JOB.contacts[0], JOB.lubricant
+POINT = OperatingPoint(2e4, 1.0, 313.15)
+
+
+@pytest.fixture
+def fake(tmp_path, monkeypatch):
+    """Folder of a fake build, in which ehlFoam does what `set_mode` says; the working folder and home are empty."""
+    folder = tmp_path / "build"
+    for key, value in openfoam_fake.build(folder).items():
+        monkeypatch.setenv(key, value)
+    for place in ("temporary", "home", "here"):
+        (tmp_path / place).mkdir()
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    monkeypatch.chdir(tmp_path / "here")
+    return folder
+
+
+def solved(solver, load=POINT.load, speed=POINT.entrainment_speed, frequency=0.0):
+    (film,) = solver.solve_line(CONTACT, OIL, (load,), speed, POINT.temperature, frequency)
+    return film
+
+
+def left(fake, place):
+    return sorted(os.listdir(fake.parent / place))
+
+
+def test_a_point_on_two_grids(fake, capfd):
+    film = solved(OpenFoamSolver())
+    assert (film.status, film.reason, film.iterations) == (Status.CONVERGED, "", 14)
+    # the fake is of second order: a third of the difference is the error, and its sign says that values are too large
+    assert film.film_offset_error == pytest.approx(4 / 400**2 + 1 / 16**2, rel=0.01)
+    assert film.film_compliance_error > 0.0
+    assert film.loss_compliance_error > 0.0
+    assert film.solve_seconds > 0.0
+    assert [Path(case).name.split("-")[1] for *_, case in openfoam_fake.starts(fake)] == ["openfoam"] * 2
+    assert left(fake, "temporary") == left(fake, "home") == left(fake, "here") == []
+    assert capfd.readouterr().out == ""
+
+
+def test_a_line_of_loads_and_a_frequency(fake):
+    films = OpenFoamSolver().solve_line(CONTACT, OIL, (1e4, 2e4), 1.0, 313.15, 9.0)
+    assert films[0].film_offset != films[1].film_offset
+    assert films[1].loss_compliance == pytest.approx(solved(OpenFoamSolver()).loss_compliance / 10.0)
+
+
+FAILURES = {
+    "fatal": (Status.FAILED, r"ehlFoam ended with status 1; last lines of the log: viscosity is negative \| file"),
+    "segv": (Status.FAILED, r"ehlFoam crashed with signal 11 \(SIGSEGV\)"),
+    "killed": (Status.FAILED, r"killed twice: ehlFoam was killed by signal 9 \(SIGKILL\)"),
+    "hang": (
+        Status.FAILED,
+        r"ehlFoam did not end within the [0-9.]+ s that it had and was stopped; last lines of the log: fake",
+    ),
+    "silent": (Status.FAILED, r"ehlFoam did not end within the [0-9.]+ s that it had and was stopped"),
+    "flood": (Status.FAILED, r"ehlFoam printed more than 50 MB and was stopped"),
+    "nothing": (Status.FAILED, r"results: is not there; last lines of the log: fake ehlFoam"),
+    "garbage": (Status.FAILED, r"results: is no OpenFOAM dictionary"),
+    "no_response": (Status.FAILED, r"results: got responses at \(\) Hz; allowed: as asked"),
+    "nan": (Status.FAILED, r"results, filmOffset: got 'nan'; allowed: a finite number"),
+    "table": (Status.FAILED, r"film.dat: is no table of numbers"),
+    "cut": (Status.FAILED, r"film.dat: got an array of shape \(3, 6\)"),
+    "stagnated": (Status.STAGNATED, r"ehlFoam stagnated: residual 1e-3 after 200 iterations"),
+    "diverged": (Status.DIVERGED, r"ehlFoam diverged: residual 1e-3 after 200 iterations"),
+}
+
+
+@pytest.mark.parametrize("mode", FAILURES)
+def test_a_run_that_fails_is_a_point_with_its_cause(fake, capfd, mode):
+    status, message = FAILURES[mode]
+    openfoam_fake.set_mode(fake, mode)
+    film = solved(OpenFoamSolver(timeout=1.5))
+    assert film.status is status
+    assert re.match(r"coarse grid: .*" + message, film.reason)
+    assert np.isnan(film.film_offset)
+    assert film.iterations == (7 if status is not Status.FAILED else 0)
+    # the log stands where the reason says, in a folder whose name differs from others in numbers only
+    log = Path(re.search(r"; log (\S+)$", film.reason)[1])
+    assert log.is_file()
+    assert re.fullmatch(r"ehdmaps-openfoam-[0-9-]+", log.parent.name)
+    assert left(fake, "home") == left(fake, "here") == []
+    assert capfd.readouterr().out == ""
+    for pid, *_ in openfoam_fake.starts(fake):
+        assert not Path(f"/proc/{pid}").exists()
+
+
+def test_a_fine_grid_that_fails(fake):
+    openfoam_fake.set_mode(fake, "hang_fine")
+    film = solved(OpenFoamSolver(timeout=2.0))
+    assert film.status is Status.FAILED
+    assert film.reason.startswith("fine grid: ehlFoam did not end within")
+    assert film.iterations == 7
+    assert len(left(fake, "temporary")) == 1  # the coarse case was good
+
+
+def test_a_process_that_is_killed_by_somebody_is_tried_again(fake):
+    openfoam_fake.set_mode(fake, "killed_once")
+    film = solved(OpenFoamSolver())
+    assert film.status is Status.CONVERGED
+    assert film.reason.startswith("solved at the second try, the first ehlFoam was killed by signal 9 (SIGKILL)")
+
+
+def test_a_program_that_cannot_be_started(fake, tmp_path):
+    with pytest.raises(RunError, match=r"none ended with status 127; .*failed to execute"):
+        (tmp_path / "case").mkdir()
+        run(tmp_path / "none", tmp_path / "case", os.environ, time.monotonic() + 5.0)
+    with pytest.raises(RunError, match=r"ehlFoam cannot be started: No such file or directory; case "):
+        run(fake / "bin" / "ehlFoam", tmp_path / "case", {"PATH": "/none"}, time.monotonic() + 5.0)
+
+
+@pytest.mark.parametrize(
+    ("mode", "status", "reason"),
+    [
+        ("thick", Status.ASYMPTOTE, "film thicker than 1 % of the radius"),
+        ("negative", Status.CONVERGED, "negative damping at the valley"),
+    ],
+)
+def test_solutions_with_a_remark(fake, mode, status, reason):
+    openfoam_fake.set_mode(fake, mode)
+    film = solved(OpenFoamSolver())
+    assert film.status is status
+    assert film.reason.startswith(reason)
+
+
+def test_points_that_need_no_run(fake):
+    solver = OpenFoamSolver()
+    dry = solved(solver, speed=0.0)
+    assert (dry.status, dry.film_offset, dry.reason) == (Status.ASYMPTOTE, 0.0, "no entrainment: dry contact")
+    heavy = solved(solver, load=1e9)
+    assert heavy.status is Status.OUTSIDE_VALIDITY
+    assert "GPa above 10 GPa" in heavy.reason
+    assert openfoam_fake.starts(fake) == []
+
+
+def test_numbers_that_are_none_reach_no_case(fake):
+    nowhere = replace(reynolds_start(CONTACT, OIL, 2e4, 1.0, 313.15), expected_film=float("nan"))
+    film = solved(OpenFoamSolver(starter=lambda *_: nowhere))
+    assert film.status is Status.OUTSIDE_VALIDITY
+    assert film.reason == "ehlProperties, film: got nan; allowed: a finite number"
+    assert openfoam_fake.starts(fake) == []
+
+
+def test_a_point_starts_from_the_reynolds_solution(fake, tmp_path):
+    solver = OpenFoamSolver(starter=reynolds_start, keep_cases=tmp_path / "kept", slide_to_roll=0.5)
+    solved(solver)
+    coarse, fine = (
+        parse(tmp_path / "kept" / f"inner_w20000_u1_T313.15_{grid}" / "constant" / "ehlProperties")
+        for grid in ("200x8", "400x16")
+    )
+    start = reynolds_start(CONTACT, OIL, POINT.load, POINT.entrainment_speed, POINT.temperature)
+    np.testing.assert_array_equal(coarse["start"]["pressure"], start.pressure)
+    assert coarse["start"]["centralFilm"] == start.central_film
+    assert coarse["mesh"] == fine["mesh"]
+    assert coarse["mesh"]["spikeWidth"] == start.spike_width > 0.0
+    assert (coarse["columns"], coarse["rows"], fine["columns"], fine["rows"]) == (200, 8, 400, 16)
+    assert (coarse["lowerSpeed"], coarse["upperSpeed"]) == (0.75, 1.25)
+    # the fine grid starts from what the coarse one found
+    assert len(list(fine["start"]["x"])) == 200
+    assert fine["writeFields"] is True or fine["writeFields"] == "true"
+    assert left(fake, "temporary") == []
+
+
+def test_a_start_is_a_pressure_that_carries_the_load():
+    start = reynolds_start(CONTACT, OIL, 2e5, 1.0, 313.15)
+    assert np.trapezoid(start.pressure, start.x) == pytest.approx(2e5, rel=0.01)
+    front = start.x[np.argmin(np.gradient(start.pressure, start.x))]
+    half = np.sqrt(8 * 2e5 * CONTACT.radius / (np.pi * CONTACT.reduced_modulus))
+    assert start.spike_position * half == pytest.approx(front, abs=start.spike_width * half)
+    light = reynolds_start(CONTACT, OIL, 1e3, 1.0, 313.15)
+    assert (light.spike_position, light.spike_width) == (0.0, 0.0)
+
+
+def test_a_point_without_a_reynolds_solution_has_no_start():
+    assert reynolds_start(CONTACT, OIL, 1e6, 5.0, 263.15) is None  # Newton gives up
+    assert reynolds_start(CONTACT, OIL, 1e300, 1e-300, 313.15) is None
+
+
+def test_a_point_without_a_start(fake):
+    for starter in (None, lambda *_: None):
+        parameters = OpenFoamSolver(starter=starter).parameters(CONTACT, OIL, POINT)
+        assert parameters.start is None
+        assert parameters.mesh.spike_width == 0.0
+        assert 0.3 < parameters.mesh.film / reynolds_start(CONTACT, OIL, 2e4, 1.0, 313.15).expected_film < 3.0
+
+
+def test_kept_cases_of_a_second_run_stand_beside_the_first(fake, tmp_path):
+    solver = OpenFoamSolver(keep_cases=tmp_path / "kept")
+    solved(solver)
+    solved(solver)
+    assert left(fake, "kept") == [
+        f"inner_w20000_u1_T313.15_{grid}{number}" for grid in ("200x8", "400x16") for number in ("", "-1")
+    ]
+    assert (tmp_path / "kept" / "inner_w20000_u1_T313.15_200x8" / "1" / "p").is_file()
+
+
+def test_a_case_that_cannot_be_made(fake):
+    (fake / "file").touch()
+    film = solved(OpenFoamSolver(keep_cases=fake / "file" / "kept"))
+    assert film.status is Status.FAILED
+    assert re.match(r"coarse grid: a case cannot be made in .*file/kept \(Not a directory\); allowed: ", film.reason)
+
+
+def test_the_time_of_a_point_is_that_of_both_grids(fake):
+    openfoam_fake.set_mode(fake, "patient 0.7")
+    film = solved(OpenFoamSolver(timeout=1.2))
+    assert film.reason.startswith("fine grid: ehlFoam did not end within the 0.")
+
+
+def test_what_is_left_of_a_case_that_ran_by_hand_is_not_copied(fake):
+    case = fake / "lineContact"
+    (case / "constant" / "polyMesh").mkdir()
+    (case / "1").mkdir()
+    (case / "results").write_text("old")
+    openfoam_fake.set_mode(fake, "nothing")
+    log = Path(solved(OpenFoamSolver()).reason.rpartition("log ")[2])
+    assert sorted(os.listdir(log.parent / "constant")) == ["ehlProperties"]
+    assert not (log.parent / "1").exists()
+    assert not (log.parent / "results").exists()
+
+
+OPTIONS = {
+    "columns": (dict(columns=20), "columns: got 20; allowed: 40 to 4000"),
+    "odd columns": (dict(columns=401), "columns: got 401; allowed: an even number"),
+    "rows": (dict(rows=65), "rows: got 65; allowed: 4 to 64"),
+    "flow": (dict(flow="thick"), "flow: got 'thick'; allowed: thin_film, full_stress"),
+    "shear": (dict(shear="plastic"), "shear: got 'plastic'; allowed: newtonian, eyring, limiting"),
+    "no stress": (dict(shear="eyring"), "shear_stress: got None Pa; allowed: 1e3 to 1e10 Pa with shear eyring"),
+    "a stress": (dict(shear_stress=5e6), "shear_stress: got 5000000.0 Pa with shear newtonian, which has none"),
+    "slide": (dict(slide_to_roll=3.0), "slide_to_roll: got 3.0; allowed: -2 to 2"),
+    "nan": (dict(slide_to_roll=float("nan")), "slide_to_roll: got nan; allowed: -2 to 2"),
+    "timeout": (dict(timeout=0.0), "timeout: got 0.0; allowed: 0.1 to"),
+    "folder": (dict(keep_cases=Path("/tmp/my cases")), "OpenFOAM takes no spaces or quotes in the path of a case"),
+}
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+def test_settings_out_of_range(fake, name):
+    options, message = OPTIONS[name]
+    with pytest.raises(InputError, match=message):
+        OpenFoamSolver(**options)
+
+
+def test_a_shear_law_with_its_stress(fake):
+    solver = OpenFoamSolver(shear="eyring", shear_stress=5e6)
+    assert "shear { type Eyring; stress 5000000.0; }" in solver.parameters(CONTACT, OIL, POINT).text()
+
+
+def test_settings_and_build_are_in_the_key_of_a_task_but_the_timeout_is_not(fake):
+    def key(**options):
+        return line_tasks(JOB, solvers.build("openfoam", {**JOB.solver_options, **options}))[0].key
+
+    first = key()
+    assert key(timeout=5.0) == first
+    assert key(columns=200) != first
+    assert key(start="hertz") != first
+    (fake / "lineContact" / "constant" / "ehlProperties").write_text("another default")
+    assert key() == first
+    (fake / "lineContact" / "system" / "controlDict").write_text("another scheme")
+    second = key()
+    assert second != first
+    (fake / "bin" / "ehlFoam.build").write_text("OpenFOAM v2012\n")
+    assert key() not in (first, second)
+
+
+def test_provenance(fake):
+    solver = OpenFoamSolver()
+    assert solver.provenance == {
+        "openfoam_version": "v1912",
+        "openfoam_build": "OpenFOAM v1912 compiler g++ 12.2.0 sources 0123abcd",
+    }
+    assert solver.slow
+    unknown = replace(solver.installed, build="built by hand")
+    assert replace(solver, installed=unknown).provenance["openfoam_version"] == "unknown"
+
+
+MISSING = {
+    "ehlFoam": r"there is no program .*bin/ehlFoam; build it with `openfoam_cases/build`",
+    "ehlFoam.build": r"there is no record .*ehlFoam.build of its build; build it again with `openfoam_cases/build`",
+    "blockMesh": "blockMesh is not in PATH; .*install the package openfoam, or source etc/bashrc",
+}
+
+
+@pytest.mark.parametrize("name", MISSING)
+def test_what_is_missing_is_named_with_what_to_do(fake, monkeypatch, name):
+    (fake / "bin" / name).unlink()
+    monkeypatch.setenv("PATH", f"{fake / 'bin'}")
+    setpriv = fake / "bin" / "setpriv"
+    setpriv.write_text("#!/bin/sh\n")
+    setpriv.chmod(0o755)
+    (problem,) = installed.missing()
+    assert re.search(MISSING[name], problem)
+    with pytest.raises(InputError, match="solver 'openfoam': " + ("OpenFOAM" if name == "blockMesh" else "ehlFoam")):
+        solvers.build("openfoam", {})
+    with pytest.raises(InputError, match=r"\[solver\] name: got 'openfoam', which needs more than is here: "):
+        read_job("nu308_openfoam", to_run=True)
+    assert read_job("nu308_openfoam").solver == "openfoam"
+    assert read_job("nu308_openfoam", "reynolds", to_run=True).solver == "reynolds"
+
+
+def test_everything_that_is_missing_is_named_at_once(tmp_path, monkeypatch):
+    monkeypatch.setattr(installed, "_CLONE", tmp_path / "clone")
+    monkeypatch.setattr(installed, "_SHARED", tmp_path / "shared")
+    monkeypatch.setattr(tempfile, "tempdir", "/tmp/with space")
+    with pytest.raises(InputError) as raised:
+        installed.installation({"PATH": "", "EHDMAPS_OPENFOAM": str(tmp_path)})
+    found = "\n".join(raised.value.problems)
+    for part in (
+        "OpenFOAM: blockMesh is not in PATH",
+        "setpriv is not in PATH; install the package util-linux",
+        "ehlFoam: there is no program",
+        "case lineContact: is in none of",
+        "the folder for temporary files: got '/tmp/with space'; OpenFOAM takes no spaces",
+    ):
+        assert part in found
+    assert len(raised.value.problems) == 5
+
+
+def test_openfoam_without_its_environment(fake, tmp_path, monkeypatch):
+    known = {key: value for key, value in os.environ.items() if key != "WM_PROJECT_DIR"}
+    monkeypatch.setattr(installed, "DEBIAN", tmp_path)
+    assert dict(installed.installation(known).environment) == installed.DEBIAN_ENVIRONMENT
+    monkeypatch.setattr(installed, "DEBIAN", tmp_path / "none")
+    with pytest.raises(InputError, match=r"WM_PROJECT_DIR is not set .*; source etc/bashrc of the installation"):
+        installed.installation(known)
+
+
+def test_the_folder_of_the_build():
+    assert installed.build_folder({"EHDMAPS_OPENFOAM": "/opt/x"}) == Path("/opt/x")
+    assert installed.build_folder({"XDG_CACHE_HOME": "/c"}) == Path("/c/ehdmaps/openfoam")
+    assert installed.build_folder({}) == Path("~/.cache/ehdmaps/openfoam").expanduser()
+
+
+def test_the_shipped_job():
+    assert JOB.shape == (2, 6, 4, 2)
+    assert JOB.solver_options["flow"] == "thin_film"
+    assert JOB.solver_options["columns"] == 400
+
+
+HOSTILE_KEYS = {
+    'flow = "thin_film; #calc"': "flow: got 'thin_film; #calc' .*; allowed: 'thin_film', 'full_stress'",
+    'columns = "400"': "columns: got '400'; allowed: a whole number from 40 to 4000",
+    "columns = 400.0": "columns: got 400.0; allowed: a whole number",
+    "rows = 100": "rows: got 100; allowed: a whole number from 4 to 64",
+    "shear_stress = nan": "shear_stress: got nan; allowed: 1000 to 1e.10",
+    "shear_stress = inf": "shear_stress: got inf",
+    'shear_stress = "$load"': r"shear_stress: got '\$load'; allowed: a bare number",
+    "slide_to_roll = -3": "slide_to_roll: got -3; allowed: -2 to 2",
+    'inertia = "yes"': "inertia: got 'yes'; allowed: true or false, without quotes",
+    'start = "zero"': "start: got 'zero'; allowed: 'reynolds', 'hertz'",
+    "timeout = 0": "timeout: got 0; allowed: 1 to",
+    "density = 6.5": "density: unknown key",
+}
+
+
+@pytest.mark.parametrize("line", HOSTILE_KEYS)
+def test_keys_of_a_job_that_are_refused(line):
+    key = line.split()[0]
+    above, solver = JOB.text.split("[solver]\n")
+    text = above + "[solver]\n" + re.sub(rf"^{key} .*\n", "", solver, flags=re.MULTILINE) + line + "\n"
+    with pytest.raises(InputError, match=HOSTILE_KEYS[line]):
+        parse_job(text, "job", "job.toml")
+
+
+def test_keys_of_a_job_that_are_taken():
+    text = JOB.text.replace('shear = "newtonian"', 'shear = "limiting"\nshear_stress = 2e7\ninertia = true')
+    options = parse_job(text, "job", "job.toml").solver_options
+    assert (options["shear"], options["shear_stress"], options["inertia"]) == ("limiting", 2e7, True)
+
+
+def test_places_of_velocity_profiles():
+    x = np.linspace(-2.0, 2.0, 401)
+    hertz = np.sqrt(np.maximum(0.0, 1.0 - x**2))
+    spiked = hertz + np.exp(-(((x - 0.8) / 0.02) ** 2))
+    assert places(x, spiked)["spike"] == pytest.approx(0.8, abs=0.01)
+    assert places(x, hertz)["spike"] == 0.0
+    assert places(x, hertz)["inlet"] == pytest.approx(-0.99, abs=0.01)
+    assert places(x, np.minimum(hertz[::-1], hertz.max()))["centre"] == 0.0
+    assert places(x, x + 2.0)["spike"] == 2.0
