@@ -230,14 +230,10 @@ int main(int argc, char* argv[])
     const filmState state(s.film(solved.state));
     const scalarField flux(s.flow().columnFlux()), fraction(s.flow().columnFraction());
     const scalarField density(s.flow().columnDensity());
-    label ruptured = 0;
-    while (ruptured < columns && fraction[ruptured] >= 1) ++ruptured;
-    scalar least = GREAT, fluxDefect = 0, greatest = 0;
-    // upstream of rupture
+    scalar least = GREAT, greatest = 0;
     for (label k = 0; k <= columns; ++k)
     {
         least = min(least, state.h[k]);
-        if (k < ruptured) fluxDefect = max(fluxDefect, mag(flux[k]/flux[0] - 1));
     }
     for (label i = 0; i < columns; ++i)
     {
@@ -250,13 +246,13 @@ int main(int argc, char* argv[])
     write("maximumPressure", greatest);
     write("filmOffset", h0 - dry.offset);
     write("loadDefect", mag(s.load(solved.state)/contact.load - 1));
-    write("fluxDefect", fluxDefect);
+    write("fluxDefect", s.fluxDefect());
     write("outletDefect", mag(flux.last()/flux[0] - 1));
     write("cellContinuity", s.flow().cellContinuity());
 
     if (solved.end == outcome::converged)
     {
-        const scalar defects[] = {mag(s.load(solved.state)/contact.load - 1), fluxDefect, s.flow().cellContinuity()};
+        const scalar defects[] = {mag(s.load(solved.state)/contact.load - 1), s.fluxDefect(), s.flow().cellContinuity()};
         const word names[] = {"load", "mass flux upstream of rupture", "continuity of a cell"};
         const scalar most[] = {1e-8, 1e-8, 1e-6};
         for (label i = 0; i < 3; ++i)

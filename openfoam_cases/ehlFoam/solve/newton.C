@@ -16,6 +16,9 @@ static constexpr scalar slow = 0.3;
 //- Most that one step changes pressures [Hertz pressures] and ln(viscosity), least it leaves of a film
 static constexpr scalar mostPressure = 0.25, mostViscosity = 5, leastFilm = 0.4;
 
+//- Defect of the mass flux upstream of rupture that counts as none; that of a cell may be a hundred times as large
+static constexpr scalar mostDefect = 1e-8;
+
 //- v of a column that a step takes from film to mixture, or back: just past the edge,
 //  since the derivatives on one side say nothing of the other
 static constexpr scalar intoMixture = -0.01, intoFilm = 1e-7;
@@ -190,7 +193,9 @@ Foam::newtonResult Foam::newton
             << ": length " << moved << ", part taken " << part
             << ", most at x/b " << s.flow().film().x()[most]/s.contact().halfWidth
             << ", " << clock.elapsedTime() << " s" << endl;
-        if (part == 1 && moved < controls.tolerance)
+        // the balances, before this step; their last digits are the round-off's
+        const bool balanced = s.fluxDefect() < mostDefect && s.flow().cellContinuity() < 100*mostDefect;
+        if (part == 1 && moved < controls.tolerance && balanced)
         {
             return {outcome::converged, "", iteration, u};
         }

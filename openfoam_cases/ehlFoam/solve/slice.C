@@ -211,3 +211,15 @@ Eigen::VectorXd Foam::slice::residual(const unknowns& u, const unknowns* rate)
     }
     return assembled(flow_.residual(film(u), nullptr), u);
 }
+
+
+Foam::scalar Foam::slice::fluxDefect() const
+{
+    const scalarField flux(flow_.columnFlux()), fraction(flow_.columnFraction());
+    scalar defect = 0;
+    for (label i = 0; i < columns() && fraction[i] >= 1; ++i)
+    {
+        defect = max(defect, mag(flux[i]/flux[0] - 1));
+    }
+    return defect;
+}
