@@ -38,6 +38,10 @@ class Table:
     def __contains__(self, key: str) -> bool:
         return key in self._values
 
+    def entries(self) -> tuple[str, ...]:
+        """Return the keys that the table has, for tables whose keys are names that the user chose."""
+        return tuple(self._values)
+
     def note(self, key: str, problem: str) -> None:
         """Note a problem of a key."""
         self.problems.append(f"{self.where}{' ' if key else ''}{key}: {problem}")

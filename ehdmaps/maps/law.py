@@ -109,6 +109,11 @@ class ContactLaw:
         inner, outer = (self._approach_table((contact,)) for contact in self.contacts)
         return self._plain._replace(inner=inner, outer=outer)
 
+    @property
+    def plain_table(self) -> LawTable:
+        """`table` without the single contacts of a series: all that is needed without a centrifugal load."""
+        return self._plain
+
     def workspace(self) -> FloatArray:
         """Scratch for `kernel.collapse` and `kernel.evaluate`, one for each thread and each `Point` kept."""
         return _workspace(self.table)

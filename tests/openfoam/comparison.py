@@ -24,7 +24,7 @@ OIL = Lubricant.named("FVA3")
 
 @dataclass(frozen=True)
 class Place:
-    """A point of a map: bearing, contact (0 inner, 1 outer), load [N/m], entrainment speed [m/s], temperature [degC]."""
+    """A point of a map: bearing, contact (0 inner, 1 outer), load [N/m], entrainment speed [m/s], celsius [degC]."""
 
     bearing: str
     side: int

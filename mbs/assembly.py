@@ -1,0 +1,268 @@
+"""From a scene and a contact law to a system: the law is chosen, made once for each geometry, and put into bearings."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from ehdmaps.errors import InputError
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.law import LawKind
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.units import closest
+from mbs import laws
+from mbs.bearing import Bearing
+from mbs.bearing_element import BearingElement
+from mbs.bearing_force import BearingForce
+from mbs.body import Body
+from mbs.elements import GROUND, Element, Operation
+from mbs.laws import DryLaw, Law
+from mbs.roller_contacts import RollerContacts
+from mbs.roller_element import RollerElement, roller_body
+from mbs.scene import Scene, SceneBearing
+from mbs.system import System
+
+_SAME = 1e-9
+_COMPARED = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
+_CONSTANT = "constant:"
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A scene with a contact law.
+
+    Attributes
+    ----------
+    scene : Scene
+        What it was made from, with the clearance in force.
+    system : System
+        What is analysed.
+    law : str
+        The law in words.
+    bearings : tuple of BearingElement
+        In the order of the scene; where rollers are bodies, the same with massless rollers, to look at.
+    """
+
+    scene: Scene
+    system: System
+    law: str
+    bearings: tuple[BearingElement, ...]
+
+    @property
+    def operation(self) -> Operation:
+        """The operating speed of the scene, at the start angles of its bearings."""
+        return Operation(self.scene.speed)
+
+    @property
+    def outside_calls(self) -> dict[str, int]:
+        """Calls outside the map so far, by bearing."""
+        return {
+            connected.element.name: int(getattr(connected.element, "outside_calls", 0))
+            for connected in self.system.elements
+        }
+
+
+def choose_law(name: str | None, emap: EHDMap | None) -> str:
+    """The law that is meant: by default the map where there is one, else Hertz."""
+    return name if name is not None else ("map" if emap is not None else "hertz")
+
+
+def assemble(scene: Scene, law: str | None = None, emap: EHDMap | None = None, clearance: float | None = None) -> Model:
+    """Make a system from a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Bodies, springs, loads, bearings.
+    law : str, optional
+        hertz, formula, constant:NAME or map; map by default where there is one, else hertz.
+    emap : EHDMap, optional
+        For the law `map`.
+    clearance : float, optional
+        Diametral clearance of all bearings [m], in place of the scene's.
+
+    Raises
+    ------
+    InputError
+        With everything that does not fit together.
+    """
+    chosen = choose_law(law, emap)
+    problems = find_problems(scene, law, emap, clearance)
+    if problems:
+        raise InputError(problems)
+    if clearance is not None:
+        scene = dataclasses.replace(
+            scene, bearings=tuple(_with_clearance(entry, clearance, []) for entry in scene.bearings)
+        )
+
+    made: dict[BearingGeometry, _Laws] = {}
+    bearings: list[BearingElement] = []
+    elements: list[Element] = []
+    rollers: list[Body] = []
+    for entry in scene.bearings:
+        bearing = Bearing(entry.geometry, entry.profile, entry.slices)
+        key = dataclasses.replace(entry.geometry, diametral_clearance=0.0)
+        if key not in made:
+            made[key] = _Laws(chosen, bearing, scene, emap)
+        plain = BearingElement(
+            name=entry.name,
+            inner=entry.inner,
+            outer=entry.outer,
+            bearing=bearing,
+            force=BearingForce(bearing, made[key].series),
+            temperature=scene.temperature,
+            inner_spin=_spin(entry.inner, scene.bodies),
+            outer_spin=_spin(entry.outer, scene.bodies),
+            start_angle=entry.start_angle,
+            centrifugal=entry.centrifugal,
+        )
+        bearings.append(plain)
+        if entry.rollers_as_bodies:
+            body = roller_body(f"{entry.name}_rollers", bearing)
+            rollers.append(body)
+            elements.append(RollerElement(plain, RollerContacts(bearing, *made[key].single), body.name))
+        else:
+            elements.append(plain)
+    system = System((*scene.bodies, *rollers), scene.springs, scene.loads, elements)
+    return Model(scene, system, _words(chosen, scene, emap), tuple(bearings))
+
+
+def find_problems(
+    scene: Scene, law: str | None = None, emap: EHDMap | None = None, clearance: float | None = None
+) -> list[str]:
+    """Everything that does not fit together; arguments as of `assemble`."""
+    chosen = choose_law(law, emap)
+    problems = _law_problems(chosen, scene, emap)
+    for entry in scene.bearings:
+        if clearance is not None:
+            _with_clearance(entry, clearance, problems)
+        if emap is not None and chosen == "map":
+            problems += _geometry_problems(entry, emap)
+    try:
+        plain = System(scene.bodies, scene.springs, scene.loads)
+    except InputError as error:
+        return problems + list(error.problems)
+    places = [
+        *((f"input {entry.name!r}", place) for entry in scene.inputs for place in (entry.on, entry.against)),
+        *((f"sensor {entry.name!r}", place) for entry in scene.sensors for place in (entry.on, entry.against)),
+        *((f"bearing {entry.name!r}", place) for entry in scene.bearings for place in (entry.inner, entry.outer)),
+    ]
+    return problems + [f"{where}: {wrong}" for where, place in places if (wrong := plain.check_place(place))]
+
+
+def constant_name(law: str) -> str | None:
+    """NAME of a law constant:NAME, else None."""
+    return law.removeprefix(_CONSTANT) if law.startswith(_CONSTANT) else None
+
+
+def _law_problems(chosen: str, scene: Scene, emap: EHDMap | None) -> list[str]:
+    """What is wrong about the choice of the law."""
+    names = tuple(f"{_CONSTANT}{name}" for name in scene.laws)
+    allowed = ("hertz", "formula", *names, "map")
+    if chosen not in allowed:
+        return [f"--law: got {chosen!r:.60}{closest(chosen, allowed)}; allowed here: {', '.join(allowed)}"]
+    if chosen == "map" and emap is None:
+        return ["--law: got 'map' without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`"]
+    if chosen == "formula" and scene.lubricant is None:
+        return [f"--law: got 'formula', but {scene.name} has no [lubricant]; add the table to the scene"]
+    centrifugal = [entry.name for entry in scene.bearings if entry.centrifugal and not entry.rollers_as_bodies]
+    if centrifugal and chosen not in ("map", "formula"):
+        return [
+            f"--law: got {chosen!r} with centrifugal = true in {', '.join(centrifugal)}; allowed: the laws map and "
+            "formula, which bring a roller into equilibrium; or centrifugal = false"
+        ]
+    return []
+
+
+def _with_clearance(entry: SceneBearing, clearance: float, problems: list[str]) -> SceneBearing:
+    """The bearing with another clearance."""
+    try:
+        geometry = dataclasses.replace(entry.geometry, diametral_clearance=clearance)
+    except InputError as error:
+        problems += [f"--clearance: {problem}" for problem in error.problems]
+        return entry
+    return dataclasses.replace(entry, geometry=geometry)
+
+
+def _geometry_problems(entry: SceneBearing, emap: EHDMap) -> list[str]:
+    """In what the map was made for something else than the bearing."""
+    made_for = emap.bearing
+    if made_for is None:
+        return [f"--map: is made for a bare contact; bearing {entry.name!r} needs a map of {entry.geometry.name}"]
+    differing = [
+        f"{key} {getattr(made_for, key) * 1e3:.6g} mm and not {getattr(entry.geometry, key) * 1e3:.6g} mm"
+        for key in _COMPARED
+        if abs(getattr(made_for, key) - getattr(entry.geometry, key)) > _SAME
+    ]
+    if not differing:
+        return []
+    return [
+        f"--map: is made for {made_for.name}: {', '.join(differing)} as the {entry.geometry.name} of bearing "
+        f"{entry.name!r}; generate a map of that bearing"
+    ]
+
+
+def _spin(place: str, bodies: tuple[Body, ...]) -> float:
+    """Spin of the body of a place."""
+    name = place.partition(":")[0]
+    return 0.0 if name == GROUND else next(body.spin for body in bodies if body.name == name)
+
+
+@dataclass(frozen=True, eq=False)
+class _Laws:
+    """Laws for one geometry; outside its map a law is held at the edge, and calls there are counted."""
+
+    chosen: str
+    bearing: Bearing
+    scene: Scene
+    emap: EHDMap | None
+
+    @cached_property
+    def series(self) -> Law:
+        """Of a roller between both raceways."""
+        if self.chosen in ("map", "formula"):
+            return self._of_kind("series")
+        name = constant_name(self.chosen)
+        return laws.hertz(self.bearing) if name is None else laws.constant(*self.scene.laws[name])
+
+    @cached_property
+    def single(self) -> tuple[Law, Law]:
+        """Of the inner and of the outer contact."""
+        if isinstance(self.series, DryLaw):
+            return self.series.single(), self.series.single()
+        return self._of_kind("inner"), self._of_kind("outer")
+
+    def _of_kind(self, kind: LawKind) -> Law:
+        """A law with films."""
+        if self.chosen == "map" and self.emap is not None:
+            return self.emap.law(kind, outside="clamp")
+        return laws.formula(self.bearing, _lubricant(self.scene), kind=kind, outside="clamp")
+
+
+def _lubricant(scene: Scene) -> Lubricant:
+    """The oil of the scene, which `_law_problems` saw."""
+    assert scene.lubricant is not None
+    return scene.lubricant
+
+
+def _words(chosen: str, scene: Scene, emap: EHDMap | None) -> str:
+    """The law, for people."""
+    if chosen == "map" and emap is not None:
+        solver = emap.dataset.attrs.get("solver", "")
+        made_for = emap.bearing.name if emap.bearing else ""
+        return f"map of {made_for}, {emap.lubricant.name}, solver {solver}"
+    if chosen == "formula":
+        return f"film formula moes, {_lubricant(scene).name}"
+    name = constant_name(chosen)
+    if name is None:
+        return "dry Hertz, ISO 16281"
+    stiffness, damping = scene.laws[name]
+    return f"constant {name}: {stiffness:.4g} N/m and {damping:.4g} N s/m for each contact of a roller"
+
+
+def law_attributes(model: Model) -> Mapping[str, str]:
+    """Provenance of a result."""
+    return {"scene": model.scene.name, "scene_toml": model.scene.text, "law": model.law}

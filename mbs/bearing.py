@@ -1,0 +1,201 @@
+"""A bearing as the force element sees it: geometry, clearance, roller profile, slices."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.solids import STEEL, Material
+
+FloatArray = npt.NDArray[np.float64]
+Profile = str | Callable[[FloatArray], npt.ArrayLike] | tuple[float, ...] | FloatArray
+
+MOST_SLICES = 100_000
+_LONG = 2.5
+_PROFILES = ("iso", "straight")
+
+
+def iso_profile(x: FloatArray, roller_diameter: float, roller_length: float) -> FloatArray:
+    """Profile of a roller: how far its surface lies below the cylinder, on one side [m].
+
+    P(x) = 0.00035 D ln(1/(1 - (2x/L)^2)) for L <= 2.5 D. Longer rollers are straight in the middle, with
+    P(x) = 0.0005 D ln(1/(1 - ((2|x| - (L - 2.5 D))/(2.5 D))^2)) outside it.
+
+    Parameters
+    ----------
+    x : array
+        Distance from the middle of the roller [m], |x| < L/2.
+    roller_diameter, roller_length : float
+        D and L [m].
+
+    References
+    ----------
+    ISO/TS 16281:2008; DIN 26281:2010.
+
+    Examples
+    --------
+    A quarter of the length from the middle of the roller of an NU308:
+
+    >>> float(round(1e6 * iso_profile(np.array([3.75e-3]), 14e-3, 15e-3)[0], 4))
+    1.4096
+    """
+    if roller_length <= _LONG * roller_diameter:
+        part, depth = 2.0 * np.abs(x) / roller_length, 0.00035 * roller_diameter
+    else:
+        crowned = _LONG * roller_diameter
+        part = np.maximum(2.0 * np.abs(x) - (roller_length - crowned), 0.0) / crowned
+        depth = 0.0005 * roller_diameter
+    return np.asarray(-depth * np.log1p(-(part**2)))
+
+
+@dataclass(frozen=True, eq=False)
+class Bearing:
+    """A cylindrical roller bearing, cut into slices.
+
+    Attributes
+    ----------
+    geometry : BearingGeometry
+        Raceways, rollers, and the diametral clearance P_d that is in force.
+    profile : {"iso", "straight"}, callable, or array (slices,)
+        Roller profile P [m] on one side: by name, as P(x) of the distance x [m] from the middle, or its values at the
+        middles of the slices. A callable is called once.
+    slices : int
+        Number of slices of equal length of a roller. Statics want 30 or more.
+    material : Material
+        Its density gives the rollers their centrifugal load.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+
+    Examples
+    --------
+    >>> bearing = Bearing.named("NU308", clearance=20e-6)
+    >>> bearing.geometry.diametral_clearance, bearing.slices
+    (2e-05, 41)
+    """
+
+    geometry: BearingGeometry
+    profile: Profile = "iso"
+    slices: int = 41
+    material: Material = STEEL
+
+    def __post_init__(self) -> None:
+        count = self.slices
+        if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= MOST_SLICES:
+            raise InputError(f"bearing, slices: got {count!r}; allowed: a whole number from 1 to {MOST_SLICES}")
+        _ = self.profile_depths
+
+    @classmethod
+    def named(cls, name: str, *, clearance: float = 0.0, profile: Profile = "iso", slices: int = 41) -> Bearing:
+        """One of the bearings of `ehdmaps.physics.bearing.BEARINGS`, of steel.
+
+        Parameters
+        ----------
+        name : str
+            Such as "NU308".
+        clearance : float
+            Diametral clearance P_d [m], < 0 for a preloaded bearing.
+        profile, slices
+            As of the class.
+        """
+        if isinstance(clearance, bool) or not isinstance(clearance, int | float | np.floating | np.integer):
+            raise InputError(f"bearing, clearance: got {clearance!r}; allowed: a number of metres")
+        geometry = dataclasses.replace(BearingGeometry.named(name), diametral_clearance=float(clearance))
+        return cls(geometry, profile, slices)
+
+    def with_slices(self, slices: int) -> Bearing:
+        """The same bearing cut into another number of slices."""
+        return dataclasses.replace(self, slices=slices)
+
+    @cached_property
+    def slice_positions(self) -> FloatArray:
+        """Middles of the slices along the roller, (slices,) [m], from the middle of the bearing."""
+        places = (np.arange(self.slices) + 0.5) / self.slices - 0.5
+        return np.asarray(places * self.geometry.roller_length)
+
+    @property
+    def slice_length(self) -> float:
+        """Length of a slice [m]."""
+        return self.geometry.roller_length / self.slices
+
+    @cached_property
+    def profile_depths(self) -> FloatArray:
+        """Profile P at the middles of the slices, on one side, (slices,) [m]."""
+        x, geometry = self.slice_positions, self.geometry
+        if isinstance(self.profile, str):
+            if self.profile not in _PROFILES:
+                raise InputError(
+                    f"bearing, profile: got {self.profile!r}; allowed: {', '.join(_PROFILES)}, a function P(x), "
+                    "or its values at the slices"
+                )
+            if self.profile == "straight":
+                return np.zeros(self.slices)
+            return iso_profile(x, geometry.roller_diameter, geometry.roller_length)
+        given = self.profile(x.copy()) if callable(self.profile) else self.profile
+        try:
+            depths = np.array(given, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InputError(f"bearing, profile: got {given!r}; allowed: real numbers [m], one a slice") from None
+        if depths.shape != (self.slices,):
+            raise InputError(
+                f"bearing, profile: got values of shape {depths.shape}; allowed: ({self.slices},), one a slice; "
+                "a function P(x) suits any number of slices"
+            )
+        if not np.all(np.abs(depths) < geometry.roller_diameter):
+            wrong = depths[~(np.abs(depths) < geometry.roller_diameter)][0]
+            raise InputError(
+                f"bearing, profile: got {wrong:.6g} m; allowed: finite and smaller than the roller diameter "
+                f"{geometry.roller_diameter:.6g} m; check its unit"
+            )
+        return depths
+
+    @property
+    def roller_mass(self) -> float:
+        """Mass of a roller, as a plain cylinder [kg]."""
+        return self._mass_per_length * self.geometry.roller_length
+
+    def cage_angle(self, inner_spin: float, outer_spin: float = 0.0) -> float:
+        """Angle of the cage from the spins of the rings [rad]; the rollers roll without slip.
+
+        phi_c = (phi_i (1 - gamma) + phi_o (1 + gamma))/2. The spins must be counted through full turns.
+        The same formula gives the speed of the cage from the speeds of the rings [rad/s].
+
+        Examples
+        --------
+        >>> round(Bearing.named("NU308").cage_angle(1.0), 4)
+        0.3939
+        """
+        gamma = self.geometry.gamma
+        return 0.5 * (inner_spin * (1.0 - gamma) + outer_spin * (1.0 + gamma))
+
+    def centrifugal_load(self, inner_speed: float, outer_speed: float = 0.0) -> float:
+        """Centrifugal load of a roller for each metre of its length [N/m].
+
+        Parameters
+        ----------
+        inner_speed, outer_speed : float
+            Speeds of the rings [rad/s].
+
+        Examples
+        --------
+        At 2000 rpm of the inner ring:
+
+        >>> round(Bearing.named("NU308").centrifugal_load(2000.0 * math.pi / 30.0), 1)
+        271.5
+        """
+        cage_speed = self.cage_angle(inner_speed, outer_speed)
+        return self._mass_per_length * 0.5 * self.geometry.pitch_diameter * cage_speed**2
+
+    @property
+    def _mass_per_length(self) -> float:
+        return self.material.density * math.pi / 4.0 * self.geometry.roller_diameter**2

@@ -1,0 +1,160 @@
+"""What all commands share: reading the arguments into models, the heading of the output, writing files."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from ehdmaps.errors import EhdmapsError, InputError
+from ehdmaps.maps.emap import open_map
+from ehdmaps.maps.law import ContactLaw
+from ehdmaps.physics._values import FloatArray
+from ehdmaps.units import TEMPERATURE, quantity
+from mbs.assembly import Model, assemble, find_problems, law_attributes
+from mbs.bearing_element import BearingElement
+from mbs.bearing_force import BearingForce
+from mbs.results import described, write_dataset
+from mbs.scene_reader import MICROMETRE, RPM, read_scene
+from mbs.statics import Equilibrium
+from mbs.validity import HIGHEST_RATIO, FilmLimit, film_limit
+
+WIDEST = 1e-2
+"""Largest clearance of --clearance, either way [m]."""
+
+RESOLUTION = 150
+
+
+def load_model(arguments: argparse.Namespace) -> Model:
+    """Read scene, map and options of a command that takes one clearance; all problems at once."""
+    models = load_models(arguments)
+    if len(models) > 1:
+        raise InputError(f"--clearance: got {len(models)} of them; allowed: one; `mbs modes --speeds` takes more")
+    return models[0]
+
+
+def load_models(arguments: argparse.Namespace) -> tuple[Model, ...]:
+    """Read scene, map and options into a model for each clearance; all problems at once.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
+    problems: list[str] = []
+    scene = emap = None
+    try:
+        scene = read_scene(arguments.scene)
+    except InputError as error:
+        problems += error.problems
+    try:
+        emap = open_map(arguments.map) if arguments.map else None
+    except EhdmapsError as error:
+        problems += [f"--map: {line}" for line in str(error).splitlines()]
+    clearances: list[float | None] = []
+    for text in arguments.clearance or [None]:
+        clearances.append(_clearance(text, problems))
+    for option, path in (("-o", arguments.output), ("--plot", arguments.plot)):
+        if path and not Path(path).parent.is_dir():
+            problems.append(f"{option}: got {path}, but {Path(path).parent} is no folder; allowed: a file in a folder")
+    if scene is not None and (emap is not None or not arguments.map):
+        found = [problem for value in clearances for problem in find_problems(scene, arguments.law, emap, value)]
+        problems += [problem if problem.startswith("--") else f"{scene.name}: {problem}" for problem in found]
+    if problems or scene is None:
+        raise InputError(tuple(dict.fromkeys(problems)))
+    return tuple(assemble(scene, arguments.law, emap, clearance) for clearance in clearances)
+
+
+def _clearance(text: str | None, problems: list[str]) -> float | None:
+    """Read a clearance."""
+    if text is None:
+        return None
+    try:
+        value = quantity(text, "m")
+    except InputError as error:
+        problems.append(f"--clearance: {error.problems[0]}")
+        return None
+    if abs(value) > WIDEST:
+        problems.append(f"--clearance: got {text!r:.60}; allowed: within {MICROMETRE.text(WIDEST)} either way")
+    return value
+
+
+def heading(model: Model, speed: float | None = None) -> list[str]:
+    """What was analysed, and which of its numbers are assumptions."""
+    clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
+    shown = ", ".join(MICROMETRE.text(value) for value in clearances)
+    at = "" if speed is None else f"{RPM.text(speed)}, "
+    return [
+        f"{model.scene.title}: law {model.law}",
+        f"  {at}{TEMPERATURE.text(model.scene.temperature)}, clearance {shown}; assumed: "
+        + (f"{len(model.scene.assumed)} keys of the scene, marked there" if model.scene.assumed else "nothing"),
+    ]
+
+
+def film_limits(model: Model, balance: Equilibrium) -> list[FilmLimit]:
+    """Up to which frequency the films of each bearing follow; empty for dry laws and constant ones."""
+    limits = []
+    for bearing, motion in ring_motions(model, balance):
+        if not isinstance(bearing.force, BearingForce) or not isinstance(bearing.force.law, ContactLaw):
+            continue
+        load = float(bearing.rollers(motion, balance.operation).load_per_length.max())
+        speed = bearing.entrainment_speed(balance.operation)
+        limits.append(film_limit(bearing.name, bearing.bearing, load, speed))
+    return limits
+
+
+def ring_motions(model: Model, balance: Equilibrium) -> list[tuple[BearingElement, FloatArray]]:
+    """Each bearing with the displacement (6,) of its inner ring against the outer one."""
+    return [
+        (bearing, model.system.relative(bearing.inner, bearing.outer) @ balance.displacement)
+        for bearing in model.bearings
+    ]
+
+
+def film_warnings(limits: Sequence[FilmLimit], frequencies: Iterable[float]) -> list[str]:
+    """Lines on frequencies that are too quick for low-frequency films."""
+    lines = []
+    highest = max(frequencies, default=0.0)
+    for limit in limits:
+        ratio = limit.ratio(highest)
+        if ratio > HIGHEST_RATIO:
+            lines.append(
+                f"warning: {limit.bearing}: omega b/u is {ratio:.2g} at {highest:.4g} Hz and passes {HIGHEST_RATIO} at "
+                f"{limit.frequency:.4g} Hz (b = {limit.half_width * 1e6:.3g} um, "
+                f"u = {limit.entrainment_speed:.3g} m/s): above it low-frequency stiffness and damping no longer hold"
+            )
+    return lines
+
+
+def outside_at(model: Model, balance: Equilibrium) -> list[str]:
+    """Lines on bearings whose equilibrium lies outside the map."""
+    before = model.outside_calls
+    for connected in model.system.elements:
+        connected.evaluate(balance.displacement, 0.0 * balance.displacement, balance.operation)
+    return [
+        f"warning: {name}: lies outside the map, where the law is held at its edge; make a map that reaches there"
+        for name, count in model.outside_calls.items()
+        if count > before[name]
+    ]
+
+
+def write(arguments: argparse.Namespace, model: Model, dataset: xr.Dataset, figure: Figure | None) -> list[str]:
+    """Write what -o and --plot ask for; a line for each file."""
+    lines = []
+    if arguments.output:
+        path = Path(arguments.output)
+        write_dataset(described(dataset, **law_attributes(model)), path)
+        lines.append(f"{path}: written")
+    if arguments.plot and figure is not None:
+        try:
+            figure.savefig(arguments.plot, dpi=RESOLUTION)
+        except (OSError, ValueError) as error:
+            raise InputError(
+                f"--plot: {arguments.plot} cannot be written ({error}); allowed: a .png, .pdf or .svg file in a folder "
+                "that may be written"
+            ) from error
+        lines.append(f"{arguments.plot}: written")
+    return lines

@@ -1,0 +1,76 @@
+"""`mbs lsa`: state space and frequency responses at the equilibrium."""
+
+from __future__ import annotations
+
+import argparse
+
+import numpy as np
+from scipy.signal import find_peaks
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import FloatArray
+from mbs.assembly import Model
+from mbs.commands.common import film_limits, film_warnings, heading, load_model, outside_at, write
+from mbs.linear import ComplexArray, frequency_response, state_space
+from mbs.plot import response_figure
+from mbs.results import linear_dataset
+from mbs.statics import equilibrium
+from mbs.validity import dynamic_loads
+
+_UNITS = {"displacement": "m/N", "velocity": "m/s/N", "acceleration": "m/s2/N"}
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Linearise, and compute the responses over the frequencies of the scene."""
+    model = load_model(arguments)
+    scene = model.scene
+    missing = [
+        f"{scene.name}: {key} missing; a linear analysis needs {words}"
+        for key, there, words in (
+            ("[[inputs]]", scene.inputs, "at least one input"),
+            ("[[sensors]]", scene.sensors, "at least one sensor"),
+            ("[linear] frequencies", scene.frequencies, "frequencies"),
+        )
+        if not there
+    ]
+    if missing:
+        raise InputError(missing)
+    balance = equilibrium(model.system, model.operation)
+    frequencies = np.array(scene.frequencies)
+    responses = frequency_response(balance, scene.inputs, scene.sensors, frequencies)
+    space = state_space(balance, scene.inputs, scene.sensors)
+    figure = response_figure(model, frequencies, responses) if arguments.plot else None
+    outside = outside_at(model, balance)
+    dataset = linear_dataset(balance, space, responses, scene.frequencies, scene.inputs, scene.sensors)
+    lines = [
+        *heading(model, scene.speed),
+        f"state space: {space.A.shape[0]} states, {len(scene.inputs)} inputs, {len(scene.sensors)} outputs",
+        *_peaks(model, frequencies, responses),
+        *film_warnings(film_limits(model, balance), frequencies),
+        *(
+            f"warning: {load.element}: {load.dynamic:.3g} N of dynamic load at {load.frequency:.4g} Hz exceed the "
+            f"static {load.static:.4g} N (input {load.input} at its amplitude): contacts lift off, "
+            "a linear analysis does not hold there"
+            for load in dynamic_loads(balance, scene.inputs, frequencies)
+            if load.exceeds
+        ),
+        *outside,
+        *write(arguments, model, dataset, figure),
+    ]
+    return "\n".join(lines), 1 if outside else 0
+
+
+def _peaks(model: Model, frequencies: FloatArray, responses: ComplexArray) -> list[str]:
+    """Lines of the peaks of each response."""
+    lines = []
+    for s, sensor in enumerate(model.scene.sensors):
+        for i, entry in enumerate(model.scene.inputs):
+            size = np.abs(responses[:, s, i])
+            # A peak stands out of both valleys beside it.
+            places, _ = find_peaks(np.log(np.maximum(size, 1e-300)), prominence=0.05)
+            shown = [f"{frequencies[k]:.5g} Hz ({size[k]:.3g})" for k in places]
+            lines.append(
+                f"  {sensor.name} ({sensor.quantity}, {_UNITS[sensor.quantity]}) by {entry.name}: "
+                + (f"peaks at {', '.join(shown)}" if shown else "no peak")
+            )
+    return lines

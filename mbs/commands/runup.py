@@ -1,0 +1,59 @@
+"""`mbs runup`: integrate the nonlinear system in time over its speed profile, from its equilibrium."""
+
+from __future__ import annotations
+
+import argparse
+import time
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+from ehdmaps.jobs.progress import progress
+from mbs.commands.common import heading, load_model, write
+from mbs.elements import Operation
+from mbs.integration import integrate
+from mbs.plot import run_figure
+from mbs.results import run_dataset
+from mbs.scene_reader import RPM
+from mbs.statics import equilibrium
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Run, and say what was found."""
+    model = load_model(arguments)
+    course = model.scene.run_up
+    if course is None:
+        raise InputError(f"{model.scene.name}: [runup] missing; a run needs from, to, duration and step")
+    start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
+    before = model.outside_calls
+    bar = progress(round(course.duration / course.settings.sample))
+    bar.taken_over(0)
+    begin = time.perf_counter()
+    result = integrate(
+        model.system,
+        course.speed,
+        course.duration,
+        course.settings,
+        displacement=start.displacement,
+        progress=lambda done: bar.solved(1),
+    )
+    seconds = time.perf_counter() - begin
+    outside = {name: count - before[name] for name, count in model.outside_calls.items()}
+    figure = run_figure(model, result) if arguments.plot else None
+    first, last = (RPM.text(float(speed)) for speed in (result.speed[0], result.speed[-1]))
+    lines = [
+        *heading(model),
+        f"from {first} to {last} in {course.duration:.4g} s: {result.steps} steps, {result.halved} taken back, "
+        f"{result.iterations / max(result.steps, 1):.3g} Newton iterations a step, "
+        f"{1e6 * seconds / max(result.steps, 1):.3g} us a step",
+    ]
+    for bearing, force in zip(model.bearings, result.forces, strict=True):
+        size = np.hypot(force[:, 1], force[:, 2])
+        lines.append(
+            f"{bearing.name}: {size[0]:.5g} N at the beginning, {size.min():.5g} to {size.max():.5g} N, "
+            f"{size[-1]:.5g} N at the end; largest change from sample to sample "
+            f"{np.abs(np.diff(size)).max(initial=0.0):.3g} N; "
+            f"{outside[bearing.name]} calls outside the map"
+        )
+    lines += write(arguments, model, run_dataset(model.system, result, outside), figure)
+    return "\n".join(lines), 1 if any(outside.values()) else 0

@@ -1,0 +1,75 @@
+"""`mbs statics`: the equilibrium, the loads of the rollers, stiffness and damping of the bearings."""
+
+from __future__ import annotations
+
+import argparse
+
+import numpy as np
+
+from ehdmaps.physics._values import FloatArray
+from mbs.assembly import Model
+from mbs.commands.common import film_limits, heading, load_model, outside_at, ring_motions, write
+from mbs.plot import statics_figure
+from mbs.results import statics_dataset
+from mbs.roller_element import ring_matrices
+from mbs.statics import Equilibrium, equilibrium
+
+_SHOWN = (1, 2, 4, 5)
+_NAMES = ("y", "z", "theta_y", "theta_z")
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Find the equilibrium at the operating speed and describe it."""
+    model = load_model(arguments)
+    balance = equilibrium(model.system, model.operation)
+    figure = statics_figure(model, balance) if arguments.plot else None
+    lines = [
+        *heading(model, model.scene.speed),
+        f"equilibrium in {balance.steps} Newton steps, residual {balance.residual:.1e} of the largest force",
+        *_coordinates(model, balance),
+    ]
+    for index, (bearing, motion) in enumerate(ring_motions(model, balance)):
+        force = balance.forces[index]
+        rollers = bearing.rollers(motion, balance.operation)
+        stiffness, damping = ring_matrices(balance.element_stiffness[index], balance.element_damping[index])
+        lines += [
+            f"{bearing.name}: {float(np.hypot(force[1], force[2])):.6g} N on the inner ring "
+            f"(y {force[1]:.6g}, z {force[2]:.6g}), ring moved {_um(motion[1])} in y, {_um(motion[2])} in z",
+            f"  entrainment speed {bearing.entrainment_speed(balance.operation):.4g} m/s; "
+            f"{np.count_nonzero(rollers.load > 0.0)} of {rollers.load.size} rollers loaded, the most with "
+            f"{float(rollers.load.max()):.5g} N",
+            *_matrix("K [N/m, N/rad; N m/m, N m/rad]", stiffness),
+            *_matrix("C [the same times s]", damping),
+        ]
+    lines += [
+        f"{limit.bearing}: films follow as in the low-frequency limit up to {limit.frequency:.4g} Hz (omega b/u = 0.3)"
+        for limit in film_limits(model, balance)
+    ]
+    outside = outside_at(model, balance)
+    lines += outside + write(arguments, model, statics_dataset(balance), figure)
+    return "\n".join(lines), 1 if outside else 0
+
+
+def _coordinates(model: Model, balance: Equilibrium) -> list[str]:
+    """Lines of the coordinates."""
+    shown = {"m": (1e6, "um"), "rad": (1e6, "urad"), "1": (1.0, "")}
+    lines = []
+    for name, unit, value in zip(model.system.coordinates, model.system.units, balance.displacement, strict=True):
+        factor, word = shown[unit]
+        if ".roller_" not in name:
+            lines.append(f"  {name:24s} {value * factor:14.6g} {word}")
+    return lines
+
+
+def _matrix(title: str, matrix: FloatArray) -> list[str]:
+    """Lines of a matrix on the inner ring, without the axial rows."""
+    rows = [
+        f"    {_NAMES[i]:8s}" + "".join(f"{matrix[row, column]:13.5g}" for column in _SHOWN)
+        for i, row in enumerate(_SHOWN)
+    ]
+    return [f"  {title}", *rows]
+
+
+def _um(value: float) -> str:
+    """A length."""
+    return f"{value * 1e6:.5g} um"

@@ -1,0 +1,185 @@
+"""What connects bodies: linear springs, loads, and nonlinear elements such as bearings; and sensors.
+
+A place is written "body:frame", or "body" for its frame "centre", or "ground". Two places that an element connects
+are at the same point of the system, so that forces and moments balance without lever arms.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal, NamedTuple, Protocol
+
+import numpy as np
+
+from ehdmaps.physics._values import FloatArray
+from mbs.profiles import Constant, LoadProfile
+
+GROUND = "ground"
+"""The place that does not move."""
+
+
+class Operation(NamedTuple):
+    """Where on its prescribed course a system is.
+
+    Attributes
+    ----------
+    speed : float
+        Speed of the system [rad/s].
+    angle : float
+        What it has turned since the beginning [rad].
+    time : float
+        [s].
+    """
+
+    speed: float = 0.0
+    angle: float = 0.0
+    time: float = 0.0
+
+
+@dataclass(frozen=True)
+class Port:
+    """What a nonlinear element feels: the displacement of a place against another, or a body's own coordinates.
+
+    Attributes
+    ----------
+    on : str
+        A place; or the name of a body, with `coordinates`.
+    against : str
+        A place at the same point; "ground" for the absolute displacement.
+    coordinates : bool
+        Whether the port is the vector of all coordinates of the body instead of six displacements.
+    """
+
+    on: str
+    against: str = GROUND
+    coordinates: bool = False
+
+
+class Element(Protocol):
+    """A nonlinear element. Its force is linear algebra in its ports; what happens in there is its own."""
+
+    @property
+    def name(self) -> str:
+        """For messages and results."""
+        ...
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """What it feels; the displacements of all ports make one vector of size m."""
+        ...
+
+    def evaluate(
+        self, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Generalised force on the ports and how it falls with their motion.
+
+        Parameters
+        ----------
+        displacement, velocity : array, shape (m,)
+            Of all ports, one after the other [m or rad, and per s].
+        operation : Operation
+            Speed, angle and time.
+
+        Returns
+        -------
+        force : array, shape (m,)
+            On the `on` side of each port [N or N m]; the `against` side gets the opposite.
+        stiffness, damping : array, shape (m, m)
+            -d force/d displacement and -d force/d velocity.
+        """
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Spring:
+    """A linear spring and damper between two places.
+
+    Attributes
+    ----------
+    name : str
+        For messages and results.
+    on, against : str
+        Places.
+    stiffness, damping : array, shape (6, 6)
+        Of the six displacements of `on` against `against` [N/m, N m/rad; with s]; symmetric.
+    """
+
+    name: str
+    on: str
+    against: str
+    stiffness: FloatArray
+    damping: FloatArray = field(default_factory=lambda: np.zeros((6, 6)))
+
+
+@dataclass(frozen=True, eq=False)
+class Load:
+    """A force and moment at a place, with its reaction at another.
+
+    Attributes
+    ----------
+    name : str
+        For messages and results.
+    on : str
+        Place.
+    force : array, shape (6,)
+        Three forces [N] and three moments [N m].
+    against : str
+        Place that gets the opposite.
+    profile : LoadProfile
+        Factor over time.
+    """
+
+    name: str
+    on: str
+    force: FloatArray
+    against: str = GROUND
+    profile: LoadProfile = field(default_factory=Constant)
+
+
+Quantity = Literal["displacement", "velocity", "acceleration"]
+
+
+@dataclass(frozen=True, eq=False)
+class Sensor:
+    """Motion of a place along a direction, absolute or against another place.
+
+    Attributes
+    ----------
+    name : str
+        For messages and results.
+    on, against : str
+        Places, anywhere; the output is the difference.
+    direction : array, shape (6,)
+        Weights of the six displacements, such as (0, 1, 0, 0, 0, 0) for y.
+    quantity : {"displacement", "velocity", "acceleration"}
+        What is sensed.
+    """
+
+    name: str
+    on: str
+    direction: FloatArray
+    quantity: Quantity = "displacement"
+    against: str = GROUND
+
+
+@dataclass(frozen=True, eq=False)
+class Input:
+    """A load that a linear analysis varies.
+
+    Attributes
+    ----------
+    name : str
+        For messages and results.
+    on, against : str
+        Places; `against` gets the opposite.
+    direction : array, shape (6,)
+        Load at amplitude 1 N or 1 N m.
+    amplitude : float
+        How large it is in operation [N or N m]; a linear analysis is compared with static loads at this size.
+    """
+
+    name: str
+    on: str
+    direction: FloatArray
+    against: str = GROUND
+    amplitude: float = 1.0

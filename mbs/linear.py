@@ -1,0 +1,124 @@
+"""Linear analysis at an equilibrium: state space, and frequency responses between inputs and sensors.
+
+M x'' + C x' + K x = b u with C and K of the equilibrium; for small motion only, at fixed cage angle, and with the
+low-frequency stiffness and damping of the films.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.physics._values import FloatArray
+from mbs.elements import Input, Quantity, Sensor
+from mbs.statics import Equilibrium
+
+ComplexArray = npt.NDArray[np.complex128]
+
+_ORDER: dict[Quantity, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
+"""How often a sensor differentiates."""
+
+
+@dataclass(frozen=True, eq=False)
+class StateSpace:
+    """x' = A x + B u, y = C x + D u, where x is the displacement from the equilibrium, then the velocity.
+
+    Attributes
+    ----------
+    A : array, shape (2 n, 2 n)
+        System matrix.
+    B : array, shape (2 n, inputs)
+        For inputs of 1 N or 1 N m.
+    C : array, shape (sensors, 2 n)
+        Sensors [m or rad, per s, per s2].
+    D : array, shape (sensors, inputs)
+        What accelerations have of the inputs at once.
+    """
+
+    A: FloatArray
+    B: FloatArray
+    C: FloatArray
+    D: FloatArray
+
+
+def input_matrix(balance: Equilibrium, inputs: Sequence[Input]) -> FloatArray:
+    """Generalised load of each input at 1 N or 1 N m, shape (n, inputs)."""
+    system = balance.system
+    columns = [system.relative(entry.on, entry.against).T @ entry.direction for entry in inputs]
+    return np.stack(columns, axis=1) if columns else np.zeros((system.size, 0))
+
+
+def sensor_matrix(balance: Equilibrium, sensors: Sequence[Sensor]) -> FloatArray:
+    """Displacement that each sensor sees, or differentiates, by the coordinates, shape (sensors, n)."""
+    system = balance.system
+    rows = [sensor.direction @ system.relative(sensor.on, sensor.against) for sensor in sensors]
+    return np.stack(rows) if rows else np.zeros((0, system.size))
+
+
+def state_space(balance: Equilibrium, inputs: Sequence[Input] = (), sensors: Sequence[Sensor] = ()) -> StateSpace:
+    """State space of small motion about an equilibrium.
+
+    Parameters
+    ----------
+    balance : Equilibrium
+        Where.
+    inputs, sensors : sequence
+        Columns of B and D, rows of C and D.
+    """
+    n = balance.system.size
+    solved = np.linalg.solve(
+        balance.system.mass, np.hstack([-balance.stiffness, -balance.damping, input_matrix(balance, inputs)])
+    )
+    acceleration, by_input = solved[:, : 2 * n], solved[:, 2 * n :]
+    A = np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), acceleration])
+    rows = sensor_matrix(balance, sensors)
+    C, D = np.zeros((len(sensors), 2 * n)), np.zeros((len(sensors), len(inputs)))
+    for i, sensor in enumerate(sensors):
+        order = _ORDER[sensor.quantity]
+        if order == 2:
+            C[i], D[i] = rows[i] @ acceleration, rows[i] @ by_input
+        else:
+            C[i, order * n : (order + 1) * n] = rows[i]
+    return StateSpace(A, np.vstack([np.zeros_like(by_input), by_input]), C, D)
+
+
+def responses(balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatArray) -> ComplexArray:
+    """Complex amplitudes of the coordinates for each input at 1 N or 1 N m, shape (frequencies, n, inputs) [m or rad].
+
+    Parameters
+    ----------
+    balance : Equilibrium
+        Where.
+    inputs : sequence of Input
+        What excites.
+    frequencies : array, shape (frequencies,)
+        [Hz].
+    """
+    omega = 2.0 * np.pi * np.asarray(frequencies, dtype=np.float64)[:, None, None]
+    dynamic = balance.stiffness + 1j * omega * balance.damping - omega**2 * balance.system.mass
+    load = np.broadcast_to(input_matrix(balance, inputs), (omega.size, balance.system.size, len(inputs)))
+    return np.asarray(np.linalg.solve(dynamic, load), dtype=np.complex128)
+
+
+def frequency_response(
+    balance: Equilibrium, inputs: Sequence[Input], sensors: Sequence[Sensor], frequencies: FloatArray
+) -> ComplexArray:
+    """Frequency responses, shape (frequencies, sensors, inputs) [sensor unit per N or N m].
+
+    Parameters
+    ----------
+    balance : Equilibrium
+        Where.
+    inputs, sensors : sequence
+        From where to where.
+    frequencies : array, shape (frequencies,)
+        [Hz].
+    """
+    seen = sensor_matrix(balance, sensors) @ responses(balance, inputs, frequencies)
+    omega = 2.0 * np.pi * np.asarray(frequencies, dtype=np.float64)
+    orders = np.array([_ORDER[sensor.quantity] for sensor in sensors])
+    result: ComplexArray = seen * ((1j * omega[:, None]) ** orders[None, :])[:, :, None]
+    return result

@@ -1,0 +1,133 @@
+"""Figures of the analyses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ehdmaps.physics._values import FloatArray
+from mbs.assembly import Model
+from mbs.integration import Trajectory
+from mbs.linear import ComplexArray
+from mbs.modes import Modes
+from mbs.statics import Equilibrium
+from mbs.sweep import Sweep
+
+_RPM = 30.0 / np.pi
+_SIZE = (9.0, 5.5)
+_UNITS = {"displacement": "m/N", "velocity": "m/s/N", "acceleration": "m/s²/N"}
+_LEAST_SHARE = 0.05
+_COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00", "#6a3d9a")
+
+
+def statics_figure(model: Model, balance: Equilibrium) -> Figure:
+    """Load of each roller around each bearing."""
+    figure, axes = _page(model, f"{model.law}; {model.scene.speed * _RPM:.4g} rpm", len(model.bearings))
+    for panel, bearing in zip(axes, model.bearings, strict=True):
+        motion = model.system.relative(bearing.inner, bearing.outer) @ balance.displacement
+        rollers = bearing.rollers(motion, balance.operation)
+        panel.bar(np.degrees(rollers.angle), rollers.load, width=0.6 * 360.0 / rollers.angle.size, color=_COLOURS[0])
+        panel.set(xlabel="angle of the roller from y towards z, degrees", ylabel="load of the roller, N")
+        panel.set_title(bearing.name, fontsize=9)
+        panel.set_xlim(-185, 185)
+        _grid(panel)
+    return figure
+
+
+def modes_figure(model: Model, found: Modes) -> Figure:
+    """Strain-energy shares of each mode."""
+    figure, (panel,) = _page(model, f"{model.law}; {model.scene.speed * _RPM:.4g} rpm", 1)
+    places = np.arange(found.eigenvalues.size)
+    bottom = np.zeros(places.size)
+    shades = np.linspace(0.15, 0.85, max(len(found.parts), 2))
+    for part, share, shade in zip(found.parts, found.shares, shades, strict=False):
+        panel.bar(places, share, bottom=bottom, label=part, color=_shade(float(shade)))
+        bottom += share
+    labels = [f"{f:.4g} Hz\nζ {z:.2g}" for f, z in zip(found.frequency, found.damping_ratio, strict=True)]
+    panel.set_xticks(places, labels, fontsize=7)
+    panel.set_ylabel("part of the strain energy")
+    panel.legend(fontsize=7, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+    return figure
+
+
+def response_figure(model: Model, frequencies: FloatArray, responses: ComplexArray) -> Figure:
+    """Magnitude and phase of each response."""
+    figure, (size, phase) = _page(model, f"{model.law}; {model.scene.speed * _RPM:.4g} rpm", 2, stacked=True)
+    colours = iter(_COLOURS * 20)
+    for s, sensor in enumerate(model.scene.sensors):
+        for i, entry in enumerate(model.scene.inputs):
+            colour = next(colours)
+            label = f"{sensor.name} ({sensor.quantity}, {_UNITS[sensor.quantity]}) by {entry.name}"
+            size.loglog(frequencies, np.abs(responses[:, s, i]), color=colour, lw=1.0, label=label)
+            phase.semilogx(frequencies, np.degrees(np.angle(responses[:, s, i])), color=colour, lw=0.9)
+    size.set_ylabel("magnitude")
+    size.legend(fontsize=8, frameon=False)
+    phase.set(xlabel="frequency, Hz", ylabel="phase, degrees", yticks=[-180, -90, 0, 90, 180])
+    _grid(size)
+    _grid(phase)
+    return figure
+
+
+def run_figure(model: Model, run: Trajectory) -> Figure:
+    """Bearing forces and displacements of the inner rings over time, with the speed."""
+    figure, axes = _page(model, model.law, 3, stacked=True)
+    for bearing, force, colour in zip(model.bearings, run.forces, _COLOURS * 20, strict=False):
+        motion = run.displacement @ model.system.relative(bearing.inner, bearing.outer).T
+        axes[0].plot(run.time, np.hypot(force[:, 1], force[:, 2]), color=colour, lw=0.8, label=bearing.name)
+        axes[1].plot(run.time, 1e6 * np.hypot(motion[:, 1], motion[:, 2]), color=colour, lw=0.8)
+    axes[2].plot(run.time, run.speed * _RPM, color="0.2", lw=1.0)
+    axes[0].set_ylabel("bearing force, N")
+    axes[1].set_ylabel("radial displacement\nof the ring, µm")
+    axes[2].set(xlabel="time, s", ylabel="speed, rpm")
+    axes[0].legend(fontsize=8, frameon=False)
+    for panel in axes:
+        _grid(panel)
+    return figure
+
+
+def sweep_figure(title: str, law: str, sweeps: Sequence[Sweep], labels: Sequence[str]) -> Figure:
+    """Frequency and damping ratio over speed of the modes with strain energy in the bearings, a colour a clearance."""
+    figure = _figure(title, law)
+    axes = figure.subplots(1, 2)
+    for result, label, colour in zip(sweeps, labels, _COLOURS * 20, strict=False):
+        named = f"clearance {label.replace('um', 'µm')}"
+        for k in np.nonzero(np.nanmax(result.bearing_share, axis=0) >= _LEAST_SHARE)[0]:
+            axes[0].plot(result.speeds * _RPM, result.frequency[:, k], color=colour, lw=1.1, label=named)
+            axes[1].plot(result.speeds * _RPM, 100.0 * result.damping_ratio[:, k], color=colour, lw=1.1)
+            named = "_"
+    axes[0].set(xlabel="speed, rpm", ylabel="undamped frequency, Hz", yscale="log")
+    axes[1].set(xlabel="speed, rpm", ylabel="modal damping ratio, %", yscale="log")
+    axes[0].legend(fontsize=8, frameon=False)
+    for panel in axes:
+        _grid(panel)
+    return figure
+
+
+def _page(model: Model, words: str, panels: int, stacked: bool = False) -> tuple[Figure, list[Axes]]:
+    """A figure with its heading and a row, or a stack, of panels."""
+    figure = _figure(model.scene.title, words)
+    shape = (panels, 1) if stacked else (1, panels)
+    axes = figure.subplots(*shape, sharex=stacked, squeeze=False)
+    return figure, list(axes.ravel())
+
+
+def _figure(title: str, words: str) -> Figure:
+    """A figure with its heading."""
+    figure = Figure(figsize=_SIZE, layout="constrained")
+    figure.suptitle(f"{title}\n{words}", fontsize=10)
+    return figure
+
+
+def _grid(panel: Axes) -> None:
+    """A quiet grid."""
+    panel.grid(color="0.88", lw=0.5)
+    panel.set_axisbelow(True)
+    panel.tick_params(labelsize=8)
+
+
+def _shade(part: float) -> tuple[float, float, float]:
+    """A shade of blue to brown."""
+    return (0.1 + 0.75 * part, 0.3 + 0.3 * part, 0.75 - 0.6 * part)

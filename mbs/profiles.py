@@ -1,0 +1,123 @@
+"""What is prescribed over time: the factor of a load, and the speed with its angle."""
+
+from __future__ import annotations
+
+import bisect
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+
+
+class LoadProfile(Protocol):
+    """Factor of a load over time."""
+
+    def __call__(self, time: float) -> float:
+        """Factor at a time [s]."""
+        ...
+
+
+@dataclass(frozen=True)
+class Constant:
+    """The whole load at all times."""
+
+    def __call__(self, time: float) -> float:
+        """One."""
+        return 1.0
+
+
+@dataclass(frozen=True)
+class Harmonic:
+    """sin(2 pi frequency time + phase); frequency [Hz], phase [rad]."""
+
+    frequency: float
+    phase: float = 0.0
+
+    def __call__(self, time: float) -> float:
+        """Factor at a time [s]."""
+        return math.sin(2.0 * math.pi * self.frequency * time + self.phase)
+
+
+@dataclass(frozen=True)
+class Course:
+    """Straight lines between given values; the first and the last value hold before and after.
+
+    Attributes
+    ----------
+    times : tuple of float
+        Rising [s].
+    values : tuple of float
+        As many; factors, or speeds [rad/s].
+
+    Raises
+    ------
+    InputError
+        If times and values make no course.
+    """
+
+    times: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if len(self.times) != len(self.values) or not self.times:
+            raise InputError(
+                f"course: got {len(self.times)} times and {len(self.values)} values; allowed: as many of each, at "
+                "least one"
+            )
+        if not np.all(np.isfinite([*self.times, *self.values])) or np.any(np.diff(self.times) <= 0.0):
+            raise InputError(f"course, times: got {self.times}; allowed: finite and rising")
+
+    def __call__(self, time: float) -> float:
+        """Value at a time [s]."""
+        index = bisect.bisect_right(self.times, time) - 1
+        if index < 0 or index + 1 == len(self.times):
+            return self.values[max(index, 0)]
+        part = (time - self.times[index]) / (self.times[index + 1] - self.times[index])
+        return self.values[index] + part * (self.values[index + 1] - self.values[index])
+
+
+@dataclass(frozen=True)
+class SpeedProfile:
+    """Prescribed speed of the system over time, and the angle turned since time zero.
+
+    Attributes
+    ----------
+    course : Course
+        Speed [rad/s] over time; the first time is 0.
+    """
+
+    course: Course
+
+    def __post_init__(self) -> None:
+        if self.course.times[0] != 0.0:
+            raise InputError(f"speed, times: got {self.course.times[0]!r} s as the first; allowed: 0 s")
+
+    @cached_property
+    def _angles(self) -> tuple[float, ...]:
+        """Angle at each time of the course [rad]."""
+        times, speeds = self.course.times, self.course.values
+        angles = [0.0]
+        for i in range(len(times) - 1):
+            angles.append(angles[-1] + 0.5 * (speeds[i] + speeds[i + 1]) * (times[i + 1] - times[i]))
+        return tuple(angles)
+
+    @classmethod
+    def constant(cls, speed: float) -> SpeedProfile:
+        """The same speed [rad/s] at all times."""
+        return cls(Course((0.0,), (speed,)))
+
+    @classmethod
+    def ramp(cls, begin: float, end: float, duration: float) -> SpeedProfile:
+        """From one speed to another [rad/s] within a duration [s], then held."""
+        return cls(Course((0.0, duration), (begin, end)))
+
+    def at(self, time: float) -> tuple[float, float]:
+        """Speed [rad/s] and angle [rad] at a time >= 0 [s]."""
+        times, speeds = self.course.times, self.course.values
+        index = max(bisect.bisect_right(times, time) - 1, 0)
+        speed = self.course(time)
+        return speed, self._angles[index] + 0.5 * (speeds[index] + speed) * (time - times[index])

@@ -1,0 +1,108 @@
+"""A scene: what a scene file says, in SI. `mbs.scene_reader` reads it, `mbs.assembly` makes a system of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.lubricant import Lubricant
+from mbs.body import Body
+from mbs.elements import Input, Load, Sensor, Spring
+from mbs.integration import Settings
+from mbs.profiles import SpeedProfile
+
+
+@dataclass(frozen=True)
+class SceneBearing:
+    """A bearing of a scene.
+
+    Attributes
+    ----------
+    name, inner, outer : str
+        Name and places.
+    geometry : BearingGeometry
+        With the clearance of the scene.
+    profile : {"iso", "straight"}
+        Of the rollers.
+    slices : int
+        Of a roller.
+    start_angle : float
+        Of the first roller from y [rad].
+    rollers_as_bodies : bool
+        Whether each roller has a radial freedom, between two contacts with a law each.
+    centrifugal : bool
+        Whether the centrifugal load of the rollers is felt.
+    """
+
+    name: str
+    inner: str
+    outer: str
+    geometry: BearingGeometry
+    profile: str = "iso"
+    slices: int = 41
+    start_angle: float = 0.0
+    rollers_as_bodies: bool = False
+    centrifugal: bool = False
+
+
+@dataclass(frozen=True)
+class RunUp:
+    """Speed over time, and how to integrate.
+
+    Attributes
+    ----------
+    speed : SpeedProfile
+        Prescribed speed.
+    duration : float
+        [s].
+    settings : Settings
+        Steps and method.
+    """
+
+    speed: SpeedProfile
+    duration: float
+    settings: Settings
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """All that a scene file says.
+
+    Attributes
+    ----------
+    name, title, text : str
+        Name of the file, its own title, and the file itself.
+    speed : float
+        Operating speed of the system [rad/s].
+    temperature : float
+        Of the oil [K].
+    lubricant : Lubricant or None
+        For the law `formula`.
+    bodies, springs, loads, bearings, inputs, sensors : tuple
+        The parts.
+    laws : dict of str to (float, float)
+        Constant stiffness [N/m] and damping [N s/m] of each contact of a roller, by name.
+    frequencies : tuple of float
+        Of the linear analysis [Hz].
+    run_up : RunUp or None
+        Of the analysis in time.
+    assumed : tuple of str
+        Which of its numbers are assumptions.
+    """
+
+    name: str
+    title: str
+    text: str
+    speed: float
+    temperature: float
+    lubricant: Lubricant | None
+    bodies: tuple[Body, ...]
+    springs: tuple[Spring, ...]
+    loads: tuple[Load, ...]
+    bearings: tuple[SceneBearing, ...]
+    inputs: tuple[Input, ...]
+    sensors: tuple[Sensor, ...]
+    laws: dict[str, tuple[float, float]]
+    frequencies: tuple[float, ...]
+    run_up: RunUp | None
+    assumed: tuple[str, ...]

@@ -1,0 +1,499 @@
+"""Read a scene: a TOML file, or the name of a shipped system. Strict: unknown keys are errors, all problems at once."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Callable
+from importlib import resources
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+from ehdmaps.jobs.axes import AxisRule, read_axis
+from ehdmaps.jobs.problem import read_contacts, read_lubricant
+from ehdmaps.jobs.table import Table
+from ehdmaps.physics._values import FloatArray
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.units import LENGTH, TEMPERATURE, Display, closest, short
+from mbs.body import FREEDOMS, Body, Inertia, rigid_body
+from mbs.elements import GROUND, Input, Load, Sensor, Spring
+from mbs.integration import Settings
+from mbs.profiles import Constant, Course, Harmonic, LoadProfile, SpeedProfile
+from mbs.scene import RunUp, Scene, SceneBearing
+
+LONGEST_FILE = 1_000_000
+"""Bytes of a scene file."""
+
+RPM = Display("rpm", 30.0 / math.pi)
+FORCE = Display("N")
+MOMENT = Display("N m")
+MICROMETRE = Display("um", 1e6)
+MILLISECOND = Display("ms", 1e3)
+HERTZ = Display("Hz")
+DEGREE = Display("deg", 180.0 / math.pi)
+
+_FREQUENCIES = AxisRule("frequencies", "Hz", 1e-3, 1e6, HERTZ)
+_QUANTITIES = ("displacement", "velocity", "acceleration")
+_TRANSLATIONS = FREEDOMS[:3]
+Built = TypeVar("Built")
+
+
+def shipped_systems() -> tuple[str, ...]:
+    """Return the names of the systems that come with the package."""
+    folder = resources.files("mbs") / "systems"
+    return tuple(sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml")))
+
+
+def read_scene(source: str) -> Scene:
+    """Read a scene.
+
+    Parameters
+    ----------
+    source : str
+        Name of a shipped system ("nu308_rigid"), or path of a scene file.
+
+    Raises
+    ------
+    InputError
+        With every problem found.
+    """
+    if source in shipped_systems():
+        text = (resources.files("mbs") / "systems" / f"{source}.toml").read_text(encoding="utf-8")
+        return parse_scene(text, source, f"{source} (shipped)")
+    path = Path(source)
+    try:
+        with path.open("rb") as file:
+            head = file.read(LONGEST_FILE + 1)
+    except (OSError, ValueError) as error:
+        cause = getattr(error, "strerror", None) or str(error)
+        raise InputError(
+            f"{source}: cannot be read ({cause}); allowed: a scene file, or a shipped system: "
+            f"{', '.join(shipped_systems())}{closest(source, shipped_systems())}"
+        ) from error
+    if len(head) > LONGEST_FILE:
+        raise InputError(f"{source}: longer than {LONGEST_FILE} bytes; allowed: a scene file in TOML")
+    try:
+        text = head.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{source}: is not UTF-8 text (byte {error.start}); allowed: a scene file in TOML") from error
+    return parse_scene(text, path.stem, source)
+
+
+def parse_scene(text: str, name: str, where: str) -> Scene:
+    """Read a scene from the text of its file.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    name : str
+        Name of the scene.
+    where : str
+        How messages call the file.
+
+    Raises
+    ------
+    InputError
+        With every problem found, each beginning with `where`.
+    """
+    try:
+        values = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise InputError(
+            f"{where}: is not TOML: {error}; allowed: TOML 1.0; strings with units stand in quotes"
+        ) from error
+    problems: list[str] = []
+    scene = _Reader(Table(values, "scene file", problems)).scene(text, name)
+    if problems or scene is None:
+        raise InputError([f"{where}: {problem}" for problem in problems])
+    return scene
+
+
+class _Reader:
+    """Reads the tables of one file and keeps what is marked as assumed."""
+
+    def __init__(self, top: Table) -> None:
+        self._top = top
+        self._assumed: list[str] = []
+
+    def scene(self, text: str, name: str) -> Scene | None:
+        """Read everything; None where a problem was noted."""
+        top = self._top
+        schema = top.get("schema", required="schema = 1")
+        if "schema" in top and (isinstance(schema, bool) or schema != 1):
+            top.note("schema", f"got {short(schema)}; allowed: 1; this version of mbs reads no other")
+        title = _text(top, "title") or name
+        speed = temperature = None
+        operation = top.table("operation", "[operation]", required="a table with speed and temperature")
+        if operation:
+            speed = operation.quantity("speed", "rad/s", 0.0, 1e5, RPM, required=True)
+            temperature = operation.quantity("temperature", "K", 213.15, 573.15, TEMPERATURE, required=True)
+            self._close(operation)
+        section = top.table("lubricant", "[lubricant]")
+        lubricant = read_lubricant(section) if section else None
+        bodies = self._all("bodies", self._body)
+        springs = self._all("springs", self._spring)
+        loads = self._all("loads", self._load)
+        bearings = self._all("bearings", self._bearing)
+        inputs = self._all("inputs", self._input)
+        sensors = self._all("sensors", self._sensor)
+        laws = self._laws()
+        frequencies: tuple[float, ...] | None = ()
+        linear = top.table("linear", "[linear]")
+        if linear:
+            frequencies = read_axis(linear, _FREQUENCIES)
+            self._close(linear)
+        section = top.table("runup", "[runup]")
+        run_up = self._run_up(section) if section else None
+        top.close()
+        if top.problems or speed is None or temperature is None or frequencies is None:
+            return None
+        return Scene(
+            name=name,
+            title=title,
+            text=text,
+            speed=speed,
+            temperature=temperature,
+            lubricant=lubricant,
+            bodies=tuple(bodies),
+            springs=tuple(springs),
+            loads=tuple(loads),
+            bearings=tuple(bearings),
+            inputs=tuple(inputs),
+            sensors=tuple(sensors),
+            laws=laws,
+            frequencies=frequencies,
+            run_up=run_up,
+            assumed=tuple(self._assumed),
+        )
+
+    def _all(self, key: str, read: Callable[[Table, str], Built | None]) -> list[Built]:
+        """Read each table of a list of tables; the name of each comes first."""
+        entries = self._top.get(key)
+        if key not in self._top:
+            return []
+        if not isinstance(entries, list) or not entries:
+            self._top.note(key, f"got {short(entries)}; allowed: tables that begin with [[{key}]]")
+            return []
+        found = []
+        for index, values in enumerate(entries):
+            label = values.get("name", index + 1) if isinstance(values, dict) else index + 1
+            section = Table(values, f"[[{key}]] {label!s:.60}", self._top.problems)
+            name = _text(section, "name", required=True)
+            thing = read(section, name or "")
+            self._close(section)
+            if thing is not None:
+                found.append(thing)
+        return found
+
+    def _close(self, section: Table) -> None:
+        """Read the list of assumed keys, then note unknown ones."""
+        marked = section.get("assumed")
+        if "assumed" in section:
+            if not isinstance(marked, list) or not all(isinstance(key, str) and key in section for key in marked):
+                section.note("assumed", f"got {marked!r:.80}; allowed: a list of the names of keys of this table")
+            else:
+                self._assumed += [f"{section.where} {key}" for key in marked]
+        section.close()
+
+    def _body(self, section: Table, name: str) -> Body | None:
+        """Read a rigid body."""
+        before = len(section.problems)
+        freedoms = _words(section, "freedoms", FREEDOMS)
+        position = _lengths(section, "position", section.get("position"))
+        spin = section.number("spin", -1e3, 1e3)
+        parts = self._parts(section)
+        frames = {}
+        given = section.table("frames", f"{section.where} frames")
+        if given:
+            for key in given.entries():
+                place = _lengths(given, key, given.get(key))
+                frames[key] = place or (0.0, 0.0, 0.0)
+        if len(section.problems) > before or freedoms is None:
+            return None
+        return _built(
+            section,
+            lambda: rigid_body(name, parts, freedoms, position or (0.0, 0.0, 0.0), frames, spin or 0.0),
+        )
+
+    def _parts(self, section: Table) -> list[Inertia]:
+        """Read what a body is made of: cylinders, or mass and moments of inertia."""
+        given = section.get("cylinders")
+        found: list[Inertia | None] = []
+        if "cylinders" in section and not isinstance(given, list):
+            section.note("cylinders", f"got {short(given)}; allowed: a list of tables with from, to, diameter")
+        for index, values in enumerate(given if isinstance(given, list) else []):
+            table = Table(values, f"{section.where} cylinders[{index}]", section.problems)
+            found.append(_cylinder(table))
+        mass = section.quantity("mass", "kg", 1e-6, 1e6, Display("kg"))
+        unit = Display("kg m^2")
+        polar = section.quantity("polar_inertia", "kg m^2", 1e-12, 1e6, unit)
+        transverse = section.quantity("transverse_inertia", "kg m^2", 1e-12, 1e6, unit)
+        keys = ("mass", "polar_inertia", "transverse_inertia")
+        if any(key in section for key in keys):
+            if not all(key in section for key in keys):
+                section.note("mass", f"stands without its companions; allowed: {', '.join(keys)} together")
+            elif mass is not None and polar is not None and transverse is not None:
+                found.append(_built(section, lambda: Inertia(mass, polar, transverse)))
+        elif "cylinders" not in section:
+            section.note("cylinders", f"missing; allowed: cylinders, or {', '.join(keys)}, or both")
+        return [part for part in found if part is not None]
+
+    def _spring(self, section: Table, name: str) -> Spring | None:
+        """Read a spring."""
+        on, against = _places(section)
+        stiffness = _diagonal(section, "stiffness", "N/m", "N m/rad", required=True)
+        damping = _diagonal(section, "damping", "N s/m", "N m s/rad")
+        if on is None or stiffness is None or damping is None:
+            return None
+        return Spring(name, on, against, np.diag(stiffness), np.diag(damping))
+
+    def _load(self, section: Table, name: str) -> Load | None:
+        """Read a load."""
+        on, against = _places(section)
+        force = _vector(section, "force", "N", FORCE)
+        moment = _vector(section, "moment", "N m", MOMENT)
+        if "force" not in section and "moment" not in section:
+            section.note("force", 'missing; allowed: force = ["0 N", "100 N", "0 N"], or moment, or both')
+        profile = self._profile(section)
+        if on is None or force is None or moment is None:
+            return None
+        return Load(name, on, np.array([*force, *moment]), against, profile)
+
+    def _profile(self, section: Table) -> LoadProfile:
+        """Read how a load goes over time."""
+        frequency = section.quantity("frequency", "Hz", 0.0, 1e6, HERTZ)
+        phase = section.quantity("phase", "rad", -100.0, 100.0, DEGREE)
+        times, factors = section.get("times"), section.get("factors")
+        if "frequency" in section and ("times" in section or "factors" in section):
+            section.note("times", "stands beside frequency; allowed: one course over time; delete one")
+        if "phase" in section and "frequency" not in section:
+            section.note("phase", "stands without frequency; allowed: with it only; delete it")
+        if frequency is not None:
+            return Harmonic(frequency, phase or 0.0)
+        if "times" not in section and "factors" not in section:
+            return Constant()
+        read = [
+            section.quantity_of(value, f"times[{index}]", "s", 0.0, 1e6, Display("s"))
+            for index, value in enumerate(times if isinstance(times, list) else [])
+        ]
+        if (
+            not isinstance(factors, list)
+            or not all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in factors)
+            or len(read) != len(factors)
+        ):
+            section.note("factors", f"got {short(factors)}; allowed: as many numbers as there are times, both as lists")
+            return Constant()
+        course = tuple(value for value in read if value is not None)
+        return _built(section, lambda: Course(course, tuple(float(value) for value in factors))) or Constant()
+
+    def _bearing(self, section: Table, name: str) -> SceneBearing | None:
+        """Read a bearing."""
+        inner, outer = _place(section, "inner"), _place(section, "outer")
+        given = section.get("geometry", required='{ name = "NU308" } or dimensions, as [bearing] of a job file')
+        problems: list[str] = []
+        geometry = None
+        if "geometry" in section:
+            geometry, _ = read_contacts(Table({"bearing": given}, "geometry", problems), None)
+        for problem in problems:
+            section.note("geometry", problem.removeprefix("[bearing] ").removeprefix("[bearing]: "))
+        profile = section.choice("profile", ("iso", "straight")) or "iso"
+        slices = section.integer("slices", 1, 10000) or 41
+        angle = section.quantity("start_angle", "rad", -7.0, 7.0, DEGREE) or 0.0
+        rollers = section.choice("rollers", ("massless", "bodies")) or "massless"
+        centrifugal = section.get("centrifugal")
+        if "centrifugal" in section and not isinstance(centrifugal, bool):
+            section.note("centrifugal", f"got {short(centrifugal)}; allowed: true, false")
+        if inner is None or outer is None or geometry is None:
+            return None
+        return SceneBearing(
+            name, inner, outer, geometry, profile, slices, angle, rollers == "bodies", centrifugal is True
+        )
+
+    def _input(self, section: Table, name: str) -> Input | None:
+        """Read an input of the linear analysis."""
+        on, against = _places(section)
+        direction = _direction(section)
+        amplitude = section.quantity("amplitude", "N", 1e-12, 1e9, FORCE)
+        if on is None or direction is None:
+            return None
+        return Input(name, on, direction, against, 1.0 if amplitude is None else amplitude)
+
+    def _sensor(self, section: Table, name: str) -> Sensor | None:
+        """Read a sensor."""
+        on, against = _places(section)
+        direction = _direction(section)
+        quantity = section.choice("quantity", _QUANTITIES, required=True)
+        if on is None or direction is None or quantity is None:
+            return None
+        return Sensor(name, on, direction, quantity, against)  # type: ignore[arg-type]
+
+    def _laws(self) -> dict[str, tuple[float, float]]:
+        """Read [laws.NAME]: constant stiffness and damping of each contact of a roller."""
+        laws = self._top.table("laws", "[laws]")
+        found = {}
+        for key in laws.entries() if laws else ():
+            section = Table(laws.get(key) if laws else None, f"[laws.{key}]", self._top.problems)
+            stiffness = section.quantity("stiffness", "N/m", 1.0, 1e13, Display("N/m"), required=True)
+            damping = section.quantity("damping", "N s/m", 0.0, 1e9, Display("N s/m"))
+            self._close(section)
+            if stiffness is not None:
+                found[key] = (stiffness, damping or 0.0)
+        return found
+
+    def _run_up(self, section: Table) -> RunUp | None:
+        """Read [runup]."""
+        begin = section.quantity("from", "rad/s", 0.0, 1e5, RPM, required=True)
+        end = section.quantity("to", "rad/s", 0.0, 1e5, RPM, required=True)
+        duration = section.quantity("duration", "s", 1e-9, 1e6, Display("s"), required=True)
+        step = section.quantity("step", "s", 1e-9, 1.0, MILLISECOND, required=True)
+        sample = section.quantity("sample", "s", 1e-9, 1e3, MILLISECOND)
+        radius = section.number("spectral_radius", 0.0, 1.0)
+        tolerance = section.quantity("tolerance", "m", 1e-15, 1e-3, MICROMETRE)
+        self._close(section)
+        if begin is None or end is None or duration is None or step is None:
+            return None
+        settings = _built(
+            section,
+            lambda: Settings(
+                step,
+                step if sample is None else sample,
+                0.8 if radius is None else radius,
+                math.inf if tolerance is None else tolerance,
+            ),
+        )
+        if settings is None:
+            return None
+        return RunUp(SpeedProfile.ramp(begin, end, duration), duration, settings)
+
+
+def _cylinder(table: Table) -> Inertia | None:
+    """Read a hollow cylinder."""
+    begin = table.quantity("from", "m", -100.0, 100.0, LENGTH, required=True)
+    end = table.quantity("to", "m", -100.0, 100.0, LENGTH, required=True)
+    diameter = table.quantity("diameter", "m", 1e-5, 100.0, LENGTH, required=True)
+    bore = table.quantity("bore", "m", 0.0, 100.0, LENGTH)
+    density = table.quantity("density", "kg/m^3", 100.0, 25000.0, Display("kg/m^3"))
+    table.close()
+    if begin is None or end is None or diameter is None:
+        return None
+    return _built(
+        table,
+        lambda: Inertia.cylinder(begin, end, diameter, bore or 0.0, STEEL.density if density is None else density),
+    )
+
+
+def _text(section: Table, key: str, required: bool = False) -> str | None:
+    """Read a short text."""
+    value = section.get(key, "a short text" if required else "")
+    if key not in section:
+        return None
+    if not isinstance(value, str) or not 1 <= len(value) <= 200 or (key == "name" and (":" in value or "." in value)):
+        section.note(key, f"got {short(value)}; allowed: a short text{', without : and .' if key == 'name' else ''}")
+        return None
+    return value
+
+
+def _words(section: Table, key: str, allowed: tuple[str, ...]) -> tuple[str, ...] | None:
+    """Read a list of words."""
+    value = section.get(key, f"a list of {', '.join(allowed)}")
+    if key not in section:
+        return None
+    wrong = value if not isinstance(value, list) else [word for word in value if word not in allowed]
+    if not isinstance(value, list) or wrong:
+        section.note(key, f"got {wrong!r:.80}; allowed: a list of {', '.join(allowed)}")
+        return None
+    return tuple(value)
+
+
+def _place(section: Table, key: str) -> str | None:
+    """Read a place; whether it exists is seen when the system is put together."""
+    value = section.get(key, 'a place such as "shaft" or "shaft:left"')
+    if key not in section:
+        return None
+    if not isinstance(value, str):
+        section.note(key, f'got {short(value)}; allowed: a place such as "shaft" or "shaft:left"')
+        return None
+    return value
+
+
+def _places(section: Table) -> tuple[str | None, str]:
+    """Read on and against."""
+    on = _place(section, "on")
+    return on, (_place(section, "against") or GROUND) if "against" in section else GROUND
+
+
+def _lengths(section: Table, key: str, value: Any) -> tuple[float, ...] | None:
+    """Read three lengths; None if absent or wrong."""
+    if value is None:
+        return None
+    if not isinstance(value, list) or len(value) != 3:
+        section.note(key, f'got {short(value)}; allowed: three lengths, x y z, such as ["70 mm", "0 mm", "0 mm"]')
+        return None
+    read = [
+        section.quantity_of(part, f"{key}[{index}]", "m", -100.0, 100.0, LENGTH) for index, part in enumerate(value)
+    ]
+    return tuple(part if part is not None else 0.0 for part in read)
+
+
+def _vector(section: Table, key: str, unit: str, display: Display) -> tuple[float, ...] | None:
+    """Read three forces or moments; zeros if absent, None if wrong."""
+    value = section.get(key)
+    if key not in section:
+        return (0.0, 0.0, 0.0)
+    if not isinstance(value, list) or len(value) != 3:
+        section.note(
+            key, f'got {short(value)}; allowed: three values, x y z, such as ["0 {unit}", "1 {unit}", "0 {unit}"]'
+        )
+        return None
+    read = [section.quantity_of(part, f"{key}[{index}]", unit, -1e9, 1e9, display) for index, part in enumerate(value)]
+    return None if None in read else tuple(part for part in read if part is not None)
+
+
+def _diagonal(section: Table, key: str, along: str, about: str, *, required: bool = False) -> FloatArray | None:
+    """Read stiffness or damping by freedom, such as { y = "1e5 N/m" }; shape (6,)."""
+    values = np.zeros(6)
+    table = section.table(key, f"{section.where} {key}", f'{{ y = "1e5 {along}", z = ... }}' if required else "")
+    if table is None:
+        return None if required else values
+    before = len(section.problems)
+    for index, freedom in enumerate(FREEDOMS):
+        unit = along if freedom in _TRANSLATIONS else about
+        values[index] = table.quantity(freedom, unit, 0.0, 1e15, Display(unit)) or 0.0
+    table.close()
+    return values if len(section.problems) == before else None
+
+
+def _direction(section: Table) -> FloatArray | None:
+    """Read a direction: the name of a freedom, or three numbers x y z, which are normalised; shape (6,)."""
+    allowed = f"one of {', '.join(FREEDOMS)}, or three numbers x y z"
+    value = section.get("direction", allowed)
+    if "direction" not in section:
+        return None
+    direction = np.zeros(6)
+    if value in FREEDOMS:
+        direction[FREEDOMS.index(value)] = 1.0
+        return direction
+    numbers = isinstance(value, list) and len(value) == 3
+    if not numbers or not all(isinstance(part, (int, float)) and not isinstance(part, bool) for part in value):
+        section.note("direction", f"got {value!r:.60}; allowed: {allowed}")
+        return None
+    length = math.hypot(*value)
+    if not (math.isfinite(length) and length > 0.0):
+        section.note("direction", f"got {value!r:.60}; allowed: {allowed}, not all zero")
+        return None
+    direction[:3] = np.array(value) / length
+    return direction
+
+
+def _built(section: Table, make: Callable[[], Built]) -> Built | None:
+    """Make a value; note its problems under the table's name."""
+    try:
+        return make()
+    except InputError as error:
+        for problem in error.problems:
+            section.note("", problem)
+    return None

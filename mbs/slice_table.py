@@ -1,0 +1,226 @@
+"""The contact law at one speed, temperature and centrifugal load, as a table that a bearing reads in nanoseconds.
+
+The cells of the table are the binary digits of a = 1 + |z|, z = (delta - centre)/scale: 32 cells to each doubling of a.
+So no logarithm is needed to find a cell; cells are fine around the valley of the damping, where the centre lies, and
+coarse far from it. In each cell load and damping are cubics through the values and slopes of the law at its ends:
+C1, and with slopes held so that the load never falls with the approach and the damping is never negative. Slices
+differ from the law by some 1e-7 in load and 1e-5 in stiffness at most, a bearing by 1e-9 and 1e-7.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from ehdmaps.maps.bulk import evaluate_many_at
+from ehdmaps.maps.kernel import LOAD_TOLERANCE, collapse
+from ehdmaps.maps.lines import FAST, line_approach, line_state
+from ehdmaps.maps.tables import ApproachTable, CountArray, LawTable, Point
+
+FloatArray = npt.NDArray[np.float64]
+IndexArray = npt.NDArray[np.int64]
+
+_OCTAVES, _BITS = 14, 5
+ROWS = _OCTAVES << _BITS
+"""Rows of the table on each side of the centre."""
+
+SHIFT = np.uint64(52 - _BITS)
+FIRST = np.int64(np.float64(1.0).view(np.int64) >> (52 - _BITS))
+NODES: FloatArray = ((FIRST + np.arange(ROWS + 1)) << np.int64(52 - _BITS)).view(np.float64)
+"""Ends of the cells, as values of a."""
+
+LAST = float(np.nextafter(NODES[-1], 0.0))
+
+POWER, CELLS = 0.0, 1.0
+KIND, COEFFICIENT, EXPONENT, DAMPING, CENTRE, INVERSE_SCALE, HIGHEST, SAFE_APPROACH, LIFT_OFF, SLOPE = range(10)
+NUMBERS = 10
+"""Places in the array of numbers of a prepared law.
+
+KIND: POWER or CELLS. COEFFICIENT, EXPONENT, DAMPING: of w = a delta^b and c per unit length. CENTRE, INVERSE_SCALE: of
+the table [m], [1/m]. HIGHEST: load above which slices are counted [N/m]. SAFE_APPROACH: up to it no slice is [m].
+LIFT_OFF: up to it there is no load [m]. SLOPE: what slopes are multiplied by."""
+
+_PROBE = 1e4
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def read_cells(cells: FloatArray, rows: IndexArray, places: FloatArray, states: FloatArray) -> None:
+    """Load, its slope, damping and its slope, into `states` (4, n), from rows (n,) and places in the cells (n,)."""
+    w, dw, c, dc = states[0], states[1], states[2], states[3]
+    for i in range(rows.size):
+        m, t = np.uint64(rows[i]), places[i]
+        high = cells[m, np.uint64(3)]
+        bend = cells[m, np.uint64(2)] + t * high
+        mean = cells[m, np.uint64(1)] + t * bend
+        w[i], dw[i] = cells[m, np.uint64(0)] + t * mean, mean + t * (bend + t * high)
+        high = cells[m, np.uint64(7)]
+        bend = cells[m, np.uint64(6)] + t * high
+        mean = cells[m, np.uint64(5)] + t * bend
+        c[i], dc[i] = cells[m, np.uint64(4)] + t * mean, mean + t * (bend + t * high)
+
+
+@njit(cache=True, error_model="numpy")
+def _centre(point: Point) -> float:
+    """Approach around which the law is finest."""
+    if point.centrifugal_load == 0.0:
+        return point.own.offset
+    load = line_state(point.inner, point.inner.offset)[0] + point.centrifugal_load
+    approach: float = point.inner.offset + line_approach(point.outer, load)
+    return approach
+
+
+@njit(cache=True, error_model="numpy")
+def tabulate(point: Point, nodes: FloatArray, buffer: FloatArray, cells: FloatArray, numbers: FloatArray) -> bool:
+    """Fill a table with the law of a point.
+
+    Parameters
+    ----------
+    point : Point
+        With the whole film.
+    nodes : array (ROWS + 1,)
+        `NODES`.
+    buffer : array (8, 2 ROWS + 1)
+        Scratch.
+    cells : array (2 ROWS, 8)
+        Filled: four coefficients of w, four of c, over the distance from the end of the cell that is nearer to the
+        centre, in scales.
+    numbers : array (10,)
+        With HIGHEST; all that belongs to the table is filled.
+
+    Returns
+    -------
+    bool
+        False if the table does not reach down to lift-off.
+    """
+    rows = nodes.size - 1
+    centre, inverse = _centre(point), point.own.inverse_scale
+    numbers[CENTRE], numbers[INVERSE_SCALE], numbers[SLOPE] = centre, inverse, inverse
+    z, delta, w, dw, c, dc = buffer[0], buffer[1], buffer[2], buffer[3], buffer[4], buffer[5]
+    first, end = 0, 0
+    for i in range(2 * rows + 1):
+        z[i] = nodes[i - rows] - 1.0 if i >= rows else 1.0 - nodes[rows - i]
+        delta[i] = centre + z[i] / inverse
+        if delta[i] <= point.lift_off:
+            first = i + 1
+        if i > 0 and delta[i - 1] <= point.held_approach:
+            end = i + 1
+    if first == 0:
+        return False
+    # Up to the first node beyond the hold the table has the law as if it went on: beyond, it is not used.
+    free = Point(
+        point.own, point.inner, point.outer, point.structure, point.film, point.centrifugal_load, point.inner_lift_off,
+        point.outer_start, point.lift_off, point.highest_load, point.held_load, np.inf, point.held_stiffness,
+        point.held_damping,
+    )  # fmt: skip
+    counts = np.zeros(4, dtype=np.int64)
+    rate, forces = buffer[6, first:end], np.empty((3, end - first))
+    rate[:] = 0.0
+    evaluate_many_at(free, delta[first:end], rate, forces, counts)
+    w[first:end], dw[first:end], c[first:end] = forces[0], forces[1], forces[2]
+    # At a high rate the slope is nearly all damping.
+    rate[:] = _PROBE
+    evaluate_many_at(free, delta[first:end], rate, forces, counts)
+    dc[first:end] = (forces[1] - dw[first:end]) / _PROBE
+    for i in range(first):
+        w[i] = dw[i] = c[i] = dc[i] = 0.0
+    for i in range(end, 2 * rows + 1):
+        w[i] = w[end - 1] + dw[end - 1] * (delta[i] - delta[end - 1])
+        dw[i], c[i], dc[i] = dw[end - 1], c[end - 1], 0.0
+    numbers[LIFT_OFF] = delta[first - 1]
+    numbers[SAFE_APPROACH] = delta[0]
+    for i in range(2 * rows + 1):
+        if w[i] <= numbers[HIGHEST]:
+            numbers[SAFE_APPROACH] = delta[i]
+    _fill(z, inverse, w, dw, c, dc, cells)
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def _fill(
+    z: FloatArray, inverse: float, w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, cells: FloatArray
+) -> None:
+    """Cubics of all cells from values and slopes (by the approach) at the nodes z."""
+    rows, last = (z.size - 1) // 2, z.size - 1
+    for i in range(z.size):
+        slope, change = max(dw[i] / inverse, 0.0), dc[i] / inverse
+        if i > 0:
+            h = z[i] - z[i - 1]
+            slope = min(slope, 3.0 * (w[i] - w[i - 1]) / h)
+            change = min(change, 3.0 * c[i] / h)
+        if i < last:
+            h = z[i + 1] - z[i]
+            slope = min(slope, 3.0 * (w[i + 1] - w[i]) / h)
+            change = max(change, -3.0 * c[i] / h)
+        dw[i], dc[i] = max(slope, 0.0), change
+    for k in range(rows):
+        for side in range(2):
+            near, far = (rows + k, rows + k + 1) if side == 0 else (rows - k, rows - k - 1)
+            cell = cells[side * rows + k]
+            h = z[far] - z[near]
+            secant = (w[far] - w[near]) / h
+            cell[0], cell[1] = w[near], dw[near]
+            cell[2] = (3.0 * secant - 2.0 * dw[near] - dw[far]) / h
+            cell[3] = (dw[near] + dw[far] - 2.0 * secant) / (h * h)
+            secant = (c[far] - c[near]) / h
+            cell[4], cell[5] = c[near], dc[near]
+            cell[6] = (3.0 * secant - 2.0 * dc[near] - dc[far]) / h
+            cell[7] = (dc[near] + dc[far] - 2.0 * secant) / (h * h)
+
+
+def law_arrays(table: LawTable) -> tuple[FloatArray, ...]:
+    """Flatten a `LawTable`: compiled code takes arrays from Python much faster than nested tuples."""
+    arrays: list[FloatArray] = []
+    scalars: list[float] = []
+    for part in (table.own, table.inner, table.outer):
+        arrays += part[:2]
+        scalars += part[2:]
+    return (*arrays, table.structure, np.array([*scalars, *table[4:]]))
+
+
+@njit(cache=True, error_model="numpy")
+def tabulate_law(
+    law: tuple[FloatArray, ...],
+    workspace: FloatArray,
+    conditions: FloatArray,
+    nodes: FloatArray,
+    buffer: FloatArray,
+    cells: FloatArray,
+    numbers: FloatArray,
+    counts: CountArray,
+) -> bool:
+    """Collapse a law at its conditions, and fill a table with it.
+
+    Parameters
+    ----------
+    law : tuple
+        `law_arrays`.
+    workspace : array (4, n, 8)
+        Of the law.
+    conditions : array (3,)
+        u [m/s], T [K], q [N/m].
+    nodes, buffer, cells, numbers
+        As of `tabulate`.
+    counts : array (4,)
+        int64, counted up outside the map.
+
+    Returns
+    -------
+    bool
+        False if the film is not whole, or does not fit into a table.
+    """
+    x = law[7]
+    table = LawTable(
+        ApproachTable(law[0], law[1], x[0], x[1], x[2], x[3], x[4], x[5]),
+        ApproachTable(law[2], law[3], x[6], x[7], x[8], x[9], x[10], x[11]),
+        ApproachTable(law[4], law[5], x[12], x[13], x[14], x[15], x[16], x[17]),
+        law[6], x[18], x[19], x[20], x[21], x[22], x[23], x[24], x[25], x[26],
+    )  # fmt: skip
+    if abs(conditions[0]) < table.film_speed:
+        return False
+    point = collapse(table, workspace, conditions[0], conditions[1], conditions[2], counts)
+    highest = point.highest_load * (1.0 + LOAD_TOLERANCE)
+    numbers[:] = 0.0
+    numbers[KIND] = CELLS
+    numbers[HIGHEST] = min(highest, point.held_load)
+    return tabulate(point, nodes, buffer, cells, numbers)

@@ -1,0 +1,193 @@
+"""Static equilibrium: Newton with the exact Jacobian, in steps that neither leap nor overshoot.
+
+At rest the forces have a potential which is convex, because every contact force rises with its approach and the
+approaches are linear in the coordinates. So along a Newton step the slope of the potential tells where to stop, and
+the search arrives from anywhere: from zero, from a gap (where the Jacobian is singular) and from overload.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.physics._values import FloatArray
+from mbs.elements import Operation
+from mbs.errors import AnalysisError
+from mbs.system import System
+
+FIRST_STEP = 5e-6
+"""How far a coordinate moves at most in the first step [m or rad]; doubled while steps fall short."""
+
+FARTHEST = 0.1
+"""A step that would have to be longer than this [m or rad] means that something moves freely."""
+
+_STEPS = 200
+_CUTS = 40
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """A system at rest in its coordinates, its bodies turning at a prescribed speed.
+
+    Attributes
+    ----------
+    system : System
+        Whose equilibrium it is.
+    operation : Operation
+        Speed, angle, and the time at which the loads were taken.
+    displacement : array, shape (n,)
+        Coordinates [m or rad].
+    forces : tuple of array, shape (m,)
+        Force of each element in its ports [N or N m].
+    stiffness, damping : array, shape (n, n)
+        -d force/d q and -d force/d q' of the whole system there, gyroscopic terms included.
+    parts : dict of str to array, shape (n, n)
+        Stiffness by flexible body, spring and element.
+    element_stiffness, element_damping : tuple of array, shape (m, m)
+        Of each element in its ports.
+    residual : float
+        Largest remaining force, as a part of the largest load.
+    steps : int
+        Newton steps.
+    """
+
+    system: System
+    operation: Operation
+    displacement: FloatArray
+    forces: tuple[FloatArray, ...]
+    stiffness: FloatArray
+    damping: FloatArray
+    parts: dict[str, FloatArray]
+    element_stiffness: tuple[FloatArray, ...]
+    element_damping: tuple[FloatArray, ...]
+    residual: float
+    steps: int
+
+
+def equilibrium(
+    system: System, operation: Operation | None = None, start: FloatArray | None = None, tolerance: float = 1e-10
+) -> Equilibrium:
+    """Static equilibrium of a system.
+
+    Parameters
+    ----------
+    system : System
+        Bodies, springs, loads, elements.
+    operation : Operation, optional
+        Speed, angle, and the time of the loads; at rest, angle and time zero, if left out.
+    start : array, shape (n,), optional
+        Where to begin; zero if left out.
+    tolerance : float
+        Remaining force over the largest force in the system.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no equilibrium: a load on something that moves freely.
+    """
+    operation = operation or Operation()
+    loads = system.loads(operation.time)
+    rest = np.zeros(system.size)
+    weight = 1.0 / np.sqrt(np.diag(system.mass))
+
+    def residual(q: FloatArray) -> tuple[FloatArray, float]:
+        internal = -system.stiffness @ q
+        scale = float(np.linalg.norm(weight * internal)) + float(np.linalg.norm(weight * loads))
+        for connected in system.elements:
+            part = connected.transform.T @ connected.evaluate(q, rest, operation)[0]
+            scale += float(np.linalg.norm(weight * part))
+            internal += part
+        return internal + loads, scale
+
+    q = rest.copy() if start is None else np.asarray(start, dtype=np.float64).copy()
+    longest = FIRST_STEP
+    force, scale = residual(q)
+    for steps in range(_STEPS):
+        if float(np.linalg.norm(weight * force)) <= tolerance * scale:
+            return _result(system, operation, q, force, loads, steps)
+        direction = _newton_step(system, operation, q, force)
+        length = float(np.max(np.abs(direction)))
+        clipped = length > longest
+        if clipped:
+            direction *= longest / length
+        q, force, scale, whole = _along(residual, q, direction, float(force @ direction))
+        if clipped and whole:
+            longest *= 2.0
+        if longest > FARTHEST:
+            break
+    worst = int(np.argmax(np.abs(weight * force)))
+    raise AnalysisError(
+        f"no equilibrium after {steps + 1} steps: {force[worst]:.4g} {'N m' if system.units[worst] == 'rad' else 'N'} "
+        f"remain on {system.coordinates[worst]} at {q[worst]:.4g} {system.units[worst]}; something moves freely under "
+        "its load: hold it by a spring, or take the freedom away"
+    )
+
+
+def _newton_step(system: System, operation: Operation, q: FloatArray, force: FloatArray) -> FloatArray:
+    """Newton step, with as little mass added to the Jacobian as makes it regular."""
+    jacobian = system.stiffness.copy()
+    rest = np.zeros(system.size)
+    for connected in system.elements:
+        jacobian += connected.transform.T @ connected.evaluate(q, rest, operation)[1] @ connected.transform
+    size = max(float(np.trace(jacobian) / np.trace(system.mass)), 1.0)
+    return np.asarray(
+        np.linalg.solve(0.5 * (jacobian + jacobian.T) + 1e-9 * size * system.mass, force), dtype=np.float64
+    )
+
+
+def _along(
+    residual: Callable[[FloatArray], tuple[FloatArray, float]], q: FloatArray, direction: FloatArray, slope: float
+) -> tuple[FloatArray, FloatArray, float, bool]:
+    """Go along a descent direction until the potential rises again: place, force, scale, and whether all the way."""
+    low, high = 0.0, 1.0
+    low_slope = high_slope = slope
+    part = 1.0
+    for _ in range(_CUTS):
+        place = q + part * direction
+        force, scale = residual(place)
+        here = float(force @ direction)
+        if part == 1.0 and here >= -0.1 * slope:
+            return place, force, scale, True
+        if abs(here) <= 0.2 * slope:
+            break
+        if here > 0.0:
+            low, low_slope = part, here
+        else:
+            high, high_slope = part, here
+        # Regula falsi, kept off the ends: contact forces are far from linear across a gap.
+        guess = low + (high - low) * low_slope / (low_slope - high_slope)
+        part = min(max(guess, low + 0.1 * (high - low)), high - 0.1 * (high - low))
+    return place, force, scale, False
+
+
+def _result(
+    system: System, operation: Operation, q: FloatArray, force: FloatArray, loads: FloatArray, steps: int
+) -> Equilibrium:
+    """Evaluate everything once at the equilibrium."""
+    stiffness = system.stiffness.copy()
+    damping = system.damping + operation.speed * system.gyroscopic
+    parts = dict(system.linear_parts)
+    found = [connected.evaluate(q, np.zeros(system.size), operation) for connected in system.elements]
+    # Elements may hand out scratch that the next call overwrites.
+    copies = [tuple(np.array(array) for array in triple) for triple in found]
+    for connected, (_, k, c) in zip(system.elements, copies, strict=True):
+        part = connected.transform.T @ k @ connected.transform
+        parts[connected.element.name] = part
+        stiffness += part
+        damping += connected.transform.T @ c @ connected.transform
+    largest = max(float(np.max(np.abs(loads))), *(float(np.max(np.abs(f))) for f, _, _ in copies), 1e-300)
+    return Equilibrium(
+        system=system,
+        operation=operation,
+        displacement=q,
+        forces=tuple(f for f, _, _ in copies),
+        stiffness=stiffness,
+        damping=damping,
+        parts=parts,
+        element_stiffness=tuple(k for _, k, _ in copies),
+        element_damping=tuple(c for _, _, c in copies),
+        residual=float(np.max(np.abs(force))) / largest,
+        steps=steps,
+    )

@@ -1,0 +1,217 @@
+"""The system: bodies, springs, loads and elements put together.
+
+    M q'' + (D + speed G) q' + K q = loads(t) + forces of the elements(q, q', operation)
+
+All displacements are small; spins are prescribed. A torque that drives a spin acts along the shaft's own axis, so
+that a change of speed brings no lateral term.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import FloatArray
+from ehdmaps.units import closest
+from mbs.body import CENTRE, Body
+from mbs.elements import GROUND, Element, Load, Operation, Port, Spring
+from mbs.profiles import Constant
+
+COINCIDENT = 1e-6
+"""How far two places that an element connects may lie apart [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Connected:
+    """An element, and how its ports follow the coordinates of the system.
+
+    Attributes
+    ----------
+    element : Element
+        What makes the force.
+    transform : array, shape (m, n)
+        Displacement of the ports by the coordinates.
+    """
+
+    element: Element
+    transform: FloatArray
+
+    def evaluate(self, q: FloatArray, v: FloatArray, operation: Operation) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Force, stiffness and damping of the element in its ports."""
+        return self.element.evaluate(self.transform @ q, self.transform @ v, operation)
+
+
+class System:
+    """Bodies and what connects them.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        At least one.
+    springs : sequence of Spring
+        Linear springs and dampers.
+    loads : sequence of Load
+        Prescribed forces.
+    elements : sequence of Element
+        Nonlinear elements: bearings.
+
+    Attributes
+    ----------
+    coordinates, units : tuple of str
+        Names such as "shaft.y", and "m", "rad" or "1"; size n.
+    mass, damping, gyroscopic, stiffness : array, shape (n, n)
+        M, D, G (per speed of the system) and K of bodies and springs.
+    linear_parts : dict of str to array, shape (n, n)
+        K by flexible body and spring.
+    elements : tuple of Connected
+        The nonlinear elements.
+
+    Raises
+    ------
+    InputError
+        With every name that is used twice, every place that does not exist, and every connection of places that
+        are apart.
+    """
+
+    def __init__(
+        self,
+        bodies: Sequence[Body],
+        springs: Sequence[Spring] = (),
+        loads: Sequence[Load] = (),
+        elements: Sequence[Element] = (),
+    ) -> None:
+        self.bodies = tuple(bodies)
+        self._by_name = {body.name: body for body in self.bodies}
+        self._check(springs, loads, elements)
+        self._first = dict(
+            zip(self._by_name, np.cumsum([0, *(body.size for body in self.bodies)])[:-1].tolist(), strict=True)
+        )
+        self.coordinates = tuple(f"{body.name}.{key}" for body in self.bodies for key in body.coordinates)
+        self.units = tuple(unit for body in self.bodies for unit in body.units)
+        self.mass, self.damping, self.gyroscopic, self.stiffness = (np.zeros((self.size, self.size)) for _ in range(4))
+        self.linear_parts: dict[str, FloatArray] = {}
+        for body in self.bodies:
+            here = self._slice(body)
+            self.mass[here, here] = body.mass
+            self.gyroscopic[here, here] = body.spin * body.gyroscopic
+            self.damping[here, here] = body.damping
+            self.stiffness[here, here] = body.stiffness
+            if np.any(body.stiffness):
+                self.linear_parts[body.name] = np.zeros((self.size, self.size))
+                self.linear_parts[body.name][here, here] = body.stiffness
+        for spring in springs:
+            transform = self.relative(spring.on, spring.against)
+            part = transform.T @ spring.stiffness @ transform
+            self.linear_parts[spring.name] = part
+            self.stiffness += part
+            self.damping += transform.T @ spring.damping @ transform
+        given = [
+            (self.relative(load.on, load.against).T @ np.asarray(load.force, dtype=np.float64), load.profile)
+            for load in loads
+        ]
+        self._steady = sum((load for load, profile in given if isinstance(profile, Constant)), np.zeros(self.size))
+        self._varying = tuple((load, profile) for load, profile in given if not isinstance(profile, Constant))
+        self.elements = tuple(
+            Connected(element, np.concatenate([self._port(port) for port in element.ports])) for element in elements
+        )
+
+    @property
+    def size(self) -> int:
+        """Number n of coordinates."""
+        return len(self.coordinates)
+
+    def loads(self, time: float) -> FloatArray:
+        """Generalised loads at a time [s], shape (n,) [N or N m]."""
+        total = self._steady.copy()
+        for load, profile in self._varying:
+            total += profile(time) * load
+        return total
+
+    def relative(self, on: str, against: str = GROUND) -> FloatArray:
+        """Displacement of a place against another by the coordinates, shape (6, n)."""
+        return self._place(on) - self._place(against)
+
+    def body(self, name: str) -> Body:
+        """The body of that name."""
+        return self._by_name[name]
+
+    def own(self, body: str) -> slice:
+        """Where the coordinates of a body are."""
+        return self._slice(self._by_name[body])
+
+    def check_place(self, place: str) -> str:
+        """Return what is wrong about a place, in words; empty if it exists."""
+        body, _, frame = place.partition(":")
+        if place == GROUND:
+            return ""
+        if body not in self._by_name:
+            names = (*self._by_name, GROUND)
+            return f"got the body {body!r}{closest(body, names)}; allowed: {', '.join(names)}"
+        frames = self._by_name[body].frames
+        if (frame or CENTRE) not in frames:
+            return f"got the frame {frame or CENTRE!r} of {body!r}; allowed: {', '.join(frames)}"
+        return ""
+
+    def _slice(self, body: Body) -> slice:
+        """Where the coordinates of a body are."""
+        first = self._first[body.name]
+        return slice(first, first + body.size)
+
+    def _place(self, place: str) -> FloatArray:
+        """Displacement of a place by the coordinates, shape (6, n)."""
+        matrix = np.zeros((6, self.size))
+        if place != GROUND:
+            name, _, frame = place.partition(":")
+            body = self._by_name[name]
+            matrix[:, self._slice(body)] = body.frames[frame or CENTRE].transform
+        return matrix
+
+    def _port(self, port: Port) -> FloatArray:
+        """Displacement of a port by the coordinates."""
+        if port.coordinates:
+            return np.eye(self.size)[self.own(port.on)]
+        return self.relative(port.on, port.against)
+
+    def _check(self, springs: Sequence[Spring], loads: Sequence[Load], elements: Sequence[Element]) -> None:
+        """Raise with all that does not fit together."""
+        problems = [] if self.bodies else ["system, bodies: got none; allowed: at least one body"]
+        seen: set[str] = {GROUND}
+        names = [thing.name for group in (self.bodies, springs, loads, elements) for thing in group]
+        for name in names:
+            if name in seen:
+                problems.append(f"{name!r}: is there twice; bodies, springs, loads and bearings have names apart")
+            seen.add(name)
+        for where, on, against in _connections(springs, loads, elements):
+            wrong = [problem for place in (on, against) if (problem := self.check_place(place))]
+            problems += [f"{where}: {problem}" for problem in wrong]
+            if not wrong and GROUND not in (on, against):
+                apart = float(np.linalg.norm(self._position(on) - self._position(against)))
+                if apart > COINCIDENT:
+                    problems.append(
+                        f"{where}: {on} and {against} are {apart * 1e3:.4g} mm apart; allowed: the same point; give "
+                        "one of the bodies a frame there"
+                    )
+        if problems:
+            raise InputError(problems)
+
+    def _position(self, place: str) -> FloatArray:
+        """Where a place is, shape (3,) [m]."""
+        name, _, frame = place.partition(":")
+        return self._by_name[name].frames[frame or CENTRE].position
+
+
+def _connections(
+    springs: Sequence[Spring], loads: Sequence[Load], elements: Sequence[Element]
+) -> Iterator[tuple[str, str, str]]:
+    """Yield name and both places of everything that connects places."""
+    for spring in springs:
+        yield f"spring {spring.name!r}", spring.on, spring.against
+    for load in loads:
+        yield f"load {load.name!r}", load.on, load.against
+    for element in elements:
+        for port in element.ports:
+            if not port.coordinates:
+                yield f"element {element.name!r}", port.on, port.against

@@ -1,0 +1,196 @@
+"""The command line `mbs` as a person or a script meets it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from ehdmaps import errors
+from ehdmaps.jobs import cli as ehdmaps_cli
+from mbs import cli
+from mbs.scene_reader import read_scene
+
+JOB = """
+schema = 1
+[bearing]
+name = "{bearing}"
+[lubricant]
+name = "FVA3"
+[grid]
+load = {{ from = "0.1 N/mm", to = "1000 N/mm", points = 13, spacing = "log" }}
+entrainment_speed = {{ from = "0.05 m/s", to = "10 m/s", points = 6, spacing = "log" }}
+temperature = ["20 degC", "40 degC", "60 degC"]
+[solver]
+name = "formula"
+structural_law = "iso16281"
+"""
+
+
+@pytest.fixture(scope="module")
+def maps(tmp_path_factory):
+    """A small map of each bearing, from the film formula."""
+    folder = tmp_path_factory.mktemp("maps")
+    paths = {}
+    for bearing in ("NU308", "N1014"):
+        job, path = folder / f"{bearing}.toml", folder / f"{bearing}.nc"
+        job.write_text(JOB.format(bearing=bearing))
+        assert ehdmaps_cli.main(["generate", str(job), "-o", str(path), "--workers", "1"]) in (0, 1)
+        paths[bearing] = str(path)
+    return paths
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PYTHONPATH", str(Path(errors.__file__).parents[1]))
+    return tmp_path
+
+
+def run(capsys, *arguments):
+    status = cli.main(arguments)
+    captured = capsys.readouterr()
+    return status, captured.out, captured.err
+
+
+def check_units(dataset):
+    for name, variable in dataset.data_vars.items():
+        assert "long_name" in variable.attrs, name
+        assert "units" in variable.attrs or variable.dtype.kind in "OUS", name
+
+
+def test_statics(here, capsys):
+    status, out, err = run(capsys, "statics", "nu308_rigid", "-o", "a.nc", "--plot", "a.png")
+    assert (status, err) == (0, "")
+    assert "law dry Hertz, ISO 16281" in out
+    assert "bearing_left: 141.421 N on the inner ring (y -100, z -100)" in out
+    assert "6 of 12 rollers loaded" in out
+    with xr.open_dataset("a.nc") as data:
+        check_units(data)
+        np.testing.assert_allclose(np.hypot(*data["bearing_force"].values[:, 1:].T), 141.42136, rtol=1e-7)
+        assert data["bearing_stiffness"].shape == (2, 6, 6)
+        assert data.attrs["scene_toml"] == read_scene("nu308_rigid").text
+    assert (here / "a.png").stat().st_size > 10_000
+
+
+def test_modes_by_map_and_over_speed(here, capsys, maps):
+    status, out, err = run(capsys, "modes", "nu308_rigid", "--map", maps["NU308"], "-o", "m.nc", "--plot", "m.png")
+    assert (status, err) == (0, "")
+    assert "law map of NU308, FVA3, solver formula" in out
+    assert "warning: bearing_left: omega b/u is" in out
+    assert "passes 0.3 at" in out
+    with xr.open_dataset("m.nc") as data:
+        check_units(data)
+        np.testing.assert_allclose(data["energy_share"].sum("part"), 1.0, rtol=1e-9)
+    clearances = ["--clearance", "0 um", "--clearance", "20 um"]
+    status, out, err = run(
+        capsys, "modes", "nu308_rigid", "--map", maps["NU308"], *clearances,
+        "--speeds", "200 rpm", "2000 rpm", "4", "-o", "s.nc", "--plot", "s.png",
+    )  # fmt: skip
+    assert (status, err) == (0, "")
+    with xr.open_dataset("s.nc") as data:
+        check_units(data)
+        along = data["frequency"].isel(mode=-1)
+        assert np.all(np.diff(along.values[0]) > 0.0)
+        assert np.all(np.diff(along.values[1]) < 0.0)
+    assert (here / "s.png").stat().st_size > 10_000
+
+
+def test_linear_analysis_with_rollers_as_bodies(here, capsys, maps):
+    status, out, _ = run(capsys, "lsa", "n1014_rigid", "--map", maps["N1014"], "-o", "l.nc", "--plot", "l.png")
+    assert status == 0
+    assert "state space: 60 states, 1 inputs, 1 outputs" in out
+    assert "S1 (acceleration, m/s2/N) by E1: peaks at" in out
+    with xr.open_dataset("l.nc") as data:
+        check_units(data)
+        assert data["A"].shape == (60, 60)
+    status, out, _ = run(capsys, "lsa", "n1014_rigid", "--law", "constant:hertz")
+    assert "of dynamic load at" in out
+    assert "contacts lift off, a linear analysis does not hold there" in out
+
+
+def short_run(here, **changes):
+    text = read_scene("nu308_rigid").text.replace('duration = "0.2 s"', 'duration = "2 ms"')
+    for old, new in changes.items():
+        assert f"{old} = " in text
+        text = text.replace(f"{old} = ", f"{old} = {new} #", 1)
+    (here / "short.toml").write_text(text)
+    return "short.toml"
+
+
+def test_run_up(here, capsys, maps):
+    status, out, err = run(capsys, "runup", short_run(here), "--map", maps["NU308"], "-o", "r.nc", "--plot", "r.png")
+    assert status == 0
+    assert "20 of 20 points" in err
+    assert "from 0 rpm to 2000 rpm in 0.002 s: 100 steps" in out
+    assert "0 calls outside the map" in out
+    with xr.open_dataset("r.nc") as data:
+        check_units(data)
+        assert data.sizes["time"] == 21
+        assert data["speed"].values[-1] == pytest.approx(2000.0 * np.pi / 30.0)
+        np.testing.assert_array_equal(data["outside_calls"], 0)
+
+
+def test_outside_the_map_is_counted_said_and_makes_status_1(here, capsys, maps):
+    scene = short_run(here, temperature='"65 degC"')
+    status, out, _ = run(capsys, "runup", scene, "--map", maps["NU308"])
+    assert status == 1
+    assert "0 calls outside the map" not in out
+    status, out, _ = run(capsys, "statics", scene, "--map", maps["NU308"])
+    assert status == 1
+    assert "warning: bearing_left: lies outside the map" in out
+
+
+def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys, maps):
+    status, out, err = run(
+        capsys, "modes", "nu308_rigid", "--map", maps["N1014"], "--clearance", "5 kg", "-o", "no/x.nc"
+    )
+    assert (status, out) == (2, "")
+    for words in ("is made for N1014: inner_raceway_diameter 82 mm and not 52 mm", "got the unit 'kg'", "is no folder"):
+        assert words in err
+    assert not list(here.iterdir())
+    for arguments, words in (
+        (["statics", "nowhere"], "shipped system: n1014_rigid, nu308_rigid"),
+        (["statics", "nu308_rigid", "--law", "map"], "got 'map' without a map"),
+        (["statics", "nu308_rigid", "--map", "nu.nc"], "--map: nu.nc: cannot be read"),
+        (["statics", "nu308_rigid", "--clearance", "1 m"], "allowed: within 1e+04 um either way"),
+        (["statics", "nu308_rigid", "--clearance", "1 um", "--clearance", "2 um"], "got 2 of them; allowed: one"),
+        (["modes", "nu308_rigid", "--clearance", "1 um", "--clearance", "2 um"], "one, or more with --speeds"),
+        (["modes", "nu308_rigid", "--speeds", "9 rpm", "5 rpm", "x"], "allowed: a whole number from 2"),
+        (["modes", "nu308_rigid", "--speeds", "9 rpm", "5 rpm", "3"], "allowed: rising"),
+        (["statics", "nu308_rigid", "--plot", "a.xyz"], "--plot: a.xyz cannot be written"),
+    ):
+        status, out, err = run(capsys, *arguments)
+        assert (status, out) == (2, ""), arguments
+        assert words in err
+
+
+def test_scenes_without_what_an_analysis_needs(here, capsys):
+    text = read_scene("nu308_rigid").text
+    (here / "a.toml").write_text(text[: text.index("[[inputs]]")])
+    status, _, err = run(capsys, "lsa", "a.toml")
+    assert status == 2
+    assert "[[inputs]] missing" in err and "[[sensors]] missing" in err and "frequencies missing" in err
+    status, _, err = run(capsys, "runup", "a.toml")
+    assert status == 2
+    assert "[runup] missing" in err
+
+
+def test_no_equilibrium_is_status_1(here, capsys):
+    text = read_scene("nu308_rigid").text.replace('against = "ring_left"\nforce', "force")
+    text = text.replace('stiffness = { y = "1e5 N/m", z = "1e5 N/m" }', 'stiffness = { x = "1e5 N/m" }')
+    (here / "free.toml").write_text(text)
+    status, out, err = run(capsys, "statics", "free.toml")
+    assert (status, out) == (1, "")
+    assert "something moves freely under its load" in err
+
+
+def test_as_a_module(here):
+    result = subprocess.run(
+        [sys.executable, "-m", "mbs", "statics", "nu308_rigid"], capture_output=True, text=True, check=True
+    )
+    assert "141.421 N" in result.stdout

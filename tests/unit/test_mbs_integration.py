@@ -1,0 +1,114 @@
+"""Time integration against closed forms: order, dissipation, step control."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from ehdmaps.errors import InputError
+from mbs.body import Inertia, rigid_body
+from mbs.elements import Load, Spring
+from mbs.errors import AnalysisError
+from mbs.integration import Settings, integrate
+from mbs.profiles import Harmonic, SpeedProfile
+from mbs.system import System
+from tests.unit.test_mbs_system import MASS, OneSided, force, stiff
+
+REST = SpeedProfile.constant(0.0)
+OMEGA = math.sqrt(5e4 / 2.0)
+
+
+def oscillator(c=0.0, loads=()):
+    return System([rigid_body("a", [MASS], ["y"])], [Spring("s", "a", "ground", stiff(y=5e4), stiff(y=c))], loads)
+
+
+@pytest.mark.parametrize("radius", [0.0, 0.5, 0.8, 1.0])
+def test_second_order(radius):
+    errors = []
+    for steps in (100, 200):
+        h = 0.05 / steps
+        run = integrate(oscillator(4.0), REST, 0.05, Settings(h, 0.05, radius), np.array([1e-3]))
+        decay, damped = 1.0, math.sqrt(OMEGA**2 - 1.0)
+        exact = 1e-3 * math.exp(-decay * 0.05) * (math.cos(damped * 0.05) + decay / damped * math.sin(damped * 0.05))
+        errors.append(abs(run.displacement[-1, 0] - exact))
+        assert run.steps == steps
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+
+
+def test_spectral_radius_one_keeps_the_energy_of_a_linear_system():
+    run = integrate(oscillator(), REST, 0.5, Settings(1e-3, 1e-3, 1.0), np.array([1e-3]))
+    energy = 25e3 * run.displacement[:, 0] ** 2 + run.velocity[:, 0] ** 2
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-9)  # what Newton leaves over, times 500 steps
+
+
+def test_spectral_radius_dissipates_what_the_step_does_not_resolve():
+    run = integrate(oscillator(), REST, 5.0, Settings(0.1, 0.1, 0.5), np.array([1e-3]))
+    assert abs(run.displacement[-1, 0]) < 1e-12
+
+
+def test_harmonic_load():
+    """Started on the steady state, it stays there: 2e-4 is the phase error of 60 steps a period."""
+    omega = 2.0 * math.pi * 10.0
+    amplitude = 1.0 / (5e4 - 2.0 * omega**2)
+    system = oscillator(0.0, [Load("l", "a", force(y=1.0), profile=Harmonic(10.0))])
+    run = integrate(system, REST, 0.3, Settings(1e-4, 1e-3, 1.0), velocity=np.array([amplitude * omega]))
+    np.testing.assert_allclose(run.displacement[:, 0], amplitude * np.sin(omega * run.time), atol=2e-4 * amplitude)
+
+
+def test_gyroscopic_precession():
+    """A spinning free body, nudged, turns its axis on a circle: the angular momentum stays."""
+    body = rigid_body("a", [Inertia(1.0, 0.02, 0.04)], ["theta_y", "theta_z"], spin=1.0)
+    run = integrate(System([body]), SpeedProfile.constant(200.0), 0.5, Settings(1e-4, 1e-3, 1.0), velocity=[1e-3, 0.0])
+    momentum = 0.04 * run.velocity + 0.02 * 200.0 * run.displacement @ np.array([[0.0, -1.0], [1.0, 0.0]])
+    np.testing.assert_allclose(
+        momentum, np.tile(momentum[0], (run.time.size, 1)), atol=1e-10 * np.abs(momentum[0]).max()
+    )
+
+
+def test_step_control_meets_its_tolerance_through_an_impact():
+    """A mass falls on a one-sided contact: steps are halved there, and grow again."""
+    body = rigid_body("a", [MASS], ["y"])
+    system = System([body], (), [Load("l", "a", force(y=20.0))], [OneSided("c", "a", k=1e9, gap=1e-3)])
+    fine = integrate(system, REST, 0.04, Settings(1e-6, 1e-3, 1.0))
+    free = integrate(system, REST, 0.04, Settings(1e-3, 1e-3, 1.0, tolerance=1e-8))
+    assert free.halved > 0
+    assert free.steps < fine.steps / 10
+    np.testing.assert_allclose(free.displacement, fine.displacement, atol=1e-5)
+
+
+def test_progress_and_samples():
+    seen = []
+    run = integrate(oscillator(), REST, 0.01, Settings(1e-3, 2e-3), np.array([1e-3]), progress=seen.append)
+    assert seen == [1, 2, 3, 4, 5]
+    np.testing.assert_allclose(run.time, np.arange(6) * 2e-3)
+    assert run.displacement.shape == (6, 1)
+
+
+def test_settings_that_are_not_possible_are_refused_all_at_once():
+    with pytest.raises(InputError) as caught:
+        Settings(1e-3, 1.5e-3, 1.5, -1.0, 2.0)
+    text = "\n".join(caught.value.problems)
+    for words in ("sample: got 0.0015 s", "spectral_radius: got 1.5", "tolerance: got -1.0", "residual: got 2.0"):
+        assert words in text
+    with pytest.raises(InputError, match=r"step: got 0\.0 s; allowed: finite and > 0"):
+        Settings(0.0, 1.0)
+
+
+class Mad:
+    """An element whose Jacobian has the wrong sign and size, so that Newton never arrives."""
+
+    name = "mad"
+
+    def __init__(self):
+        self.ports = OneSided("c", "a").ports
+
+    def evaluate(self, displacement, velocity, operation):
+        return 1e3 * np.sin(1e14 * displacement + 1.0), 1e30 * np.eye(6), np.zeros((6, 6))
+
+
+def test_a_step_without_solution_is_said():
+    system = System([rigid_body("a", [MASS], ["y"])], (), (), [Mad()])
+    with pytest.raises(AnalysisError, match=r"no solution at 0 s with steps of .*start nearer to an equilibrium"):
+        integrate(system, REST, 1.0, Settings(1e-1, 1e-1))

@@ -1,0 +1,182 @@
+"""The shaft-bearing system in another multibody program, Exudyn, which calls our bearing force.
+
+Bodies there have six freedoms and finite rotations, the shaft really turns; joints take away what our system does not
+have. So assembly, gyroscopic terms, statics, modes and time integration are checked by foreign code; the bearing force
+itself is ours on both sides.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from mbs.assembly import assemble
+from mbs.elements import Load, Operation
+from mbs.integration import Settings, integrate
+from mbs.modes import undamped_modes
+from mbs.profiles import Course, SpeedProfile
+from mbs.scene_reader import read_scene
+from mbs.statics import equilibrium
+from mbs.system import System
+
+exu = pytest.importorskip("exudyn", reason="Exudyn is a dependency of the tests alone, and has no wheel everywhere")
+pytestmark = pytest.mark.filterwarnings("ignore")
+
+SPEED = 500.0 * math.pi / 30.0
+SCENE = read_scene("nu308_rigid")
+SIDES = (("left", -0.07), ("right", 0.07))
+
+
+class Exudyn:
+    """The system of the scene nu308_rigid there, at rest or turning; the load goes with `factor(t)`."""
+
+    def __init__(self, model, speed=0.0, extra=None, start=(0.0, 0.0)):
+        from exudyn.utilities import RigidBodyInertia
+
+        self.container = exu.SystemContainer()
+        self.mbs = mbs = self.container.AddSystem()
+        shaft_body = model.system.body("shaft")
+        mass, tilt = shaft_body.mass[0, 0], shaft_body.mass[2, 2]
+        ground = mbs.CreateGround()
+        # The polar inertia is the gyroscopic block for each unit of speed.
+        polar = shaft_body.gyroscopic[2, 3]
+        self.shaft = mbs.CreateRigidBody(
+            inertia=RigidBodyInertia(mass=mass, inertiaTensor=np.diag([polar, tilt, tilt])),
+            nodeType=exu.NodeType.RotationEulerParameters,
+            initialAngularVelocity=[speed, 0.0, 0.0],
+            initialDisplacement=[0.0, *start],
+        )
+        centre = mbs.AddMarker(exu.utilities.MarkerBodyRigid(bodyNumber=self.shaft))
+        origin = mbs.AddMarker(exu.utilities.MarkerBodyRigid(bodyNumber=ground))
+        free = [1, 0, 0, 0, 0, 0] if speed else [1, 0, 0, 1, 0, 0]
+        mbs.AddObject(exu.utilities.ObjectJointGeneric(markerNumbers=[origin, centre], constrainedAxes=free))
+        self.rings = []
+        for (side, x), bearing in zip(SIDES, model.bearings, strict=True):
+            ring_mass = model.system.body(f"ring_{side}").mass[0, 0]
+            ring = mbs.CreateRigidBody(
+                inertia=RigidBodyInertia(mass=ring_mass, inertiaTensor=1e-3 * np.eye(3)),
+                referencePosition=[x, 0.0, 0.0],
+            )
+            self.rings.append(ring)
+            at_ground = mbs.AddMarker(exu.utilities.MarkerBodyRigid(bodyNumber=ground, localPosition=[x, 0.0, 0.0]))
+            at_ring = mbs.AddMarker(exu.utilities.MarkerBodyRigid(bodyNumber=ring))
+            at_shaft = mbs.AddMarker(exu.utilities.MarkerBodyRigid(bodyNumber=self.shaft, localPosition=[x, 0.0, 0.0]))
+            mbs.AddObject(
+                exu.utilities.ObjectJointGeneric(markerNumbers=[at_ground, at_ring], constrainedAxes=[1, 0, 0, 1, 1, 1])
+            )
+            mbs.AddObject(
+                exu.utilities.ObjectConnectorCartesianSpringDamper(
+                    markerNumbers=[at_ground, at_ring], stiffness=[0.0, 1e5, 1e5], damping=[0.0, 0.0, 0.0]
+                )
+            )
+            mbs.AddObject(
+                exu.utilities.ObjectConnectorRigidBodySpringDamper(
+                    markerNumbers=[at_ring, at_shaft],
+                    stiffness=np.zeros((6, 6)),
+                    damping=np.zeros((6, 6)),
+                    springForceTorqueUserFunction=self._force(bearing, speed),
+                )
+            )
+            for marker, sign in ((at_shaft, 1.0), (at_ring, -1.0)):
+                mbs.AddLoad(exu.utilities.Force(markerNumber=marker, loadVector=[0.0, 100.0 * sign, 100.0 * sign]))
+        if extra is not None:
+            vector = exu.utilities.Force(
+                markerNumber=centre,
+                loadVector=[0.0, 0.0, 0.0],
+                loadVectorUserFunction=lambda mbs, t, load: [0.0, extra(t), 0.0],
+            )
+            mbs.AddLoad(vector)
+        mbs.Assemble()
+        self.settings = exu.SimulationSettings()
+        self.settings.solutionSettings.writeSolutionToFile = False
+        self.settings.timeIntegration.verboseMode = 0
+        self.settings.staticSolver.verboseMode = 0
+        for solver in (self.settings.staticSolver, self.settings.timeIntegration):
+            # Differences of 1e-12 m: soft mounts must not drown in the error of the stiff contacts.
+            solver.newton.numericalDifferentiation.relativeEpsilon = 1e-10
+            solver.newton.numericalDifferentiation.minimumCoordinateSize = 1e-2
+
+    @staticmethod
+    def _force(bearing, speed):
+        """Our force as the spring force there: it acts on the ring in the ring's frame, opposite on the shaft."""
+
+        def force(mbs, t, item, displacement, rotation, velocity, turning, stiffness, damping, r0, r1, offset):
+            # Tait-Bryan angles x y z of the shaft in the ring: tilts from the entries of the rotation matrix.
+            cx, sx = math.cos(rotation[0]), math.sin(rotation[0])
+            sy = math.sin(rotation[1])
+            cz, sz = math.cos(rotation[2]), math.sin(rotation[2])
+            a10, a20 = sx * sy * cz + cx * sz, sx * sz - cx * sy * cz
+            pose = np.array([*displacement, 0.0, -a20, a10])
+            rate = np.array([*velocity, 0.0, turning[1], turning[2]])
+            # The axis of the spinning shaft turns by the part of the angular velocity across it.
+            rate[4] -= turning[0] * a10
+            rate[5] -= turning[0] * a20
+            f, _, _ = bearing.force(
+                pose, rate, cage_angle=bearing.bearing.cage_angle(speed * t), entrainment_speed=0.0, temperature=313.15
+            )
+            return -f
+
+        return force
+
+    def state(self):
+        """Displacements of shaft y z, then of the rings."""
+        bodies = (self.shaft, *self.rings)
+        kind = exu.OutputVariableType.Displacement
+        return np.concatenate([self.mbs.GetObjectOutputBody(body, kind)[1:3] for body in bodies])
+
+
+@pytest.fixture(scope="module")
+def model():
+    return assemble(SCENE, "hertz", clearance=10e-6)
+
+
+def test_statics_and_modes(model):
+    """0.1 % is asked."""
+    balance = equilibrium(model.system)
+    there = Exudyn(model, start=(6e-6, 6e-6))
+    there.mbs.SolveStatic(there.settings, updateInitialValues=True)
+    found = there.state()
+    ours = balance.displacement[[0, 1, 4, 5, 6, 7]]
+    np.testing.assert_allclose(found[:2] - found[2:4], ours[:2] - ours[2:4], rtol=1e-3)
+    values, *_ = there.mbs.ComputeODE2Eigenvalues(there.settings)
+    theirs = np.sort(np.sqrt(np.abs(np.asarray(values))) / (2.0 * math.pi))[-8:]
+    np.testing.assert_allclose(theirs, undamped_modes(balance).frequency, rtol=1e-3)
+
+
+def test_response_in_time(model):
+    """50 ms at 500 rpm with a pulse of 50 N on the shaft; 1 % of the largest motion is asked.
+
+    Both integrate by the generalised-alpha method with equal steps, so the error of the steps is common to both; the
+    order of ours is tested by itself.
+    """
+    times, factors = (0.0, 0.002, 0.004, 0.006), (0.0, 50.0, 50.0, 0.0)
+    pulse = Course(times, factors)
+    step, duration = 5e-5, 0.05
+    y = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+    system = System(
+        SCENE.bodies, SCENE.springs, (*SCENE.loads, Load("pulse", "shaft", y, profile=pulse)), model.bearings
+    )
+    balance = equilibrium(model.system, Operation(SPEED))
+    run = integrate(system, SpeedProfile.constant(SPEED), duration, Settings(step, step, 0.6), balance.displacement)
+    there = Exudyn(model, SPEED, pulse, start=balance.displacement[:2])
+    names = []
+    kind = exu.OutputVariableType.Displacement
+    for body in (there.shaft, *there.rings):
+        names.append(
+            there.mbs.AddSensor(exu.utilities.SensorBody(bodyNumber=body, storeInternal=True, outputVariableType=kind))
+        )
+    there.mbs.Assemble()
+    there.settings.timeIntegration.numberOfSteps = round(duration / step)
+    there.settings.timeIntegration.endTime = duration
+    there.settings.timeIntegration.generalizedAlpha.spectralRadius = 0.6
+    there.settings.solutionSettings.sensorsWritePeriod = step
+    assert there.mbs.SolveDynamic(there.settings)
+    shaft, left, right = (there.mbs.GetSensorStoredData(name)[:, 2:4] for name in names)
+    ours = run.displacement
+    for theirs, mine in ((shaft, ours[:, :2]), (left, ours[:, 4:6]), (right, ours[:, 6:8])):
+        assert np.abs(theirs - mine).max() < 0.01 * np.abs(mine).max()
+    theirs, mine = shaft - left, ours[:, :2] - ours[:, 4:6]
+    moved = mine - mine[0]
+    assert np.abs(theirs - mine).max() < 0.01 * np.abs(moved).max()
