@@ -21,6 +21,14 @@ ComplexArray = npt.NDArray[np.complex128]
 _ORDER: dict[Quantity, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
 """How often a sensor differentiates."""
 
+_PER_TIME = ("", "/s", "/s2")
+
+
+def response_unit(sensor: Sensor, entry: Input) -> str:
+    """Unit of the response of a sensor to an input, such as m/s2/N; rad for rotations, (N m) for moments."""
+    length = "rad" if np.any(sensor.direction[3:]) else "m"
+    return f"{length}{_PER_TIME[_ORDER[sensor.quantity]]}/{'(N m)' if np.any(entry.direction[3:]) else 'N'}"
+
 
 @dataclass(frozen=True, eq=False)
 class StateSpace:

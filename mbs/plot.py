@@ -9,78 +9,93 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehdmaps.physics._values import FloatArray
+from ehdmaps.units import TEMPERATURE
 from mbs.assembly import Model
 from mbs.integration import Trajectory
-from mbs.linear import ComplexArray
+from mbs.linear import ComplexArray, response_unit
 from mbs.modes import Modes
+from mbs.scene_reader import MICROMETRE
 from mbs.statics import Equilibrium
 from mbs.sweep import Sweep
 
 _RPM = 30.0 / np.pi
 _SIZE = (9.0, 5.5)
-_UNITS = {"displacement": "m/N", "velocity": "m/s/N", "acceleration": "m/s²/N"}
+_MOST_LEVEL_LABELS = 12
 _LEAST_SHARE = 0.05
 _COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00", "#6a3d9a")
 
 
 def statics_figure(model: Model, balance: Equilibrium) -> Figure:
     """Load of each roller around each bearing."""
-    figure, axes = _page(model, f"{model.law}; {model.scene.speed * _RPM:.4g} rpm", len(model.bearings))
+    figure, axes = _page(model, f"{model.scene.speed * _RPM:.4g} rpm", len(model.bearings))
     for panel, bearing in zip(axes, model.bearings, strict=True):
         motion = model.system.relative(bearing.inner, bearing.outer) @ balance.displacement
         rollers = bearing.rollers(motion, balance.operation)
         panel.bar(np.degrees(rollers.angle), rollers.load, width=0.6 * 360.0 / rollers.angle.size, color=_COLOURS[0])
         panel.set(xlabel="angle of the roller from y towards z, degrees", ylabel="load of the roller, N")
         panel.set_title(bearing.name, fontsize=9)
-        panel.set_xlim(-185, 185)
+        panel.set_xlim(-200, 200)
+        panel.set_xticks(np.arange(-180, 181, 60))
         _grid(panel)
     return figure
 
 
 def modes_figure(model: Model, found: Modes) -> Figure:
     """Strain-energy shares of each mode."""
-    figure, (panel,) = _page(model, f"{model.law}; {model.scene.speed * _RPM:.4g} rpm", 1)
+    figure, (panel,) = _page(model, f"{model.scene.speed * _RPM:.4g} rpm", 1)
     places = np.arange(found.eigenvalues.size)
     bottom = np.zeros(places.size)
     shades = np.linspace(0.15, 0.85, max(len(found.parts), 2))
     for part, share, shade in zip(found.parts, found.shares, shades, strict=False):
         panel.bar(places, share, bottom=bottom, label=part, color=_shade(float(shade)))
         bottom += share
-    labels = [f"{f:.4g} Hz\nζ {z:.2g}" for f, z in zip(found.frequency, found.damping_ratio, strict=True)]
-    panel.set_xticks(places, labels, fontsize=7)
+    level = places.size <= _MOST_LEVEL_LABELS
+    mark = "\n" if level else ", "
+    labels = [f"{f:.5g} Hz{mark}ζ {z:.2g}" for f, z in zip(found.frequency, found.damping_ratio, strict=True)]
+    panel.set_xticks(places, labels, fontsize=7, rotation=0 if level else 90)
+    panel.set_xlabel("frequency |eigenvalue|/(2π) and damping ratio ζ of the mode")
     panel.set_ylabel("part of the strain energy")
     panel.legend(fontsize=7, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
     return figure
 
 
 def response_figure(model: Model, frequencies: FloatArray, responses: ComplexArray) -> Figure:
-    """Magnitude and phase of each response."""
-    figure, (size, phase) = _page(model, f"{model.law}; {model.scene.speed * _RPM:.4g} rpm", 2, stacked=True)
+    """Magnitude of each response, a panel a unit, and phase."""
+    kinds: dict[str, str] = {}
+    for sensor in model.scene.sensors:
+        for entry in model.scene.inputs:
+            kinds.setdefault(_shown(response_unit(sensor, entry)), sensor.quantity)
+    figure, axes = _page(model, f"{model.scene.speed * _RPM:.4g} rpm", len(kinds) + 1, stacked=True)
+    panels, phase = dict(zip(kinds, axes[:-1], strict=True)), axes[-1]
     colours = iter(_COLOURS * 20)
     for s, sensor in enumerate(model.scene.sensors):
         for i, entry in enumerate(model.scene.inputs):
-            colour = next(colours)
-            label = f"{sensor.name} ({sensor.quantity}, {_UNITS[sensor.quantity]}) by {entry.name}"
-            size.loglog(frequencies, np.abs(responses[:, s, i]), color=colour, lw=1.0, label=label)
+            colour, panel = next(colours), panels[_shown(response_unit(sensor, entry))]
+            panel.loglog(
+                frequencies, np.abs(responses[:, s, i]), color=colour, lw=1.0, label=f"{sensor.name} by {entry.name}"
+            )
             phase.semilogx(frequencies, np.degrees(np.angle(responses[:, s, i])), color=colour, lw=0.9)
-    size.set_ylabel("magnitude")
-    size.legend(fontsize=8, frameon=False)
+    for unit, panel in panels.items():
+        panel.set_ylabel(f"{kinds[unit]}, {unit}")
+        panel.legend(fontsize=8, frameon=False)
     phase.set(xlabel="frequency, Hz", ylabel="phase, degrees", yticks=[-180, -90, 0, 90, 180])
-    _grid(size)
-    _grid(phase)
+    for panel in axes:
+        _grid(panel)
     return figure
 
 
 def run_figure(model: Model, run: Trajectory) -> Figure:
     """Bearing forces and displacements of the inner rings over time, with the speed."""
-    figure, axes = _page(model, model.law, 3, stacked=True)
-    for bearing, force, colour in zip(model.bearings, run.forces, _COLOURS * 20, strict=False):
+    figure, axes = _page(model, "", 3, stacked=True)
+    lines = zip(model.bearings, run.forces, _COLOURS * 20, ("-", "--") * 50, strict=False)
+    for bearing, force, colour, dashes in lines:
         motion = run.displacement @ model.system.relative(bearing.inner, bearing.outer).T
-        axes[0].plot(run.time, np.hypot(force[:, 1], force[:, 2]), color=colour, lw=0.8, label=bearing.name)
-        axes[1].plot(run.time, 1e6 * np.hypot(motion[:, 1], motion[:, 2]), color=colour, lw=0.8)
+        place = 1e6 * np.hypot(motion[:, 1], motion[:, 2])
+        axes[0].plot(run.time, np.hypot(force[:, 1], force[:, 2]), dashes, color=colour, lw=0.9, label=bearing.name)
+        axes[1].plot(run.time, place, dashes, color=colour, lw=0.9)
     axes[2].plot(run.time, run.speed * _RPM, color="0.2", lw=1.0)
     axes[0].set_ylabel("bearing force, N")
-    axes[1].set_ylabel("radial displacement\nof the ring, µm")
+    axes[1].set_ylabel("inner ring against\nthe outer one, µm")
     axes[2].set(xlabel="time, s", ylabel="speed, rpm")
     axes[0].legend(fontsize=8, frameon=False)
     for panel in axes:
@@ -93,7 +108,7 @@ def sweep_figure(title: str, law: str, sweeps: Sequence[Sweep], labels: Sequence
     figure = _figure(title, law)
     axes = figure.subplots(1, 2)
     for result, label, colour in zip(sweeps, labels, _COLOURS * 20, strict=False):
-        named = f"clearance {label.replace('um', 'µm')}"
+        named = f"clearance {_shown(label)}"
         for k in np.nonzero(np.nanmax(result.bearing_share, axis=0) >= _LEAST_SHARE)[0]:
             axes[0].plot(result.speeds * _RPM, result.frequency[:, k], color=colour, lw=1.1, label=named)
             axes[1].plot(result.speeds * _RPM, 100.0 * result.damping_ratio[:, k], color=colour, lw=1.1)
@@ -107,8 +122,14 @@ def sweep_figure(title: str, law: str, sweeps: Sequence[Sweep], labels: Sequence
 
 
 def _page(model: Model, words: str, panels: int, stacked: bool = False) -> tuple[Figure, list[Axes]]:
-    """A figure with its heading and a row, or a stack, of panels."""
-    figure = _figure(model.scene.title, words)
+    """A figure with its heading and a row, or a stack, of panels; `words` follow the law."""
+    clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
+    at = [
+        *([words] if words else []),
+        TEMPERATURE.text(model.scene.temperature).replace("deg", "°"),
+        f"clearance {', '.join(_shown(MICROMETRE.text(value)) for value in clearances)}",
+    ]
+    figure = _figure(model.scene.title, f"{model.law}; {', '.join(at)}")
     shape = (panels, 1) if stacked else (1, panels)
     axes = figure.subplots(*shape, sharex=stacked, squeeze=False)
     return figure, list(axes.ravel())
@@ -119,6 +140,11 @@ def _figure(title: str, words: str) -> Figure:
     figure = Figure(figsize=_SIZE, layout="constrained")
     figure.suptitle(f"{title}\n{words}", fontsize=10)
     return figure
+
+
+def _shown(unit: str) -> str:
+    """A unit as figures show it."""
+    return unit.replace("s2", "s²").replace("um", "µm")
 
 
 def _grid(panel: Axes) -> None:

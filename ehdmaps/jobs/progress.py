@@ -17,6 +17,10 @@ class Bar:
         self._total = total
         self._bar: Any = None
 
+    def begin(self) -> None:
+        """Begin with nothing."""
+        self.taken_over(0)
+
     def taken_over(self, points: int) -> None:
         """Begin at the points that were there."""
         from tqdm import tqdm
@@ -38,6 +42,9 @@ class Lines:
         self._done = 0
         self._taken = 0
         self._begin = self._last = time.monotonic()
+
+    def begin(self) -> None:
+        """Begin with nothing, which is not worth a line."""
 
     def taken_over(self, points: int) -> None:
         """Say how many points were there."""

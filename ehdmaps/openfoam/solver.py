@@ -33,7 +33,7 @@ LARGEST_PRESSURE = 10e9
 """Hertz pressure above which no run is tried [Pa]; steel yields long before."""
 
 CAVITATION_RANGE = 1e-6
-"""Pressure over which liquid turns into the cavitated mixture, in Hertz pressures."""
+"""Pressure over which liquid turns into the cavitated mixture, over the largest of the film (about)."""
 
 PARAMETER_VERSION = 1
 """Raised when a change of this package changes numbers: results of another version are not taken over."""
@@ -321,7 +321,7 @@ class OpenFoamSolver:
             lower_speed=lower,
             upper_speed=upper,
             oil=state,
-            cavitation_range=CAVITATION_RANGE * peak,
+            cavitation_range=CAVITATION_RANGE * peak / (1.0 + math.sqrt(2.0 * mesh.film)),
             mesh=mesh,
             columns=self.columns,
             rows=self.rows,

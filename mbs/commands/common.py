@@ -17,6 +17,7 @@ from ehdmaps.units import TEMPERATURE, quantity
 from mbs.assembly import Model, assemble, find_problems, law_attributes
 from mbs.bearing_element import BearingElement
 from mbs.bearing_force import BearingForce
+from mbs.elements import Operation
 from mbs.results import described, write_dataset
 from mbs.scene_reader import MICROMETRE, RPM, read_scene
 from mbs.statics import Equilibrium
@@ -94,24 +95,21 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
     ]
 
 
-def film_limits(model: Model, balance: Equilibrium) -> list[FilmLimit]:
+def film_limits(model: Model, displacement: FloatArray, operation: Operation) -> list[FilmLimit]:
     """Up to which frequency the films of each bearing follow; empty for dry laws and constant ones."""
     limits = []
-    for bearing, motion in ring_motions(model, balance):
+    for bearing, motion in ring_motions(model, displacement):
         if not isinstance(bearing.force, BearingForce) or not isinstance(bearing.force.law, ContactLaw):
             continue
-        load = float(bearing.rollers(motion, balance.operation).load_per_length.max())
-        speed = bearing.entrainment_speed(balance.operation)
+        load = float(bearing.rollers(motion, operation).load_per_length.max())
+        speed = bearing.entrainment_speed(operation)
         limits.append(film_limit(bearing.name, bearing.bearing, load, speed))
     return limits
 
 
-def ring_motions(model: Model, balance: Equilibrium) -> list[tuple[BearingElement, FloatArray]]:
+def ring_motions(model: Model, displacement: FloatArray) -> list[tuple[BearingElement, FloatArray]]:
     """Each bearing with the displacement (6,) of its inner ring against the outer one."""
-    return [
-        (bearing, model.system.relative(bearing.inner, bearing.outer) @ balance.displacement)
-        for bearing in model.bearings
-    ]
+    return [(bearing, model.system.relative(bearing.inner, bearing.outer) @ displacement) for bearing in model.bearings]
 
 
 def film_warnings(limits: Sequence[FilmLimit], frequencies: Iterable[float]) -> list[str]:
@@ -122,7 +120,7 @@ def film_warnings(limits: Sequence[FilmLimit], frequencies: Iterable[float]) -> 
         ratio = limit.ratio(highest)
         if ratio > HIGHEST_RATIO:
             lines.append(
-                f"warning: {limit.bearing}: omega b/u is {ratio:.2g} at {highest:.4g} Hz and passes {HIGHEST_RATIO} at "
+                f"warning: {limit.bearing}: omega b/u is {ratio:.2g} at {highest:.5g} Hz and passes {HIGHEST_RATIO} at "
                 f"{limit.frequency:.4g} Hz (b = {limit.half_width * 1e6:.3g} um, "
                 f"u = {limit.entrainment_speed:.3g} m/s): above it low-frequency stiffness and damping no longer hold"
             )

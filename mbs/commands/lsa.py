@@ -11,13 +11,11 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from mbs.assembly import Model
 from mbs.commands.common import film_limits, film_warnings, heading, load_model, outside_at, write
-from mbs.linear import ComplexArray, frequency_response, state_space
+from mbs.linear import ComplexArray, frequency_response, response_unit, state_space
 from mbs.plot import response_figure
 from mbs.results import linear_dataset
 from mbs.statics import equilibrium
 from mbs.validity import dynamic_loads
-
-_UNITS = {"displacement": "m/N", "velocity": "m/s/N", "acceleration": "m/s2/N"}
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -42,15 +40,18 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     figure = response_figure(model, frequencies, responses) if arguments.plot else None
     outside = outside_at(model, balance)
     dataset = linear_dataset(balance, space, responses, scene.frequencies, scene.inputs, scene.sensors)
+    amplitudes = {
+        entry.name: f"{entry.amplitude:.4g} {'N m' if np.any(entry.direction[3:]) else 'N'}" for entry in scene.inputs
+    }
     lines = [
         *heading(model, scene.speed),
         f"state space: {space.A.shape[0]} states, {len(scene.inputs)} inputs, {len(scene.sensors)} outputs",
         *_peaks(model, frequencies, responses),
-        *film_warnings(film_limits(model, balance), frequencies),
+        *film_warnings(film_limits(model, balance.displacement, balance.operation), frequencies),
         *(
             f"warning: {load.element}: {load.dynamic:.3g} N of dynamic load at {load.frequency:.4g} Hz exceed the "
-            f"static {load.static:.4g} N (input {load.input} at its amplitude): contacts lift off, "
-            "a linear analysis does not hold there"
+            f"static {load.static:.4g} N (input {load.input} at its amplitude of {amplitudes[load.input]}): contacts "
+            "lift off, a linear analysis does not hold there"
             for load in dynamic_loads(balance, scene.inputs, frequencies)
             if load.exceeds
         ),
@@ -70,7 +71,7 @@ def _peaks(model: Model, frequencies: FloatArray, responses: ComplexArray) -> li
             places, _ = find_peaks(np.log(np.maximum(size, 1e-300)), prominence=0.05)
             shown = [f"{frequencies[k]:.5g} Hz ({size[k]:.3g})" for k in places]
             lines.append(
-                f"  {sensor.name} ({sensor.quantity}, {_UNITS[sensor.quantity]}) by {entry.name}: "
+                f"  {sensor.name} ({sensor.quantity}, {response_unit(sensor, entry)}) by {entry.name}: "
                 + (f"peaks at {', '.join(shown)}" if shown else "no peak")
             )
     return lines

@@ -8,15 +8,17 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
-from ehdmaps.units import quantity
+from ehdmaps.units import TEMPERATURE, quantity
 from mbs.assembly import Model
 from mbs.commands.common import film_limits, film_warnings, heading, load_models, outside_at, write
+from mbs.elements import Operation
 from mbs.modes import Modes, modes
 from mbs.plot import modes_figure, sweep_figure
 from mbs.results import modes_dataset, sweep_dataset
 from mbs.scene_reader import MICROMETRE, RPM
 from mbs.statics import equilibrium
 from mbs.sweep import Sweep, sweep
+from mbs.validity import HIGHEST_RATIO
 
 MOST_SPEEDS = 2000
 _LEAST_SHARE = 0.05
@@ -38,7 +40,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines = [
         *heading(model, model.scene.speed),
         *_table(found),
-        *film_warnings(film_limits(model, balance), found.frequency),
+        *film_warnings(film_limits(model, balance.displacement, balance.operation), found.frequency),
         *outside,
         *write(arguments, model, modes_dataset(found, balance), figure),
     ]
@@ -47,7 +49,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
 def _table(found: Modes) -> list[str]:
     """Lines of the modes: frequency, damping ratio, and the parts that have most of the strain energy."""
-    lines = ["  mode   frequency/Hz   damping ratio   strain energy"]
+    lines = ["  mode   frequency/Hz   damping ratio   strain energy        (frequency: |eigenvalue|/(2 pi))"]
     for k in range(found.eigenvalues.size):
         order = np.argsort(-found.shares[:, k], kind="stable")
         shares = [
@@ -65,13 +67,14 @@ def _over_speed(arguments: argparse.Namespace, models: tuple[Model, ...], speeds
     lines = []
     outside: list[str] = []
     for model, result in zip(models, sweeps, strict=True):
-        lines += [*heading(model), *_changes(result)]
         outside += [
             f"warning: {name}: {count} calls outside the map" for name, count in model.outside_calls.items() if count
         ]
+        lines += [*heading(model), *_changes(result), *_too_quick(model, result)]
     clearances = [model.scene.bearings[0].geometry.diametral_clearance for model in models]
     labels = [MICROMETRE.text(value) for value in clearances]
-    figure = sweep_figure(models[0].scene.title, models[0].law, sweeps, labels) if arguments.plot else None
+    law = f"{models[0].law}; {TEMPERATURE.text(models[0].scene.temperature).replace('deg', '°')}"
+    figure = sweep_figure(models[0].scene.title, law, sweeps, labels) if arguments.plot else None
     lines += outside + write(arguments, models[0], sweep_dataset(sweeps, clearances), figure)
     return "\n".join(lines), 1 if outside else 0
 
@@ -79,7 +82,7 @@ def _over_speed(arguments: argparse.Namespace, models: tuple[Model, ...], speeds
 def _changes(result: Sweep) -> list[str]:
     """Lines on how the frequencies of modes with strain energy in the bearings change."""
     first, last = RPM.text(float(result.speeds[0])), RPM.text(float(result.speeds[-1]))
-    lines = [f"  mode at {first:12s} at {last:12s}   change   bearings' strain energy"]
+    lines = [f"  mode at {first:12s} at {last:12s}   change   strain energy in the bearings at {first}"]
     for k in range(result.frequency.shape[1]):
         share = float(result.bearing_share[0, k])
         if share >= _LEAST_SHARE:
@@ -88,6 +91,22 @@ def _changes(result: Sweep) -> list[str]:
                 f"  {k + 1:4d} {begin:11.5g} Hz {end:12.5g} Hz {100.0 * (end / begin - 1.0):+8.2f} % {share:10.2f}"
             )
     return lines
+
+
+def _too_quick(model: Model, result: Sweep) -> list[str]:
+    """A line for each bearing whose films are too slow for the highest mode, with the speed where they are slowest."""
+    worst: dict[str, tuple[float, float, float]] = {}
+    for index, speed in enumerate(result.speeds.tolist()):
+        highest = float(result.frequency[index].max())
+        for limit in film_limits(model, result.displacement[index], Operation(speed)):
+            ratio = limit.ratio(highest)
+            if ratio > max(HIGHEST_RATIO, worst.get(limit.bearing, (0.0,))[0]):
+                worst[limit.bearing] = ratio, highest, speed
+    return [
+        f"warning: {name}: omega b/u is up to {ratio:.2g} ({highest:.5g} Hz at {RPM.text(speed)}): above "
+        f"{HIGHEST_RATIO} low-frequency stiffness and damping no longer hold"
+        for name, (ratio, highest, speed) in worst.items()
+    ]
 
 
 def _speeds(texts: list[str]) -> FloatArray:

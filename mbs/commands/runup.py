@@ -27,7 +27,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
     before = model.outside_calls
     bar = progress(round(course.duration / course.settings.sample))
-    bar.taken_over(0)
+    bar.begin()
     begin = time.perf_counter()
     result = integrate(
         model.system,

@@ -15,6 +15,7 @@ from mbs.roller_element import ring_matrices
 from mbs.statics import Equilibrium, equilibrium
 
 _SHOWN = (1, 2, 4, 5)
+_ROUND_OFF = 1e-9
 _NAMES = ("y", "z", "theta_y", "theta_z")
 
 
@@ -28,13 +29,15 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"equilibrium in {balance.steps} Newton steps, residual {balance.residual:.1e} of the largest force",
         *_coordinates(model, balance),
     ]
-    for index, (bearing, motion) in enumerate(ring_motions(model, balance)):
+    for index, (bearing, motion) in enumerate(ring_motions(model, balance.displacement)):
         force = balance.forces[index]
+        size = float(np.hypot(force[1], force[2]))
         rollers = bearing.rollers(motion, balance.operation)
         stiffness, damping = ring_matrices(balance.element_stiffness[index], balance.element_damping[index])
         lines += [
-            f"{bearing.name}: {float(np.hypot(force[1], force[2])):.6g} N on the inner ring "
-            f"(y {force[1]:.6g}, z {force[2]:.6g}), ring moved {_um(motion[1])} in y, {_um(motion[2])} in z",
+            f"{bearing.name}: {size:.6g} N on the inner ring "
+            f"(y {_clean(force[1], size):.6g}, z {_clean(force[2], size):.6g}), moved against the outer ring "
+            f"{_um(motion[1])} in y, {_um(motion[2])} in z",
             f"  entrainment speed {bearing.entrainment_speed(balance.operation):.4g} m/s; "
             f"{np.count_nonzero(rollers.load > 0.0)} of {rollers.load.size} rollers loaded, the most with "
             f"{float(rollers.load.max()):.5g} N",
@@ -43,7 +46,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         ]
     lines += [
         f"{limit.bearing}: films follow as in the low-frequency limit up to {limit.frequency:.4g} Hz (omega b/u = 0.3)"
-        for limit in film_limits(model, balance)
+        for limit in film_limits(model, balance.displacement, balance.operation)
     ]
     outside = outside_at(model, balance)
     lines += outside + write(arguments, model, statics_dataset(balance), figure)
@@ -57,19 +60,26 @@ def _coordinates(model: Model, balance: Equilibrium) -> list[str]:
     for name, unit, value in zip(model.system.coordinates, model.system.units, balance.displacement, strict=True):
         factor, word = shown[unit]
         if ".roller_" not in name:
-            lines.append(f"  {name:24s} {value * factor:14.6g} {word}")
+            lines.append(f"  {name:24s} {_clean(value * factor):14.6g} {word}")
     return lines
 
 
 def _matrix(title: str, matrix: FloatArray) -> list[str]:
     """Lines of a matrix on the inner ring, without the axial rows."""
+    scale = np.sqrt(np.abs(np.diag(matrix)))
     rows = [
-        f"    {_NAMES[i]:8s}" + "".join(f"{matrix[row, column]:13.5g}" for column in _SHOWN)
+        f"    {_NAMES[i]:8s}"
+        + "".join(f"{_clean(matrix[row, column], scale[row] * scale[column]):13.5g}" for column in _SHOWN)
         for i, row in enumerate(_SHOWN)
     ]
-    return [f"  {title}", *rows]
+    return [f"  {title:34s}{_NAMES[0]:>3s}" + "".join(f"{name:>13s}" for name in _NAMES[1:]), *rows]
 
 
 def _um(value: float) -> str:
     """A length."""
-    return f"{value * 1e6:.5g} um"
+    return f"{_clean(value * 1e6):.5g} um"
+
+
+def _clean(value: float, scale: float = 1.0) -> float:
+    """Zero in place of what is left by round-off."""
+    return 0.0 if abs(value) < _ROUND_OFF * scale else float(value)

@@ -66,6 +66,13 @@ scalarField startPressure(const dictionary& dict, const lineContact& contact, co
                 << "x, pressure: got lists of " << places.size() << " and " << values.size()
                 << ", allowed are lists of the same length of at least 2" << exit(FatalIOError);
         }
+        for (label i = 1; i < places.size(); ++i)
+        {
+            if (places[i] > places[i - 1]) continue;
+            FatalIOErrorInFunction(start)
+                << "x: got " << places[i] << " after " << places[i - 1]
+                << ", allowed are places in rising order" << exit(FatalIOError);
+        }
         pressure = interpolateXY(middle, places, values);
         forAll(middle, i)
         {
@@ -84,6 +91,25 @@ scalarField startPressure(const dictionary& dict, const lineContact& contact, co
         pressure[i] = max(pressure[i], middle[i] < 0 ? least : scalar(0));
     }
     return pressure*contact.load/sum(pressure*length);
+}
+
+
+//- Frequencies [Hz] of the linear response that is asked for
+scalarField askedFrequencies(const dictionary& dict)
+{
+    if (!dict.found("response")) return scalarField();
+    const dictionary& asked = dict.subDict("response");
+    const scalarField frequencies(asked.lookup("frequencies"));
+    for (const scalar frequency : frequencies)
+    {
+        if (!(frequency >= 0) || frequency > GREAT)
+        {
+            FatalIOErrorInFunction(asked)
+                << "frequencies: got " << frequency << ", allowed are numbers from 0 to " << GREAT
+                << exit(FatalIOError);
+        }
+    }
+    return frequencies;
 }
 
 
@@ -205,6 +231,7 @@ int main(int argc, char* argv[])
     const newtonControls controls{positive(dict, "tolerance"), dict.get<label>("maxIterations")};
     const dictionary& meshDict = dict.subDict("mesh");
     const scalarField x(contact.halfWidth*columnLayout(meshDict).faces(columns));
+    const scalarField frequencies(askedFrequencies(dict));
     const scalar filmScale = positive(meshDict, "film")*contact.filmUnit();
     fvMesh mesh
     (
@@ -285,9 +312,8 @@ int main(int argc, char* argv[])
     }
 
     // how it moves: linear response, and the check in time
-    if (solved.end == outcome::converged && dict.found("response"))
+    if (solved.end == outcome::converged && frequencies.size())
     {
-        const scalarField frequencies(dict.subDict("response").lookup("frequencies"));
         const scalar spike = meshDict.get<scalar>("spikePosition");
         label isobar = -1;
         if (positive(meshDict, "film") > 0 && meshDict.get<scalar>("spikeWidth") > 0)

@@ -42,8 +42,8 @@ def test_closed_cycles_create_no_energy(speed, temperature, q, mean, amplitudes,
     assert np.all(c >= 0.0)
     power = w * rate / frequency
     work = np.sum(0.5 * (power[1:] + power[:-1]) * np.diff(phase))
-    # The elastic part returns what it took, but for the error of the trapezia.
-    assert work >= -1e-4 * np.sum(np.abs(power)) * phase[1]
+    # The elastic part returns what it took, but for the error of the trapezia; below 1e-30 J/m there is no contact.
+    assert work >= -1e-4 * np.sum(np.abs(power)) * phase[1] - 1e-30
 
 
 @settings(max_examples=100, deadline=None)

@@ -106,4 +106,6 @@ def test_cage_turned_by_a_pitch_changes_nothing(clearance, speed, angle, pose):
     f, K, _ = at(p, None, angle)
     again, stiffness, _ = at(p, None, angle + 2.0 * np.pi / 12)
     np.testing.assert_allclose(again, f, atol=1e-9 * (1.0 + np.max(np.abs(f))))
-    np.testing.assert_allclose(stiffness, K, atol=1e-7 * (1.0 + np.max(K)))
+    # At rest a dry slice is as stiff as delta^(1/9): one at lift-off by round-off has a few per cent of a slice.
+    share = 1e-7 if speed > 0.0 else 2e-3
+    np.testing.assert_allclose(stiffness, K, atol=share * (1.0 + np.max(K)))

@@ -12,7 +12,7 @@ Foam::columnLayout::columnLayout(const dictionary& dict)
 {
     const scalar H = positive(dict, "film");
     const scalar inletLength = positive(dict, "inletLength");
-    const scalar outletLength = dict.lookupOrDefault<scalar>("outletLength", 3);
+    const scalar outletLength = dict.found("outletLength") ? positive(dict, "outletLength") : 3;
     const scalar spikePosition = dict.get<scalar>("spikePosition");
     const scalar spikeWidth = notNegative(dict, "spikeWidth");
 

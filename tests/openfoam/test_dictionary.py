@@ -1,0 +1,139 @@
+"""What `ehlFoam` says of a bad dictionary, and the case folder as somebody uses it by hand."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from ehdmaps.openfoam.fields import read_fields, write_fields
+from ehdmaps.openfoam.installation import Installation, installation
+from ehdmaps.openfoam.results import read_film, read_results
+from ehdmaps.physics.solution import Status
+from tests.openfoam import cases
+
+pytestmark = pytest.mark.openfoam
+
+TEMPLATE = Path(__file__).parents[2] / "openfoam_cases" / "lineContact"
+COLUMNS, ROWS = 60, 6
+
+# what is replaced by what in a good file, what the message says, and where: a line, or the span of the file
+BAD = {
+    "unknown viscosity law": ("type Roelands", "type Rolands", "Unknown viscosityLaw type Rolands", "viscosity"),
+    "unknown density law": ("type DowsonHigginson", "type Dowson", "Unknown densityLaw type Dowson", "density"),
+    "unknown shear law": (
+        "type Newtonian;", "type Newton; stress 1e6;", "Unknown shearLaw type Newton", "shear"
+    ),
+    "shear law without its stress": ("type Newtonian", "type Eyring", "Entry 'stress' not found", "shear"),
+    "unknown flow": ("flow thinFilm", "flow thickFilm", "Unknown flow type thickFilm", None),
+    "missing entry": (r"\nload [^;]*;", "", "Entry 'load' not found", None),
+    "missing entry of a law": ("viscosity 0.1; ", "", "Entry 'viscosity' not found", "viscosity"),
+    "missing law": (r"\nviscosity [^}]*}", "", "Entry 'viscosity' not found", None),
+    "negative load": (r"\nload ", "\nload -", "load: got -18742.*allowed are numbers above 0", None),
+    "load that is no number": (r"\nload [^;]*", "\nload nan", "expected scalar value, found on line 5: .*nan", "load"),
+    "infinite load": (r"\nload [^;]*", "\nload inf", "expected scalar value, found on line 5: .*inf", "load"),
+    "no expected film": (r"\{ film [^;]*", "{ film 0", "film: got 0, allowed are numbers above 0", "mesh"),
+    "negative inlet": (r"inletLength [^;]*", "inletLength -3", "inletLength: got -3", "mesh"),
+    "surfaces that roll against each other": (
+        "lowerSpeed ", "lowerSpeed -", "lowerSpeed, upperSpeed: got .*allowed are speeds with a mean above 0", None
+    ),
+    "lists of two lengths": (
+        r"start \{ x \(\S+ ", "start { x (", r"x, pressure: got lists of \d+ and \d+, allowed", "start"
+    ),
+    "frequency that is no number": (
+        r"frequencies \([^)]*\)", "frequencies (nan)", "expected scalar value", "response.frequencies"
+    ),
+    "open bracket": (r"\nload ", "\nload {", "expected }", None),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def installed() -> Installation:
+    return installation()
+
+
+@pytest.fixture(scope="module")
+def good() -> str:
+    return cases.parameters(5.0, 5.0, COLUMNS, ROWS).text()
+
+
+@pytest.fixture(scope="module")
+def meshed(installed: Installation, good: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    case = tmp_path_factory.mktemp("dictionary") / "case"
+    shutil.copytree(installed.template, case, ignore=shutil.ignore_patterns("polyMesh"))
+    (case / "constant" / "ehlProperties").write_text(good)
+    assert cases.program(installed, installed.block_mesh, case).returncode == 0
+    return case
+
+
+def _fatal(installed: Installation, case: Path, text: str) -> str:
+    """Run ehlFoam with a bad dictionary; what it says after the banner."""
+    properties = case / "constant" / "ehlProperties"
+    properties.write_text(text)
+    (case / "results").unlink(missing_ok=True)
+    ended = cases.program(installed, installed.solver, case)
+    assert ended.returncode == 1
+    if (case / "results").exists():  # what is read only after the solve: nobody may take it for a solution
+        assert "status" not in (case / "results").read_text()
+    assert "--> FOAM FATAL" in ended.stdout
+    return ended.stdout[ended.stdout.index("--> FOAM FATAL") :]
+
+
+def _replaced(good: str, pattern: str, by: str) -> str:
+    text, count = re.subn(pattern, lambda _: by, good, count=1)
+    assert count == 1
+    return text
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_entry(name: str, installed: Installation, meshed: Path, good: str) -> None:
+    pattern, by, message, entry = BAD[name]
+    said = _fatal(installed, meshed, _replaced(good, pattern, by))
+    assert said.startswith("--> FOAM FATAL IO ERROR")
+    assert re.search(message, said)
+    place = re.escape(str(meshed / "constant" / "ehlProperties")) + ("" if entry is None else rf"\.{entry}")
+    assert re.search(rf"file: {place} (at line \d+|from line \d+ to line \d+)", said)
+
+
+@pytest.mark.parametrize(("pattern", "by"), [("rows 6;", "rows 7;"), ("columns 60;", "columns 61;")])
+def test_mesh_of_other_numbers(pattern: str, by: str, installed: Installation, meshed: Path, good: str) -> None:
+    said = _fatal(installed, meshed, _replaced(good, pattern, by))
+    columns, rows = (61, 6) if "61" in by else (60, 7)
+    assert f"the mesh has 360 cells and 854 points, not those of {columns} columns of {rows} cells" in said
+    assert "run blockMesh with the same columns and rows" in said
+
+
+def test_case_by_hand(installed: Installation, tmp_path: Path) -> None:
+    case = tmp_path / "lineContact"
+    shutil.copytree(TEMPLATE, case, ignore=shutil.ignore_patterns("polyMesh", "1", "results", "film.dat", "log.*"))
+    before = sorted(path.relative_to(case) for path in case.rglob("*"))
+    ended = subprocess.run([case / "Allrun"], cwd=tmp_path, capture_output=True, text=True, timeout=120.0, check=False)
+    assert ended.returncode == 0, ended.stderr
+    assert "converged" in ended.stdout
+    results = read_results(case)
+    assert results.status is Status.CONVERGED
+    assert read_film(case, 400).film.min() == pytest.approx(results.minimum_film, rel=0.01)  # half a column between
+    assert {path.name for path in (case / "1").iterdir()} >= {"p", "U", "mu", "rho", "liquidFraction"}
+
+    fields = read_fields(case)
+    assert fields.p.size == 400 * 16
+    assert fields.p.max() == pytest.approx(results.max_pressure, rel=1e-6)  # digits in the files
+    write_fields(fields, tmp_path / "film.vtu")
+    assert (tmp_path / "film.vtu").stat().st_size > 0
+    to_vtk = shutil.which("foamToVTK")
+    if to_vtk is not None:
+        ended = cases.program(installed, to_vtk, case)
+        assert ended.returncode == 0, ended.stdout[-2000:]
+        (written,) = (case / "VTK").rglob("internal.vtu")
+        import meshio
+
+        data = meshio.read(written).cell_data
+        assert {"p", "U", "mu", "rho", "liquidFraction"} <= set(data)
+        assert data["p"][0].max() == pytest.approx(results.max_pressure, rel=1e-5)  # single precision
+        shutil.rmtree(case / "VTK")
+
+    assert subprocess.run([case / "Allclean"], check=False).returncode == 0
+    assert sorted(path.relative_to(case) for path in case.rglob("*")) == before

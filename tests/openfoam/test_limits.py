@@ -1,0 +1,115 @@
+"""Closed forms, and the points of an independent solver."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from ehdmaps.openfoam.parameters import Flow, Parameters
+from ehdmaps.openfoam.results import Results
+from ehdmaps.physics.hertz import half_width, max_pressure
+from tests.openfoam import cases
+
+pytestmark = pytest.mark.openfoam
+
+REFERENCES = tomllib.loads((Path(__file__).parents[1] / "references" / "line_contact.toml").read_text())
+POINTS = REFERENCES["point"]
+MARTIN = next(limit for limit in REFERENCES["limit"] if limit["name"] == "rigid isoviscous rolling film")
+
+
+def _in_groups(results: Results, settings: Parameters) -> dict[str, float]:
+    """Moes' film numbers, and compliance and loss in Hertz' scaling."""
+    radius, modulus, speed = settings.reduced_radius, settings.reduced_modulus, settings.lower_speed
+    film = radius * math.sqrt(2.0 * settings.oil.viscosity * speed / (modulus * radius))
+    half = float(half_width(settings.load, radius, modulus))
+    unit = float(max_pressure(settings.load, radius, modulus)) * radius / half
+    return {
+        "minimum_film": results.minimum_film / film,
+        "central_film": results.central_film / film,
+        "compliance": results.film_compliance[0] * unit + math.log(2.0) / math.pi,
+        "loss": results.loss_compliance[0] * unit * speed / half,
+    }
+
+
+def _extrapolated(coarse: float, fine: float) -> float:
+    """Richardson, for second order and half the cells."""
+    return fine + (fine - coarse) / 3.0
+
+
+SOLVED = [
+    pytest.param(point, flow, id=f"M{point['M']:g}-L{point['L']:g}-{flow}")
+    for point in POINTS
+    for flow in ("thin_film", "full_stress")
+    # behind this spike shear stress rises half as fast as pressure, and Newton's method with all stresses stagnates
+    if flow == "thin_film" or point["L"] < 10.0
+]
+
+
+@pytest.mark.parametrize(("point", "flow"), SOLVED)
+def test_independent_solver(point: dict[str, float], flow: Flow) -> None:
+    """Isothermal, Newtonian points of a finite-difference solver, extrapolated over its grids."""
+    inlet = 60.0 if point["L"] == 0.0 else 100.0  # the reference's inlet at M = 0.1, where it matters
+    M, L = point["M"], point["L"]
+    settings = cases.parameters(M, L, inlet_length=inlet, flow=flow)
+    coarse, fine = (
+        _in_groups(cases.results(M, L, columns, rows, flow, inlet_length=inlet), settings)
+        for columns, rows in ((200, 8), (400, 16))
+    )
+    # films: what is left after second order, of 2/rows^2 squared; response: the place of rupture among the columns,
+    # some 1e-3 of the compliance where the film has little of it, more where the film is all of it (M = 0.1)
+    light = M < 1.0
+    tolerances = {
+        "minimum_film": 5e-4,
+        "central_film": 5e-4,
+        "compliance": 5e-3 if light else 2e-3,
+        "loss": 1.5e-2 if light else 5e-3,
+    }
+    for name, tolerance in tolerances.items():
+        if name in point:
+            assert _extrapolated(coarse[name], fine[name]) == pytest.approx(point[name], rel=tolerance), name
+            # on the grid itself: 4/rows^2 = 1.6 %, and the place of rupture as above
+            assert fine[name] == pytest.approx(point[name], rel=0.016 + tolerance), name
+
+
+def _martin(columns: int, rows: int, flow: Flow) -> dict[str, float]:
+    """Film, stiffness and damping over their limits at M = 1e-3, where elastic deflection is 1e-5 of the film."""
+    settings = cases.parameters(1e-3, 0.0, columns, rows, inlet_length=300.0, flow=flow)
+    assert settings.start is not None
+    # mixture ends at a pressure of -1e-5 of the film's, not of Hertz', which is a thousand times as high here
+    range_ = 1e-5 * float(settings.start.pressure.max())
+    results = cases.run(replace(settings, cavitation_range=range_, tolerance=1e-11)).results
+    radius, viscosity, load = settings.reduced_radius, settings.oil.viscosity, settings.load
+    film, stiffness = results.minimum_film, 1.0 / results.film_compliance[0]
+    limit = 2.0 * MARTIN["film_times_M"] * viscosity * settings.lower_speed * radius / load
+    damping = MARTIN["damping"] * viscosity * (radius / film) ** 1.5
+    return {
+        "film": film / limit,
+        "offset": results.film_offset / film,
+        "stiffness": stiffness * film / load,
+        "damping": results.loss_compliance[0] * stiffness**2 / damping,
+    }
+
+
+def test_martin_limit() -> None:
+    """w = 4.895 eta u R/h, k = w/h, c = 6.548 eta (R/h)^1.5."""
+    coarse, fine = (_martin(columns, rows, "thin_film") for columns, rows in ((200, 16), (400, 32)))
+    # pressure drives 1 + 2/rows^2 of the exact flux, which takes as much from the film, and some more along x
+    assert coarse["film"] == pytest.approx(1.0, abs=4.0 / 16**2)
+    assert fine["film"] == pytest.approx(1.0, abs=4.0 / 32**2)
+    # inlet of finite length 2.4/300^2 = 2.7e-5, deflection and range of cavitation 1e-5 each; the rest of both grids
+    assert _extrapolated(coarse["film"], fine["film"]) == pytest.approx(1.0, abs=2e-4)
+    assert fine["offset"] == pytest.approx(1.0, abs=1e-4)  # inlet and deflection
+    # place of rupture among the columns, of first order
+    assert fine["stiffness"] == pytest.approx(1.0, abs=5e-3)
+    assert fine["damping"] == pytest.approx(1.0, abs=1e-2)
+
+
+def test_martin_limit_with_all_stresses() -> None:
+    thin, full = (_martin(200, 16, flow) for flow in ("thin_film", "full_stress"))
+    # h/R is 4e-5; the rest is how the two take the end of the film, in its last column
+    for name in ("film", "offset", "stiffness", "damping"):
+        assert full[name] == pytest.approx(thin[name], abs=2e-3), name
