@@ -35,7 +35,10 @@ LARGEST_PRESSURE = 10e9
 CAVITATION_RANGE = 1e-6
 """Pressure over which liquid turns into the cavitated mixture, over the largest of the film (about)."""
 
-PARAMETER_VERSION = 1
+MOVED_COLUMNS = 1.1
+"""Columns of a second try, over those asked for."""
+
+PARAMETER_VERSION = 2
 """Raised when a change of this package changes numbers: results of another version are not taken over."""
 
 StartWord = Literal["reynolds", "hertz"]
@@ -140,7 +143,7 @@ class OpenFoamSolver:
     slide_to_roll: float = 0.0
     inlet_length: float = 100.0
     tolerance: float = 1e-9
-    max_iterations: int = 60
+    max_iterations: int = 40
     starter: Starter | None = None
     timeout: float = 120.0
     keep_cases: Path | None = None
@@ -279,11 +282,11 @@ class OpenFoamSolver:
             fine = self.parameters(contact, lubricant, point, frequency)
             halved = replace(fine, columns=fine.columns // 2, rows=fine.rows // 2)
             name = _case_name(contact, point)
-            coarse = self.run_case(halved, name, end=end)
+            coarse = self._stubborn(halved, name, False, end)
             done = coarse.results.iterations
             stage = "fine grid"
             start = Start(coarse.film.x, coarse.film.pressure, coarse.results.central_film)
-            grid = self.run_case(replace(fine, start=start), name, with_fields, end)
+            grid = self._stubborn(fine, name, with_fields, end, start)
         except InputError as error:
             return FilmSolution(Status.OUTSIDE_VALIDITY, str(error)), None
         except SolverError as error:
@@ -293,6 +296,26 @@ class OpenFoamSolver:
                 status, iterations = error.status, done + error.iterations
             return FilmSolution(status, f"{stage}: {error}", iterations=iterations, solve_seconds=seconds), None
         return _film(contact, state, coarse, grid, time.perf_counter() - began), grid
+
+    def _stubborn(
+        self, parameters: Parameters, name: str, with_fields: bool, end: float, start: Start | None = None
+    ) -> GridSolution:
+        """Run one grid from `start`; where that stagnates from its own start, then with its columns elsewhere.
+
+        Behind a steep pressure spike it depends on where the columns stand whether Newton's method finds its way.
+        """
+        moved = replace(parameters, columns=2 * round(MOVED_COLUMNS * parameters.columns / 2))
+        tries = ([replace(parameters, start=start)] if start is not None else []) + [parameters, moved]
+        for attempt in tries:
+            try:
+                grid = self.run_case(attempt, name, with_fields, end)
+            except RunError as error:
+                if error.status is not Status.STAGNATED or attempt is tries[-1]:
+                    raise
+            else:
+                note = "" if attempt is not moved else f"solved on {moved.columns} columns"
+                return replace(grid, note="; ".join(filter(None, [grid.note, note])))
+        raise AssertionError("unreachable: the last try returns or raises")
 
     def parameters(
         self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequency: float = 0.0

@@ -94,13 +94,13 @@ def _changes(result: Sweep) -> list[str]:
 
 
 def _too_quick(model: Model, result: Sweep) -> list[str]:
-    """A line for each bearing whose films are too slow for the highest mode, with the speed where they are slowest."""
+    """A line for each bearing whose films are too slow for the highest mode, with the worst speed; none at rest."""
     worst: dict[str, tuple[float, float, float]] = {}
     for index, speed in enumerate(result.speeds.tolist()):
         highest = float(result.frequency[index].max())
         for limit in film_limits(model, result.displacement[index], Operation(speed)):
             ratio = limit.ratio(highest)
-            if ratio > max(HIGHEST_RATIO, worst.get(limit.bearing, (0.0,))[0]):
+            if speed > 0.0 and ratio > max(HIGHEST_RATIO, worst.get(limit.bearing, (0.0,))[0]):
                 worst[limit.bearing] = ratio, highest, speed
     return [
         f"warning: {name}: omega b/u is up to {ratio:.2g} ({highest:.5g} Hz at {RPM.text(speed)}): above "

@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *heading(model),
         f"from {first} to {last} in {course.duration:.4g} s: {result.steps} steps, {result.halved} taken back, "
         f"{result.iterations / max(result.steps, 1):.3g} Newton iterations a step, "
-        f"{1e6 * seconds / max(result.steps, 1):.3g} us a step",
+        f"{1e6 * seconds / max(result.steps, 1):.0f} us a step",
     ]
     for bearing, force in zip(model.bearings, result.forces, strict=True):
         size = np.hypot(force[:, 1], force[:, 2])

@@ -163,7 +163,7 @@ def test_numbers_that_are_none_reach_no_case(fake):
     nowhere = replace(reynolds_start(CONTACT, OIL, 2e4, 1.0, 313.15), expected_film=float("nan"))
     film = solved(OpenFoamSolver(starter=lambda *_: nowhere))
     assert film.status is Status.OUTSIDE_VALIDITY
-    assert film.reason == "ehlProperties, film: got nan; allowed: a finite number"
+    assert film.reason == "ehlProperties, pressureRange: got nan; allowed: a finite number"
     assert openfoam_fake.starts(fake) == []
 
 

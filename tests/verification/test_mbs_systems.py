@@ -360,7 +360,11 @@ class TestRunUp:
 
     @pytest.mark.parametrize(("clearance", "in_the_fade"), [(20e-6, 0.01), (0.0, 0.015)])
     def test_equilibria_move_less_than_one_per_cent_of_the_approach_a_rpm(self, film_models, clearance, in_the_fade):
-        """Of the approach at rest. Without clearance that is small, and the film fades within 30 rpm: 1.2 % there."""
+        """Of the approach at rest, and with one exception.
+
+        Without clearance that approach is small, and the film fades to the dry contact within 30 rpm: 1.2 % is found
+        there, above the 1 % that is wanted, and 1.5 % is what this test allows.
+        """
         system = film_models[clearance].system
         for rpm, most in (
             (np.arange(0.0, 31.0, 1.0), in_the_fade),
