@@ -83,7 +83,7 @@ def solve(
     point : OperatingPoint
         Load, entrainment speed and temperature.
     solver : str or ContactSolver
-        Name of a solver with its default settings ("hertz", "formula", "reynolds"), or a solver.
+        Name of a solver with its default settings ("hertz", "formula", "reynolds", "openfoam"), or a solver.
 
     Returns
     -------

@@ -1,0 +1,70 @@
+"""The contact data of the thesis that the project starts from, by all solvers, for FVA 3 and for a thin oil.
+
+Run: python -m tests.benchmarks.thesis_points > table.md
+
+N1014: a slice of 0.45 mm; the thesis gives mean cage speeds, the entrainment speed is 1.099 times as much. NU308: a
+slice of 0.7 mm under 62 N, 0.43 to 1.7 m/s taken as entrainment speed. Inner / outer contact, ISO 16281 structure. The
+thin oil has 16 mm^2/s (its value at 40 degC), 870 kg/m^3 and 20 1/GPa: assumptions, the same at 30 degC.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ehdmaps.ehl.solver import ReynoldsSolver
+from ehdmaps.ehl.start import reynolds_start
+from ehdmaps.openfoam.solver import OpenFoamSolver
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.solution import ContactSolution, ContactSolver, contact_solution
+
+THIN = Lubricant.roelands(viscosity=16e-6 * 870.0, pressure_viscosity=2e-8, density=870.0)
+OILS = {"FVA 3": Lubricant.named("FVA3"), "16 mm^2/s": THIN}
+SOLVERS: dict[str, Callable[[], ContactSolver]] = {
+    "hertz": HertzSolver,
+    "formula": FormulaSolver,
+    "reynolds": ReynoldsSolver,
+    "openfoam thin_film": lambda: OpenFoamSolver(starter=reynolds_start),
+    "openfoam full_stress": lambda: OpenFoamSolver(flow="full_stress", starter=reynolds_start),
+}
+POINTS = (
+    ("N1014", 40.0, 0.45e-3, 3.297, 40.0, "CFD 1.8e7, 15; Reynolds 1.49e7, 24; Hertz 2.1e7"),
+    ("N1014", 15.5, 0.45e-3, 5.935, 30.0, "CFD 1.595e7, 13.26"),
+    ("NU308", 62.0, 0.7e-3, 0.43, 40.0, "k and c fall with speed"),
+    ("NU308", 62.0, 0.7e-3, 1.0, 40.0, "k and c fall with speed"),
+    ("NU308", 62.0, 0.7e-3, 1.7, 40.0, "k and c fall with speed"),
+)
+
+
+def _cell(solutions: list[ContactSolution], length: float) -> str:
+    """Stiffness [N/m] and damping [N s/m] of the slice, inner / outer."""
+    if not all(solution.status.usable for solution in solutions):
+        return ", ".join(sorted({solution.status.word for solution in solutions})).replace("_", " ")
+    stiffness = " / ".join(f"{solution.stiffness * length:.3e}".replace("e+0", "e") for solution in solutions)
+    return f"{stiffness}, {' / '.join(f'{solution.damping * length:.3g}' for solution in solutions)}"
+
+
+def main() -> None:
+    """Print the table: k [N/m], c [N s/m] of a slice."""
+    print(f"| point | oil | {' | '.join(SOLVERS)} | thesis |")
+    print("|" + "---|" * (len(SOLVERS) + 3))
+    for bearing, force, length, speed, celsius, thesis in POINTS:
+        contacts = BearingGeometry.named(bearing).contacts(STEEL, "iso16281")
+        point = OperatingPoint(force / length, speed, celsius + 273.15)
+        for name, oil in OILS.items():
+            cells = []
+            for make in SOLVERS.values():
+                solutions = []
+                for contact in contacts:
+                    (film,) = make().solve_line(contact, oil, (point.load,), speed, point.temperature)
+                    solutions.append(contact_solution(film, contact, point))
+                cells.append(_cell(solutions, length))
+            where = f"{bearing}, {force:g} N, {speed:g} m/s, {celsius:g} degC"
+            print(f"| {where} | {name} | {' | '.join(cells)} | {thesis} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
