@@ -213,6 +213,119 @@ solvedFilm steadyState
 }
 
 
+//- The file `results`, and how a number gets into it
+class resultsFile
+{
+    OFstream file_;
+
+public:
+
+    resultsFile(const Time& runTime)
+    :
+        file_(runTime.path()/"results")
+    {
+        file_.precision(15);
+        IOobject::writeBanner(file_)
+            << "FoamFile { version 2.0; format ascii; class dictionary; object results; }" << nl;
+    }
+
+    template<class Type>
+    void write(const word& key, const Type& value)
+    {
+        file_ << key << ' ' << value << ';' << nl;
+    }
+};
+
+
+//- Films and defects of the steady state; one with too large a defect counts as stagnated
+void reportFilm(resultsFile& results, slice& s, newtonResult& solved)
+{
+    s.residual(solved.state, nullptr);
+    const filmState state(s.film(solved.state));
+    const scalarField flux(s.flow().columnFlux());
+    scalar greatest = 0;
+    forAll(state.column, i)
+    {
+        greatest = max(greatest, s.flow().loadPressure(state.column[i]));
+    }
+    results.write("centralFilm", centralFilm(state));
+    results.write("minimumFilm", min(state.h));
+    results.write("maximumPressure", greatest);
+    results.write("filmOffset", solved.state.offset*s.filmScale() - s.solid().dry().offset);
+    results.write("outletDefect", mag(flux.last()/flux[0] - 1));
+
+    struct { word key; const char* name; scalar defect, most; } const balances[] =
+    {
+        {"loadDefect", "the load", mag(s.load(solved.state)/s.contact().load - 1), 1e-8},
+        {"fluxDefect", "mass flux upstream of rupture", s.fluxDefect(), 1e-8},
+        {"cellContinuity", "continuity of a cell", s.flow().cellContinuity(), 1e-6}
+    };
+    for (const auto& balance : balances)
+    {
+        results.write(balance.key, balance.defect);
+        if (solved.end == outcome::converged && !(balance.defect <= balance.most))
+        {
+            OStringStream reason;
+            reason << balance.name << " has a relative defect of " << balance.defect
+                << ", allowed is " << balance.most;
+            solved.end = outcome::stagnated;
+            solved.reason = reason.str();
+        }
+    }
+}
+
+
+//- The columns as a table
+void writeTable(const Time& runTime, const slice& s, const filmState& state)
+{
+    const scalarField flux(s.flow().columnFlux()), fraction(s.flow().columnFraction());
+    const scalarField density(s.flow().columnDensity());
+    OFstream table(runTime.path()/"film.dat");
+    table.precision(12);
+    table << "# x pressure film flux density liquid_fraction" << nl;
+    forAll(state.column, i)
+    {
+        table
+            << 0.5*(state.x[i] + state.x[i + 1]) << ' '
+            << s.flow().loadPressure(state.column[i]) << ' '
+            << 0.5*(state.h[i] + state.h[i + 1]) << ' '
+            << flux[i + 1] << ' ' << density[i] << ' ' << fraction[i] << nl;
+    }
+}
+
+
+//- Linear response, on a mesh that follows the pressure spike if there is one
+void reportResponse
+(
+    resultsFile& results,
+    slice& s,
+    const slice::unknowns& solution,
+    const scalarField& frequencies,
+    const dictionary& meshDict
+)
+{
+    const scalar place = meshDict.get<scalar>("spikePosition"), width = meshDict.get<scalar>("spikeWidth");
+    const label isobar = width > 0 ? frontColumn(s, solution, place) : -1;
+    if (isobar >= 0)
+    {
+        const scalar step = 1e-4*width;
+        dictionary shifted(meshDict);
+        shifted.set("spikePosition", place + step);
+        s.follow(s.contact().halfWidth*columnLayout(shifted).faces(s.columns()), step);
+    }
+    const List<filmResponse> found(response(s, solution, frequencies, isobar));
+    scalarField compliance(found.size()), loss(found.size());
+    forAll(found, f)
+    {
+        compliance[f] = found[f].filmCompliance;
+        loss[f] = found[f].lossCompliance;
+    }
+    results.write("frequencies", frequencies);
+    results.write("filmCompliance", compliance);
+    results.write("lossCompliance", loss);
+}
+
+
 int main(int argc, char* argv[])
 {
     argList::addNote("Elastohydrodynamic line contact, film-resolved");
@@ -246,63 +359,11 @@ int main(int argc, char* argv[])
     newtonResult& solved = found.result;
     slice& s = *found.contact;
     label iterations = solved.iterations;
-    s.residual(solved.state, nullptr);
 
-    OFstream results(runTime.path()/"results");
-    results.precision(15);
-    IOobject::writeBanner(results) << "FoamFile { version 2.0; format ascii; class dictionary; object results; }" << nl;
-    auto write = [&](const word& key, const scalar value) { results << key << ' ' << value << ";" << nl; };
-
-    // what it is: films and defects
-    const filmState state(s.film(solved.state));
-    const scalarField flux(s.flow().columnFlux()), fraction(s.flow().columnFraction());
-    const scalarField density(s.flow().columnDensity());
-    scalar least = GREAT, greatest = 0;
-    for (label k = 0; k <= columns; ++k)
-    {
-        least = min(least, state.h[k]);
-    }
-    for (label i = 0; i < columns; ++i)
-    {
-        greatest = max(greatest, s.flow().loadPressure(state.column[i]));
-    }
-    const halfSpace::dryContact dry(s.solid().dry());
-    const scalar h0 = solved.state.offset*filmScale;
-    write("centralFilm", centralFilm(state));
-    write("minimumFilm", least);
-    write("maximumPressure", greatest);
-    write("filmOffset", h0 - dry.offset);
-    write("loadDefect", mag(s.load(solved.state)/contact.load - 1));
-    write("fluxDefect", s.fluxDefect());
-    write("outletDefect", mag(flux.last()/flux[0] - 1));
-    write("cellContinuity", s.flow().cellContinuity());
-
-    if (solved.end == outcome::converged)
-    {
-        const scalar defects[] = {mag(s.load(solved.state)/contact.load - 1), s.fluxDefect(), s.flow().cellContinuity()};
-        const word names[] = {"load", "mass flux upstream of rupture", "continuity of a cell"};
-        const scalar most[] = {1e-8, 1e-8, 1e-6};
-        for (label i = 0; i < 3; ++i)
-        {
-            if (defects[i] <= most[i]) continue;
-            OStringStream reason;
-            reason << names[i] << " has a relative defect of " << defects[i] << ", allowed is " << most[i];
-            solved.end = outcome::stagnated;
-            solved.reason = reason.str();
-        }
-    }
-
-    OFstream table(runTime.path()/"film.dat");
-    table.precision(12);
-    table << "# x pressure film flux density liquid_fraction" << nl;
-    for (label i = 0; i < columns; ++i)
-    {
-        table
-            << 0.5*(state.x[i] + state.x[i + 1]) << ' '
-            << s.flow().loadPressure(state.column[i]) << ' '
-            << 0.5*(state.h[i] + state.h[i + 1]) << ' '
-            << flux[i + 1] << ' ' << density[i] << ' ' << fraction[i] << nl;
-    }
+    // what it is
+    resultsFile results(runTime);
+    reportFilm(results, s, solved);
+    writeTable(runTime, s, s.film(solved.state));
     if (dict.lookupOrDefault<bool>("writeFields", true))
     {
         runTime.setTime(1, 1);
@@ -314,41 +375,22 @@ int main(int argc, char* argv[])
     // how it moves: linear response, and the check in time
     if (solved.end == outcome::converged && frequencies.size())
     {
-        const scalar spike = meshDict.get<scalar>("spikePosition");
-        label isobar = -1;
-        if (positive(meshDict, "film") > 0 && meshDict.get<scalar>("spikeWidth") > 0)
-        {
-            isobar = frontColumn(s, solved.state, spike);
-            dictionary shifted(meshDict);
-            const scalar step = 1e-4*meshDict.get<scalar>("spikeWidth");
-            shifted.set("spikePosition", spike + step);
-            if (isobar >= 0) s.follow(contact.halfWidth*columnLayout(shifted).faces(columns), step);
-        }
-        const List<filmResponse> found(response(s, solved.state, frequencies, isobar));
-        scalarField compliance(found.size()), loss(found.size());
-        forAll(found, f)
-        {
-            compliance[f] = found[f].filmCompliance;
-            loss[f] = found[f].lossCompliance;
-        }
-        results << "frequencies " << frequencies << ";" << nl
-            << "filmCompliance " << compliance << ";" << nl
-            << "lossCompliance " << loss << ";" << nl;
+        reportResponse(results, s, solved.state, frequencies, meshDict);
     }
     if (solved.end == outcome::converged && dict.found("oscillation"))
     {
-        const oscillationResult found(oscillation(s, solved.state, dict.subDict("oscillation"), controls));
-        iterations += found.last.iterations;
-        solved.end = found.last.end;
-        solved.reason = found.last.reason;
-        write("oscillationFilmCompliance", found.filmCompliance);
-        write("oscillationLossCompliance", found.lossCompliance);
+        const oscillationResult moved(oscillation(s, solved.state, dict.subDict("oscillation"), controls));
+        iterations += moved.last.iterations;
+        solved.end = moved.last.end;
+        solved.reason = moved.last.reason;
+        results.write("oscillationFilmCompliance", moved.filmCompliance);
+        results.write("oscillationLossCompliance", moved.lossCompliance);
     }
 
-    results << "status " << wordOf(solved.end) << ";" << nl
-        << "reason " << solved.reason << ";" << nl
-        << "iterations " << iterations << ";" << nl;
-    write("seconds", clock.elapsedTime());
+    results.write("status", wordOf(solved.end));
+    results.write("reason", solved.reason);
+    results.write("iterations", iterations);
+    results.write("seconds", clock.elapsedTime());
     Info<< nl << wordOf(solved.end) << " " << solved.reason << " in " << iterations << " steps, "
         << clock.elapsedTime() << " s" << nl << "End" << endl;
     return 0;
