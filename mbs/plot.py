@@ -14,7 +14,7 @@ from mbs.assembly import Model
 from mbs.integration import Trajectory
 from mbs.linear import ComplexArray, response_unit
 from mbs.modes import Modes
-from mbs.scene_reader import MICROMETRE
+from mbs.reading.fields import MICROMETRE
 from mbs.statics import Equilibrium
 from mbs.sweep import Sweep
 

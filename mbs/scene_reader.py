@@ -7,7 +7,6 @@ import tomllib
 from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
-from typing import Any, TypeVar
 
 import numpy as np
 
@@ -15,30 +14,20 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.axes import AxisRule, read_axis
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.table import Table
-from ehdmaps.physics._values import FloatArray
-from ehdmaps.physics.solids import STEEL
-from ehdmaps.units import LENGTH, TEMPERATURE, Display, closest, short
+from ehdmaps.units import TEMPERATURE, Display, closest, short
 from mbs.body import FREEDOMS, Body, Inertia, rigid_body
-from mbs.elements import GROUND, Input, Load, Sensor, Spring
+from mbs.elements import Input, Load, Sensor, Spring
 from mbs.integration import Settings
 from mbs.profiles import Constant, Course, Harmonic, LoadProfile, SpeedProfile
+from mbs.reading import fields
+from mbs.reading.fields import DEGREE, FORCE, HERTZ, MICROMETRE, MILLISECOND, MOMENT, RPM, Built
 from mbs.scene import RunUp, Scene, SceneBearing
 
 LONGEST_FILE = 1_000_000
 """Bytes of a scene file."""
 
-RPM = Display("rpm", 30.0 / math.pi)
-FORCE = Display("N")
-MOMENT = Display("N m")
-MICROMETRE = Display("um", 1e6)
-MILLISECOND = Display("ms", 1e3)
-HERTZ = Display("Hz")
-DEGREE = Display("deg", 180.0 / math.pi)
-
 _FREQUENCIES = AxisRule("frequencies", "Hz", 1e-3, 1e6, HERTZ)
 _QUANTITIES = ("displacement", "velocity", "acceleration")
-_TRANSLATIONS = FREEDOMS[:3]
-Built = TypeVar("Built")
 
 
 def shipped_systems() -> tuple[str, ...]:
@@ -125,7 +114,7 @@ class _Reader:
         schema = top.get("schema", required="schema = 1")
         if "schema" in top and (isinstance(schema, bool) or schema != 1):
             top.note("schema", f"got {short(schema)}; allowed: 1; this version of mbs reads no other")
-        title = _text(top, "title") or name
+        title = fields.text(top, "title") or name
         speed = temperature = None
         operation = top.table("operation", "[operation]", required="a table with speed and temperature")
         if operation:
@@ -182,7 +171,7 @@ class _Reader:
         for index, values in enumerate(entries):
             label = values.get("name", index + 1) if isinstance(values, dict) else index + 1
             section = Table(values, f"[[{key}]] {label!s:.60}", self._top.problems)
-            name = _text(section, "name", required=True)
+            name = fields.text(section, "name", required=True)
             thing = read(section, name or "")
             self._close(section)
             if thing is not None:
@@ -202,19 +191,19 @@ class _Reader:
     def _body(self, section: Table, name: str) -> Body | None:
         """Read a rigid body."""
         before = len(section.problems)
-        freedoms = _words(section, "freedoms", FREEDOMS)
-        position = _lengths(section, "position", section.get("position"))
+        freedoms = fields.words(section, "freedoms", FREEDOMS)
+        position = fields.lengths(section, "position", section.get("position"))
         spin = section.number("spin", -1e3, 1e3)
         parts = self._parts(section)
         frames = {}
         given = section.table("frames", f"{section.where} frames")
         if given:
             for key in given.entries():
-                place = _lengths(given, key, given.get(key))
+                place = fields.lengths(given, key, given.get(key))
                 frames[key] = place or (0.0, 0.0, 0.0)
         if len(section.problems) > before or freedoms is None:
             return None
-        return _built(
+        return fields.built(
             section,
             lambda: rigid_body(name, parts, freedoms, position or (0.0, 0.0, 0.0), frames, spin or 0.0),
         )
@@ -227,7 +216,7 @@ class _Reader:
             section.note("cylinders", f"got {short(given)}; allowed: a list of tables with from, to, diameter")
         for index, values in enumerate(given if isinstance(given, list) else []):
             table = Table(values, f"{section.where} cylinders[{index}]", section.problems)
-            found.append(_cylinder(table))
+            found.append(fields.cylinder(table))
         mass = section.quantity("mass", "kg", 1e-6, 1e6, Display("kg"))
         unit = Display("kg m^2")
         polar = section.quantity("polar_inertia", "kg m^2", 1e-12, 1e6, unit)
@@ -237,25 +226,25 @@ class _Reader:
             if not all(key in section for key in keys):
                 section.note("mass", f"stands without its companions; allowed: {', '.join(keys)} together")
             elif mass is not None and polar is not None and transverse is not None:
-                found.append(_built(section, lambda: Inertia(mass, polar, transverse)))
+                found.append(fields.built(section, lambda: Inertia(mass, polar, transverse)))
         elif "cylinders" not in section:
             section.note("cylinders", f"missing; allowed: cylinders, or {', '.join(keys)}, or both")
         return [part for part in found if part is not None]
 
     def _spring(self, section: Table, name: str) -> Spring | None:
         """Read a spring."""
-        on, against = _places(section)
-        stiffness = _diagonal(section, "stiffness", "N/m", "N m/rad", required=True)
-        damping = _diagonal(section, "damping", "N s/m", "N m s/rad")
+        on, against = fields.places(section)
+        stiffness = fields.diagonal(section, "stiffness", "N/m", "N m/rad", required=True)
+        damping = fields.diagonal(section, "damping", "N s/m", "N m s/rad")
         if on is None or stiffness is None or damping is None:
             return None
         return Spring(name, on, against, np.diag(stiffness), np.diag(damping))
 
     def _load(self, section: Table, name: str) -> Load | None:
         """Read a load."""
-        on, against = _places(section)
-        force = _vector(section, "force", "N", FORCE)
-        moment = _vector(section, "moment", "N m", MOMENT)
+        on, against = fields.places(section)
+        force = fields.vector(section, "force", "N", FORCE)
+        moment = fields.vector(section, "moment", "N m", MOMENT)
         if "force" not in section and "moment" not in section:
             section.note("force", 'missing; allowed: force = ["0 N", "100 N", "0 N"], or moment, or both')
         profile = self._profile(section)
@@ -288,11 +277,11 @@ class _Reader:
             section.note("factors", f"got {short(factors)}; allowed: as many numbers as there are times, both as lists")
             return Constant()
         course = tuple(value for value in read if value is not None)
-        return _built(section, lambda: Course(course, tuple(float(value) for value in factors))) or Constant()
+        return fields.built(section, lambda: Course(course, tuple(float(value) for value in factors))) or Constant()
 
     def _bearing(self, section: Table, name: str) -> SceneBearing | None:
         """Read a bearing."""
-        inner, outer = _place(section, "inner"), _place(section, "outer")
+        inner, outer = fields.place(section, "inner"), fields.place(section, "outer")
         given = section.get("geometry", required='{ name = "NU308" } or dimensions, as [bearing] of a job file')
         problems: list[str] = []
         geometry = None
@@ -315,8 +304,8 @@ class _Reader:
 
     def _input(self, section: Table, name: str) -> Input | None:
         """Read an input of the linear analysis."""
-        on, against = _places(section)
-        direction = _direction(section)
+        on, against = fields.places(section)
+        direction = fields.direction(section)
         amplitude = section.quantity("amplitude", "N", 1e-12, 1e9, FORCE)
         if on is None or direction is None:
             return None
@@ -324,8 +313,8 @@ class _Reader:
 
     def _sensor(self, section: Table, name: str) -> Sensor | None:
         """Read a sensor."""
-        on, against = _places(section)
-        direction = _direction(section)
+        on, against = fields.places(section)
+        direction = fields.direction(section)
         quantity = section.choice("quantity", _QUANTITIES, required=True)
         if on is None or direction is None or quantity is None:
             return None
@@ -356,7 +345,7 @@ class _Reader:
         self._close(section)
         if begin is None or end is None or duration is None or step is None:
             return None
-        settings = _built(
+        settings = fields.built(
             section,
             lambda: Settings(
                 step,
@@ -368,132 +357,3 @@ class _Reader:
         if settings is None:
             return None
         return RunUp(SpeedProfile.ramp(begin, end, duration), duration, settings)
-
-
-def _cylinder(table: Table) -> Inertia | None:
-    """Read a hollow cylinder."""
-    begin = table.quantity("from", "m", -100.0, 100.0, LENGTH, required=True)
-    end = table.quantity("to", "m", -100.0, 100.0, LENGTH, required=True)
-    diameter = table.quantity("diameter", "m", 1e-5, 100.0, LENGTH, required=True)
-    bore = table.quantity("bore", "m", 0.0, 100.0, LENGTH)
-    density = table.quantity("density", "kg/m^3", 100.0, 25000.0, Display("kg/m^3"))
-    table.close()
-    if begin is None or end is None or diameter is None:
-        return None
-    return _built(
-        table,
-        lambda: Inertia.cylinder(begin, end, diameter, bore or 0.0, STEEL.density if density is None else density),
-    )
-
-
-def _text(section: Table, key: str, required: bool = False) -> str | None:
-    """Read a short text."""
-    value = section.get(key, "a short text" if required else "")
-    if key not in section:
-        return None
-    if not isinstance(value, str) or not 1 <= len(value) <= 200 or (key == "name" and (":" in value or "." in value)):
-        section.note(key, f"got {short(value)}; allowed: a short text{', without : and .' if key == 'name' else ''}")
-        return None
-    return value
-
-
-def _words(section: Table, key: str, allowed: tuple[str, ...]) -> tuple[str, ...] | None:
-    """Read a list of words."""
-    value = section.get(key, f"a list of {', '.join(allowed)}")
-    if key not in section:
-        return None
-    wrong = value if not isinstance(value, list) else [word for word in value if word not in allowed]
-    if not isinstance(value, list) or wrong:
-        section.note(key, f"got {wrong!r:.80}; allowed: a list of {', '.join(allowed)}")
-        return None
-    return tuple(value)
-
-
-def _place(section: Table, key: str) -> str | None:
-    """Read a place; whether it exists is seen when the system is put together."""
-    value = section.get(key, 'a place such as "shaft" or "shaft:left"')
-    if key not in section:
-        return None
-    if not isinstance(value, str):
-        section.note(key, f'got {short(value)}; allowed: a place such as "shaft" or "shaft:left"')
-        return None
-    return value
-
-
-def _places(section: Table) -> tuple[str | None, str]:
-    """Read on and against."""
-    on = _place(section, "on")
-    return on, (_place(section, "against") or GROUND) if "against" in section else GROUND
-
-
-def _lengths(section: Table, key: str, value: Any) -> tuple[float, ...] | None:
-    """Read three lengths; None if absent or wrong."""
-    if value is None:
-        return None
-    if not isinstance(value, list) or len(value) != 3:
-        section.note(key, f'got {short(value)}; allowed: three lengths, x y z, such as ["70 mm", "0 mm", "0 mm"]')
-        return None
-    read = [
-        section.quantity_of(part, f"{key}[{index}]", "m", -100.0, 100.0, LENGTH) for index, part in enumerate(value)
-    ]
-    return tuple(part if part is not None else 0.0 for part in read)
-
-
-def _vector(section: Table, key: str, unit: str, display: Display) -> tuple[float, ...] | None:
-    """Read three forces or moments; zeros if absent, None if wrong."""
-    value = section.get(key)
-    if key not in section:
-        return (0.0, 0.0, 0.0)
-    if not isinstance(value, list) or len(value) != 3:
-        section.note(
-            key, f'got {short(value)}; allowed: three values, x y z, such as ["0 {unit}", "1 {unit}", "0 {unit}"]'
-        )
-        return None
-    read = [section.quantity_of(part, f"{key}[{index}]", unit, -1e9, 1e9, display) for index, part in enumerate(value)]
-    return None if None in read else tuple(part for part in read if part is not None)
-
-
-def _diagonal(section: Table, key: str, along: str, about: str, *, required: bool = False) -> FloatArray | None:
-    """Read stiffness or damping by freedom, such as { y = "1e5 N/m" }; shape (6,)."""
-    values = np.zeros(6)
-    table = section.table(key, f"{section.where} {key}", f'{{ y = "1e5 {along}", z = ... }}' if required else "")
-    if table is None:
-        return None if required else values
-    before = len(section.problems)
-    for index, freedom in enumerate(FREEDOMS):
-        unit = along if freedom in _TRANSLATIONS else about
-        values[index] = table.quantity(freedom, unit, 0.0, 1e15, Display(unit)) or 0.0
-    table.close()
-    return values if len(section.problems) == before else None
-
-
-def _direction(section: Table) -> FloatArray | None:
-    """Read a direction: the name of a freedom, or three numbers x y z, which are normalised; shape (6,)."""
-    allowed = f"one of {', '.join(FREEDOMS)}, or three numbers x y z"
-    value = section.get("direction", allowed)
-    if "direction" not in section:
-        return None
-    direction = np.zeros(6)
-    if value in FREEDOMS:
-        direction[FREEDOMS.index(value)] = 1.0
-        return direction
-    numbers = isinstance(value, list) and len(value) == 3
-    if not numbers or not all(isinstance(part, (int, float)) and not isinstance(part, bool) for part in value):
-        section.note("direction", f"got {value!r:.60}; allowed: {allowed}")
-        return None
-    length = math.hypot(*value)
-    if not (math.isfinite(length) and length > 0.0):
-        section.note("direction", f"got {value!r:.60}; allowed: {allowed}, not all zero")
-        return None
-    direction[:3] = np.array(value) / length
-    return direction
-
-
-def _built(section: Table, make: Callable[[], Built]) -> Built | None:
-    """Make a value; note its problems under the table's name."""
-    try:
-        return make()
-    except InputError as error:
-        for problem in error.problems:
-            section.note("", problem)
-    return None

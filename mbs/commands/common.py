@@ -18,8 +18,9 @@ from mbs.assembly import Model, assemble, find_problems, law_attributes
 from mbs.bearing_element import BearingElement
 from mbs.bearing_force import BearingForce
 from mbs.elements import Operation
+from mbs.reading.fields import MICROMETRE, RPM
 from mbs.results import described, write_dataset
-from mbs.scene_reader import MICROMETRE, RPM, read_scene
+from mbs.scene_reader import read_scene
 from mbs.statics import Equilibrium
 from mbs.validity import HIGHEST_RATIO, FilmLimit, film_limit
 

@@ -14,8 +14,8 @@ from mbs.commands.common import film_limits, film_warnings, heading, load_models
 from mbs.elements import Operation
 from mbs.modes import Modes, modes
 from mbs.plot import modes_figure, sweep_figure
+from mbs.reading.fields import MICROMETRE, RPM
 from mbs.results import modes_dataset, sweep_dataset
-from mbs.scene_reader import MICROMETRE, RPM
 from mbs.statics import equilibrium
 from mbs.sweep import Sweep, sweep
 from mbs.validity import HIGHEST_RATIO

@@ -13,8 +13,8 @@ from mbs.commands.common import heading, load_model, write
 from mbs.elements import Operation
 from mbs.integration import integrate
 from mbs.plot import run_figure
+from mbs.reading.fields import RPM
 from mbs.results import run_dataset
-from mbs.scene_reader import RPM
 from mbs.statics import equilibrium
 
 

@@ -1,0 +1,1 @@
+"""Flexible bodies: beams, finite-element matrices, and their reduction to a few coordinates."""

@@ -1,0 +1,1 @@
+"""Reading scene files, a kind of table a module."""

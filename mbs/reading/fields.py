@@ -1,0 +1,157 @@
+"""How the values of a scene file are read: texts, places, vectors, directions. Problems are noted, reading goes on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+from ehdmaps.jobs.table import Table
+from ehdmaps.physics._values import FloatArray
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.units import LENGTH, Display, short
+from mbs.body import FREEDOMS, Inertia
+from mbs.elements import GROUND
+
+RPM = Display("rpm", 30.0 / math.pi)
+FORCE = Display("N")
+MOMENT = Display("N m")
+MICROMETRE = Display("um", 1e6)
+MILLISECOND = Display("ms", 1e3)
+HERTZ = Display("Hz")
+DEGREE = Display("deg", 180.0 / math.pi)
+
+_TRANSLATIONS = FREEDOMS[:3]
+Built = TypeVar("Built")
+
+
+def cylinder(table: Table) -> Inertia | None:
+    """Read a hollow cylinder."""
+    begin = table.quantity("from", "m", -100.0, 100.0, LENGTH, required=True)
+    end = table.quantity("to", "m", -100.0, 100.0, LENGTH, required=True)
+    diameter = table.quantity("diameter", "m", 1e-5, 100.0, LENGTH, required=True)
+    bore = table.quantity("bore", "m", 0.0, 100.0, LENGTH)
+    density = table.quantity("density", "kg/m^3", 100.0, 25000.0, Display("kg/m^3"))
+    table.close()
+    if begin is None or end is None or diameter is None:
+        return None
+    return built(
+        table,
+        lambda: Inertia.cylinder(begin, end, diameter, bore or 0.0, STEEL.density if density is None else density),
+    )
+
+
+def text(section: Table, key: str, required: bool = False) -> str | None:
+    """Read a short text."""
+    value = section.get(key, "a short text" if required else "")
+    if key not in section:
+        return None
+    if not isinstance(value, str) or not 1 <= len(value) <= 200 or (key == "name" and (":" in value or "." in value)):
+        section.note(key, f"got {short(value)}; allowed: a short text{', without : and .' if key == 'name' else ''}")
+        return None
+    return value
+
+
+def words(section: Table, key: str, allowed: tuple[str, ...]) -> tuple[str, ...] | None:
+    """Read a list of words."""
+    value = section.get(key, f"a list of {', '.join(allowed)}")
+    if key not in section:
+        return None
+    wrong = value if not isinstance(value, list) else [word for word in value if word not in allowed]
+    if not isinstance(value, list) or wrong:
+        section.note(key, f"got {wrong!r:.80}; allowed: a list of {', '.join(allowed)}")
+        return None
+    return tuple(value)
+
+
+def place(section: Table, key: str) -> str | None:
+    """Read a place; whether it exists is seen when the system is put together."""
+    value = section.get(key, 'a place such as "shaft" or "shaft:left"')
+    if key not in section:
+        return None
+    if not isinstance(value, str):
+        section.note(key, f'got {short(value)}; allowed: a place such as "shaft" or "shaft:left"')
+        return None
+    return value
+
+
+def places(section: Table) -> tuple[str | None, str]:
+    """Read on and against."""
+    on = place(section, "on")
+    return on, (place(section, "against") or GROUND) if "against" in section else GROUND
+
+
+def lengths(section: Table, key: str, value: Any) -> tuple[float, ...] | None:
+    """Read three lengths; None if absent or wrong."""
+    if value is None:
+        return None
+    if not isinstance(value, list) or len(value) != 3:
+        section.note(key, f'got {short(value)}; allowed: three lengths, x y z, such as ["70 mm", "0 mm", "0 mm"]')
+        return None
+    read = [
+        section.quantity_of(part, f"{key}[{index}]", "m", -100.0, 100.0, LENGTH) for index, part in enumerate(value)
+    ]
+    return tuple(part if part is not None else 0.0 for part in read)
+
+
+def vector(section: Table, key: str, unit: str, display: Display) -> tuple[float, ...] | None:
+    """Read three forces or moments; zeros if absent, None if wrong."""
+    value = section.get(key)
+    if key not in section:
+        return (0.0, 0.0, 0.0)
+    if not isinstance(value, list) or len(value) != 3:
+        section.note(
+            key, f'got {short(value)}; allowed: three values, x y z, such as ["0 {unit}", "1 {unit}", "0 {unit}"]'
+        )
+        return None
+    read = [section.quantity_of(part, f"{key}[{index}]", unit, -1e9, 1e9, display) for index, part in enumerate(value)]
+    return None if None in read else tuple(part for part in read if part is not None)
+
+
+def diagonal(section: Table, key: str, along: str, about: str, *, required: bool = False) -> FloatArray | None:
+    """Read stiffness or damping by freedom, such as { y = "1e5 N/m" }; shape (6,)."""
+    values = np.zeros(6)
+    table = section.table(key, f"{section.where} {key}", f'{{ y = "1e5 {along}", z = ... }}' if required else "")
+    if table is None:
+        return None if required else values
+    before = len(section.problems)
+    for index, freedom in enumerate(FREEDOMS):
+        unit = along if freedom in _TRANSLATIONS else about
+        values[index] = table.quantity(freedom, unit, 0.0, 1e15, Display(unit)) or 0.0
+    table.close()
+    return values if len(section.problems) == before else None
+
+
+def direction(section: Table) -> FloatArray | None:
+    """Read a direction: the name of a freedom, or three numbers x y z, which are normalised; shape (6,)."""
+    allowed = f"one of {', '.join(FREEDOMS)}, or three numbers x y z"
+    value = section.get("direction", allowed)
+    if "direction" not in section:
+        return None
+    direction = np.zeros(6)
+    if value in FREEDOMS:
+        direction[FREEDOMS.index(value)] = 1.0
+        return direction
+    numbers = isinstance(value, list) and len(value) == 3
+    if not numbers or not all(isinstance(part, (int, float)) and not isinstance(part, bool) for part in value):
+        section.note("direction", f"got {value!r:.60}; allowed: {allowed}")
+        return None
+    length = math.hypot(*value)
+    if not (math.isfinite(length) and length > 0.0):
+        section.note("direction", f"got {value!r:.60}; allowed: {allowed}, not all zero")
+        return None
+    direction[:3] = np.array(value) / length
+    return direction
+
+
+def built(section: Table, make: Callable[[], Built]) -> Built | None:
+    """Make a value; note its problems under the table's name."""
+    try:
+        return make()
+    except InputError as error:
+        for problem in error.problems:
+            section.note("", problem)
+    return None
