@@ -15,7 +15,18 @@ import numpy as np
 
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.openfoam.parameters import Flow
-from tests.openfoam.comparison import HEADING, OIL, PLACES, SPIKED, THICK, Comparison, agrees, compare, thickness
+from tests.openfoam.comparison import (
+    HEADING,
+    OIL,
+    PLACES,
+    SPIKED,
+    THICK,
+    UNSOLVED,
+    Comparison,
+    agrees,
+    compare,
+    thickness,
+)
 
 FLOWS: tuple[Flow, ...] = ("thin_film", "full_stress")
 
@@ -36,6 +47,10 @@ def main() -> None:
             print(comparison.row(), ", ".join(agrees(comparison)), flush=True)
     print("steep spikes: slow flow with all stresses is not elliptic")
     for place in SPIKED:
+        for flow in FLOWS:
+            print(compare(place, flow, options.columns, options.rows).row(), flush=True)
+    print("drawn with the points above, but not solved with all stresses")
+    for place in UNSOLVED:
         for flow in FLOWS:
             print(compare(place, flow, options.columns, options.rows).row(), flush=True)
     print("thick films: slopes of the surfaces are not small")

@@ -82,9 +82,15 @@ SPIKED = (
     Place("N1014", 0, 8.8889e4, 3.297, 40.0),
     Place("N1014", 1, 2e4, 3.0, 30.0),
     Place("NU308", 0, 5e4, 2.0, 40.0),
-    Place("NU308", 0, 5e4, 4.0, 80.0),
 )
 """Cold and loaded: a pressure spike so steep that a Newtonian liquid has no slow flow with all stresses."""
+
+UNSOLVED = (
+    Place("NU308", 0, 5e3, 5.0, 20.0),
+    Place("NU308", 0, 5e4, 4.0, 80.0),
+    Place("N1014", 1, 2e4, 0.2, 40.0),
+)
+"""Drawn with PLACES and taken out: Newton's method stagnates there with all stresses; thin film agrees."""
 
 THICK = (Place("N1014", 0, 5e2, 10.0, 40.0), Place("N1014", 1, 1e2, 10.0, 20.0))
 """Light and fast: films so thick that their slopes are not small."""
