@@ -17,8 +17,9 @@ from mbs import laws
 from mbs.bearing import Bearing
 from mbs.bearing_element import BearingElement
 from mbs.bearing_force import BearingForce
-from mbs.body import Body
+from mbs.body import CENTRE, Body
 from mbs.elements import GROUND, Element, Operation
+from mbs.gear import GearMesh, GearPair, gear_mesh
 from mbs.laws import DryLaw, Law
 from mbs.roller_contacts import RollerContacts
 from mbs.roller_element import RollerElement, roller_body
@@ -39,17 +40,20 @@ class Model:
     scene : Scene
         What it was made from, with the clearance in force.
     system : System
-        What is analysed.
+        What is analysed in time. Its first elements are the bearings, then come the gear meshes.
     law : str
         The law in words.
     bearings : tuple of BearingElement
         In the order of the scene; where rollers are bodies, the same with massless rollers, to look at.
+    gears : tuple of GearMesh
+        In the order of the scene.
     """
 
     scene: Scene
     system: System
     law: str
     bearings: tuple[BearingElement, ...]
+    gears: tuple[GearMesh, ...]
 
     @property
     def operation(self) -> Operation:
@@ -126,8 +130,9 @@ def assemble(scene: Scene, law: str | None = None, emap: EHDMap | None = None, c
             elements.append(RollerElement(plain, RollerContacts(bearing, *made[key].single), body.name))
         else:
             elements.append(plain)
-    system = System((*scene.bodies, *rollers), scene.springs, scene.loads, elements)
-    return Model(scene, system, _words(chosen, scene, emap), tuple(bearings))
+    gears = tuple(_meshing(pair, scene.bodies) for pair in scene.gears)
+    system = System((*scene.bodies, *rollers), scene.springs, scene.loads, (*elements, *gears))
+    return Model(scene, system, _words(chosen, scene, emap), tuple(bearings), gears)
 
 
 def find_problems(
@@ -145,12 +150,20 @@ def find_problems(
         plain = System(scene.bodies, scene.springs, scene.loads)
     except InputError as error:
         return problems + list(error.problems)
+    for pair in scene.gears:
+        missing = [found for place in (pair.on, pair.against) if (found := _gear_place_problem(plain, place))]
+        problems += [f"gear pair {pair.name!r}: {found}" for found in missing]
+        if not missing:
+            try:
+                _meshing(pair, scene.bodies)
+            except InputError as error:
+                problems += error.problems
     places = [
         *((f"input {entry.name!r}", place) for entry in scene.inputs for place in (entry.on, entry.against)),
         *((f"sensor {entry.name!r}", place) for entry in scene.sensors for place in (entry.on, entry.against)),
         *((f"bearing {entry.name!r}", place) for entry in scene.bearings for place in (entry.inner, entry.outer)),
     ]
-    return problems + [f"{where}: {wrong}" for where, place in places if (wrong := plain.check_place(place))]
+    return problems + [f"{where}: {found}" for where, place in places if (found := plain.check_place(place))]
 
 
 def constant_name(law: str) -> str | None:
@@ -203,6 +216,25 @@ def _geometry_problems(entry: SceneBearing, emap: EHDMap) -> list[str]:
         f"--map: is made for {made_for.name}: {', '.join(differing)} as the {entry.geometry.name} of bearing "
         f"{entry.name!r}; generate a map of that bearing"
     ]
+
+
+def _gear_place_problem(system: System, place: str) -> str:
+    """What is wrong about the place of a gear; empty if nothing is."""
+    return "a gear on the ground cannot turn; name a body" if place == GROUND else system.check_place(place)
+
+
+def _meshing(pair: GearPair, bodies: tuple[Body, ...]) -> GearMesh:
+    """The gear mesh between the bodies of its places."""
+    first, second = (_position(place, bodies) for place in (pair.on, pair.against))
+    return gear_mesh(pair, first, second, _spin(pair.on, bodies), _spin(pair.against, bodies))
+
+
+def _position(place: str, bodies: tuple[Body, ...]) -> list[float]:
+    """Where a place on a body is [m]."""
+    name, _, frame = place.partition(":")
+    body = next(body for body in bodies if body.name == name)
+    position: list[float] = body.frames[frame or CENTRE].position.tolist()
+    return position
 
 
 def _spin(place: str, bodies: tuple[Body, ...]) -> float:

@@ -77,7 +77,7 @@ class BearingElement:
         return int(getattr(self.force, "outside_calls", 0))
 
     @cached_property
-    def _rates(self) -> tuple[float, float, float]:
+    def rates(self) -> tuple[float, float, float]:
         """Cage speed and entrainment speed for each speed of the system, centrifugal load for its square."""
         spins = (self.inner_spin, self.outer_spin)
         centrifugal = self.bearing.centrifugal_load(*spins) if self.centrifugal else 0.0
@@ -85,15 +85,15 @@ class BearingElement:
 
     def cage_angle(self, operation: Operation) -> float:
         """Angle of the first roller [rad]."""
-        return self.start_angle + self._rates[0] * operation.angle
+        return self.start_angle + self.rates[0] * operation.angle
 
     def entrainment_speed(self, operation: Operation) -> float:
         """Entrainment speed [m/s]."""
-        return self._rates[1] * abs(operation.speed)
+        return self.rates[1] * abs(operation.speed)
 
     def centrifugal_load(self, operation: Operation) -> float:
         """Centrifugal load for each metre of a roller [N/m]; zero where it is not felt."""
-        return self._rates[2] * operation.speed**2
+        return self.rates[2] * operation.speed**2
 
     def rollers(self, displacement: FloatArray, operation: Operation) -> RollerLoads:
         """Loads of all rollers at rest at the displacement (6,) of the inner ring against the outer one.

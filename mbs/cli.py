@@ -7,6 +7,7 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 from ehdmaps.errors import EhdmapsError, InputError
 
@@ -20,35 +21,60 @@ def parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
     top = argparse.ArgumentParser(
         prog="mbs",
-        description="Statics, modes, linear analysis and run-ups of systems with cylindrical roller bearings.",
-        epilog="SCENE is a scene file or the name of a shipped system: n1014_rigid, nu308_rigid. Exit status: 0 done; "
-        "1 done outside the map, or no equilibrium found; 2 bad input, nothing written.",
+        description="Statics, modes, linear analysis, speed sweeps and run-ups of systems with cylindrical roller "
+        "bearings, and modal identification.",
+        epilog="SCENE is a scene file or the name of a shipped system: n1014_rigid, n1014_testrig, nu308_rigid, "
+        "nu308_flexible, gearbox. Exit status: 0 done; 1 done outside the map, or no result from valid input; 2 bad "
+        "input, nothing written.",
     )
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name, words in (
         ("statics", "equilibrium, loads of the rollers, stiffness and damping of the bearings"),
-        ("modes", "frequencies, damping ratios and where the strain energy is; over speed with --speeds"),
+        ("modes", "frequencies, damping ratios and where the strain energy is"),
         ("lsa", "linear system analysis: state space and frequency responses"),
         ("runup", "integrate the nonlinear system in time over its speed profile"),
     ):
-        command = commands.add_parser(name, help=words, description=words)
-        command.add_argument("scene", metavar="SCENE")
-        command.add_argument("--map", metavar="MAP.nc", help="made by `ehdmaps generate` for the same bearing")
-        command.add_argument("--law", metavar="LAW", help=_LAW)
-        command.add_argument(
-            "--clearance",
-            metavar="LENGTH",
-            action="append",
-            help='diametral clearance of all bearings, such as "20 um", in place of the scene\'s'
-            + ("; with --speeds more than once, to compare" if name == "modes" else ""),
-        )
-        command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
-        command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
-        if name == "modes":
-            command.add_argument(
-                "--speeds", nargs=3, metavar=("FROM", "TO", "POINTS"), help='such as "200 rpm" "2000 rpm" 10'
-            )
+        _scene_command(commands, name, words, compares=False)
+    command = _scene_command(
+        commands, "sweep", "the linear system over speed: modes, responses, bearings", compares=True
+    )
+    command.add_argument(
+        "--speeds", nargs=3, metavar=("FROM", "TO", "POINTS"), help='such as "200 rpm" "2000 rpm" 10; else [sweep]'
+    )
+    command.add_argument("--load-factor", metavar="F", action="append", help="on all loads; more than once to compare")
+    command.add_argument("--cage-angles", metavar="N", help="also K and C averaged over N cage angles of a pitch")
+    command = _scene_command(commands, "campbell", "run-up in time as levels over speed and frequency", compares=True)
+    command.add_argument("--load-factor", metavar="F", action="append", help="on all loads; more than once to compare")
+    command.add_argument("--sensor", metavar="NAME", help="a sensor; default: the first of an acceleration")
+    command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
+    command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
+    command.add_argument("--modes", action="store_true", help="draw in the modes of the linear system")
+    words = "reduce a finite-element body to its interfaces and modes, for [[flexible]] tables"
+    command = commands.add_parser("reduce", help=words, description=words)
+    command.add_argument("body", metavar="BODY.toml")
+    command.add_argument("-o", "--output", metavar="OUT.nc", help="also .npz; BODY.nc if left out")
     return top
+
+
+def _scene_command(commands: Any, name: str, words: str, compares: bool) -> argparse.ArgumentParser:
+    """Add a command on a scene; one that compares takes several laws, maps and clearances."""
+    command: argparse.ArgumentParser = commands.add_parser(name, help=words, description=words)
+    command.add_argument("scene", metavar="SCENE")
+    # What comes twice is an error of the command, in words, where it does not compare.
+    more = "; more than once to compare" if compares else ""
+    command.add_argument(
+        "--map", metavar="MAP.nc", action="append", help=f"made by `ehdmaps generate` for the same bearing{more}"
+    )
+    command.add_argument("--law", metavar="LAW", action="append", help=f"{_LAW}{more}")
+    command.add_argument(
+        "--clearance",
+        metavar="LENGTH",
+        action="append",
+        help=f'diametral clearance of all bearings, such as "20 um", in place of the scene\'s{more}',
+    )
+    command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
+    command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
+    return command
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -69,7 +95,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
     try:
-        text, status = importlib.import_module(f"mbs.commands.{arguments.command}").run(arguments)
+        text, status = importlib.import_module(f"mbs.commands.{arguments.command.replace('-', '_')}").run(arguments)
     except EhdmapsError as error:
         from mbs.errors import AnalysisError
 

@@ -120,6 +120,16 @@ class ForceAtPoint:
             self._settle(status, out)
         return out[0], out[1:7], out[7:]
 
+    @property
+    def tabulated(self) -> bool:
+        """Whether `arrays` hold the law; else it is called for each slice."""
+        return not self._by_slices
+
+    @property
+    def outside(self) -> bool:
+        """Whether speed or temperature lie outside the map, so that every call counts."""
+        return self._outside
+
     def rollers(
         self, pose: npt.ArrayLike, velocity: npt.ArrayLike | None = None, cage_angle: float = 0.0
     ) -> RollerLoads:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -16,12 +14,10 @@ from mbs.linear import ComplexArray, response_unit
 from mbs.modes import Modes
 from mbs.reading.fields import MICROMETRE
 from mbs.statics import Equilibrium
-from mbs.sweep import Sweep
 
 _RPM = 30.0 / np.pi
 _SIZE = (9.0, 5.5)
 _MOST_LEVEL_LABELS = 12
-_LEAST_SHARE = 0.05
 _COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00", "#6a3d9a")
 
 
@@ -97,24 +93,6 @@ def run_figure(model: Model, run: Trajectory) -> Figure:
     axes[0].set_ylabel("bearing force, N")
     axes[1].set_ylabel("inner ring against\nthe outer one, µm")
     axes[2].set(xlabel="time, s", ylabel="speed, rpm")
-    axes[0].legend(fontsize=8, frameon=False)
-    for panel in axes:
-        _grid(panel)
-    return figure
-
-
-def sweep_figure(title: str, law: str, sweeps: Sequence[Sweep], labels: Sequence[str]) -> Figure:
-    """Frequency and damping ratio over speed of the modes with strain energy in the bearings, a colour a clearance."""
-    figure = _figure(title, law)
-    axes = figure.subplots(1, 2)
-    for result, label, colour in zip(sweeps, labels, _COLOURS * 20, strict=False):
-        named = f"clearance {_shown(label)}"
-        for k in np.nonzero(np.nanmax(result.bearing_share, axis=0) >= _LEAST_SHARE)[0]:
-            axes[0].plot(result.speeds * _RPM, result.frequency[:, k], color=colour, lw=1.1, label=named)
-            axes[1].plot(result.speeds * _RPM, 100.0 * result.damping_ratio[:, k], color=colour, lw=1.1)
-            named = "_"
-    axes[0].set(xlabel="speed, rpm", ylabel="undamped frequency, Hz", yscale="log")
-    axes[1].set(xlabel="speed, rpm", ylabel="modal damping ratio, %", yscale="log")
     axes[0].legend(fontsize=8, frameon=False)
     for panel in axes:
         _grid(panel)

@@ -20,7 +20,6 @@ from mbs.linear import ComplexArray, StateSpace
 from mbs.modes import Modes
 from mbs.roller_element import ring_matrices
 from mbs.statics import Equilibrium
-from mbs.sweep import Sweep
 from mbs.system import System
 
 SCHEMA_VERSION = 1
@@ -42,8 +41,8 @@ def statics_dataset(balance: Equilibrium) -> xr.Dataset:
         **_by_kind(balance.system, balance.displacement, (), "displacement"),
         **_ring_variables(balance.system, balance.forces, ()),
     }
-    elements = balance.system.elements
-    pairs = [ring_matrices(k, c) for k, c in zip(balance.element_stiffness, balance.element_damping, strict=True)]
+    bearings = balance.system.bearings
+    pairs = [ring_matrices(balance.element_stiffness[i], balance.element_damping[i]) for i in bearings]
     for index, (name, unit) in enumerate((("stiffness", "N/m"), ("damping", "N s/m"))):
         rings = [pair[index] for pair in pairs]
         variables[f"bearing_{name}"] = (
@@ -55,7 +54,7 @@ def statics_dataset(balance: Equilibrium) -> xr.Dataset:
             },
         )
     coordinates = {
-        "bearing": [connected.element.name for connected in elements],
+        "bearing": _bearing_names(balance.system),
         "freedom": list(FREEDOMS),
         "with_respect_to": list(FREEDOMS),
     }
@@ -123,26 +122,6 @@ def linear_dataset(
     return xr.Dataset(variables, coords=coordinates, attrs=_operation(balance))
 
 
-def sweep_dataset(sweeps: Sequence[Sweep], clearances: Sequence[float]) -> xr.Dataset:
-    """Modes over speed, for each clearance [m]."""
-    dims = ("clearance", "speed", "mode")
-    described_as = {
-        "frequency": ("Hz", "frequency of mass and stiffness, without damping"),
-        "damping_ratio": ("1", "modal damping ratio"),
-        "bearing_share": ("1", "part of the strain energy in all bearings"),
-    }
-    variables = {
-        name: (dims, np.stack([getattr(entry, name) for entry in sweeps]), {"units": unit, "long_name": words})
-        for name, (unit, words) in described_as.items()
-    }
-    coordinates = {
-        "clearance": ("clearance", list(clearances), {"units": "m", "long_name": "diametral clearance"}),
-        "speed": ("speed", sweeps[0].speeds, {"units": "rad/s", "long_name": "speed of the system"}),
-        "mode": np.arange(1, sweeps[0].frequency.shape[1] + 1),
-    }
-    return xr.Dataset(variables, coords=coordinates)
-
-
 def run_dataset(system: System, run: Trajectory, outside: Mapping[str, int]) -> xr.Dataset:
     """Trajectory of a run: motion of all coordinates, and forces of the bearings.
 
@@ -166,7 +145,7 @@ def run_dataset(system: System, run: Trajectory, outside: Mapping[str, int]) -> 
         ("acceleration", run.acceleration),
     ):
         variables |= _by_kind(system, values, ("time",), order)
-    names = [connected.element.name for connected in system.elements]
+    names = _bearing_names(system)
     variables["outside_calls"] = (
         "bearing",
         np.array([outside.get(name, 0) for name in names], dtype=np.int64),
@@ -244,9 +223,9 @@ def _ring_variables(
     system: System, forces: Sequence[FloatArray], dims: tuple[str, ...]
 ) -> dict[str, tuple[tuple[str, ...], FloatArray, dict[str, str]]]:
     """Force and moment of the bearings on their inner rings."""
-    if not forces:
+    if not system.bearings:
         return {}
-    rings = np.stack([force[..., :6] for force in forces], axis=len(dims))
+    rings = np.stack([forces[i][..., :6] for i in system.bearings], axis=len(dims))
     return {
         name: (
             (*dims, "bearing", "direction"),
@@ -255,6 +234,11 @@ def _ring_variables(
         )
         for name, unit, part in (("bearing_force", "N", slice(0, 3)), ("bearing_moment", "N m", slice(3, 6)))
     }
+
+
+def _bearing_names(system: System) -> list[str]:
+    """Names of the bearings."""
+    return [system.elements[i].element.name for i in system.bearings]
 
 
 def _operation(balance: Equilibrium) -> dict[str, Any]:

@@ -7,9 +7,12 @@ from dataclasses import dataclass
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from mbs.body import Body
+from mbs.campbell import CampbellSettings
 from mbs.elements import Input, Load, Sensor, Spring
+from mbs.gear import GearPair
 from mbs.integration import Settings
 from mbs.profiles import SpeedProfile
+from mbs.sweep import SweepRange
 
 
 @dataclass(frozen=True)
@@ -78,14 +81,20 @@ class Scene:
         Of the oil [K].
     lubricant : Lubricant or None
         For the law `formula`.
-    bodies, springs, loads, bearings, inputs, sensors : tuple
-        The parts.
+    bodies : tuple of Body
+        Rigid ones, shafts, and reduced finite-element bodies.
+    springs, loads, bearings, gears, inputs, sensors : tuple
+        The other parts.
     laws : dict of str to (float, float)
         Constant stiffness [N/m] and damping [N s/m] of each contact of a roller, by name.
     frequencies : tuple of float
         Of the linear analysis [Hz].
     run_up : RunUp or None
         Of the analysis in time.
+    sweep : SweepRange or None
+        Speeds of the analysis over speed.
+    campbell : CampbellSettings
+        What is drawn of a run-up.
     assumed : tuple of str
         Which of its numbers are assumptions.
     """
@@ -100,9 +109,12 @@ class Scene:
     springs: tuple[Spring, ...]
     loads: tuple[Load, ...]
     bearings: tuple[SceneBearing, ...]
+    gears: tuple[GearPair, ...]
     inputs: tuple[Input, ...]
     sensors: tuple[Sensor, ...]
     laws: dict[str, tuple[float, float]]
     frequencies: tuple[float, ...]
     run_up: RunUp | None
+    sweep: SweepRange | None
+    campbell: CampbellSettings
     assumed: tuple[str, ...]

@@ -16,11 +16,18 @@ from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import TEMPERATURE, Display, closest, short
 from mbs.body import FREEDOMS, Body, Inertia, rigid_body
+from mbs.campbell import CampbellSettings
 from mbs.elements import Input, Load, Sensor, Spring
 from mbs.integration import Settings
 from mbs.profiles import Constant, Course, Harmonic, LoadProfile, SpeedProfile
 from mbs.reading import fields
+from mbs.reading.attached import read_attached
+from mbs.reading.campbell import read_campbell
 from mbs.reading.fields import DEGREE, FORCE, HERTZ, MICROMETRE, MILLISECOND, MOMENT, RPM, Built
+from mbs.reading.flexible import read_flexible
+from mbs.reading.gears import read_gears
+from mbs.reading.shaft import read_shaft
+from mbs.reading.sweep import read_sweep
 from mbs.scene import RunUp, Scene, SceneBearing
 
 LONGEST_FILE = 1_000_000
@@ -50,8 +57,9 @@ def read_scene(source: str) -> Scene:
         With every problem found.
     """
     if source in shipped_systems():
-        text = (resources.files("mbs") / "systems" / f"{source}.toml").read_text(encoding="utf-8")
-        return parse_scene(text, source, f"{source} (shipped)")
+        with resources.as_file(resources.files("mbs") / "systems") as folder:
+            text = (folder / f"{source}.toml").read_text(encoding="utf-8")
+            return parse_scene(text, source, f"{source} (shipped)", folder)
     path = Path(source)
     try:
         with path.open("rb") as file:
@@ -68,10 +76,10 @@ def read_scene(source: str) -> Scene:
         text = head.decode("utf-8")
     except UnicodeDecodeError as error:
         raise InputError(f"{source}: is not UTF-8 text (byte {error.start}); allowed: a scene file in TOML") from error
-    return parse_scene(text, path.stem, source)
+    return parse_scene(text, path.stem, source, path.parent)
 
 
-def parse_scene(text: str, name: str, where: str) -> Scene:
+def parse_scene(text: str, name: str, where: str, folder: Path | None = None) -> Scene:
     """Read a scene from the text of its file.
 
     Parameters
@@ -82,6 +90,8 @@ def parse_scene(text: str, name: str, where: str) -> Scene:
         Name of the scene.
     where : str
         How messages call the file.
+    folder : Path, optional
+        Where the files are that it names; without one it may name none.
 
     Raises
     ------
@@ -95,7 +105,7 @@ def parse_scene(text: str, name: str, where: str) -> Scene:
             f"{where}: is not TOML: {error}; allowed: TOML 1.0; strings with units stand in quotes"
         ) from error
     problems: list[str] = []
-    scene = _Reader(Table(values, "scene file", problems)).scene(text, name)
+    scene = _Reader(Table(values, "scene file", problems), folder).scene(text, name)
     if problems or scene is None:
         raise InputError([f"{where}: {problem}" for problem in problems])
     return scene
@@ -104,8 +114,9 @@ def parse_scene(text: str, name: str, where: str) -> Scene:
 class _Reader:
     """Reads the tables of one file and keeps what is marked as assumed."""
 
-    def __init__(self, top: Table) -> None:
+    def __init__(self, top: Table, folder: Path | None) -> None:
         self._top = top
+        self._folder = folder
         self._assumed: list[str] = []
 
     def scene(self, text: str, name: str) -> Scene | None:
@@ -123,10 +134,15 @@ class _Reader:
             self._close(operation)
         section = top.table("lubricant", "[lubricant]")
         lubricant = read_lubricant(section) if section else None
-        bodies = self._all("bodies", self._body)
+        bodies = [
+            *self._all("bodies", self._body),
+            *self._all("shafts", read_shaft),
+            *self._all("flexible", self._flexible),
+        ]
         springs = self._all("springs", self._spring)
         loads = self._all("loads", self._load)
         bearings = self._all("bearings", self._bearing)
+        gears = self._all("gears", read_gears)
         inputs = self._all("inputs", self._input)
         sensors = self._all("sensors", self._sensor)
         laws = self._laws()
@@ -137,6 +153,14 @@ class _Reader:
             self._close(linear)
         section = top.table("runup", "[runup]")
         run_up = self._run_up(section) if section else None
+        section = top.table("sweep", "[sweep]")
+        sweep = read_sweep(section) if section else None
+        if section:
+            self._close(section)
+        section = top.table("campbell", "[campbell]")
+        campbell = read_campbell(section) if section else None
+        if section:
+            self._close(section)
         top.close()
         if top.problems or speed is None or temperature is None or frequencies is None:
             return None
@@ -151,11 +175,14 @@ class _Reader:
             springs=tuple(springs),
             loads=tuple(loads),
             bearings=tuple(bearings),
+            gears=tuple(gears),
             inputs=tuple(inputs),
             sensors=tuple(sensors),
             laws=laws,
             frequencies=frequencies,
             run_up=run_up,
+            sweep=sweep,
+            campbell=campbell or CampbellSettings(),
             assumed=tuple(self._assumed),
         )
 
@@ -207,6 +234,10 @@ class _Reader:
             section,
             lambda: rigid_body(name, parts, freedoms, position or (0.0, 0.0, 0.0), frames, spin or 0.0),
         )
+
+    def _flexible(self, section: Table, name: str) -> Body | None:
+        """Read a body of finite elements, and what is fixed to it."""
+        return read_attached(section, read_flexible(section, name, self._folder))
 
     def _parts(self, section: Table) -> list[Inertia]:
         """Read what a body is made of: cylinders, or mass and moments of inertia."""
@@ -306,7 +337,9 @@ class _Reader:
         """Read an input of the linear analysis."""
         on, against = fields.places(section)
         direction = fields.direction(section)
-        amplitude = section.quantity("amplitude", "N", 1e-12, 1e9, FORCE)
+        moment = direction is not None and bool(np.any(direction[3:]))
+        unit, display = ("N m", MOMENT) if moment else ("N", FORCE)
+        amplitude = section.quantity("amplitude", unit, 1e-12, 1e9, display)
         if on is None or direction is None:
             return None
         return Input(name, on, direction, against, 1.0 if amplitude is None else amplitude)

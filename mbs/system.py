@@ -18,7 +18,8 @@ from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import closest
 from mbs.body import CENTRE, Body
 from mbs.elements import GROUND, Element, Load, Operation, Port, Spring
-from mbs.profiles import Constant
+from mbs.gear import GearMesh
+from mbs.profiles import Constant, LoadProfile
 
 COINCIDENT = 1e-6
 """How far two places that an element connects may lie apart [m]."""
@@ -119,9 +120,24 @@ class System:
         )
 
     @property
+    def bearings(self) -> tuple[int, ...]:
+        """Which of the elements are bearings: all but gear meshes."""
+        return tuple(i for i, connected in enumerate(self.elements) if not isinstance(connected.element, GearMesh))
+
+    @property
     def size(self) -> int:
         """Number n of coordinates."""
         return len(self.coordinates)
+
+    @property
+    def steady_loads(self) -> FloatArray:
+        """Generalised loads that do not vary, shape (n,) [N or N m]."""
+        return self._steady
+
+    @property
+    def varying_loads(self) -> tuple[tuple[FloatArray, LoadProfile], ...]:
+        """Generalised loads that vary, (n,) [N or N m], each with its factor over time."""
+        return self._varying
 
     def loads(self, time: float) -> FloatArray:
         """Generalised loads at a time [s], shape (n,) [N or N m]."""

@@ -89,7 +89,7 @@ class DynamicLoad:
 
 
 def dynamic_loads(balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatArray) -> tuple[DynamicLoad, ...]:
-    """Largest dynamic force of each element for each input.
+    """Largest dynamic force of each bearing for each input.
 
     Parameters
     ----------
@@ -105,7 +105,8 @@ def dynamic_loads(balance: Equilibrium, inputs: Sequence[Input], frequencies: Fl
         return ()
     motion = responses(balance, inputs, frequencies) * np.array([entry.amplitude for entry in inputs])
     omega = 2.0 * np.pi * frequencies[:, None, None]
-    for index, connected in enumerate(balance.system.elements):
+    for index in balance.system.bearings:
+        connected = balance.system.elements[index]
         ports = np.einsum("mn,fni->fmi", connected.transform, motion)
         stiffness, damping = balance.element_stiffness[index], balance.element_damping[index]
         force = np.einsum("ab,fbi->fai", stiffness, ports) + 1j * omega * np.einsum("ab,fbi->fai", damping, ports)

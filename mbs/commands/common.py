@@ -1,4 +1,4 @@
-"""What all commands share: reading the arguments into models, the heading of the output, writing files."""
+"""What all commands share: the heading of the output, warnings, writing files."""
 
 from __future__ import annotations
 
@@ -9,85 +9,26 @@ from pathlib import Path
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ehdmaps.errors import EhdmapsError, InputError
-from ehdmaps.maps.emap import open_map
+from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics._values import FloatArray
-from ehdmaps.units import TEMPERATURE, quantity
-from mbs.assembly import Model, assemble, find_problems, law_attributes
+from ehdmaps.units import TEMPERATURE
+from mbs.assembly import Model, law_attributes
 from mbs.bearing_element import BearingElement
 from mbs.bearing_force import BearingForce
 from mbs.elements import Operation
 from mbs.reading.fields import MICROMETRE, RPM
 from mbs.results import described, write_dataset
-from mbs.scene_reader import read_scene
 from mbs.statics import Equilibrium
 from mbs.validity import HIGHEST_RATIO, FilmLimit, film_limit
 
-WIDEST = 1e-2
-"""Largest clearance of --clearance, either way [m]."""
-
 RESOLUTION = 150
-
-
-def load_model(arguments: argparse.Namespace) -> Model:
-    """Read scene, map and options of a command that takes one clearance; all problems at once."""
-    models = load_models(arguments)
-    if len(models) > 1:
-        raise InputError(f"--clearance: got {len(models)} of them; allowed: one; `mbs modes --speeds` takes more")
-    return models[0]
-
-
-def load_models(arguments: argparse.Namespace) -> tuple[Model, ...]:
-    """Read scene, map and options into a model for each clearance; all problems at once.
-
-    Raises
-    ------
-    InputError
-        With every problem.
-    """
-    problems: list[str] = []
-    scene = emap = None
-    try:
-        scene = read_scene(arguments.scene)
-    except InputError as error:
-        problems += error.problems
-    try:
-        emap = open_map(arguments.map) if arguments.map else None
-    except EhdmapsError as error:
-        problems += [f"--map: {line}" for line in str(error).splitlines()]
-    clearances: list[float | None] = []
-    for text in arguments.clearance or [None]:
-        clearances.append(_clearance(text, problems))
-    for option, path in (("-o", arguments.output), ("--plot", arguments.plot)):
-        if path and not Path(path).parent.is_dir():
-            problems.append(f"{option}: got {path}, but {Path(path).parent} is no folder; allowed: a file in a folder")
-    if scene is not None and (emap is not None or not arguments.map):
-        found = [problem for value in clearances for problem in find_problems(scene, arguments.law, emap, value)]
-        problems += [problem if problem.startswith("--") else f"{scene.name}: {problem}" for problem in found]
-    if problems or scene is None:
-        raise InputError(tuple(dict.fromkeys(problems)))
-    return tuple(assemble(scene, arguments.law, emap, clearance) for clearance in clearances)
-
-
-def _clearance(text: str | None, problems: list[str]) -> float | None:
-    """Read a clearance."""
-    if text is None:
-        return None
-    try:
-        value = quantity(text, "m")
-    except InputError as error:
-        problems.append(f"--clearance: {error.problems[0]}")
-        return None
-    if abs(value) > WIDEST:
-        problems.append(f"--clearance: got {text!r:.60}; allowed: within {MICROMETRE.text(WIDEST)} either way")
-    return value
 
 
 def heading(model: Model, speed: float | None = None) -> list[str]:
     """What was analysed, and which of its numbers are assumptions."""
     clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
-    shown = ", ".join(MICROMETRE.text(value) for value in clearances)
+    shown = ", ".join(MICROMETRE.text(value) for value in clearances) or "none"
     at = "" if speed is None else f"{RPM.text(speed)}, "
     return [
         f"{model.scene.title}: law {model.law}",

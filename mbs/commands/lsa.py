@@ -10,11 +10,13 @@ from scipy.signal import find_peaks
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from mbs.assembly import Model
-from mbs.commands.common import film_limits, film_warnings, heading, load_model, outside_at, write
+from mbs.commands.cases import load_model
+from mbs.commands.common import film_limits, film_warnings, heading, outside_at, write
 from mbs.linear import ComplexArray, frequency_response, response_unit, state_space
 from mbs.plot import response_figure
 from mbs.results import linear_dataset
 from mbs.statics import equilibrium
+from mbs.steady import steady_system
 from mbs.validity import dynamic_loads
 
 
@@ -33,7 +35,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     ]
     if missing:
         raise InputError(missing)
-    balance = equilibrium(model.system, model.operation)
+    balance = equilibrium(steady_system(model.system), model.operation)
     frequencies = np.array(scene.frequencies)
     responses = frequency_response(balance, scene.inputs, scene.sensors, frequencies)
     space = state_space(balance, scene.inputs, scene.sensors)

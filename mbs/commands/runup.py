@@ -9,7 +9,8 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import progress
-from mbs.commands.common import heading, load_model, write
+from mbs.commands.cases import load_model
+from mbs.commands.common import heading, write
 from mbs.elements import Operation
 from mbs.integration import integrate
 from mbs.plot import run_figure
@@ -47,7 +48,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"{result.iterations / max(result.steps, 1):.3g} Newton iterations a step, "
         f"{1e6 * seconds / max(result.steps, 1):.0f} us a step",
     ]
-    for bearing, force in zip(model.bearings, result.forces, strict=True):
+    for bearing, force in zip(model.bearings, result.forces, strict=False):
         size = np.hypot(force[:, 1], force[:, 2])
         lines.append(
             f"{bearing.name}: {size[0]:.5g} N at the beginning, {size.min():.5g} to {size.max():.5g} N, "

@@ -8,7 +8,8 @@ import numpy as np
 
 from ehdmaps.physics._values import FloatArray
 from mbs.assembly import Model
-from mbs.commands.common import film_limits, heading, load_model, outside_at, ring_motions, write
+from mbs.commands.cases import load_model
+from mbs.commands.common import film_limits, heading, outside_at, ring_motions, write
 from mbs.plot import statics_figure
 from mbs.results import statics_dataset
 from mbs.roller_element import ring_matrices

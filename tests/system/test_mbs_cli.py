@@ -77,7 +77,7 @@ def test_statics(here, capsys):
     assert (here / "a.png").stat().st_size > 10_000
 
 
-def test_modes_by_map_and_over_speed(here, capsys, maps):
+def test_modes_by_map(here, capsys, maps):
     status, out, err = run(capsys, "modes", "nu308_rigid", "--map", maps["NU308"], "-o", "m.nc", "--plot", "m.png")
     assert (status, err) == (0, "")
     assert "law map of NU308, FVA3, solver formula" in out
@@ -86,17 +86,28 @@ def test_modes_by_map_and_over_speed(here, capsys, maps):
     with xr.open_dataset("m.nc") as data:
         check_units(data)
         np.testing.assert_allclose(data["energy_share"].sum("part"), 1.0, rtol=1e-9)
-    clearances = ["--clearance", "0 um", "--clearance", "20 um"]
+
+
+def test_sweep_of_two_laws_and_clearances(here, capsys, maps):
     status, out, err = run(
-        capsys, "modes", "nu308_rigid", "--map", maps["NU308"], *clearances,
-        "--speeds", "200 rpm", "2000 rpm", "4", "-o", "s.nc", "--plot", "s.png",
+        capsys, "sweep", "nu308_rigid", "--map", maps["NU308"], "--law", "hertz", "--clearance", "0 um",
+        "--clearance", "20 um", "--speeds", "200 rpm", "2000 rpm", "4", "-o", "s.nc", "--plot", "s.png",
     )  # fmt: skip
     assert (status, err) == (0, "")
+    assert "law map of NU308, FVA3, solver formula" in out
+    assert "case: dry Hertz, 20 um" in out
+    assert "by energy: summed, one step" in out
+    assert "warning: bearing_left: omega b/u is up to" in out
     with xr.open_dataset("s.nc") as data:
         check_units(data)
         along = data["frequency"].isel(mode=-1)
-        assert np.all(np.diff(along.values[0]) > 0.0)
-        assert np.all(np.diff(along.values[1]) < 0.0)
+        # Dry: the same at every speed; with films rising without clearance, falling with it.
+        np.testing.assert_allclose(along[:2], along[:2, :1].values * np.ones(4), rtol=1e-6)
+        assert np.all(np.diff(along.values[2]) > 0.0)
+        assert np.all(np.diff(along.values[3]) < 0.0)
+        np.testing.assert_allclose(data["clearance"], [0.0, 20e-6, 0.0, 20e-6])
+        assert data["response_real"].dims == ("case", "speed", "response_frequency", "sensor", "input")
+        assert data["bearing_stiffness"].shape == (4, 4, 2)
     assert (here / "s.png").stat().st_size > 10_000
 
 
@@ -154,14 +165,16 @@ def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys, maps):
         assert words in err
     assert not list(here.iterdir())
     for arguments, words in (
-        (["statics", "nowhere"], "shipped system: n1014_rigid, nu308_rigid"),
+        (["statics", "nowhere"], "shipped system: gearbox, n1014_rigid, n1014_testrig, nu308_flexible, nu308_rigid"),
         (["statics", "nu308_rigid", "--law", "map"], "got 'map' without a map"),
         (["statics", "nu308_rigid", "--map", "nu.nc"], "--map: nu.nc: cannot be read"),
         (["statics", "nu308_rigid", "--clearance", "1 m"], "allowed: within 1e+04 um either way"),
         (["statics", "nu308_rigid", "--clearance", "1 um", "--clearance", "2 um"], "got 2 of them; allowed: one"),
-        (["modes", "nu308_rigid", "--clearance", "1 um", "--clearance", "2 um"], "one, or more with --speeds"),
-        (["modes", "nu308_rigid", "--speeds", "9 rpm", "5 rpm", "x"], "allowed: a whole number from 2"),
-        (["modes", "nu308_rigid", "--speeds", "9 rpm", "5 rpm", "3"], "allowed: rising"),
+        (["modes", "nu308_rigid", "--clearance", "1 um", "--clearance", "2 um"], "got 2 of them; allowed: one"),
+        (["sweep", "nu308_rigid", "--speeds", "9 rpm", "5 rpm", "x"], "allowed: a whole number from 2"),
+        (["sweep", "nu308_rigid", "--speeds", "9 rpm", "5 rpm", "3"], "allowed: rising"),
+        (["sweep", "nu308_rigid", "--load-factor", "none"], "--load-factor: got 'none'; allowed: above 0"),
+        (["sweep", "nu308_rigid"], "no speeds; allowed: --speeds"),
         (["statics", "nu308_rigid", "--plot", "a.xyz"], "--plot: a.xyz cannot be written"),
     ):
         status, out, err = run(capsys, *arguments)

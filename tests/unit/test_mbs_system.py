@@ -12,7 +12,7 @@ from mbs.body import Inertia, lever_arm, rigid_body
 from mbs.elements import Input, Load, Operation, Port, Sensor, Spring
 from mbs.errors import AnalysisError
 from mbs.linear import frequency_response, state_space
-from mbs.modes import follow, modes, undamped_modes
+from mbs.modes import modes, undamped_modes
 from mbs.profiles import Constant, Course, Harmonic, SpeedProfile
 from mbs.statics import equilibrium
 from mbs.system import System
@@ -229,8 +229,3 @@ class TestLinear:
         found = modes(balance)
         assert found.parts == ("s", "g")
         np.testing.assert_allclose(found.shares.sum(axis=0), 1.0, rtol=1e-12)
-
-    def test_modes_are_followed_by_their_shape(self):
-        shapes = np.eye(3)
-        np.testing.assert_array_equal(follow(shapes, shapes[:, [2, 0, 1]], np.eye(3)), [1, 2, 0])
-        np.testing.assert_array_equal(follow(shapes, shapes[:, :2], np.eye(3)), [0, 1, -1])

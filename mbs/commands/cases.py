@@ -1,0 +1,189 @@
+"""What a command compares: contact laws and maps, clearances, load factors, in every combination.
+
+Each law of --law and each map of --map counts as one law; so do the clearances of --clearance and the factors of
+--load-factor, each of which may be given more than once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import itertools
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+from ehdmaps.errors import EhdmapsError, InputError
+from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.units import quantity
+from mbs.assembly import Model, assemble, find_problems
+from mbs.reading.fields import MICROMETRE
+from mbs.scene import Scene
+from mbs.scene_reader import read_scene
+
+WIDEST = 1e-2
+"""Largest clearance of --clearance, either way [m]."""
+
+_MAP_WORDS = {"reynolds": "Reynolds map", "openfoam": "OpenFOAM map", "formula": "formula map", "hertz": "Hertz map"}
+_WORDS = {"hertz": "dry Hertz", "formula": "film formula"}
+MOST_FACTOR = 1e3
+MOST_CASES = 24
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """One of the models that a command compares.
+
+    Attributes
+    ----------
+    label : str
+        In what it differs from the others; its law if nothing does.
+    model : Model
+        Scene with its law, clearance and loads.
+    clearance : float
+        Diametral clearance [m]; NaN if the bearings have not all the same.
+    load_factor : float
+        By which all loads of the scene were multiplied.
+    """
+
+    label: str
+    model: Model
+    clearance: float
+    load_factor: float
+
+
+@dataclass(frozen=True)
+class _Law:
+    """A law as it was given."""
+
+    label: str
+    name: str | None
+    emap: EHDMap | None = None
+
+
+def load_model(arguments: argparse.Namespace) -> Model:
+    """Read scene, law or map, and clearance of a command that takes one of each; all problems at once.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
+    return load_cases(arguments, several=False)[0].model
+
+
+def load_cases(arguments: argparse.Namespace, several: bool = True) -> list[Case]:
+    """Read scene, laws, maps, clearances and load factors into models; all problems at once.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        With `scene`, `output`, `plot`, and `law`, `map`, `clearance`, `load_factor`: each a text, a list of texts,
+        None, or left out.
+    several : bool
+        Whether laws and maps stand side by side; else a law goes before a map.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
+    problems: list[str] = []
+    scene: Scene | None = None
+    try:
+        scene = read_scene(arguments.scene)
+    except InputError as error:
+        problems += error.problems
+    laws = _laws(_given(arguments, "law"), _given(arguments, "map"), problems)
+    if not several:
+        problems += [
+            f"--{option}: got {len(given)} of them; allowed: one; `mbs sweep` and `mbs campbell` compare more"
+            for option in ("law", "map", "clearance")
+            if len(given := _given(arguments, option)) > 1
+        ]
+        laws = laws[:1] if _given(arguments, "law") else laws
+    clearances = [_clearance(text, problems) for text in _given(arguments, "clearance")] or [None]
+    factors = [_factor(text, problems) for text in _given(arguments, "load_factor")] or [1.0]
+    for option, path in (("-o", arguments.output), ("--plot", arguments.plot)):
+        if path and not Path(path).parent.is_dir():
+            problems.append(f"{option}: got {path}, but {Path(path).parent} is no folder; allowed: a file in a folder")
+    count = len(laws) * len(clearances) * len(factors)
+    if count > MOST_CASES:
+        problems.append(
+            f"--law, --map, --clearance, --load-factor: got {count} combinations; allowed: at most {MOST_CASES}"
+        )
+    elif scene is not None:
+        for law, clearance in itertools.product(laws, clearances):
+            found = find_problems(scene, law.name, law.emap, clearance)
+            problems += [problem if problem.startswith("--") else f"{scene.name}: {problem}" for problem in found]
+    if problems or scene is None:
+        raise InputError(tuple(dict.fromkeys(problems)))
+    cases = []
+    for law, clearance, factor in itertools.product(laws, clearances, factors):
+        model = assemble(_loaded(scene, factor), law.name, law.emap, clearance)
+        inside = {entry.geometry.diametral_clearance for entry in model.scene.bearings}
+        words = [
+            *([law.label] if len(laws) > 1 or count == 1 else []),
+            *([MICROMETRE.text(clearance)] if len(clearances) > 1 and clearance is not None else []),
+            *([f"{factor:g} x load"] if len(factors) > 1 else []),
+        ]
+        cases.append(Case(", ".join(words), model, inside.pop() if len(inside) == 1 else math.nan, factor))
+    return cases
+
+
+def _given(arguments: argparse.Namespace, name: str) -> list[str]:
+    """What was given for an option, however often."""
+    value = getattr(arguments, name, None)
+    return [] if value is None else [value] if isinstance(value, str) else list(value)
+
+
+def _laws(names: list[str], paths: list[str], problems: list[str]) -> list[_Law]:
+    """The laws that are meant: those named, and each map; dry Hertz without either."""
+    for option, texts in (("--law", names), ("--map", paths)):
+        problems += [
+            f"{option}: got {text!r:.60} twice; allowed: each once"
+            for text in sorted(set(texts))
+            if texts.count(text) > 1
+        ]
+    laws = [_Law(_WORDS.get(name, name.replace(":", " ")), name) for name in names if name != "map" or not paths]
+    maps: list[tuple[str, EHDMap]] = []
+    for path in paths:
+        try:
+            maps.append((path, open_map(path)))
+        except EhdmapsError as error:
+            problems += [f"--map: {line}" for line in str(error).splitlines()]
+    solvers = [str(emap.dataset.attrs.get("solver", "")) for _, emap in maps]
+    for (path, emap), solver in zip(maps, solvers, strict=True):
+        name = _MAP_WORDS.get(solver, "map")
+        laws.append(_Law(name if solvers.count(solver) == 1 else f"{name} {Path(path).stem}", "map", emap))
+    return laws if names or paths else [_Law(_WORDS["hertz"], None)]
+
+
+def _clearance(text: str, problems: list[str]) -> float | None:
+    """Read a clearance."""
+    try:
+        value = quantity(text, "m")
+    except InputError as error:
+        problems.append(f"--clearance: {error.problems[0]}")
+        return None
+    if not abs(value) <= WIDEST:
+        problems.append(f"--clearance: got {text!r:.60}; allowed: within {MICROMETRE.text(WIDEST)} either way")
+    return value
+
+
+def _factor(text: str, problems: list[str]) -> float:
+    """Read a load factor."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value <= MOST_FACTOR:
+        problems.append(f"--load-factor: got {text!r:.40}; allowed: above 0 up to {MOST_FACTOR:g}, such as 1.5")
+        return 1.0
+    return value
+
+
+def _loaded(scene: Scene, factor: float) -> Scene:
+    """The scene with all its loads multiplied."""
+    loads = tuple(dataclasses.replace(load, force=factor * load.force) for load in scene.loads)
+    return dataclasses.replace(scene, loads=loads) if factor != 1.0 else scene

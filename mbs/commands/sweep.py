@@ -1,0 +1,274 @@
+"""`mbs sweep`: modes, bearings and frequency responses over speed, for one or more laws, clearances and loads."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+from collections.abc import Sequence
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+from ehdmaps.units import TEMPERATURE, quantity
+from mbs.assembly import Model
+from mbs.commands.cases import Case, load_cases
+from mbs.commands.common import film_limits, heading, write
+from mbs.elements import Operation
+from mbs.errors import AnalysisError
+from mbs.reading.fields import RPM
+from mbs.sweep import MOST_ANGLES, MOST_SPEEDS, SweepRange, sweep
+from mbs.sweep_data import sweep_dataset
+from mbs.sweep_plot import sweep_figure
+from mbs.sweep_result import Sweep
+from mbs.validity import HIGHEST_RATIO
+
+_LEAST_SHARE = 0.05
+_LEAST_ASSURANCE = 0.5
+_ROUND_OFF = 1e-12
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Sweep over speed."""
+    speeds, angles, cases = _read(arguments)
+    found = []
+    for case in cases:
+        scene = case.model.scene
+        try:
+            found.append(
+                sweep(
+                    case.model.system,
+                    speeds.speeds,
+                    0.0,
+                    scene.inputs,
+                    scene.sensors,
+                    np.array(scene.frequencies),
+                    angles,
+                )
+            )
+        except AnalysisError as error:
+            raise AnalysisError(f"{case.label}: {error}") from error
+    lines: list[str] = []
+    outside: list[str] = []
+    for case, result in zip(cases, found, strict=True):
+        outside += _outside(case, result)
+        lines += [
+            *heading(case.model),
+            *([f"  case: {case.label}"] if len(cases) > 1 else []),
+            *_course(result),
+            *_bearings(result),
+            *_undamped(result),
+            *_complex(result),
+            *_unsure(result),
+            *_too_quick(case.model, result),
+        ]
+    model = cases[0].model
+    labels = [case.label for case in cases]
+    dataset = sweep_dataset(
+        found,
+        labels,
+        [case.model.law for case in cases],
+        [case.clearance for case in cases],
+        [case.load_factor for case in cases],
+    )
+    words = f"{TEMPERATURE.text(model.scene.temperature)}; cages held, " + (
+        f"law {model.law}" if len({case.model.law for case in cases}) == 1 else "laws side by side"
+    )
+    figure = sweep_figure(model.scene.title, words, found, labels) if arguments.plot else None
+    # The file says of each case what its law is.
+    named = [f"{case.label}: {case.model.law}" for case in cases] if len(cases) > 1 else [model.law]
+    lines += outside + write(arguments, dataclasses.replace(model, law="; ".join(named)), dataset, figure)
+    return "\n".join(lines), 1 if outside else 0
+
+
+def _read(arguments: argparse.Namespace) -> tuple[SweepRange, int, list[Case]]:
+    """Read speeds, number of cage angles, and cases; all problems at once."""
+    problems: list[str] = []
+    speeds: SweepRange | None = None
+    cases: list[Case] = []
+    try:
+        speeds = _speeds(arguments.speeds) if arguments.speeds else None
+    except InputError as error:
+        problems += error.problems
+    angles = _whole(arguments.cage_angles or "1")
+    if not 1 <= angles <= MOST_ANGLES:
+        problems.append(
+            f"--cage-angles: got {arguments.cage_angles!r:.40}; allowed: a whole number from 1 to {MOST_ANGLES}"
+        )
+    try:
+        cases = load_cases(arguments)
+    except InputError as error:
+        problems += error.problems
+    if problems:
+        raise InputError(problems)
+    speeds = speeds or cases[0].model.scene.sweep
+    if speeds is None:
+        raise InputError(
+            f'{cases[0].model.scene.name}: no speeds; allowed: --speeds "500 rpm" "2500 rpm" 40, or a table [sweep] in '
+            "the scene with from, to and points"
+        )
+    return speeds, angles, cases
+
+
+def _speeds(texts: Sequence[str]) -> SweepRange:
+    """Read FROM TO POINTS."""
+    problems = []
+    ends = []
+    for text in texts[:2]:
+        try:
+            ends.append(quantity(text, "rad/s"))
+        except InputError as error:
+            problems.append(f"--speeds: {error.problems[0]}")
+    points = _whole(texts[2])
+    if not 2 <= points <= MOST_SPEEDS:
+        problems.append(f"--speeds: got {texts[2]!r:.40} points; allowed: a whole number from 2 to {MOST_SPEEDS}")
+    if len(ends) == 2 and not 0.0 <= ends[0] < ends[1] <= 1e5:
+        problems.append(f"--speeds: got from {texts[0]!r:.40} to {texts[1]!r:.40}; allowed: rising, from 0 rpm on")
+    if problems:
+        raise InputError(problems)
+    return SweepRange(ends[0], ends[1], points)
+
+
+def _whole(text: str) -> int:
+    """A whole number of a few digits, or 0."""
+    return int(text) if text.isascii() and text.isdigit() and len(text) < 6 else 0
+
+
+def _course(result: Sweep) -> list[str]:
+    """A line on how the sweep went."""
+    between = f"; {result.between} more put in between to follow the modes" if result.between else ""
+    error = result.responses.error
+    shown = f"; responses within {error.max():.1g} of direct solutions" if result.responses.values.size else ""
+    return [f"  {result.speeds.size} speeds from {_first(result)} to {_last(result)}{between}{shown}"]
+
+
+def _bearings(result: Sweep) -> list[str]:
+    """Lines of stiffness and damping of the bearings at the first and the last speed."""
+    lines = []
+    entry = result.bearings
+    for index, name in enumerate(entry.names):
+        load, k, c = (values[[0, -1], index] for values in (entry.load, entry.stiffness, entry.damping))
+        changed = (
+            f"{load[0]:.5g} N" if abs(load[1] - load[0]) <= 1e-3 * load[0] else f"{load[0]:.5g} to {load[1]:.5g} N"
+        )
+        wide = 100.0 * float(entry.stiffness_spread[:, index].max())
+        spread = f"; mean of {entry.angles} cage angles, k within {wide:.2g} % of it" if entry.angles > 1 else ""
+        lines.append(
+            f"  {name}: {changed}; along the load k {k[0] * 1e-6:.4g} to {k[1] * 1e-6:.4g} N/um ({_change(*k)}), "
+            f"c {c[0]:.4g} to {c[1]:.4g} N s/m ({_change(*c)}){spread}"
+        )
+    return lines
+
+
+def _undamped(result: Sweep) -> list[str]:
+    """Lines on how the undamped modes with strain energy in the bearings change."""
+    found = result.undamped
+    shown = np.nonzero(found.bearing_share.max(axis=0) >= _LEAST_SHARE)[0]
+    if not shown.size:
+        return ["  no undamped mode with strain energy in the bearings"]
+    lines = [
+        "  undamped modes      frequency/Hz        change  by energy: summed, one step   damping ratio   "
+        "energy in the bearings"
+    ]
+    for k in shown:
+        f, z, s = (values[[0, -1], k] for values in (found.frequency, found.damping_ratio, found.bearing_share))
+        lines.append(
+            f"  {k + 1:4d} {f[0]:12.5g} to {f[1]:9.5g} {_change(*f):>11} {_percent(found.summed_shift[-1, k]):>16}, "
+            f"{_percent(found.direct_shift[k]):>10} {_clean(z[0]):9.3g} to {_clean(z[1]):.3g} "
+            f"{s[0]:12.2f} to {s[1]:.2f}"
+        )
+    return lines
+
+
+def _complex(result: Sweep) -> list[str]:
+    """Lines on the complex modes with strain energy in the bearings."""
+    found = result.damped
+    shown = [k for k in range(found.eigenvalues.shape[1]) if np.nanmax(found.bearing_share[:, k]) >= _LEAST_SHARE]
+    if not shown:
+        return ["  no oscillating complex mode with strain energy in the bearings"]
+    lines = ["  complex modes       frequency/Hz        change   damping ratio   whirl d omega/d Omega   oscillates"]
+    for k in shown:
+        there = np.nonzero(np.isfinite(found.frequency[:, k]))[0][[0, -1]]
+        f, z, w = (values[there, k] for values in (found.frequency, found.damping_ratio, found.whirl))
+        begin, end = (RPM.text(float(result.speeds[i])) for i in there)
+        whole = there[0] == 0 and there[1] == result.speeds.size - 1
+        lines.append(
+            f"  {k + 1:4d} {f[0]:12.5g} to {f[1]:9.5g} {_change(*f):>11} {_clean(z[0]):10.3g} to {_clean(z[1]):.3g} "
+            f"{_clean(w[1]):+14.2g}           {'everywhere' if whole else f'{begin} to {end}'}"
+        )
+    return lines
+
+
+def _unsure(result: Sweep) -> list[str]:
+    """A line if an undamped mode could not be followed surely."""
+    found = result.undamped
+    lost = (found.assurance < _LEAST_ASSURANCE) & (found.bearing_share >= _LEAST_SHARE)
+    if not lost.any():
+        return []
+    shown = np.where(lost, found.assurance, 1.0)
+    worst = RPM.text(float(result.speeds[np.argmin(shown.min(axis=1))]))
+    names = ", ".join(str(k + 1) for k in np.nonzero(lost.any(axis=0))[0])
+    return [
+        f"warning: undamped modes {names} exchange their shapes between two speeds (least assurance "
+        f"{shown.min():.2f} before {worst}): which is which is not sure there; take more points"
+    ]
+
+
+def _outside(case: Case, result: Sweep) -> list[str]:
+    """Lines on bearings whose equilibria lie outside the map."""
+    count = dict.fromkeys(case.model.outside_calls, 0)
+    rest = np.zeros(case.model.system.size)
+    for speed, place in zip(result.speeds.tolist(), result.displacement, strict=True):
+        before = case.model.outside_calls
+        for connected in case.model.system.elements:
+            connected.evaluate(place, rest, Operation(speed))
+        for name, calls in case.model.outside_calls.items():
+            count[name] += calls > before[name]
+    return [
+        f"warning: {case.label}: {name} lies outside the map at {times} of {result.speeds.size} speeds, where the law "
+        "is held at its edge; make a map that reaches there"
+        for name, times in count.items()
+        if times
+    ]
+
+
+def _too_quick(model: Model, result: Sweep) -> list[str]:
+    """A line for each bearing whose films are too slow for the highest mode in it, with the worst speed."""
+    worst: dict[str, tuple[float, float, float]] = {}
+    found = result.undamped
+    for index, speed in enumerate(result.speeds.tolist()):
+        inside = found.frequency[index][found.bearing_share[index] >= _LEAST_SHARE]
+        highest = float(inside.max(initial=0.0))
+        for limit in film_limits(model, result.displacement[index], Operation(speed)):
+            ratio = limit.ratio(highest)
+            if speed > 0.0 and ratio > max(HIGHEST_RATIO, worst.get(limit.bearing, (0.0,))[0]):
+                worst[limit.bearing] = ratio, highest, speed
+    return [
+        f"warning: {name}: omega b/u is up to {ratio:.2g} ({highest:.5g} Hz at {RPM.text(speed)}): above "
+        f"{HIGHEST_RATIO} low-frequency stiffness and damping no longer hold"
+        for name, (ratio, highest, speed) in worst.items()
+    ]
+
+
+def _change(begin: float, end: float) -> str:
+    """Relative change in per cent."""
+    return _percent(end / begin - 1.0) if begin > 0.0 else "-"
+
+
+def _clean(value: float) -> float:
+    """The value, or 0 if it is round-off."""
+    return value if abs(value) > _ROUND_OFF else 0.0
+
+
+def _percent(part: float) -> str:
+    """A part in per cent, with its sign."""
+    return f"{100.0 * _clean(part):+.2f} %"
+
+
+def _first(result: Sweep) -> str:
+    """The first speed."""
+    return RPM.text(float(result.speeds[0]))
+
+
+def _last(result: Sweep) -> str:
+    """The last speed."""
+    return RPM.text(float(result.speeds[-1]))

@@ -1,0 +1,183 @@
+"""A finite-element body as its matrices: stiffness, mass, what each degree of freedom is, where the nodes are.
+
+Where the matrices come from (a file, a program, a test) is of no interest here; degrees of freedom that were fixed to
+the ground are simply not in them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import FloatArray
+
+IntArray = npt.NDArray[np.int64]
+
+MOST_FREEDOMS = 300_000
+"""More degrees of freedom are refused: their factors fill tens of gigabytes."""
+
+_OVERREACH = 1.0 + 1e-6
+"""Square of an entry over the product of its diagonals, which is at most 1 but for rounding."""
+
+_ASYMMETRY = 1e-9
+"""Of the largest entry; text files of 10 digits and more stay below it."""
+
+
+@dataclass(frozen=True, eq=False)
+class FiniteElementModel:
+    """Matrices of a body and what their rows mean.
+
+    Attributes
+    ----------
+    stiffness, mass : sparse array, shape (N, N)
+        K [N/m, N m/rad] and M [kg, kg m2]; symmetric.
+    nodes : array of int, shape (N,)
+        Node number of each degree of freedom.
+    directions : array of int, shape (N,)
+        0, 1, 2: displacement along x, y, z; 3, 4, 5: rotation about them.
+    numbers : array of int, shape (P,)
+        Nodes whose position is known.
+    positions : array, shape (P, 3)
+        Where they are [m].
+
+    Raises
+    ------
+    InputError
+        With everything that does not fit together: shapes, entries that are no numbers, matrices that are not
+        symmetric, a degree of freedom without mass or that is there twice.
+    """
+
+    stiffness: sparse.csc_array
+    mass: sparse.csc_array
+    nodes: IntArray
+    directions: IntArray
+    numbers: IntArray
+    positions: FloatArray
+    _place: dict[int, int] = field(init=False, repr=False)
+    _row: dict[tuple[int, int], int] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        for name, dtype in (("nodes", np.int64), ("directions", np.int64), ("numbers", np.int64), ("positions", float)):
+            object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=dtype))
+        problems = self._shape_problems()
+        if not problems:
+            for name in ("stiffness", "mass"):
+                matrix = sparse.csc_array(getattr(self, name), dtype=np.float64)
+                problems += _matrix_problems(name, matrix)
+                object.__setattr__(self, name, sparse.csc_array(0.5 * (matrix + matrix.T)))
+            problems += self._label_problems()
+        if not problems:
+            massless = np.flatnonzero(self.mass.diagonal() <= 0.0)
+            unstrained = np.flatnonzero(self.stiffness.diagonal() <= 0.0)
+            problems += self._list("stiffness", unstrained, "no stiffness; allowed: some for each; leave it out")
+            problems += self._list("mass", massless, "no mass or a negative one; allowed: a mass for each; condense it")
+        if problems:
+            raise InputError(problems)
+        object.__setattr__(self, "_place", {int(number): k for k, number in enumerate(self.numbers)})
+        labels = zip(self.nodes.tolist(), self.directions.tolist(), strict=True)
+        object.__setattr__(self, "_row", {label: k for k, label in enumerate(labels)})
+
+    @property
+    def size(self) -> int:
+        """Number N of degrees of freedom."""
+        return int(self.nodes.size)
+
+    def position(self, node: int) -> FloatArray:
+        """Where a node is, shape (3,) [m]; KeyError if that is not known."""
+        return np.asarray(self.positions[self._place[node]])
+
+    def has_position(self, node: int) -> bool:
+        """Whether it is known where a node is."""
+        return node in self._place
+
+    def row(self, node: int, direction: int) -> int | None:
+        """Index of a degree of freedom; None if the node has none in that direction."""
+        return self._row.get((node, direction))
+
+    def _shape_problems(self) -> list[str]:
+        """What is wrong with the shapes."""
+        size = self.nodes.size
+        problems = []
+        if not 1 <= size <= MOST_FREEDOMS or self.nodes.ndim != 1:
+            problems.append(
+                f"finite-element body, nodes: got shape {self.nodes.shape}; allowed: one for each degree of freedom, 1 "
+                f"to {MOST_FREEDOMS} of them; take a coarser mesh"
+            )
+        if self.directions.shape != self.nodes.shape:
+            problems.append(
+                f"finite-element body, directions: got shape {self.directions.shape}; allowed: {self.nodes.shape}, as "
+                "many as nodes"
+            )
+        for name in ("stiffness", "mass"):
+            shape = getattr(self, name).shape
+            if shape != (size, size):
+                problems.append(
+                    f"finite-element body, {name}: got shape {shape}; allowed: {(size, size)}, one row and column for "
+                    "each degree of freedom"
+                )
+        if self.numbers.ndim != 1 or self.positions.shape != (self.numbers.size, 3):
+            problems.append(
+                f"finite-element body, positions: got shape {self.positions.shape}; allowed: three coordinates for "
+                f"each of {self.numbers.size} numbers"
+            )
+        return problems
+
+    def _label_problems(self) -> list[str]:
+        """What is wrong with nodes, directions and positions."""
+        problems = self._list(
+            "directions",
+            np.flatnonzero((self.directions < 0) | (self.directions > 5)),
+            "got a direction that is none; allowed: 0 to 5",
+        )
+        labels = np.stack([self.nodes, self.directions], axis=1)
+        _, first, counts = np.unique(labels, axis=0, return_index=True, return_counts=True)
+        problems += self._list("nodes", first[counts > 1], "is there twice; allowed: each degree of freedom once")
+        if np.unique(self.numbers).size != self.numbers.size:
+            problems.append("finite-element body, numbers: a node has two positions; allowed: one for each")
+        if not np.all(np.isfinite(self.positions)):
+            bad = self.numbers[~np.isfinite(self.positions).all(axis=1)]
+            problems.append(
+                f"finite-element body, positions: got values that are no finite numbers at {named(bad)}; allowed: "
+                "finite lengths in m"
+            )
+        return problems
+
+    def _list(self, name: str, rows: IntArray, problem: str) -> list[str]:
+        """A problem of some degrees of freedom; empty for none."""
+        if rows.size == 0:
+            return []
+        shown = ", ".join(f"node {self.nodes[k]} direction {self.directions[k]}" for k in rows[:5])
+        more = f" and {rows.size - 5} more" if rows.size > 5 else ""
+        return [f"finite-element body, {name}: {shown}{more}: {problem}"]
+
+
+def named(nodes: IntArray) -> str:
+    """Some nodes for a message."""
+    shown = ", ".join(str(node) for node in nodes[:5].tolist())
+    return f"node{'s' if nodes.size > 1 else ''} {shown}" + (f" and {nodes.size - 5} more" if nodes.size > 5 else "")
+
+
+def _matrix_problems(name: str, matrix: sparse.csc_array) -> list[str]:
+    """What is wrong with the entries of a matrix."""
+    if not np.all(np.isfinite(matrix.data)):
+        return [f"finite-element body, {name}: got entries that are no finite numbers; allowed: finite ones"]
+    largest = float(np.max(np.abs(matrix.data), initial=0.0))
+    apart = float(np.max(np.abs((matrix - matrix.T).data), initial=0.0))
+    if apart > _ASYMMETRY * largest:
+        return [
+            f"finite-element body, {name}: is not symmetric: entries differ by {apart:.3g} where the largest is "
+            f"{largest:.3g}; allowed: symmetric matrices, without friction, follower loads or gyroscopic terms"
+        ]
+    diagonal = matrix.diagonal()
+    triplets = sparse.coo_array(matrix)
+    between = diagonal[triplets.row] * diagonal[triplets.col]
+    if np.any(diagonal < 0.0) or np.any(triplets.data**2 > between * _OVERREACH + (_ASYMMETRY * largest) ** 2):
+        return [
+            f"finite-element body, {name}: has a negative diagonal, or entries larger than their diagonals allow, so "
+            "some motion would have negative energy; allowed: positive semi-definite matrices; check signs and files"
+        ]
+    return []

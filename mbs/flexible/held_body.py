@@ -1,0 +1,319 @@
+"""A finite-element body whose interfaces are held: its modes, and its shape when they are moved a little.
+
+Averages of an interface are held by B x = p with a few rows B, which touch many nodes. In place of the indefinite
+matrix [[K, B'], [B, 0]] we factorise K + a M alone, which is positive definite for any body, even a free one, and as
+sparse as the mesh; the few multipliers follow from the small dense matrix B (K + a M)^-1 B'. What the shift a takes
+away is given back in two steps: exactly in the span of the computed modes, by iteration in the rest, where it shrinks
+by a/(a + omega^2) with omega above the cut-off.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy import linalg, sparse
+from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh, splu
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import FloatArray
+from mbs.errors import AnalysisError
+from mbs.flexible.finite_elements import IntArray
+
+MOST_MODES = 300
+
+_DENSE = 600
+"""Up to this size all modes are computed at once."""
+
+_FREE = 1e-12
+"""A mode whose omega^2 is less than this part of the typical K/M of a single degree of freedom is rounding of zero."""
+
+_DEPENDENT = 1e-11
+"""Eigenvalue of the scaled multiplier matrix below which averages depend on each other."""
+
+_NO_BODY = (
+    "finite-element body: stiffness and mass are not those of a body: the one has to be positive semi-definite, the "
+    "other positive definite; check units, signs, and that the files belong together"
+)
+
+_MISSES = 2
+"""Searches with modes passed over before it is given up."""
+
+_ITERATIONS = 40
+_ENOUGH, _GOOD = 1e-13, 1e-8
+"""Change of the static shapes, as a part of them, at which iteration may stop, and must have arrived."""
+
+
+class HeldBody:
+    """Stiffness and mass of what moves, held by linear conditions B x = p.
+
+    Parameters
+    ----------
+    stiffness, mass : sparse array, shape (N, N)
+        Without the degrees of freedom that are prescribed one by one.
+    averages : array, shape (m, N)
+        B; no rows if there are no averages.
+    groups : array of int, shape (N,)
+        Degrees of freedom with the same number belong to the same node; for the order of elimination.
+    cutoff : float
+        [Hz], up to which modes are wanted.
+
+    Attributes
+    ----------
+    squares : array, shape (modes,)
+        omega^2 of the modes up to the cut-off [1/s2], rising.
+    shapes : array, shape (N, modes)
+        Their shapes with phi' M phi = 1, the largest entry positive.
+
+    Raises
+    ------
+    InputError
+        If the matrices are not those of a body, the averages depend on each other, the held body can still move, or
+        there are more modes than MOST_MODES.
+    AnalysisError
+        If the modes are not found.
+    """
+
+    def __init__(
+        self,
+        stiffness: sparse.csc_array,
+        mass: sparse.csc_array,
+        averages: FloatArray,
+        groups: IntArray,
+        cutoff: float,
+    ) -> None:
+        self.stiffness, self.mass, self.averages = stiffness, mass, averages
+        if stiffness.shape[0] == 0:
+            # All degrees of freedom are coordinates already.
+            self.squares, self.shapes = np.zeros(0), np.zeros((0, 0))
+            return
+        self._typical = float(np.median(stiffness.diagonal() / mass.diagonal()))
+        if not self._typical > 0.0:
+            raise InputError(
+                "finite-element body, stiffness: most degrees of freedom have none; allowed: the matrix of an elastic "
+                "body"
+            )
+        self._limit = (2.0 * np.pi * cutoff) ** 2
+        # Far above rounding, not far above the modes that are wanted.
+        self._shift = float(np.clip(self._limit, 1e-8 * self._typical, 1e-4 * self._typical))
+        self._order = elimination_order(stiffness, groups)
+        self._factor = self._factorised(-self._shift)
+        pivots = self._pivots(self._factor)
+        if pivots is None or np.any(pivots <= 0.0):
+            raise InputError(_NO_BODY)
+        self._spread = self._solve_free(averages.T)
+        self._multipliers = self._multiplier_factor()
+        self.squares, self.shapes = self._modes()
+
+    def static(self, force: FloatArray, prescribed: FloatArray) -> FloatArray:
+        """Shapes at rest under forces and prescribed averages.
+
+        Parameters
+        ----------
+        force : array, shape (N, c)
+            In columns.
+        prescribed : array, shape (m, c)
+            p.
+
+        Returns
+        -------
+        array, shape (N, c)
+            x with K x + B' multipliers = force, B x = prescribed.
+
+        Raises
+        ------
+        AnalysisError
+            If they are not found to the accuracy of the modes.
+        """
+        if force.size == 0:
+            return force
+        shapes = self._solve(force, prescribed)
+        before = np.inf
+        for _ in range(_ITERATIONS):
+            soft = self.shapes @ ((self.shapes.T @ (force - self.stiffness @ shapes)) / self.squares[:, None])
+            shapes += soft
+            rest = self._solve(force - self.stiffness @ shapes, prescribed - self.averages @ shapes)
+            shapes += rest
+            change = self._largest_ratio(rest, shapes)
+            if change <= _ENOUGH or (change <= _GOOD and change > 0.5 * before):
+                return shapes
+            before = change
+        raise AnalysisError(
+            f"reduction: the static shapes still change by {change:.2g} after {_ITERATIONS} corrections; the matrices "
+            "are too badly conditioned: look for elements that are much smaller or stiffer than the others"
+        )
+
+    def _largest_ratio(self, part: FloatArray, whole: FloatArray) -> float:
+        """Size of a part against the whole, in the mass norm, the worst column."""
+        sizes = [np.sqrt(np.maximum(np.einsum("ik,ik->k", x, self.mass @ x), 0.0)) for x in (part, whole)]
+        return float(np.max(sizes[0] / np.where(sizes[1] > 0.0, sizes[1], 1.0), initial=0.0))
+
+    def _factorised(self, square: float) -> Any:
+        """Factors of K - square M, in the order of elimination, pivots on the diagonal."""
+        matrix = sparse.csc_array(self.stiffness - square * self.mass)[self._order][:, self._order]
+        try:
+            return splu(
+                sparse.csc_matrix(matrix), permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+            )
+        except (RuntimeError, MemoryError) as error:
+            raise AnalysisError(
+                f"reduction: the matrices cannot be factorised ({error}); check them, or take a coarser mesh"
+            ) from error
+
+    @staticmethod
+    def _pivots(factor: Any) -> FloatArray | None:
+        """Pivots, whose signs are those of the eigenvalues; None if rows were exchanged."""
+        pivots = np.asarray(factor.U.diagonal(), dtype=np.float64)
+        return pivots if np.array_equal(factor.perm_r, factor.perm_c) else None
+
+    def _count_below(self, square: float) -> int | None:
+        """How many modes have an omega^2 below `square`, by the signs of pivots (Sylvester); None if not known."""
+        factor = self._factorised(square)
+        pivots = self._pivots(factor)
+        if pivots is None:
+            return None
+        spread = np.empty_like(self.averages.T)
+        if spread.size:
+            spread[self._order] = factor.solve(np.ascontiguousarray(self.averages.T[self._order]))
+        # Each condition takes one negative eigenvalue of the matrix with multipliers for itself.
+        conditions = np.linalg.eigvalsh(self.averages @ spread)
+        return int(np.sum(pivots < 0.0) + np.sum(conditions > 0.0) - self.averages.shape[0])
+
+    def _solve_free(self, force: FloatArray) -> FloatArray:
+        """(K + a M)^-1 force."""
+        result = np.empty_like(force)
+        if force.size:
+            result[self._order] = self._factor.solve(np.ascontiguousarray(force[self._order]))
+        return result
+
+    def _multiplier_factor(self) -> tuple[FloatArray, FloatArray] | None:
+        """Scale and Cholesky factor of B (K + a M)^-1 B'."""
+        if self.averages.shape[0] == 0:
+            return None
+        flexibility = self.averages @ self._spread
+        scale = 1.0 / np.sqrt(np.diag(flexibility))
+        scaled = scale[:, None] * (0.5 * (flexibility + flexibility.T)) * scale
+        if np.linalg.eigvalsh(scaled)[0] < _DEPENDENT:
+            raise InputError(
+                "interfaces: the mean displacements of averaging interfaces depend on each other; allowed: interfaces "
+                "of nodes apart, no two on the same surface"
+            )
+        return scale, np.asarray(np.linalg.cholesky(scaled), dtype=np.float64)
+
+    def _solve(self, force: FloatArray, prescribed: FloatArray | None = None) -> FloatArray:
+        """x with (K + a M) x + B' multipliers = force, B x = prescribed (zero if left out)."""
+        free = self._solve_free(force)
+        if self._multipliers is None:
+            return free
+        scale, factor = self._multipliers
+        short = self.averages @ free
+        if prescribed is not None:
+            short = short - prescribed
+        return free - self._spread @ _scaled_solve(scale, factor, short)
+
+    def _modes(self) -> tuple[FloatArray, FloatArray]:
+        """omega^2 and shapes up to the cut-off."""
+        free = self.stiffness.shape[0] - self.averages.shape[0]
+        if free <= 0:
+            return np.zeros(0), np.zeros((self.stiffness.shape[0], 0))
+        try:
+            squares, shapes = self._all_modes() if free <= _DENSE else self._lowest_modes(free)
+        except linalg.LinAlgError as error:
+            # A mass that is not positive definite.
+            raise InputError(_NO_BODY) from error
+        if squares[0] < _FREE * self._typical:
+            still = int(np.sum(squares < _FREE * self._typical))
+            raise InputError(
+                f"interfaces: with all of them held the body can still move in {still} way{'s' if still > 1 else ''}; "
+                "allowed: interfaces that hold the body together; add an interface or keep more of its freedoms, and "
+                "look for parts of the mesh that are not connected"
+            )
+        kept = squares <= self._limit
+        if kept.sum() > MOST_MODES:
+            raise InputError(
+                f"cutoff: keeps {int(kept.sum())} modes; allowed: at most {MOST_MODES}; lower it: twice the highest "
+                "frequency of interest is enough"
+            )
+        squares, shapes = squares[kept], shapes[:, kept]
+        largest = np.argmax(np.abs(shapes), axis=0) if shapes.size else np.zeros(0, dtype=np.int64)
+        return squares, shapes * np.sign(shapes[largest, np.arange(largest.size)])
+
+    def _all_modes(self) -> tuple[FloatArray, FloatArray]:
+        """All modes of a small body."""
+        basis = linalg.null_space(self.averages) if self.averages.shape[0] else np.eye(self.stiffness.shape[0])
+        squares, inner = linalg.eigh(basis.T @ (self.stiffness @ basis), basis.T @ (self.mass @ basis))
+        return squares, basis @ inner
+
+    def _lowest_modes(self, free: int) -> tuple[FloatArray, FloatArray]:
+        """Modes up to the first one above the cut-off, by Lanczos' method about the shift."""
+        size = self.stiffness.shape[0]
+        inverse = LinearOperator((size, size), matvec=lambda x: self._solve(x.reshape(size, -1)).reshape(x.shape))
+        start = self._solve(self.mass @ np.random.default_rng(0).standard_normal((size, 1)))[:, 0]
+        wanted, missed = 20, 0
+        while True:
+            try:
+                squares, shapes = eigsh(
+                    self.stiffness, wanted, M=self.mass, sigma=-self._shift, OPinv=inverse, which="LM", v0=start
+                )
+            except ArpackError as error:
+                raise AnalysisError(f"reduction: the modes of the held body were not found ({error})") from error
+            # A rotation within the span: clean shapes also where frequencies lie close together.
+            squares, inner = linalg.eigh(shapes.T @ (self.stiffness @ shapes), shapes.T @ (self.mass @ shapes))
+            shapes = shapes @ inner
+            if squares[-1] > self._limit:
+                # Lanczos' method may pass over one of two modes at the same frequency: count.
+                below, middle = _widest_gap(squares, int(np.sum(squares <= self._limit)))
+                if self._count_below(middle) == below:
+                    return squares, shapes
+                missed += 1
+            elif wanted > MOST_MODES:
+                return squares, shapes
+            if missed == _MISSES:
+                raise AnalysisError(
+                    "reduction: modes of the held body were passed over, and more searching did not find them; choose "
+                    "another cut-off, or a slightly coarser mesh"
+                )
+            wanted = min(2 * wanted, MOST_MODES + 1, free - 1)
+
+
+def _widest_gap(squares: FloatArray, kept: int) -> tuple[int, float]:
+    """Where modes are farthest apart, at the last kept one or above: how many are below, and omega^2 in between."""
+    padded = np.concatenate([[0.0], np.maximum(squares, 0.0)])
+    gaps = (padded[1:] - padded[:-1]) / padded[-1]
+    below = kept + int(np.argmax(gaps[kept:]))
+    return below, 0.5 * float(padded[below] + padded[below + 1])
+
+
+def elimination_order(matrix: sparse.csc_array, groups: IntArray) -> IntArray:
+    """Order of elimination that fills little: nested dissection of the graph of the nodes.
+
+    Parameters
+    ----------
+    matrix : sparse array, shape (N, N)
+        Symmetric.
+    groups : array of int, shape (N,)
+        Degrees of freedom with the same number stay together.
+
+    Returns
+    -------
+    array of int, shape (N,)
+        Degrees of freedom, first to last.
+    """
+    # Only here: reduced files are read without it.
+    import pymetis
+
+    _, group = np.unique(groups, return_inverse=True)
+    size = matrix.shape[0]
+    gather = sparse.csr_array((np.ones(size), (group, np.arange(size))))
+    graph = sparse.csr_array(gather @ abs(matrix) @ gather.T)
+    graph.setdiag(0.0)
+    graph.eliminate_zeros()
+    if graph.nnz == 0:
+        return np.arange(size)
+    _, place = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))
+    return np.argsort(np.asarray(place)[group], kind="stable")
+
+
+def _scaled_solve(scale: FloatArray, factor: FloatArray, right: FloatArray) -> FloatArray:
+    """Solve with a scaled Cholesky factor."""
+    return np.asarray(scale[:, None] * linalg.cho_solve((factor, True), scale[:, None] * right))

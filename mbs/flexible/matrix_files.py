@@ -1,0 +1,271 @@
+"""Stiffness and mass as other programs write them: tables of numbers, Matrix Market, Abaqus matrix output.
+
+All readers give a sparse matrix and labels (node, direction) of its rows. A symmetric matrix may be given as one half
+or as a whole; which one it is, the entries say: each pair once, or each twice.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from scipy import io, sparse
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import FloatArray
+from mbs.flexible.finite_elements import MOST_FREEDOMS, FiniteElementModel, IntArray
+from mbs.flexible.number_table import NumberTable, check_file, read_numbers
+
+UNIT_SYSTEMS = ("SI", "mm-t-s")
+"""N, m, kg, s; or N, mm, tonne, s, as finite-element models are often made."""
+
+_FIXED = 1e35
+"""Stiffness from which on a degree of freedom is taken as fixed: Abaqus writes 1e36 for those."""
+
+
+class Labelled(NamedTuple):
+    """A symmetric matrix and what its rows mean.
+
+    Attributes
+    ----------
+    matrix : sparse array, shape (N, N)
+        In the units of the file.
+    nodes, directions : array of int, shape (N,)
+        Node number, and 0..2 for displacements, 3..5 for rotations.
+    """
+
+    matrix: sparse.csc_array
+    nodes: IntArray
+    directions: IntArray
+
+
+class NodePositions(NamedTuple):
+    """Nodes with known positions: numbers (P,), positions (P, 3) in the units of the file."""
+
+    numbers: IntArray
+    positions: FloatArray
+
+
+def assemble_model(stiffness: Labelled, mass: Labelled, nodes: NodePositions, units: str = "SI") -> FiniteElementModel:
+    """Put what files hold into one model in SI.
+
+    Parameters
+    ----------
+    stiffness, mass : Labelled
+        Their rows may be in different order; they have the same degrees of freedom.
+    nodes : NodePositions
+        Of the mesh.
+    units : {"SI", "mm-t-s"}
+        Of all three.
+
+    Raises
+    ------
+    InputError
+        If the matrices do not have the same degrees of freedom, or do not make a model.
+    """
+    if units not in UNIT_SYSTEMS:
+        raise InputError(f"units: got {units!r:.40}; allowed: {', '.join(UNIT_SYSTEMS)}")
+    keys = [entry.nodes * 6 + entry.directions for entry in (stiffness, mass)]
+    orders = [np.argsort(key, kind="stable") for key in keys]
+    if not np.array_equal(keys[0][orders[0]], keys[1][orders[1]]):
+        apart = np.setxor1d(keys[0], keys[1])
+        shown = ", ".join(f"node {key // 6} direction {key % 6 + 1}" for key in apart[:5].tolist())
+        raise InputError(
+            f"matrices: {shown}{f' and {apart.size - 5} more' if apart.size > 5 else ''} in only one of stiffness and "
+            "mass; allowed: both of the same body, every degree of freedom with stiffness and mass"
+        )
+    force, length = (1.0, 1.0) if units == "SI" else (1e3, 1e-3)
+    directions = stiffness.directions[orders[0]]
+    # N/mm and tonne are 1e3 in SI, N/rad and t mm are 1, N mm and t mm2 are 1e-3.
+    step = np.where(directions < 3, 0, 1)
+    matrices = []
+    for entry, order in zip((stiffness, mass), orders, strict=True):
+        matrix = sparse.coo_array(sparse.csc_array(entry.matrix)[order][:, order])
+        factors = np.array([force, force * length, force * length**2])
+        scaled = matrix.data * factors[step[matrix.row] + step[matrix.col]]
+        matrices.append(sparse.csc_array((scaled, (matrix.row, matrix.col)), shape=matrix.shape))
+    return FiniteElementModel(
+        stiffness=matrices[0],
+        mass=matrices[1],
+        nodes=stiffness.nodes[orders[0]],
+        directions=directions,
+        numbers=nodes.numbers,
+        positions=nodes.positions * length,
+    )
+
+
+def read_matrix_market(path: Path, dofs: Path) -> Labelled:
+    """Read a Matrix Market file, whose rows a table of degrees of freedom explains.
+
+    Parameters
+    ----------
+    path : Path
+        Real or integer entries; symmetric, or general and symmetric.
+    dofs : Path
+        See `read_dof_table`.
+
+    Raises
+    ------
+    InputError
+        For files that are none or do not fit together.
+    """
+    nodes, directions = read_dof_table(dofs)
+    check_file(path)
+    try:
+        rows, columns, entries, _, values, _ = io.mminfo(path)
+    except (OSError, ValueError, OverflowError) as error:
+        raise InputError(
+            f"{path}: is no Matrix Market file ({_first_line(error)}); allowed: one that begins with %%MatrixMarket"
+        ) from error
+    if values not in ("real", "integer", "double"):
+        raise InputError(f"{path}: got {values} entries; allowed: real ones")
+    if (rows, columns) != (nodes.size, nodes.size):
+        raise InputError(
+            f"{path}: got {rows} rows and {columns} columns; allowed: {nodes.size} of each, as many as lines in {dofs}"
+        )
+    # An entry takes two characters at least: a header that promises more must not fill the memory.
+    if 2 * entries > path.stat().st_size:
+        raise InputError(f"{path}: the header promises {entries} entries, which the file does not hold; it was cut off")
+    try:
+        matrix = sparse.csc_array(io.mmread(path, spmatrix=False), dtype=np.float64)
+    except (OSError, ValueError, OverflowError, MemoryError) as error:
+        raise InputError(f"{path}: cannot be read ({_first_line(error)}); it was cut off or damaged") from error
+    # Whether the entries are finite and symmetric, the model looks.
+    return Labelled(matrix, nodes, directions)
+
+
+def read_abaqus_matrix(path: Path, dofs: Path | None = None) -> Labelled:
+    """Read what Abaqus writes for *MATRIX OUTPUT.
+
+    FORMAT=MATRIX INPUT has lines "row node, row dof, column node, column dof, value"; FORMAT=COORDINATE has lines "row
+    column value" and needs a table of degrees of freedom. Rows with a stiffness of 1e36, which stand for fixed degrees
+    of freedom, are kept here: `without_fixed` takes them out.
+
+    Parameters
+    ----------
+    path : Path
+        The file; either half of a symmetric matrix, or the whole.
+    dofs : Path, optional
+        For FORMAT=COORDINATE; see `read_dof_table`.
+
+    Raises
+    ------
+    InputError
+        With file and line; also for nodes that Abaqus made itself, such as multipliers of constraints.
+    """
+    if dofs is not None:
+        return read_triplets(path, *read_dof_table(dofs))
+    table = read_numbers(path, 5, "*", ",")
+    whole = table.whole(4)
+    for column in (0, 2):
+        bad = np.flatnonzero(whole[:, column] < 1)
+        if bad.size:
+            raise table.problem(
+                int(bad[0]),
+                "allowed: node numbers from 1; Abaqus gives those below to nodes of its own, such as the multipliers "
+                "of constraints: tie by elements instead",
+            )
+        bad = np.flatnonzero((whole[:, column + 1] < 1) | (whole[:, column + 1] > 6))
+        if bad.size:
+            raise table.problem(int(bad[0]), "allowed: directions 1 to 3 for displacements, 4 to 6 for rotations")
+    keys = 6 * whole[:, [0, 2]] + whole[:, [1, 3]] - 1
+    found, places = np.unique(keys, return_inverse=True)
+    places = places.reshape(keys.shape)
+    _check_count(path, found.size)
+    matrix = _symmetric(table, places[:, 0], places[:, 1], found.size)
+    return Labelled(matrix, found // 6, found % 6)
+
+
+def without_fixed(stiffness: Labelled, mass: Labelled) -> tuple[Labelled, Labelled]:
+    """Both matrices without the degrees of freedom whose stiffness is 1e36, as Abaqus marks what is fixed."""
+    fixed = stiffness.matrix.diagonal() >= _FIXED
+    gone = (stiffness.nodes * 6 + stiffness.directions)[fixed]
+    left = []
+    for entry in (stiffness, mass):
+        kept = np.flatnonzero(~np.isin(entry.nodes * 6 + entry.directions, gone))
+        left.append(Labelled(sparse.csc_array(entry.matrix[kept][:, kept]), entry.nodes[kept], entry.directions[kept]))
+    return left[0], left[1]
+
+
+def read_triplets(path: Path, nodes: IntArray, directions: IntArray) -> Labelled:
+    """Read lines "row column value", counted from 1, of one half of a symmetric matrix or of the whole.
+
+    Raises
+    ------
+    InputError
+        With file and line.
+    """
+    table = read_numbers(path, 3, "*")
+    whole = table.whole(2)
+    bad = np.flatnonzero(((whole < 1) | (whole > nodes.size)).any(axis=1))
+    if bad.size:
+        raise table.problem(int(bad[0]), f"allowed: rows and columns from 1 to {nodes.size}, the degrees of freedom")
+    return Labelled(_symmetric(table, whole[:, 0] - 1, whole[:, 1] - 1, nodes.size), nodes, directions)
+
+
+def read_dof_table(path: Path) -> tuple[IntArray, IntArray]:
+    """Read lines "node direction", one for each row; direction 1 to 3 for displacements, 4 to 6 for rotations.
+
+    Returns
+    -------
+    nodes, directions : array of int, shape (N,)
+        Directions counted from 0.
+
+    Raises
+    ------
+    InputError
+        With file and line.
+    """
+    table = read_numbers(path, 2, "#")
+    return checked_labels(table, table.whole(2))
+
+
+def checked_labels(table: NumberTable, whole: IntArray) -> tuple[IntArray, IntArray]:
+    """Nodes and directions (from 0) of rows (node, direction from 1), shape (N, 2); InputError with file and line."""
+    _check_count(table.path, whole.shape[0])
+    bad = np.flatnonzero((whole[:, 0] < 1) | (whole[:, 1] < 1) | (whole[:, 1] > 6))
+    if bad.size:
+        raise table.problem(int(bad[0]), "allowed: a node from 1 and a direction from 1 to 6")
+    _, first = np.unique(whole, axis=0, return_index=True)
+    if first.size < whole.shape[0]:
+        again = int(np.setdiff1d(np.arange(whole.shape[0]), first)[0])
+        raise table.problem(again, "which is there twice; allowed: each degree of freedom once")
+    return whole[:, 0].copy(), whole[:, 1] - 1
+
+
+def _check_count(path: Path, count: int) -> None:
+    """Raise if there are more degrees of freedom than can be reduced."""
+    if count > MOST_FREEDOMS:
+        raise InputError(
+            f"{path}: got {count} degrees of freedom; allowed: at most {MOST_FREEDOMS}; take a coarser mesh"
+        )
+
+
+def _symmetric(table: NumberTable, rows: IntArray, columns: IntArray, size: int) -> sparse.csc_array:
+    """The whole matrix of values given once or twice for each pair of rows, rows and columns from 0."""
+    values = table.values[:, -1]
+    entries = rows * size + columns
+    _, first = np.unique(entries, return_index=True)
+    if first.size < entries.size:
+        again = int(np.setdiff1d(np.arange(entries.size), first)[0])
+        raise table.problem(again, "an entry that is there twice; allowed: each once")
+    given = sparse.csc_array((values, (rows, columns)), shape=(size, size))
+    apart = rows != columns
+    mirrored = np.isin(entries[apart], columns[apart] * size + rows[apart])
+    if not mirrored.any():
+        diagonal = sparse.dia_array((given.diagonal()[None, :], [0]), shape=given.shape)
+        return sparse.csc_array(given + given.T - diagonal)
+    if not mirrored.all():
+        row = int(np.flatnonzero(apart)[np.argmin(mirrored)])
+        raise table.problem(
+            row,
+            "an entry without its mirror image, while others have theirs; allowed: one half of the matrix, or the "
+            "whole",
+        )
+    return given
+
+
+def _first_line(error: BaseException) -> str:
+    """What an error says, in one line."""
+    return (str(error).splitlines() or [type(error).__name__])[0]

@@ -1,0 +1,171 @@
+"""A flexible body as a few coordinates: its matrices and how the places on it move. What a reduced file holds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import FloatArray
+from mbs.body import Body, Frame
+from mbs.flexible.damping import modal_damping
+
+UNITS = ("m", "rad", "1")
+"""Of coordinates: displacements, rotations, and modal amplitudes."""
+
+MOST_COORDINATES = 1000
+
+_ROUNDING = 1e-8
+"""Of the largest entry of a scaled matrix: what asymmetry or negative stiffness may be rounding of a file."""
+
+
+@dataclass(frozen=True, eq=False)
+class ReducedBody:
+    """M q'' + K q = forces on the interfaces.
+
+    Attributes
+    ----------
+    mass, stiffness : array, shape (n, n)
+        In the units of the coordinates; symmetric, M positive definite, K positive semi-definite.
+    coordinates : tuple of str
+        Names, such as "left.y" and "mode 1".
+    units : tuple of str
+        "m", "rad" or "1".
+    frames : mapping of str to Frame
+        Places, from the origin of the finite-element body [m], and how they move. At an interface all six displacements
+        are known; at a point that is a single node without rotations the three rotations are zero in the
+        transform, so a moment has no effect there and a sensed rotation is zero.
+    attributes : mapping of str to str
+        Where the matrices come from.
+
+    Raises
+    ------
+    InputError
+        With everything that does not fit together.
+    """
+
+    mass: FloatArray
+    stiffness: FloatArray
+    coordinates: tuple[str, ...]
+    units: tuple[str, ...]
+    frames: Mapping[str, Frame]
+    attributes: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "coordinates", tuple(self.coordinates))
+        object.__setattr__(self, "units", tuple(self.units))
+        object.__setattr__(self, "frames", MappingProxyType(dict(self.frames)))
+        object.__setattr__(self, "attributes", MappingProxyType(dict(self.attributes)))
+        size = self.size
+        problems = []
+        if not 1 <= size <= MOST_COORDINATES:
+            problems.append(f"reduced body, coordinates: got {size}; allowed: 1 to {MOST_COORDINATES}")
+        if len(set(self.coordinates)) < size:
+            problems.append("reduced body, coordinates: a name is there twice; allowed: each once")
+        if len(self.units) != size or not set(self.units) <= set(UNITS):
+            problems.append(
+                f"reduced body, units: got {self.units!r:.80}; allowed: one of {', '.join(UNITS)} for each of {size} "
+                "coordinates"
+            )
+        for name in ("mass", "stiffness"):
+            matrix = np.asarray(getattr(self, name), dtype=np.float64)
+            object.__setattr__(self, name, matrix)
+            if matrix.shape != (size, size):
+                problems.append(f"reduced body, {name}: got shape {matrix.shape}; allowed: {(size, size)}")
+            elif not np.all(np.isfinite(matrix)):
+                problems.append(f"reduced body, {name}: got entries that are no finite numbers; allowed: finite ones")
+        for name, frame in self.frames.items():
+            shapes = (np.shape(frame.position), np.shape(frame.transform))
+            if shapes != ((3,), (6, size)):
+                problems.append(
+                    f"reduced body, frame {name!r}: got shapes {shapes[0]} and {shapes[1]}; allowed: (3,) and "
+                    f"{(6, size)}"
+                )
+            elif not (np.all(np.isfinite(frame.position)) and np.all(np.isfinite(frame.transform))):
+                problems.append(
+                    f"reduced body, frame {name!r}: got values that are no finite numbers; allowed: finite ones"
+                )
+        if not problems:
+            problems = self._matrix_problems()
+        if problems:
+            raise InputError(problems)
+
+    @property
+    def size(self) -> int:
+        """Number n of coordinates."""
+        return len(self.coordinates)
+
+    def _matrix_problems(self) -> list[str]:
+        """What is wrong with matrices of the right shape."""
+        diagonal = np.diag(self.mass)
+        if np.any(diagonal <= 0.0):
+            name = self.coordinates[int(np.argmin(diagonal))]
+            return [f"reduced body, mass: got {diagonal.min():.4g} on the diagonal at {name}; allowed: > 0"]
+        scale = 1.0 / np.sqrt(diagonal)
+        problems = []
+        for name in ("mass", "stiffness"):
+            scaled = scale[:, None] * getattr(self, name) * scale
+            largest = max(float(np.max(np.abs(scaled))), np.finfo(np.float64).tiny)
+            apart = float(np.max(np.abs(scaled - scaled.T)))
+            lowest = float(np.linalg.eigvalsh(0.5 * (scaled + scaled.T))[0]) if apart <= _ROUNDING * largest else 0.0
+            if apart > _ROUNDING * largest:
+                problems.append(
+                    f"reduced body, {name}: is not symmetric: scaled entries differ by {apart:.3g} where the largest "
+                    f"is {largest:.3g}; allowed: a symmetric matrix"
+                )
+            elif name == "mass" and lowest <= 0.0:
+                problems.append(
+                    f"reduced body, mass: the scaled matrix has the eigenvalue {lowest:.3g}; allowed: a positive "
+                    "definite matrix; leave out coordinates that depend on others"
+                )
+            elif lowest < -_ROUNDING * largest:
+                problems.append(
+                    f"reduced body, stiffness: the scaled matrix has the eigenvalue {lowest:.3g} 1/s2; allowed: a "
+                    "positive semi-definite matrix; a body does not push itself away from rest"
+                )
+        return problems
+
+
+def to_body(
+    reduced: ReducedBody,
+    name: str,
+    position: Sequence[float] = (0.0, 0.0, 0.0),
+    damping_ratio: float = 0.0,
+    spin: float = 0.0,
+) -> Body:
+    """Put a reduced body into a system.
+
+    Parameters
+    ----------
+    reduced : ReducedBody
+        Its matrices and frames.
+    name : str
+        Name in the system.
+    position : sequence of float, shape (3,)
+        Where the origin of the finite-element body is [m]; its axes are those of the system.
+    damping_ratio : float
+        Of every mode of the free body.
+    spin : float
+        Speed about x as a multiple of the system's. The body has no gyroscopic terms: right for housings, which do not
+        turn; shafts that turn are made of beams.
+
+    Raises
+    ------
+    InputError
+        For a damping ratio that is none.
+    """
+    here = np.asarray(position, dtype=np.float64)
+    return Body(
+        name=name,
+        coordinates=reduced.coordinates,
+        units=reduced.units,
+        mass=reduced.mass,
+        gyroscopic=np.zeros_like(reduced.mass),
+        damping=modal_damping(reduced.mass, reduced.stiffness, damping_ratio),
+        stiffness=reduced.stiffness,
+        frames={key: replace(frame, position=here + frame.position) for key, frame in reduced.frames.items()},
+        spin=spin,
+    )

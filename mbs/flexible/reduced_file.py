@@ -1,0 +1,258 @@
+"""Reduced bodies in files: netCDF to keep and to show, npz for other programs. The same bytes for the same body.
+
+netCDF: dimensions coordinate, with_respect_to, frame, freedom, axis; variables mass, stiffness, unit, position,
+transform; provenance as attributes. npz: arrays mass (n, n), stiffness (n, n), coordinates (n,), units
+(n,), frames (f,), positions (f, 3), transforms (f, 6, n), attributes (a, 2) as texts; the last is optional.
+"""
+
+from __future__ import annotations
+
+import os
+import zipfile
+import zlib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ehdmaps.errors import InputError
+from mbs.body import FREEDOMS, Frame
+from mbs.flexible.number_table import check_file
+from mbs.flexible.reduced_body import MOST_COORDINATES, ReducedBody
+
+SCHEMA_VERSION = 1
+
+SUFFIXES = (".nc", ".npz")
+
+MOST_FRAMES = 10_000
+
+_ARRAYS = ("mass", "stiffness", "coordinates", "units", "frames", "positions", "transforms")
+_OPTIONAL = "attributes"
+_LONGEST_FILE = 1_000_000_000
+_DAMAGED = (
+    OSError,
+    ValueError,
+    EOFError,
+    KeyError,
+    TypeError,
+    AttributeError,
+    MemoryError,
+    RuntimeError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What the libraries raise for files that are damaged or of another kind."""
+
+
+def write_reduced(path: Path, reduced: ReducedBody) -> None:
+    """Write a reduced body aside, then rename it over what stands there.
+
+    Parameters
+    ----------
+    path : Path
+        .nc or .npz.
+    reduced : ReducedBody
+        What is written.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    _check_suffix(path)
+    aside = path.with_name(f".{path.name}.{os.getpid()}.part{path.suffix}")
+    try:
+        try:
+            if path.suffix == ".npz":
+                with aside.open("wb") as file:
+                    np.savez(file, allow_pickle=False, **_arrays(reduced))
+            else:
+                _dataset(reduced).to_netcdf(aside, engine="netcdf4", mode="w")
+            aside.replace(path)
+        finally:
+            aside.unlink(missing_ok=True)
+    except (OSError, RuntimeError, ValueError) as error:
+        raise InputError(
+            f"{path}: cannot be written ({error}); allowed: a file in a folder that may be written, with space on the "
+            "disk"
+        ) from error
+
+
+def read_reduced(path: Path) -> ReducedBody:
+    """Read a reduced body.
+
+    Parameters
+    ----------
+    path : Path
+        .nc or .npz, written by `write_reduced` or laid out as it does.
+
+    Raises
+    ------
+    InputError
+        If it is none.
+    """
+    _check_suffix(path)
+    check_file(path)
+    if path.stat().st_size > _LONGEST_FILE:
+        raise InputError(f"{path}: got {path.stat().st_size} bytes; allowed: at most {_LONGEST_FILE}")
+    given = _npz(path) if path.suffix == ".npz" else _netcdf(path)
+    try:
+        return _body(given)
+    except InputError as error:
+        raise InputError([f"{path}: {problem}" for problem in error.problems]) from error
+
+
+def _check_suffix(path: Path) -> None:
+    """Raise if a file has another kind of name."""
+    if path.suffix not in SUFFIXES:
+        raise InputError(f"{path}: got the ending {path.suffix!r}; allowed: {', '.join(SUFFIXES)}")
+
+
+def _arrays(reduced: ReducedBody) -> dict[str, Any]:
+    """A body as arrays."""
+    frames = reduced.frames.values()
+    return {
+        "mass": reduced.mass,
+        "stiffness": reduced.stiffness,
+        "coordinates": np.array(reduced.coordinates),
+        "units": np.array(reduced.units),
+        "frames": np.array(list(reduced.frames), dtype=np.str_),
+        "positions": np.array([frame.position for frame in frames]).reshape(-1, 3),
+        "transforms": np.array([frame.transform for frame in frames]).reshape(-1, 6, reduced.size),
+        _OPTIONAL: np.array(sorted(reduced.attributes.items()), dtype=np.str_).reshape(-1, 2),
+    }
+
+
+def _dataset(reduced: ReducedBody) -> xr.Dataset:
+    """A body as a labelled dataset."""
+    arrays = _arrays(reduced)
+    per = "by the units of the coordinates"
+    variables: dict[str, Any] = {
+        "mass": (
+            ("coordinate", "with_respect_to"),
+            arrays["mass"],
+            {"units": f"kg for m, {per}", "long_name": "mass matrix"},
+        ),
+        "stiffness": (
+            ("coordinate", "with_respect_to"),
+            arrays["stiffness"],
+            {"units": f"N/m for m, {per}", "long_name": "stiffness matrix"},
+        ),
+        "unit": ("coordinate", arrays["units"], {"long_name": "unit of the coordinate"}),
+        "position": (
+            ("frame", "axis"),
+            arrays["positions"],
+            {"units": "m", "long_name": "place from the origin of the finite-element body"},
+        ),
+        "transform": (
+            ("frame", "freedom", "coordinate"),
+            arrays["transforms"],
+            {"units": f"m or rad, {per}", "long_name": "displacement of the place by the coordinates"},
+        ),
+    }
+    coordinates = {
+        "coordinate": ("coordinate", arrays["coordinates"], {"long_name": "coordinates of the reduced body"}),
+        "with_respect_to": ("with_respect_to", arrays["coordinates"], {"long_name": "coordinates of the reduced body"}),
+        "frame": ("frame", arrays["frames"], {"long_name": "places on the body"}),
+        "freedom": ("freedom", list(FREEDOMS), {"long_name": "freedoms of a place"}),
+        "axis": ("axis", ["x", "y", "z"], {"long_name": "axes"}),
+    }
+    return xr.Dataset(variables, coords=coordinates, attrs={"schema_version": SCHEMA_VERSION, **reduced.attributes})
+
+
+def _npz(path: Path) -> dict[str, Any]:
+    """Arrays of an npz file."""
+    try:
+        # Nothing is unpickled: a file from elsewhere must not run code.
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+            missing = [name for name in _ARRAYS if name not in file.files]
+            if missing:
+                raise InputError(
+                    f"{path}: got the arrays {', '.join(file.files)!r:.100}; missing: {', '.join(missing)}; allowed: "
+                    "those that write_reduced writes"
+                )
+            return {name: file[name] for name in (*_ARRAYS, _OPTIONAL) if name in file.files}
+    except _DAMAGED as error:
+        raise _unreadable(path, error) from error
+
+
+def _netcdf(path: Path) -> dict[str, Any]:
+    """Arrays of a netCDF file."""
+    try:
+        with xr.open_dataset(path, engine="netcdf4", decode_times=False) as file:
+            dataset = file.load()
+    except _DAMAGED as error:
+        raise _unreadable(path, error) from error
+    version = dataset.attrs.get("schema_version")
+    if version != SCHEMA_VERSION:
+        raise InputError(f"{path}: got the schema_version {version!r:.40}; allowed: {SCHEMA_VERSION}")
+    dims = {
+        "mass": ("coordinate", "with_respect_to"),
+        "stiffness": ("coordinate", "with_respect_to"),
+        "unit": ("coordinate",),
+        "position": ("frame", "axis"),
+        "transform": ("frame", "freedom", "coordinate"),
+        "coordinate": ("coordinate",),
+        "frame": ("frame",),
+    }
+    wrong = [name for name, expected in dims.items() if name not in dataset or dataset[name].dims != expected]
+    if wrong:
+        raise InputError(
+            f"{path}: the variables {', '.join(wrong)} are missing or have other dimensions; allowed: a file written "
+            "by mbs reduce"
+        )
+    plural = {"unit": "units", "position": "positions", "transform": "transforms"}
+    plural |= {"coordinate": "coordinates", "frame": "frames"}
+    given = {plural.get(name, name): dataset[name].values for name in dims}
+    kept = {key: str(value) for key, value in dataset.attrs.items() if key != "schema_version"}
+    return {**given, _OPTIONAL: np.array(sorted(kept.items()), dtype=np.str_).reshape(-1, 2)}
+
+
+def _body(given: Mapping[str, Any]) -> ReducedBody:
+    """A body of arrays that may be of any shape and kind."""
+    names = {key: np.asarray(given[key]) for key in ("coordinates", "units", "frames")}
+    numbers = {key: np.asarray(given[key]) for key in ("mass", "stiffness", "positions", "transforms")}
+    problems = [
+        f"{key}: got {value.ndim} dimensions of {value.dtype}; allowed: a list of at most {MOST_FRAMES} texts"
+        for key, value in names.items()
+        if value.ndim != 1 or value.size > MOST_FRAMES or not all(isinstance(word, str) for word in value.tolist())
+    ]
+    problems += [
+        f"{key}: got {value.dtype}; allowed: real numbers"
+        for key, value in numbers.items()
+        if value.dtype.kind not in "fiu"
+    ]
+    if not problems:
+        frames, size = names["frames"].size, names["coordinates"].size
+        expected = {"positions": (frames, 3), "transforms": (frames, 6, size)}
+        problems = [
+            f"{key}: got shape {numbers[key].shape}; allowed: {shape}, for {frames} frames and {size} coordinates"
+            for key, shape in expected.items()
+            if numbers[key].shape != shape
+        ]
+        if len(set(names["frames"].tolist())) < frames:
+            problems.append("frames: a name is there twice; allowed: each once")
+        if size > MOST_COORDINATES:
+            problems.append(f"coordinates: got {size}; allowed: at most {MOST_COORDINATES}")
+    texts = np.asarray(given.get(_OPTIONAL, np.zeros((0, 2), dtype=np.str_)))
+    if texts.ndim != 2 or texts.shape[1] != 2 or texts.dtype.kind not in "U":
+        problems.append(f"attributes: got shape {texts.shape} of {texts.dtype}; allowed: pairs of texts")
+    if problems:
+        raise InputError(problems)
+    places = zip(numbers["positions"].astype(np.float64), numbers["transforms"].astype(np.float64), strict=True)
+    return ReducedBody(
+        mass=numbers["mass"].astype(np.float64),
+        stiffness=numbers["stiffness"].astype(np.float64),
+        coordinates=tuple(names["coordinates"].tolist()),
+        units=tuple(names["units"].tolist()),
+        frames={name: Frame(*place) for name, place in zip(names["frames"].tolist(), places, strict=True)},
+        attributes=dict(texts.tolist()),
+    )
+
+
+def _unreadable(path: Path, error: BaseException) -> InputError:
+    """What is said about a file that is none."""
+    words = " ".join(str(error).split())
+    return InputError(f"{path}: is no reduced body ({words:.100}); allowed: a file written by mbs reduce")

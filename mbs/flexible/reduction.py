@@ -1,0 +1,331 @@
+"""Craig-Bampton reduction: a finite-element body by the displacements of its interfaces and a few modes.
+
+    u = Psi q + Phi p      Psi: shapes at rest, one interface coordinate 1 and the others 0
+                           Phi: modes with all interface coordinates held, up to the cut-off
+
+Static forces on the interfaces are exact; frequencies are good up to about half the cut-off (Craig and Bampton, AIAA
+Journal 6, 1968, 1313-1319). Rigid interfaces are built into the matrices first; averaging ones are held in the mean.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import FloatArray
+from mbs.body import FREEDOMS, Frame
+from mbs.errors import AnalysisError
+from mbs.flexible.finite_elements import FiniteElementModel, IntArray, named
+from mbs.flexible.held_body import HeldBody
+from mbs.flexible.reduced_body import ReducedBody
+from mbs.flexible.spiders import Interface, Spider, nearest_node, spider
+
+Point = Interface | Sequence[float] | int
+"""Where a body is only observed: an averaging interface, a position (its nearest node is taken), or a node number."""
+
+HIGHEST_CUTOFF = 1e9
+"""[Hz]."""
+
+NEAREST = 0.05
+"""How far the nearest node of a point may be, as a part of the extent of the mesh."""
+
+_NOISE = 1e-13
+"""Rounding of a stiffness, of the sum of the sizes of all that adds up to it."""
+
+_COUPLED = 1e-6
+"""Largest stiffness between static shapes and modes, which is zero in exact arithmetic, over their own."""
+
+
+def reduce(
+    model: FiniteElementModel,
+    interfaces: Mapping[str, Interface],
+    points: Mapping[str, Point] | None = None,
+    cutoff: float = 1e4,
+    attributes: Mapping[str, str] | None = None,
+) -> ReducedBody:
+    """Reduce a finite-element body to its interfaces and its modes up to a cut-off.
+
+    Parameters
+    ----------
+    model : FiniteElementModel
+        The body; free, or with feet that are fixed already.
+    interfaces : mapping of str to Interface
+        Where forces act. With all of them held the body must not move.
+    points : mapping, optional
+        Where the body is observed only. At a node of a solid the rotations are not known: zero.
+    cutoff : float
+        Highest frequency of the modes with all interfaces held [Hz].
+    attributes : mapping of str to str, optional
+        Provenance, added to the result's own.
+
+    Returns
+    -------
+    ReducedBody
+        Coordinates "left.x" ... in the order of the interfaces, then "mode 1" ... scaled to unit modal mass.
+
+    Raises
+    ------
+    InputError
+        For interfaces, points or a cut-off that do not fit the body, with every problem found before the matrices are
+        factorised.
+    AnalysisError
+        If the modes or static shapes are not found.
+    """
+    points = points or {}
+    spiders, observers = _checked(model, interfaces, points, cutoff)
+    parts = _partition(model, interfaces, spiders)
+    stiffness = _transformed(parts.transform, model.stiffness)
+    mass = _transformed(parts.transform, model.mass)
+    inner, held = parts.inner, parts.held
+    # What moves: the rest, held in the mean.
+    body = HeldBody(
+        sparse.csc_array(stiffness[inner][:, inner]),
+        sparse.csc_array(mass[inner][:, inner]),
+        parts.averages,
+        parts.groups[inner],
+        cutoff,
+    )
+    count = held.size + parts.averages.shape[0]
+    prescribed = np.zeros((parts.averages.shape[0], count))
+    prescribed[:, held.size :] = np.eye(parts.averages.shape[0])
+    force = np.zeros((inner.size, count))
+    force[:, : held.size] = -stiffness[inner][:, held].toarray()
+    basis = np.zeros((parts.transform.shape[1], count + body.squares.size))
+    basis[inner, :count] = body.static(force, prescribed)
+    basis[held, np.arange(held.size)] = 1.0
+    basis[inner, count:] = body.shapes
+    # Interface coordinates in the order in which the interfaces were given.
+    basis[:, :count] = basis[:, parts.order]
+    names = [
+        f"{name}.{freedom}" for name, entry in interfaces.items() for freedom in FREEDOMS if freedom in entry.freedoms
+    ]
+    motion = np.asarray(parts.transform @ basis)
+    return ReducedBody(
+        mass=_reduced_mass(mass, basis, count),
+        stiffness=_reduced_stiffness(model.stiffness, motion, count, body.squares),
+        coordinates=(*names, *(f"mode {k + 1}" for k in range(body.squares.size))),
+        units=(*(_unit(name) for name in names), *("1" for _ in range(body.squares.size))),
+        frames=_frames(interfaces, observers, motion, names),
+        attributes={
+            "method": "Craig-Bampton",
+            "finite_element_freedoms": str(model.size),
+            "cutoff": f"{cutoff:.12g} Hz",
+            "interfaces": "; ".join(
+                f"{name}: {entry.kind}, {entry.nodes.size} nodes" for name, entry in interfaces.items()
+            ),
+            **(attributes or {}),
+        },
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Partition:
+    """What is prescribed and what moves.
+
+    transform (N, n): degrees of freedom by the rest and the places of rigid interfaces; held, inner: columns that are
+    prescribed, and the others; averages (m, inner): mean displacements that are prescribed; groups (n,): which columns
+    belong together; order (held + m,): prescribed coordinates by the order of the interfaces.
+    """
+
+    transform: sparse.csc_array
+    held: IntArray
+    inner: IntArray
+    averages: FloatArray
+    groups: IntArray
+    order: IntArray
+
+
+def _partition(
+    model: FiniteElementModel, interfaces: Mapping[str, Interface], spiders: Mapping[str, Spider]
+) -> _Partition:
+    """Sort the degrees of freedom."""
+    rigid = {name: spiders[name] for name, entry in interfaces.items() if entry.kind == "rigid"}
+    slaves = np.concatenate([np.zeros(0, dtype=np.int64), *(entry.rows for entry in rigid.values())])
+    free = np.setdiff1d(np.arange(model.size), slaves)
+    column = np.full(model.size, -1)
+    column[free] = np.arange(free.size)
+    rows, columns, values = [free], [np.arange(free.size)], [np.ones(free.size)]
+    groups = [model.nodes[free]]
+    held: list[int] = []
+    source: list[tuple[int, int]] = []
+    averages = []
+    size, foreign = free.size, int(model.nodes.max(initial=0)) + 1
+    for index, (name, entry) in enumerate(interfaces.items()):
+        place = spiders[name]
+        kept = [FREEDOMS.index(freedom) for freedom in FREEDOMS if freedom in entry.freedoms]
+        if entry.kind == "averaging":
+            matrix = np.zeros((len(kept), model.size))
+            matrix[:, place.rows] = place.mean[kept]
+            averages.append(matrix)
+            continue
+        # A single node of a solid does not follow rotations: they are no coordinates at all.
+        used = [k for k in range(6) if np.any(place.rigid[:, k])]
+        block = sparse.coo_array(place.rigid[:, used])
+        rows.append(place.rows[block.row])
+        columns.append(size + block.col)
+        values.append(block.data)
+        groups.append(np.full(len(used), foreign + index))
+        held += [size + used.index(k) for k in kept]
+        source += [(index, k) for k in kept]
+        size += len(used)
+    source += [
+        (index, FREEDOMS.index(freedom))
+        for index, entry in enumerate(interfaces.values())
+        if entry.kind == "averaging"
+        for freedom in FREEDOMS
+        if freedom in entry.freedoms
+    ]
+    transform = sparse.csc_array(
+        (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=(model.size, size)
+    )
+    inner = np.setdiff1d(np.arange(size), held)
+    gathered = np.concatenate([np.zeros((0, model.size)), *averages])
+    return _Partition(
+        transform=transform,
+        held=np.array(held, dtype=np.int64),
+        inner=inner,
+        averages=np.asarray((transform.T @ gathered.T).T[:, inner]),
+        groups=np.concatenate(groups),
+        order=np.array(sorted(range(len(source)), key=source.__getitem__), dtype=np.int64),
+    )
+
+
+def _transformed(transform: sparse.csc_array, matrix: sparse.csc_array) -> sparse.csc_array:
+    """T' A T."""
+    return sparse.csc_array(transform.T @ matrix @ transform)
+
+
+def _reduced_mass(mass: sparse.csc_array, basis: FloatArray, count: int) -> FloatArray:
+    """Mass in the reduced coordinates; that of the modes is the unit matrix."""
+    reduced = basis.T @ (mass @ basis)
+    reduced = 0.5 * (reduced + reduced.T)
+    reduced[count:, count:] = np.eye(basis.shape[1] - count)
+    return np.asarray(reduced)
+
+
+def _reduced_stiffness(stiffness: sparse.csc_array, motion: FloatArray, count: int, squares: FloatArray) -> FloatArray:
+    """Stiffness in the reduced coordinates, whose motion is given, shape (N, n): static shapes and modes are apart."""
+    static = motion[:, :count]
+    work = stiffness @ static
+    full = 0.5 * (static.T @ work + work.T @ static)
+    # What adds up to the stiffness, without its cancellation: where a shape is rigid motion, all of it cancels.
+    noise = _NOISE * np.einsum("ik,ik->k", np.abs(static), abs(stiffness) @ np.abs(static))
+    size = np.sqrt(np.outer(np.maximum(np.diag(full), noise), squares))
+    coupled = float(np.max(np.abs(work.T @ motion[:, count:]) / size, initial=0.0))
+    if coupled > _COUPLED:
+        raise AnalysisError(
+            f"reduction: static shapes and modes are coupled by {coupled:.2g} of their stiffness, which should be "
+            "zero; the matrices are too badly conditioned: look for elements that are much smaller or stiffer than "
+            "the others"
+        )
+    # A free body shall move freely: what is rounding is zero, and no stiffness is negative.
+    scale = np.sqrt(np.where(noise > 0.0, noise, 1.0))
+    values, vectors = np.linalg.eigh(full / np.outer(scale, scale))
+    vectors = scale[:, None] * vectors[:, values > 1.0]
+    reduced = np.zeros((motion.shape[1], motion.shape[1]))
+    reduced[:count, :count] = (vectors * values[values > 1.0]) @ vectors.T
+    reduced[count:, count:] = np.diag(squares)
+    return np.asarray(0.5 * (reduced + reduced.T))
+
+
+@dataclass(frozen=True, eq=False)
+class _Observer:
+    """A place and its displacement as a mean of degrees of freedom: position (3,), rows (s,), mean (6, s)."""
+
+    position: FloatArray
+    rows: IntArray
+    mean: FloatArray
+
+
+def _frames(
+    interfaces: Mapping[str, Interface], observers: Mapping[str, _Observer], motion: FloatArray, names: list[str]
+) -> dict[str, Frame]:
+    """How interfaces and points move, from the motion of all degrees of freedom by the coordinates."""
+    frames = {}
+    for name, observer in observers.items():
+        transform = observer.mean @ motion[observer.rows]
+        # What is a coordinate is one without rounding.
+        for freedom in interfaces[name].freedoms if name in interfaces else ():
+            k = FREEDOMS.index(freedom)
+            transform[k] = 0.0
+            transform[k, names.index(f"{name}.{freedom}")] = 1.0
+        frames[name] = Frame(observer.position, transform)
+    return frames
+
+
+def _checked(
+    model: FiniteElementModel, interfaces: Mapping[str, Interface], points: Mapping[str, Point], cutoff: float
+) -> tuple[dict[str, Spider], dict[str, _Observer]]:
+    """Find the degrees of freedom of interfaces and points; raise with all that does not fit."""
+    problems = []
+    if not 0.0 < cutoff <= HIGHEST_CUTOFF:
+        problems.append(f"cutoff: got {cutoff!r} Hz; allowed: above 0, up to {HIGHEST_CUTOFF:.0e} Hz")
+    if not interfaces:
+        problems.append("interfaces: got none; allowed: at least one place where forces act")
+    problems += [
+        f"points: {name!r} is the name of an interface, which is observed anyway; allowed: names apart"
+        for name in points
+        if name in interfaces
+    ]
+    spiders: dict[str, Spider] = {}
+    observers: dict[str, _Observer] = {}
+    for name, entry in interfaces.items():
+        try:
+            spiders[name] = spider(model, name, entry)
+            observers[name] = _Observer(entry.position, spiders[name].rows, spiders[name].mean)
+        except InputError as error:
+            problems += error.problems
+    for name, point in points.items():
+        try:
+            observers[name] = _observer(model, name, point)
+        except InputError as error:
+            problems += error.problems
+    owner: dict[int, str] = {}
+    for name, entry in sorted(interfaces.items(), key=lambda item: item[1].kind != "rigid"):
+        taken = [node for node in entry.nodes.tolist() if node in owner]
+        if taken:
+            problems.append(
+                f"interface {name!r}, nodes: {named(np.array(taken))} belong{'s' if len(taken) == 1 else ''} to the "
+                f"rigid interface {owner[taken[0]]!r} too; allowed: a rigid interface has its nodes for itself"
+            )
+        elif entry.kind == "rigid":
+            owner |= dict.fromkeys(entry.nodes.tolist(), name)
+    if problems:
+        raise InputError(problems)
+    return spiders, observers
+
+
+def _observer(model: FiniteElementModel, name: str, point: Point) -> _Observer:
+    """Find the degrees of freedom of a point."""
+    if isinstance(point, Interface):
+        found = spider(model, name, point)
+        return _Observer(point.position, found.rows, found.mean)
+    if isinstance(point, (int, np.integer)):
+        node = int(point)
+    else:
+        place = np.asarray(point, dtype=np.float64)
+        if place.shape != (3,) or not np.all(np.isfinite(place)):
+            raise InputError(f"point {name!r}: got {point!r:.80}; allowed: three finite lengths in m, or a node number")
+        node = nearest_node(model, place.tolist())
+        away = float(np.linalg.norm(model.position(node) - place))
+        extent = float(np.max(np.ptp(model.positions, axis=0)))
+        if away > NEAREST * extent:
+            raise InputError(
+                f"point {name!r}: got {place.tolist()} m, {away:.4g} m from the nearest node {node}; allowed: within "
+                f"{NEAREST * extent:.4g} m of a node; check place and unit"
+            )
+    if not model.has_position(node) or model.row(node, 0) is None:
+        raise InputError(f"point {name!r}: got node {node}; allowed: a node with a position and displacements")
+    rows = {d: row for d in range(6) if (row := model.row(node, d)) is not None}
+    mean = np.zeros((6, len(rows)))
+    mean[list(rows), np.arange(len(rows))] = 1.0
+    return _Observer(model.position(node), np.array(list(rows.values()), dtype=np.int64), mean)
+
+
+def _unit(name: str) -> str:
+    """Unit of an interface coordinate."""
+    return "rad" if ".theta" in name else "m"

@@ -1,0 +1,75 @@
+"""Levels in decibels: reference values, and from a mean square to a level.
+
+References
+----------
+ISO 1683:2015, Acoustics - Preferred reference values for acoustical and vibratory levels: 1 pm of displacement, 1 nm/s
+of velocity, 1 um/s2 of acceleration. Rotations have no reference there; the same numbers in rad, rad/s and rad/s2 are
+used for them, and the unit says so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.physics._values import FloatArray
+from mbs.elements import Quantity, Sensor
+
+LOWEST = -200.0
+"""Level of nothing [dB]: a signal of zero has this one and not minus infinity."""
+
+REFERENCES: dict[Quantity, float] = {"displacement": 1e-12, "velocity": 1e-9, "acceleration": 1e-6}
+"""Of ISO 1683 [m, m/s, m/s2]."""
+
+_PER_TIME: dict[Quantity, str] = {"displacement": "", "velocity": "/s", "acceleration": "/s2"}
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What levels of a quantity refer to.
+
+    Attributes
+    ----------
+    quantity : {"displacement", "velocity", "acceleration"}
+        What was measured.
+    value : float
+        Root mean square at 0 dB, in `unit`.
+    unit : str
+        m, m/s or m/s2; rad in place of m for rotations.
+    """
+
+    quantity: Quantity
+    value: float
+    unit: str
+
+    @classmethod
+    def of(cls, sensor: Sensor) -> Reference:
+        """Reference of the quantity of a sensor."""
+        length = "rad" if np.any(sensor.direction[3:]) else "m"
+        return cls(sensor.quantity, REFERENCES[sensor.quantity], f"{length}{_PER_TIME[sensor.quantity]}")
+
+    @property
+    def text(self) -> str:
+        """As on an axis, such as "dB re 1e-06 m/s2"."""
+        return f"dB re {self.value:.0e} {self.unit}"
+
+
+def level(mean_square: FloatArray, reference: float) -> FloatArray:
+    """Level of a mean square [dB], at least `LOWEST`; NaN stays NaN.
+
+    Parameters
+    ----------
+    mean_square : array
+        [square of the unit].
+    reference : float
+        Root mean square at 0 dB [unit].
+
+    Examples
+    --------
+    >>> round(float(level(np.array(0.5), 1e-6)), 2)  # a sine of 1 m/s2
+    116.99
+    """
+    lowest = 10.0 ** (LOWEST / 10.0)
+    # The square of a reference of 1e-12 is far from the smallest number, so divide before taking the logarithm.
+    return np.asarray(10.0 * np.log10(np.maximum(mean_square / reference**2, lowest)), dtype=np.float64)

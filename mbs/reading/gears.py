@@ -1,0 +1,119 @@
+"""Reads a table [[gears]] of a scene."""
+
+from __future__ import annotations
+
+import math
+
+from ehdmaps.jobs.table import Table
+from ehdmaps.units import LENGTH, STIFFNESS, Display, short
+from mbs.gear import FEWEST_TEETH, MOST_HARMONICS, MOST_TEETH, GearPair
+from mbs.reading import fields
+from mbs.reading.fields import DEGREE, MICROMETRE
+
+_DAMPING = Display("N s/m")
+_WORDS_HARMONICS = f"a whole number from 0 to {MOST_HARMONICS}, or a list of at most as many numbers, parts of the mean"
+
+
+def read_gears(section: Table, name: str) -> GearPair | None:
+    """Read a gear pair; None where a problem was noted.
+
+    Parameters
+    ----------
+    section : Table
+        The table; the caller closes it.
+    name : str
+        Of the pair.
+    """
+    before = len(section.problems)
+    on = fields.place(section, "on")
+    against = section.get("against", 'a place such as "shaft_2:gear"')
+    if "against" in section and not isinstance(against, str):
+        section.note("against", f'got {short(against)}; allowed: a place such as "shaft_2:gear"')
+    teeth = _teeth(section)
+    module = section.quantity("module", "m", 1e-5, 1.0, LENGTH, required=True)
+    pressure_angle = section.quantity(
+        "pressure_angle", "rad", math.radians(1.0), math.radians(45.0), DEGREE, required=True
+    )
+    face_width = section.quantity("face_width", "m", 1e-5, 10.0, LENGTH, required=True)
+    stiffness = section.quantity("stiffness", "N/m^2", 1e6, 1e13, STIFFNESS, required=True)
+    backlash = section.quantity("backlash", "m", 0.0, 1.0, LENGTH, required=True)
+    damping = section.quantity("damping", "N s/m", 0.0, 1e9, _DAMPING)
+    harmonics = _harmonics(section)
+    harmonic_phases = _quantities(section, "harmonic_phases", "rad", 10.0, DEGREE)
+    error = _quantities(section, "transmission_error", "m", 1e-2, MICROMETRE)
+    error_phases = _quantities(section, "transmission_error_phases", "rad", 10.0, DEGREE)
+    phase = section.quantity("phase", "rad", -10.0, 10.0, DEGREE)
+    if (
+        len(section.problems) > before
+        or on is None
+        or teeth is None
+        or module is None
+        or pressure_angle is None
+        or face_width is None
+        or stiffness is None
+        or backlash is None
+    ):
+        return None
+    return fields.built(
+        section,
+        lambda: GearPair(
+            name=name,
+            on=on,
+            against=against,
+            teeth=teeth,
+            module=module,
+            pressure_angle=pressure_angle,
+            face_width=face_width,
+            stiffness=stiffness,
+            backlash=backlash,
+            damping=damping or 0.0,
+            harmonics=harmonics,
+            harmonic_phases=harmonic_phases,
+            transmission_error=error,
+            transmission_error_phases=error_phases,
+            phase=phase or 0.0,
+        ),
+    )
+
+
+def _teeth(section: Table) -> tuple[int, int] | None:
+    """Read the numbers of teeth."""
+    allowed = f"two whole numbers from {FEWEST_TEETH} to {MOST_TEETH}, such as [21, 23]"
+    value = section.get("teeth", allowed)
+    if "teeth" not in section:
+        return None
+    whole = isinstance(value, list) and all(isinstance(z, int) and not isinstance(z, bool) for z in value)
+    if not whole or len(value) != 2 or not all(FEWEST_TEETH <= z <= MOST_TEETH for z in value):
+        section.note("teeth", f"got {value!r:.60}; allowed: {allowed}")
+        return None
+    return value[0], value[1]
+
+
+def _harmonics(section: Table) -> int | tuple[float, ...]:
+    """Read how many harmonics, or their amplitudes."""
+    value = section.get("harmonics")
+    if "harmonics" not in section:
+        return 5
+    if isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= MOST_HARMONICS:
+        return value
+    if isinstance(value, list) and len(value) <= MOST_HARMONICS:
+        numbers = [part for part in value if isinstance(part, (int, float)) and not isinstance(part, bool)]
+        if len(numbers) == len(value) and all(abs(part) <= 1.0 for part in numbers):
+            return tuple(float(part) for part in numbers)
+    section.note("harmonics", f"got {value!r:.60}; allowed: {_WORDS_HARMONICS}, each from -1 to 1")
+    return 0
+
+
+def _quantities(section: Table, key: str, unit: str, largest: float, display: Display) -> tuple[float, ...]:
+    """Read a list of quantities, each within +- `largest`; empty if absent or wrong."""
+    value = section.get(key)
+    if key not in section:
+        return ()
+    if not isinstance(value, list) or len(value) > MOST_HARMONICS:
+        section.note(key, f"got {short(value)}; allowed: a list of at most {MOST_HARMONICS} quantities")
+        return ()
+    read = [
+        section.quantity_of(part, f"{key}[{index}]", unit, -largest, largest, display)
+        for index, part in enumerate(value)
+    ]
+    return tuple(part if part is not None else 0.0 for part in read)

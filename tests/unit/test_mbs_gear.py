@@ -1,0 +1,312 @@
+"""The gear pair: what is refused, the reader of its table, the rows of the mesh, its derivatives."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import tomllib
+
+import numpy as np
+import pytest
+
+from ehdmaps.errors import InputError
+from ehdmaps.jobs.table import Table
+from mbs.elements import Operation
+from mbs.gear import GearPair, contact_ratio, gear_mesh, pair_harmonics
+from mbs.gear_kernel import TOUCH, flank_force
+from mbs.reading.gears import read_gears
+
+ALPHA = math.radians(20.0)
+PAIR = GearPair(
+    name="mesh",
+    on="shaft_1:gear",
+    against="shaft_2:gear",
+    teeth=(21, 23),
+    module=4.5e-3,
+    pressure_angle=ALPHA,
+    face_width=25e-3,
+    stiffness=14e9,
+    backlash=1e-4,
+    damping=1e3,
+    transmission_error=(5e-7, 1e-7),
+    transmission_error_phases=(0.3,),
+)
+SPIN2 = -21.0 / 23.0
+
+
+def mesh(angle=0.0, **changes):
+    """The pair with the second centre at an angle from y."""
+    second = 99e-3 * np.array([0.0, math.cos(angle), math.sin(angle)])
+    return gear_mesh(dataclasses.replace(PAIR, **changes), (0.0, 0.0, 0.0), second, 1.0, SPIN2)
+
+
+class TestPair:
+    @pytest.mark.parametrize(
+        ("changes", "message"),
+        [
+            ({"teeth": (21, 4)}, "teeth: got 4; allowed: whole numbers, 5 to 10000"),
+            ({"teeth": (21.5, 23)}, "teeth: got 21.5"),
+            ({"teeth": (21, 23, 25)}, "teeth: got 3 numbers; allowed: two"),
+            ({"module": 0.0}, "module: got 0.0 m; allowed: finite and > 0"),
+            ({"face_width": -1.0}, "face_width: got -1.0 m; allowed: finite and > 0"),
+            ({"stiffness": math.inf}, "stiffness: got inf N/m"),
+            ({"damping": -1.0}, "damping: got -1.0 N s/m; allowed: finite and >= 0"),
+            ({"backlash": math.nan}, "backlash: got nan m; allowed: finite and >= 0"),
+            ({"pressure_angle": 20.0}, "pressure_angle: got 20.0 rad; allowed: 1 to 45 deg"),
+            ({"phase": math.nan}, "phase: got nan rad"),
+            ({"harmonics": -1}, "harmonics: got -1; allowed: 0 to 50, or a list"),
+            ({"harmonics": 51}, "harmonics: got 51; allowed: 0 to 50, or a list"),
+            ({"harmonics": (math.nan,)}, "harmonics: got "),
+            ({"harmonics": (0.995,)}, "stiffness falls to 0.005 of the mean; allowed: at least 0.01"),
+            ({"harmonics": (0.3,), "harmonic_phases": (0.0, 1.0)}, "harmonic_phases: got 2 for 1 amplitudes"),
+            ({"transmission_error": (math.inf,)}, "transmission_error: got "),
+            ({"transmission_error_phases": (0.0,) * 3}, "transmission_error_phases: got 3 for 2 amplitudes"),
+            ({"teeth": (8, 60)}, "a tip reaches below the other's base circle"),
+            ({"teeth": (60, 60), "pressure_angle": math.radians(45.0), "module": 1e-3}, None),
+        ],
+    )
+    def test_refuses(self, changes, message):
+        if message is None:
+            dataclasses.replace(PAIR, **changes)
+            return
+        with pytest.raises(InputError) as caught:
+            dataclasses.replace(PAIR, **changes)
+        assert message in str(caught.value)
+
+    def test_names_all_problems_at_once(self):
+        with pytest.raises(InputError) as caught:
+            dataclasses.replace(PAIR, module=0.0, damping=-1.0, backlash=-1.0)
+        assert len(caught.value.problems) == 3
+
+    def test_few_teeth_need_harmonics_of_their_own(self):
+        assert dataclasses.replace(PAIR, teeth=(8, 60), harmonics=(0.2,)).stiffness_harmonics == (0.2,)
+
+    def test_no_continuous_mesh(self):
+        with pytest.raises(InputError, match=r"which makes 0.9.*; allowed: at least 1"):
+            contact_ratio((40, 40), math.radians(20.0), addendum=0.5)
+
+    def test_not_a_number_is_no_angle(self):
+        with pytest.raises(InputError, match="base circle"):
+            contact_ratio((21, 23), math.nan)
+
+    def test_no_harmonics_is_a_constant_stiffness(self):
+        assert dataclasses.replace(PAIR, harmonics=0).stiffness_harmonics == ()
+        assert pair_harmonics(2.0, 3) == pytest.approx((0.0, 0.0, 0.0), abs=1e-16)
+
+
+class TestPlacing:
+    @pytest.mark.parametrize(
+        ("place", "spin", "message"),
+        [
+            ((0.0, 0.1, 0.0), SPIN2, "the centres are 100 mm apart; allowed: m (z1 + z2)/2 = 99 mm"),
+            ((2e-3, 0.099, 0.0), SPIN2, "the middles of the gears are 2 mm apart along x; allowed: one plane"),
+            ((0.0, 0.099, 0.0), 21.0 / 23.0, "allowed: -0.91304347826087 for the second gear"),
+            ((0.0, 0.099, 0.0), math.nan, "the spins are 1.0 and nan"),
+            ((0.0, math.nan, 0.0), SPIN2, "the centres are nan mm apart"),
+        ],
+    )
+    def test_refuses(self, place, spin, message):
+        with pytest.raises(InputError) as caught:
+            gear_mesh(PAIR, (0.0, 0.0, 0.0), place, 1.0, spin)
+        assert message in str(caught.value)
+
+    def test_spin_that_is_no_number(self):
+        with pytest.raises(InputError, match=r"the spins are nan and 1.0"):
+            gear_mesh(PAIR, (0.0, 0.0, 0.0), (0.0, 0.099, 0.0), math.nan, 1.0)
+
+    def test_a_decimal_spin_will_do(self):
+        assert gear_mesh(PAIR, (0.0,) * 3, (0.0, 0.099, 0.0), -2.0, 1.82608696).order == 42.0
+
+    @pytest.mark.parametrize("angle", [0.0, 1.0, 2.5, -1.2])
+    def test_rolling_together_compresses_nothing(self, angle):
+        """Turns in the ratio of the teeth, and a common translation, leave both flanks as they are."""
+        rows = mesh(angle).rows
+        turned = np.zeros(12)
+        turned[3], turned[9] = 1.0, SPIN2
+        moved = np.tile([0.3, -0.7, 0.9, 0.0, 0.0, 0.0], 2)
+        np.testing.assert_allclose(rows @ turned, 0.0, atol=1e-16)  # round-off
+        np.testing.assert_allclose(rows @ moved, 0.0, atol=1e-16)
+
+    @pytest.mark.parametrize("angle", [0.0, 1.0, 2.5, -1.2])
+    def test_force_acts_at_the_pitch_point(self, angle):
+        """The force on each gear, put at the pitch point, has the moment that the element gives."""
+        element = mesh(angle)
+        towards = np.array([0.0, math.cos(angle), math.sin(angle)])
+        arms = [np.array(radius * sign * towards) for radius, sign in zip((47.25e-3, 51.75e-3), (1, -1), strict=True)]
+        for row, side in zip(element.rows, (1.0, -1.0), strict=True):
+            assert np.linalg.norm(row[:3]) == pytest.approx(1.0, rel=1e-14)
+            np.testing.assert_array_equal(row[:3], -row[6:9])
+            for first, arm in zip((0, 6), arms, strict=True):
+                moment = np.cross(arm, -row[first : first + 3])
+                np.testing.assert_allclose(moment, -row[first + 3 : first + 6], atol=1e-16)
+            along = np.cross([1.0, 0.0, 0.0], towards)
+            assert row[:3] @ along == pytest.approx(side * math.cos(ALPHA), rel=1e-14)
+            assert row[:3] @ towards == pytest.approx(math.sin(ALPHA), rel=1e-14)
+
+
+class TestElement:
+    def test_ports_and_order(self):
+        element = mesh()
+        assert [(port.on, port.against) for port in element.ports] == [
+            ("shaft_1:gear", "ground"),
+            ("shaft_2:gear", "ground"),
+        ]
+        assert element.name == "mesh"
+        assert element.order == 21.0
+
+    @pytest.mark.parametrize("compression", [-1e-6, 0.4 * TOUCH, 5e-6, -1.03e-4])
+    @pytest.mark.parametrize("rate", [0.0, 2e-3, -1e-3, -3.0])
+    def test_derivatives(self, compression, rate):
+        """Central differences; 1e-6 is their error with steps of a part of TOUCH, 1e-5 N that of round-off."""
+        element = mesh(0.7)
+        operation = Operation(50.0, 0.123, 0.0)
+        row = element.rows[0]
+        rng = np.random.default_rng(5)
+        q, v = compression * row / (row @ row), rate * row / (row @ row)
+        _, K, C = element.evaluate(q, v, operation)
+        for matrix, step, place in ((K, 1e-3 * TOUCH, 0), (C, 1e-3 * max(abs(rate), 1e-3), 1)):
+            np.testing.assert_array_equal(matrix, matrix.T)
+            direction = rng.normal(size=12)
+            direction *= step / np.max(np.abs(element.rows @ direction))
+            forces = []
+            for side in (1.0, -1.0):
+                motion = [q.copy(), v.copy()]
+                motion[place] += side * direction
+                forces.append(element.evaluate(*motion, operation)[0])
+            change = (forces[1] - forces[0]) / 2.0
+            np.testing.assert_allclose(matrix @ direction, change, rtol=1e-5, atol=1e-6 * np.abs(change).max() + 1e-12)
+
+    @pytest.mark.parametrize("rate", [0.0, 1e-3, -1e-3, 0.3, -0.3])
+    def test_flank_is_continuous_and_never_pulls(self, rate):
+        """Force and slopes at the ends of the branches: steps of 1e-9 TOUCH change them by as little."""
+        places = [0.0, TOUCH, *(np.linspace(0.01, 3.0, 300) * TOUCH)]
+        at = [flank_force(place, rate, 3.5e8, 1e3) for place in places]
+        assert min(force for force, _, _ in at) >= 0.0
+        for place in (0.0, TOUCH):
+            low = flank_force(place - 1e-9 * TOUCH, rate, 3.5e8, 1e3)
+            high = flank_force(place + 1e-9 * TOUCH, rate, 3.5e8, 1e3)
+            scales = 3.5e8 * TOUCH + 1e3 * abs(rate), 3.5e8 + 1e3 * abs(rate) / TOUCH, 1e3
+            for below, above, scale in zip(low, high, scales, strict=True):
+                assert above == pytest.approx(below, abs=1e-8 * scale)
+
+    def test_at_rest_the_force_rises_with_compression(self):
+        forces = [flank_force(place, 0.0, 3.5e8, 1e3)[0] for place in np.linspace(-TOUCH, 5.0 * TOUCH, 100)]
+        assert np.all(np.diff(forces) >= 0.0)
+
+    def test_play_between_the_flanks(self):
+        element = mesh(transmission_error=(), transmission_error_phases=())
+        turn = np.zeros(12)
+        turn[3] = 1.0 / element.pair.base_radii[0]
+        for compression, flank in ((1e-6, 0), (-0.5e-4, None), (-1.01e-4, 1)):
+            forces = element.flanks(compression * turn, np.zeros(12), Operation())[:, 0]
+            assert [i for i in range(2) if forces[i] > 0.0] == ([] if flank is None else [flank])
+
+    def test_steady_is_the_mean_over_a_mesh(self):
+        """Evenly spaced angles give the mean of a trigonometric series without error, but for round-off."""
+        element = mesh()
+        turn = np.zeros(12)
+        turn[3] = 1e-5 / element.pair.base_radii[0]
+        angles = np.arange(64) / 64 * 2.0 * math.pi / 21.0
+        found = [element.flanks(turn, np.zeros(12), Operation(0.0, angle))[0, 1] for angle in angles]
+        steady = element.steady().flanks(turn, np.zeros(12), Operation(10.0, 0.05))[0]
+        assert np.mean(found) == pytest.approx(steady[1], rel=1e-13)
+        assert steady[1] == pytest.approx(14e9 * 25e-3, rel=1e-15)
+        assert steady[0] == pytest.approx(14e9 * 25e-3 * (1e-5 - 0.5 * TOUCH), rel=1e-12)
+
+    def test_transmission_error_moves_the_flank(self):
+        """A flank that lacks e is compressed by e less; its rate counts as a rate of compression."""
+        plain = mesh(transmission_error=(), transmission_error_phases=(), harmonics=0)
+        wavy = mesh(harmonics=0)
+        operation = Operation(100.0, 0.02)
+        phase = 21.0 * operation.angle
+        e = 5e-7 * math.cos(phase + 0.3) + 1e-7 * math.cos(2.0 * phase)
+        rate = -21.0 * 100.0 * (5e-7 * math.sin(phase + 0.3) + 2e-7 * math.sin(2.0 * phase))
+        turn = np.zeros(12)
+        turn[3] = 1.0 / plain.pair.base_radii[0]
+        expected = plain.flanks((1e-5 - e) * turn, -rate * turn, operation)[0]
+        np.testing.assert_allclose(wavy.flanks(1e-5 * turn, 0.0 * turn, operation)[0], expected, rtol=1e-12)
+
+
+TABLE = """
+name = "mesh"
+on = "shaft_1:gear"
+against = "shaft_2:gear"
+teeth = [21, 23]
+module = "4.5 mm"
+pressure_angle = "20 deg"
+face_width = "25 mm"
+stiffness = "14 N/(um mm)"
+damping = "1e3 N s/m"
+harmonics = 5
+transmission_error = ["0.5 um", "0.1 um"]
+transmission_error_phases = ["0.3 rad"]
+backlash = "0.1 mm"
+"""
+
+
+def read(text, **changes):
+    problems: list[str] = []
+    values = {**tomllib.loads(text), **changes}
+    section = Table({key: value for key, value in values.items() if value is not None}, "[[gears]] mesh", problems)
+    section.get("name")
+    pair = read_gears(section, "mesh")
+    section.close()
+    return pair, problems
+
+
+class TestReader:
+    def test_reads_a_pair(self):
+        pair, problems = read(TABLE)
+        assert problems == []
+        for field in dataclasses.fields(GearPair):
+            got, wanted = getattr(pair, field.name), getattr(PAIR, field.name)
+            assert got == (pytest.approx(wanted, rel=1e-14) if not isinstance(wanted, str) else wanted)
+
+    def test_short_table(self):
+        pair, problems = read(
+            TABLE, damping=None, harmonics=None, transmission_error=None, transmission_error_phases=None
+        )
+        assert problems == []
+        assert pair.damping == 0.0
+        assert len(pair.stiffness_harmonics) == 5
+        assert pair.transmission_error == ()
+
+    @pytest.mark.parametrize(
+        ("changes", "message"),
+        [
+            ({"on": None}, "on: missing; allowed: a place"),
+            ({"against": None}, "against: missing; allowed: a place"),
+            ({"against": 3}, "against: got 3; allowed: a place"),
+            ({"teeth": [21]}, "teeth: got [21]; allowed: two whole numbers from 5"),
+            ({"teeth": [21, True]}, "teeth: got [21, True]"),
+            ({"teeth": [21, 10**30]}, "teeth: got [21, 1000"),
+            ({"teeth": "21"}, "teeth: got '21'"),
+            ({"teeth": None}, "teeth: missing"),
+            ({"module": 4.5}, "module: got 4.5 without a unit"),
+            ({"module": "4.5 m"}, "module: got '4.5 m'; allowed: 0.01 mm to 1000 mm"),
+            ({"pressure_angle": "20 rad"}, "pressure_angle: got '20 rad'; allowed: 1 deg to 45 deg"),
+            ({"face_width": "-1 mm"}, "face_width: got '-1 mm'"),
+            ({"stiffness": "14 N/um"}, "stiffness: got the unit 'N/um'"),
+            ({"backlash": None}, "backlash: missing"),
+            ({"damping": "-1 N s/m"}, "damping: got '-1 N s/m'; allowed: 0 N s/m"),
+            ({"harmonics": 51}, "harmonics: got 51; allowed: a whole number from 0 to 50"),
+            ({"harmonics": True}, "harmonics: got True"),
+            ({"harmonics": [0.3, "x"]}, "harmonics: got [0.3, 'x']"),
+            ({"harmonics": [math.nan]}, "harmonics: got [nan]"),
+            ({"harmonics": [0.1] * 1000}, "harmonics: got [0.1"),
+            ({"harmonics": [1.0]}, "harmonics: got amplitudes whose stiffness falls to 0 of the mean"),
+            ({"transmission_error": "0.5 um"}, "transmission_error: got '0.5 um'; allowed: a list"),
+            ({"transmission_error": ["1 m"]}, "transmission_error[0]: got '1 m'; allowed: -1e+04 um"),
+            ({"transmission_error_phases": ["1 deg"] * 3}, "got 3 for 2 amplitudes; allowed: as many"),
+            ({"phase": "nan deg"}, "phase: got 'nan deg'"),
+            ({"teeths": 1}, "teeths: unknown key (did you mean 'teeth'?)"),
+        ],
+    )
+    def test_hostile(self, changes, message):
+        _, problems = read(TABLE, **changes)
+        assert any(message in problem and problem.startswith("[[gears]] mesh") for problem in problems), problems
+
+    def test_all_problems_at_once(self):
+        pair, problems = read(TABLE, teeth=[1], module="x", backlash=7)
+        assert pair is None
+        assert len(problems) == 3

@@ -1,0 +1,226 @@
+"""The gear mesh against geometry, balance of forces, Fourier series, and an independent integrator."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from mbs.body import Inertia, rigid_body
+from mbs.elements import Load, Operation, Spring
+from mbs.gear import GearPair, contact_ratio, gear_mesh, pair_harmonics
+from mbs.gear_kernel import TOUCH
+from mbs.integration import Settings, integrate
+from mbs.profiles import SpeedProfile
+from mbs.statics import equilibrium
+from mbs.system import System
+
+ALPHA = math.radians(20.0)
+PAIR = GearPair(
+    name="mesh",
+    on="one",
+    against="two",
+    teeth=(21, 23),
+    module=4.5e-3,
+    pressure_angle=ALPHA,
+    face_width=25e-3,
+    stiffness=14e9,
+    backlash=1e-4,
+    damping=0.0,
+)
+SPIN2 = -21.0 / 23.0
+GEAR = Inertia(1.2, 1.3e-3, 0.7e-3)
+
+
+class TestGeometry:
+    @pytest.mark.parametrize("teeth", [(21, 23), (30, 30), (18, 90)])
+    def test_contact_ratio_by_the_tip_circles(self, teeth):
+        """Where the line of action leaves the tip circles, found by bisection on coordinates; over the base pitch."""
+
+        def reach(z, sign):
+            """Distance from the pitch point along the line of action at which the tip circle of a gear is met."""
+            low, high = 0.0, 10.0
+            for _ in range(200):
+                middle = 0.5 * (low + high)
+                point = np.array([sign * 0.5 * z + middle * math.sin(ALPHA) * sign, middle * math.cos(ALPHA)])
+                low, high = (middle, high) if np.hypot(*point) < 0.5 * z + 1.0 else (low, middle)
+            return low
+
+        length = reach(teeth[0], 1.0) + reach(teeth[1], 1.0)
+        assert contact_ratio(teeth, ALPHA) == pytest.approx(length / (math.pi * math.cos(ALPHA)), rel=1e-12)
+
+    @pytest.mark.parametrize("ratio", [1.0, 1.25, 1.58, 2.4, 3.0])
+    def test_harmonics_are_those_of_the_number_of_pairs(self, ratio):
+        """Pairs counted one by one over a pitch; the midpoint rule with 2e5 points leaves 1e-5 at the jumps."""
+        n = 200_000
+        place = (np.arange(n) + 0.5) / n - 0.5
+        # Pair m is in contact while its place on the path, centred, lies within +- ratio/2 pitches.
+        centre = 0.0 if math.floor(ratio) % 2 == 0 else 0.5
+        pairs = sum((np.abs(place + centre + m) < 0.5 * ratio).astype(float) for m in range(-6, 7))
+        assert np.mean(pairs) == pytest.approx(ratio, rel=1e-5)
+        for j, amplitude in enumerate(pair_harmonics(ratio, 7), start=1):
+            cosine = 2.0 * np.mean(pairs * np.cos(2.0 * math.pi * j * place)) / ratio
+            sine = 2.0 * np.mean(pairs * np.sin(2.0 * math.pi * j * place)) / ratio
+            assert amplitude == pytest.approx(cosine, abs=3e-5)
+            assert sine == pytest.approx(0.0, abs=3e-5)
+
+
+def gear_stage(torque, angle=0.7, pair=PAIR, stiffness=2e8):
+    """Two gears on springs, the second held about x; a torque on the first."""
+    place = 99e-3 * np.array([0.0, math.cos(angle), math.sin(angle)])
+    freedoms = ["y", "z", "theta_x", "theta_y", "theta_z"]
+    bodies = [
+        rigid_body("one", [GEAR], freedoms, spin=1.0),
+        rigid_body("two", [GEAR], freedoms, position=place, spin=SPIN2),
+    ]
+    mount = np.diag([0.0, stiffness, stiffness, 0.0, 1e5, 1e5])
+    held = np.diag([0.0, stiffness, stiffness, 1e6, 1e5, 1e5])
+    springs = [Spring("mount_one", "one", "ground", mount), Spring("mount_two", "two", "ground", held)]
+    load = Load("torque", "one", np.array([0.0, 0.0, 0.0, torque, 0.0, 0.0]))
+    mesh = gear_mesh(pair, (0.0, 0.0, 0.0), place, 1.0, SPIN2)
+    return System(bodies, springs, [load], [mesh]), place
+
+
+class TestStatics:
+    @pytest.mark.parametrize("torque", [82.0, -82.0, 1e-3, 1e4])
+    def test_force_is_torque_over_base_radius(self, torque):
+        system, place = gear_stage(torque)
+        balance = equilibrium(system)
+        rb1, rb2 = 0.5 * 21 * 4.5e-3 * math.cos(ALPHA), 0.5 * 23 * 4.5e-3 * math.cos(ALPHA)
+        force = balance.forces[0]
+        wanted = abs(torque) / rb1
+        # Newton leaves 1e-10 of the largest force.
+        assert np.linalg.norm(force[6:9]) == pytest.approx(wanted, rel=1e-8)
+        towards = place / np.linalg.norm(place)
+        along = np.cross([1.0, 0.0, 0.0], towards)
+        # Apart from each other by F sin(alpha), along by F cos(alpha) in the direction of the torque.
+        assert force[6:9] @ towards == pytest.approx(wanted * math.sin(ALPHA), rel=1e-8)
+        assert force[6:9] @ along == pytest.approx(math.copysign(wanted, torque) * math.cos(ALPHA), rel=1e-8)
+        assert force[9] == pytest.approx(-torque * rb2 / rb1, rel=1e-8)
+
+    def test_forces_and_moments_balance(self):
+        """Reactions of the mounts, with the torque, about the first centre."""
+        system, place = gear_stage(82.0)
+        balance = equilibrium(system)
+        reactions = [
+            -np.diag([0.0, 2e8, 2e8, about, 1e5, 1e5]) @ system.relative(name) @ balance.displacement
+            for name, about in (("one", 0.0), ("two", 1e6))
+        ]
+        np.testing.assert_allclose(sum(r[:3] for r in reactions), 0.0, atol=1e-8 * 1847.0)
+        moments = reactions[0][3:] + reactions[1][3:] + np.cross(place, reactions[1][:3])
+        np.testing.assert_allclose(moments, [-82.0, 0.0, 0.0], atol=1e-8 * 82.0)
+
+    def test_stiffness_of_the_mesh_in_turning(self):
+        """With stiff mounts a torque turns the first gear by T/(rb^2 k); TOUCH/2 is the stated offset of contact."""
+        even = dataclasses.replace(PAIR, harmonics=0)
+        turns = [equilibrium(gear_stage(torque, 0.7, even, 1e13)[0]).displacement[2] for torque in (82.0, 164.0)]
+        rb1, rb2 = PAIR.base_radii
+        compliance = 1.0 / (14e9 * 25e-3 * rb1**2) + (rb2 / rb1) ** 2 / 1e6
+        # 2e-4: mounts of 1e13 N/m against the mesh of 3.5e8 N/m.
+        assert turns[1] - turns[0] == pytest.approx(82.0 * compliance, rel=2e-4)
+        assert turns[0] == pytest.approx(82.0 * compliance + 0.5 * TOUCH / rb1, rel=2e-4)
+
+    def test_stiffness_and_error_are_those_of_the_angle(self):
+        """At each angle the mesh gives way by F/k(phase) and stands e farther: a constant F shows both."""
+        wavy = dataclasses.replace(PAIR, harmonics=(0.3, 0.1), transmission_error=(5e-7,))
+        rb1, rb2 = PAIR.base_radii
+        system, _ = gear_stage(82.0, 0.7, wavy, 1e13)
+        for angle in (0.0, 0.03, 0.1, 0.2):
+            phase = 21.0 * angle
+            k = 14e9 * 25e-3 * (1.0 + 0.3 * math.cos(phase) + 0.1 * math.cos(2.0 * phase))
+            turn = equilibrium(system, Operation(0.0, angle)).displacement[2]
+            offset = 5e-7 * math.cos(phase) + 0.5 * TOUCH
+            expected = 82.0 / rb1**2 / k + 82.0 * (rb2 / rb1) ** 2 / 1e6 + offset / rb1
+            assert turn == pytest.approx(expected, rel=2e-4)  # the mounts, as above
+
+
+def single(pair, torque=0.0, stiffness=0.0):
+    """One gear that only turns, against a gear that does not give way."""
+    bodies = [rigid_body("one", [GEAR], ["theta_x"], spin=1.0)]
+    springs = [Spring("twist", "one", "ground", np.diag([0.0, 0.0, 0.0, stiffness, 0.0, 0.0]))] if stiffness else []
+    loads = [Load("torque", "one", np.array([0.0, 0.0, 0.0, torque, 0.0, 0.0]))]
+    mesh = gear_mesh(dataclasses.replace(pair, against="ground"), (0.0,) * 3, (0.0, 0.099, 0.0), 1.0, SPIN2)
+    return System(bodies, springs, loads, [mesh])
+
+
+class TestParametricExcitation:
+    @pytest.mark.parametrize("ratio", [2.0, 1.0, 0.37])
+    def test_against_an_independent_integrator(self, ratio):
+        """A damped Mathieu oscillator with transmission error, at and off its resonances.
+
+        Reference: DOP853 with rtol 1e-11. Second order: half the step leaves a quarter of the error, 10 % around it
+        for higher orders; both extrapolated leave what is of fourth order.
+        """
+        pair = dataclasses.replace(PAIR, harmonics=(0.1, 0.05), damping=4e3, transmission_error=(1e-6,))
+        inertia, rb, torque = GEAR.polar, PAIR.base_radii[0], 400.0
+        omega = math.sqrt(14e9 * 25e-3 * rb**2 / inertia)
+        speed = ratio * omega / 21.0
+        system = single(pair, torque)
+        start = equilibrium(system, Operation(speed)).displacement
+        duration = 12.0 * 2.0 * math.pi / omega
+
+        def motion(t, y):
+            phase = 21.0 * speed * t
+            k = 14e9 * 25e-3 * (1.0 + 0.1 * math.cos(phase) + 0.05 * math.cos(2.0 * phase))
+            gap = rb * y[0] - 1e-6 * math.cos(phase)
+            rate = rb * y[1] + 1e-6 * 21.0 * speed * math.sin(phase)
+            return [y[1], (torque - rb * (k * (gap - 0.5 * TOUCH) + 4e3 * rate)) / inertia]
+
+        course = solve_ivp(
+            motion, (0.0, duration), [start[0], 0.0], "DOP853", rtol=1e-11, atol=1e-18, max_step=duration / 100
+        ).y[0]
+        assert rb * course.min() > 1e-6 + TOUCH  # it stays in whole contact, so that `motion` is its equation
+        exact = course[-1]
+        found = []
+        for steps in (2000, 4000):
+            h = duration / steps
+            run = integrate(system, SpeedProfile.constant(speed), duration, Settings(h, duration, 1.0), start)
+            found.append(run.displacement[-1, 0])
+        scale = float(start[0])
+        errors = [abs(value - exact) / scale for value in found]
+        assert errors[0] < 3e-3
+        assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+        assert abs((4.0 * found[1] - found[0]) / 3.0 - exact) / scale < 0.02 * errors[0]
+
+
+class TestSeparation:
+    """A gear rattles between both flanks of its mate."""
+
+    SPEED = 3.0
+
+    def rattle(self, damping):
+        pair = dataclasses.replace(PAIR, harmonics=0, damping=damping)
+        system = single(pair, stiffness=50.0)
+        h = 2e-7
+        run = integrate(system, SpeedProfile.constant(0.0), 8e-3, Settings(h, h, 1.0), velocity=np.array([self.SPEED]))
+        mesh = system.elements[0].element
+        flanks = run.displacement @ (system.elements[0].transform.T @ mesh.rows.T)
+        depth = np.maximum(flanks - np.array([0.0, PAIR.backlash]), 0.0)
+        s = np.minimum(depth, TOUCH)
+        k = 14e9 * 25e-3
+        # Of the stated law at rest: k s^3/(6 TOUCH) within TOUCH, k (depth - TOUCH/2)^2/2 and a constant beyond.
+        beyond = 0.5 * k * ((depth - 0.5 * TOUCH) ** 2 - 0.25 * TOUCH**2) * (depth > TOUCH)
+        energy = 0.5 * GEAR.polar * run.velocity[:, 0] ** 2 + 25.0 * run.displacement[:, 0] ** 2
+        energy += (k * s**3 / (6.0 * TOUCH) + beyond).sum(axis=1)
+        return run, depth, energy
+
+    def test_keeps_its_energy_without_damping(self):
+        _, depth, energy = self.rattle(0.0)
+        strikes = np.count_nonzero(np.diff((depth > 0.0).astype(int), axis=0) > 0, axis=0)
+        assert strikes.min() >= 3
+        # The steps of 0.2 us across the edges of the contact, 5 nm long at this speed: some 1e-4 a strike.
+        assert np.abs(energy / energy[0] - 1.0).max() < 2e-3
+
+    def test_only_loses_energy_with_damping(self):
+        run, depth, energy = self.rattle(2e3)
+        assert np.diff(energy).max() < 1e-3 * energy[0]  # as above, in a single step
+        assert energy[-1] < 0.9 * energy[0]
+        apart = np.all(depth == 0.0, axis=1)
+        assert apart.any()
+        np.testing.assert_array_equal(run.forces[0][apart], 0.0)
+        # The push of each flank, from the force that it leaves on the first gear: never a pull.
+        pushes = -run.forces[0] @ np.linalg.pinv(single(PAIR).elements[0].element.rows)
+        assert pushes.min() > -1e-9 * pushes.max()

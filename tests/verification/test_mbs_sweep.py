@@ -1,0 +1,382 @@
+"""Modes followed over speed against closed forms: whirl, crossing, veering, critical damping; and the energy identity.
+
+Systems of one and two masses and of a disc, whose frequencies are written down; and the shipped system with dry Hertz,
+which must not change with the speed.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from mbs.assembly import assemble
+from mbs.body import Inertia, rigid_body
+from mbs.elements import Input, Operation, Port, Sensor, Spring
+from mbs.linear import frequency_response, state_space
+from mbs.modal_response import TOLERANCE, checked_response, modal_response
+from mbs.modes import state_modes, undamped_modes
+from mbs.scene_reader import read_scene
+from mbs.statics import equilibrium
+from mbs.sweep import sweep
+from mbs.system import System
+
+RPM = math.pi / 30.0
+MASS = 2.0
+POLAR, TRANSVERSE = 0.03, 0.02
+Y = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+ROUND_OFF = 1e-9
+
+
+class OverSpeed:
+    """A spring and damper along y that vary with the speed, in place of a bearing."""
+
+    def __init__(self, name, on, against="ground", stiffness=lambda speed: 0.0, damping=lambda speed: 0.0):
+        self.name, self.stiffness, self.damping = name, stiffness, damping
+        self.ports = (Port(on, against),)
+
+    def evaluate(self, displacement, velocity, operation):
+        k, c = (value(operation.speed) * np.outer(Y, Y) for value in (self.stiffness, self.damping))
+        return -k @ displacement - c @ velocity, k, c
+
+
+def disc(translation=8e4, tilt=500.0, damping=0.0):
+    """A disc on springs that are alike all round."""
+    body = rigid_body("disc", [Inertia(MASS, POLAR, TRANSVERSE)], ["y", "z", "theta_y", "theta_z"], spin=1.0)
+    stiffness = np.diag([0.0, translation, translation, 0.0, tilt, tilt])
+    return System([body], [Spring("s", "disc", "ground", stiffness, damping * stiffness)])
+
+
+def whirl(speed, tilt=500.0):
+    """Backward and forward whirl of the disc [rad/s] and their slopes over the speed.
+
+    I_t w^2 - I_p Omega w - k = 0 for the tilt theta_y + i theta_z turning with w: any textbook of rotor dynamics.
+    """
+    half = 0.5 * POLAR * speed / TRANSVERSE
+    root = np.sqrt(half**2 + tilt / TRANSVERSE)
+    slope = 0.5 * POLAR / TRANSVERSE * half / root
+    return root - half, root + half, slope - 0.5 * POLAR / TRANSVERSE, slope + 0.5 * POLAR / TRANSVERSE
+
+
+class TestWhirl:
+    SPEEDS = np.linspace(1.0, 200.0, 12)
+
+    def test_branches_are_followed_through_a_crossing(self):
+        """Forward whirl crosses both translations at 200 rad/s, backward whirl falls away from them."""
+        found = sweep(disc(), self.SPEEDS).damped
+        backward, forward, falling, rising = whirl(self.SPEEDS)
+        omega = found.eigenvalues.imag
+        assert forward[0] < 200.0 < forward[-1]
+        assert omega.shape == (12, 4)
+        assert np.all(np.isfinite(omega))
+        # Eigenvalues in double precision.
+        np.testing.assert_allclose(omega[:, 0], backward, rtol=ROUND_OFF)
+        np.testing.assert_allclose(omega[:, 1], forward, rtol=ROUND_OFF)
+        np.testing.assert_allclose(omega[:, 2:], 200.0, rtol=ROUND_OFF)
+        np.testing.assert_allclose(found.whirl[:, 0], falling, rtol=1e-7)
+        np.testing.assert_allclose(found.whirl[:, 1], rising, rtol=1e-7)
+        np.testing.assert_allclose(found.whirl[:, 2:], 0.0, atol=1e-9)
+
+    def test_branches_apart_from_rest_on(self):
+        """At rest the pair is equal and has no shapes of its own; it must split all the same, and not end."""
+        found = sweep(disc(), np.linspace(0.0, 200.0, 5)).damped
+        assert found.eigenvalues.shape == (5, 4)
+        assert np.all(np.isfinite(found.eigenvalues))
+        backward, forward, _, _ = whirl(200.0)
+        ends = np.sort(found.eigenvalues[-1].imag)
+        np.testing.assert_allclose(ends, np.sort([backward, forward, 200.0, 200.0]), rtol=ROUND_OFF)
+        signs = np.sign(found.whirl[1:, :]) * (np.abs(found.whirl[1:, :]) > 1e-6)
+        # No track changes from forward to backward.
+        assert np.all(signs == signs[0])
+
+    def test_undamped_modes_leave_gyroscopic_terms_out(self):
+        found = sweep(disc(), self.SPEEDS).undamped
+        np.testing.assert_allclose(found.frequency * 2.0 * np.pi, np.tile(found.frequency[0] * 2.0 * np.pi, (12, 1)))
+        np.testing.assert_allclose(np.sort(found.frequency[0]) * 2.0 * np.pi, [*[math.sqrt(25e3)] * 2, 200.0, 200.0])
+
+    def test_damping_beside_gyroscopic_terms(self):
+        """Damping as a part of the stiffness: I_t s^2 + (c - i I_p Omega) s + k = 0 for each sense, by its roots."""
+        found = sweep(disc(damping=1e-3), self.SPEEDS).damped
+        for index, speed in enumerate(self.SPEEDS):
+            roots = [
+                max(np.roots([TRANSVERSE, 1e-3 * 500.0 + sign * 1j * POLAR * speed, 500.0]), key=lambda root: root.imag)
+                for sign in (1.0, -1.0)
+            ]
+            np.testing.assert_allclose(found.eigenvalues[index, :2], roots, rtol=ROUND_OFF)
+
+
+def pair(coupling, begin=5e4, end=2e5, last=100.0):
+    """Two masses; the spring of the first one becomes stiffer with the speed, that of the second stays at 1e5 N/m."""
+    bodies = [rigid_body(name, [Inertia(MASS, 0.01, 0.02)], ["y"]) for name in ("a", "b")]
+    springs = [
+        Spring("b_ground", "b", "ground", 1e5 * np.outer(Y, Y)),
+        Spring("coupling", "a", "b", coupling * np.outer(Y, Y)),
+    ]
+    varying = OverSpeed("bearing", "a", stiffness=lambda speed: begin + (end - begin) * speed / last)
+    return System(bodies, springs, (), [varying])
+
+
+def pair_frequencies(coupling, speeds, begin=5e4, end=2e5, last=100.0):
+    """Of both branches [rad/s], from the characteristic polynomial."""
+    first, second = begin + (end - begin) * speeds / last + coupling, 1e5 + coupling
+    mean, half = 0.5 * (first + second), 0.5 * (first - second)
+    root = np.sqrt(half**2 + coupling**2)
+    return np.sqrt(np.stack([mean - root, mean + root], axis=1) / MASS)
+
+
+class TestVeering:
+    SPEEDS = np.linspace(0.0, 100.0, 9)
+
+    def test_branches_that_turn_away_are_followed_around_the_corner(self):
+        """With a coupling of 4 % the corner is narrower than a step: speeds in between are needed to see it."""
+        result = sweep(pair(4e3), self.SPEEDS)
+        np.testing.assert_allclose(
+            2.0 * np.pi * result.undamped.frequency, pair_frequencies(4e3, self.SPEEDS), rtol=ROUND_OFF
+        )
+        np.testing.assert_allclose(result.damped.eigenvalues.imag, pair_frequencies(4e3, self.SPEEDS), rtol=ROUND_OFF)
+        assert result.between > 0
+        # Energy moves from the varying spring to the other one, and back again for the other branch.
+        assert result.undamped.bearing_share[0, 0] > 0.8 > 0.2 > result.undamped.bearing_share[-1, 0]
+
+    def test_branches_that_cross_are_followed_straight_on(self):
+        result = sweep(pair(0.0), self.SPEEDS)
+        expected = np.sqrt(np.stack([5e4 + 1.5e3 * self.SPEEDS, np.full(9, 1e5)], axis=1) / MASS)
+        np.testing.assert_allclose(2.0 * np.pi * result.undamped.frequency, expected, rtol=ROUND_OFF)
+        np.testing.assert_allclose(result.damped.eigenvalues.imag, expected, rtol=ROUND_OFF)
+        assert result.between == 0
+
+    def test_energy_shares(self):
+        """Of the varying spring: k_a y_a^2 of the eigenvector written out."""
+        coupling = 4e4
+        found = sweep(pair(coupling), self.SPEEDS).undamped
+        for index, speed in enumerate(self.SPEEDS):
+            stiffness = 5e4 + 1.5e3 * speed
+            squares = MASS * pair_frequencies(coupling, np.array([speed]))[0] ** 2
+            other = (stiffness + coupling - squares) / coupling
+            total = stiffness + 1e5 * other**2 + coupling * (1.0 - other) ** 2
+            np.testing.assert_allclose(found.bearing_share[index], stiffness / total, rtol=1e-8)
+            np.testing.assert_allclose(found.shares[:, index].sum(axis=0), 1.0, rtol=1e-12)
+
+
+class TestIdentity:
+    """df/f = phi' dK phi/(2 phi' K phi), dK of the bearings."""
+
+    def test_error_falls_with_the_square_of_the_step(self):
+        """The trapezoidal rule over the steps of the sweep, against the frequencies themselves."""
+        errors = []
+        for points in (6, 11, 21, 41):
+            found = sweep(pair(4e4), np.linspace(0.0, 100.0, points)).undamped
+            errors.append(np.abs(found.summed_shift[-1] - found.shift[-1]))
+        orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+        # Second order; the next term leaves a tenth at these steps.
+        np.testing.assert_allclose(orders[-1], 2.0, atol=0.1)
+        # For a mode of the varying spring alone the rule leaves dk^2 (1/k_first^2 - 1/k_last^2)/48 of ln f.
+        step = 1.5e5 / 40.0
+        assert np.all(errors[-1] < step**2 / 48.0 / 5e4**2 * (1.0 + found.shift[-1]))
+
+    def test_one_step_is_right_to_first_order(self):
+        errors = []
+        for last in (4.0, 2.0, 1.0):
+            found = sweep(pair(4e4), np.array([0.0, last])).undamped
+            errors.append(np.abs(found.direct_shift / found.shift[-1] - 1.0))
+        orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+        np.testing.assert_allclose(orders, 1.0, atol=0.1)
+
+    def test_holds_for_a_bearing_with_films(self):
+        """NU308 with the film formula, 20 um: the sum over 19 steps agrees with the shift to 1 % of it."""
+        model = assemble(read_scene("nu308_rigid"), "formula", clearance=20e-6)
+        result = sweep(model.system, np.linspace(500.0, 2500.0, 20) * RPM, cage_angles=3)
+        inside = result.undamped.bearing_share[0] > 0.5
+        assert inside.sum() == 4
+        shift = result.undamped.shift[-1][inside]
+        assert np.abs(shift).min() > 0.1
+        np.testing.assert_allclose(result.undamped.summed_shift[-1][inside], shift, rtol=0.01)
+        # Along the load the film in series makes the contact softer, and damping falls as it grows.
+        assert np.all(result.bearings.stiffness[-1] < result.bearings.stiffness[0])
+        assert np.all(result.bearings.damping[-1] < result.bearings.damping[0])
+        assert not any(model.outside_calls.values())
+
+
+class TestDryHertz:
+    def test_nothing_changes_with_speed(self):
+        """0.1 % is asked for; Newton's method leaves 1e-10 of the load, gyroscopic splitting apart."""
+        result = sweep(assemble(read_scene("nu308_rigid"), "hertz").system, np.linspace(500.0, 2500.0, 5) * RPM)
+        np.testing.assert_allclose(result.undamped.shift, 0.0, atol=1e-6)
+        np.testing.assert_allclose(result.undamped.summed_shift, 0.0, atol=1e-6)
+        for values in (result.bearings.load, result.bearings.stiffness):
+            np.testing.assert_allclose(values, np.tile(values[0], (5, 1)), rtol=1e-6)
+
+    def test_frequencies_rise_with_the_load(self):
+        scene = read_scene("nu308_rigid")
+        found = []
+        for factor in (1.0, 1.5, 2.0):
+            loads = tuple(dataclasses.replace(load, force=factor * load.force) for load in scene.loads)
+            result = sweep(assemble(dataclasses.replace(scene, loads=loads)).system, np.array([500.0]) * RPM)
+            found.append(result.undamped.frequency[0, -1])
+            np.testing.assert_allclose(result.bearings.load, factor * 141.42136, rtol=1e-7)
+        assert found[0] < found[1] < found[2]
+
+    def test_stiffness_along_the_load(self):
+        """1.747e8 N/m to its digits: 41 slices, a roller at 0 degrees, load at 45 degrees."""
+        result = sweep(assemble(read_scene("nu308_rigid")).system, np.array([500.0]) * RPM)
+        np.testing.assert_allclose(result.bearings.stiffness, 1.747e8, rtol=5e-4)
+        assert result.bearings.names == ("bearing_left", "bearing_right")
+
+    def test_mean_over_a_pitch_is_the_mean_over_start_angles(self):
+        scene = read_scene("nu308_rigid")
+        mean = sweep(assemble(scene).system, np.array([500.0]) * RPM, cage_angles=4).bearings
+        one_by_one = []
+        for part in range(4):
+            bearings = tuple(
+                dataclasses.replace(entry, start_angle=2.0 * math.pi / 12.0 * part / 4.0) for entry in scene.bearings
+            )
+            turned = assemble(dataclasses.replace(scene, bearings=bearings)).system
+            one_by_one.append(sweep(turned, np.array([500.0]) * RPM).bearings.stiffness)
+        np.testing.assert_allclose(mean.stiffness, np.mean(one_by_one, axis=0), rtol=1e-7)
+        spread = 0.5 * np.ptp(one_by_one, axis=0) / np.mean(one_by_one, axis=0)
+        np.testing.assert_allclose(mean.stiffness_spread, spread, rtol=1e-5)
+
+
+def damped_mass(damping, stiffness=8e4):
+    """Two masses that do not know of each other; the first one has a damper that varies with the speed."""
+    bodies = [rigid_body(name, [Inertia(MASS, 0.01, 0.02)], ["y"]) for name in ("a", "b")]
+    springs = [Spring("a_ground", "a", "ground", stiffness * np.outer(Y, Y))]
+    springs.append(Spring("b_ground", "b", "ground", 1.5 * stiffness * np.outer(Y, Y), 20.0 * np.outer(Y, Y)))
+    return System(bodies, springs, (), [OverSpeed("film", "a", damping=damping)])
+
+
+CRITICAL = 2.0 * math.sqrt(8e4 * MASS)
+
+
+class TestOscillationThatEnds:
+    SPEEDS = np.linspace(0.0, 100.0, 11)
+
+    def test_a_mode_that_stops_to_oscillate_ends(self):
+        found = sweep(damped_mass(lambda speed: 2.0 * CRITICAL * speed / 100.0), self.SPEEDS).damped
+        ratio = 2.0 * self.SPEEDS / 100.0
+        alive = ratio < 1.0
+        assert found.eigenvalues.shape[1] == 2
+        np.testing.assert_allclose(found.damping_ratio[alive, 0], ratio[alive], atol=ROUND_OFF)
+        # |lambda| is omega_0 however strong the damping.
+        np.testing.assert_allclose(found.frequency[alive, 0], 200.0 / (2.0 * math.pi), rtol=ROUND_OFF)
+        assert np.all(np.isnan(found.eigenvalues[~alive, 0].real))
+        assert np.all(np.isfinite(found.eigenvalues[:, 1]))
+        np.testing.assert_allclose(found.frequency[:, 1], math.sqrt(6e4) / (2.0 * math.pi), rtol=ROUND_OFF)
+
+    def test_a_mode_that_begins_to_oscillate_begins(self):
+        found = sweep(damped_mass(lambda speed: 2.0 * CRITICAL * (1.0 - speed / 100.0)), self.SPEEDS).damped
+        ratio = 2.0 * (1.0 - self.SPEEDS / 100.0)
+        alive = ratio < 1.0
+        assert found.eigenvalues.shape[1] == 2
+        assert np.all(np.isfinite(found.eigenvalues[:, 0]))
+        np.testing.assert_allclose(found.damping_ratio[alive, 1], ratio[alive], atol=ROUND_OFF)
+        assert np.all(np.isnan(found.eigenvalues[~alive, 1].real))
+
+    def test_a_mode_that_comes_back_is_another_one(self):
+        found = sweep(damped_mass(lambda speed: 1.6 * CRITICAL * math.sin(math.pi * speed / 100.0)), self.SPEEDS).damped
+        assert found.eigenvalues.shape[1] == 3
+        alive = np.isfinite(found.eigenvalues.real)
+        assert alive[:3, 0].all() and not alive[3:, 0].any()
+        assert not alive[:8, 2].any() and alive[8:, 2].all()
+
+    def test_a_mode_that_ends_is_not_taken_for_one_that_begins(self):
+        """Critical damping of both masses at 50 rad/s: below only the first oscillates, above only the second."""
+        bodies = [rigid_body(name, [Inertia(MASS, 0.01, 0.02)], ["y"]) for name in ("a", "b")]
+        springs = [Spring(name, name[0], "ground", 8e4 * np.outer(Y, Y)) for name in ("a_ground", "b_ground")]
+        films = [
+            OverSpeed("rising", "a", damping=lambda speed: CRITICAL * speed / 50.0),
+            OverSpeed("falling", "b", damping=lambda speed: CRITICAL * (2.0 - speed / 50.0)),
+        ]
+        # No speed of the sweep or in between is just 50 rad/s, where none oscillates.
+        speeds = np.linspace(0.0, 99.0, 12)
+        found = sweep(System(bodies, springs, (), films), speeds).damped
+        assert found.eigenvalues.shape[1] == 2
+        alive = np.isfinite(found.eigenvalues.real)
+        np.testing.assert_array_equal(alive[:, 0], speeds < 50.0)
+        np.testing.assert_array_equal(alive[:, 1], speeds > 50.0)
+        np.testing.assert_allclose(found.damping_ratio[:6, 0], speeds[:6] / 50.0, atol=ROUND_OFF)
+        np.testing.assert_allclose(found.damping_ratio[6:, 1], 2.0 - speeds[6:] / 50.0, atol=ROUND_OFF)
+
+    def test_undamped_modes_go_on(self):
+        found = sweep(damped_mass(lambda speed: 2.0 * CRITICAL * speed / 100.0), self.SPEEDS).undamped
+        np.testing.assert_allclose(found.damping_ratio[:, 0], 2.0 * self.SPEEDS / 100.0, atol=ROUND_OFF)
+
+
+def chain(count, damping, seed=3):
+    """A chain of masses with random springs, dampers and tilts, with gyroscopic terms."""
+    random = np.random.default_rng(seed)
+    freedoms = ["y", "z", "theta_y", "theta_z"]
+    bodies = [
+        rigid_body(
+            f"m{k}", [Inertia(*random.uniform([0.5, 0.01, 0.01, 0.01], [2.0, 0.015, 0.02, 0.05]))], freedoms, spin=1.0
+        )
+        for k in range(count)
+    ]
+    springs = []
+    for k in range(count):
+        size = np.diag([0.0, *random.uniform(1e6, 1e8, 2), 0.0, *random.uniform(1e3, 1e5, 2)])
+        springs.append(Spring(f"s{k}", f"m{k}", f"m{k - 1}" if k else "ground", size, damping * size))
+    return System(bodies, springs)
+
+
+class TestResponses:
+    FREQUENCIES = np.geomspace(1.0, 5000.0, 300)
+
+    def pieces(self, count):
+        inputs = [Input("E", "m0", Y), Input("F", f"m{count - 1}", np.eye(6)[4])]
+        sensors = [
+            Sensor("d", f"m{count - 1}", Y),
+            Sensor("v", "m1", np.eye(6)[2], "velocity"),
+            Sensor("a", "m0", Y, "acceleration", f"m{count - 1}"),
+        ]
+        return inputs, sensors
+
+    @pytest.mark.parametrize("damping", [0.0, 1e-6, 1e-4])
+    def test_sum_over_modes_is_the_direct_solution(self, damping):
+        """To 1e-8 of the largest response; undamped ones at frequencies off the resonances, by chance of the grid."""
+        count = 8
+        balance = equilibrium(chain(count, damping), Operation(300.0))
+        inputs, sensors = self.pieces(count)
+        states = state_modes(balance, undamped_modes(balance))
+        found = modal_response(balance, states, inputs, sensors, self.FREQUENCIES)
+        direct = frequency_response(balance, inputs, sensors, self.FREQUENCIES)
+        # Round-off of both ways, enlarged near lightly damped resonances by how far away the grid's points are.
+        assert np.all(np.abs(found - direct) <= 1e-8 * np.abs(direct).max(axis=0))
+        checked, error = checked_response(balance, states, inputs, sensors, self.FREQUENCIES)
+        np.testing.assert_array_equal(checked, found)
+        assert 0.0 < error < 1e-8
+
+    def test_critical_damping_is_solved_directly_where_digits_are_lost(self):
+        """Two eigenvectors are one: the sum over modes may fail, the result may not."""
+        balance = equilibrium(damped_mass(lambda speed: CRITICAL), Operation(1.0))
+        inputs, sensors = [Input("E", "a", Y)], [Sensor("S", "a", Y, "velocity")]
+        states = state_modes(balance, undamped_modes(balance))
+        found, error = checked_response(balance, states, inputs, sensors, self.FREQUENCIES)
+        omega = 2.0 * np.pi * self.FREQUENCIES
+        expected = 1j * omega / (8e4 + 1j * omega * CRITICAL - MASS * omega**2)
+        # 1e-8 at the frequencies checked; a hundred times as much is room for those in between.
+        np.testing.assert_allclose(found[:, 0, 0], expected, rtol=1e-6)
+        assert error <= TOLERANCE
+
+    def test_of_a_sweep(self):
+        system = chain(3, 1e-5)
+        inputs, sensors = self.pieces(3)
+        result = sweep(system, np.array([10.0, 300.0]), 0.0, inputs, sensors, self.FREQUENCIES)
+        assert result.responses.values.shape == (2, 300, 3, 2)
+        for index, speed in enumerate(result.speeds):
+            direct = frequency_response(equilibrium(system, Operation(float(speed))), inputs, sensors, self.FREQUENCIES)
+            assert np.all(np.abs(result.responses.values[index] - direct) <= 1e-8 * np.abs(direct).max(axis=0))
+
+
+@pytest.mark.parametrize("damping", [0.0, 1e-5, 1e-2])
+def test_eigenvalues_are_those_of_the_plain_state_matrix(damping):
+    balance = equilibrium(chain(6, damping), Operation(300.0))
+    states = state_modes(balance, undamped_modes(balance))
+    plain = np.linalg.eigvals(state_space(balance).A)
+    distance = np.abs(states.eigenvalues[:, None] - plain[None, :]).min(axis=1)
+    # Round-off of a matrix of size |lambda|_max.
+    assert distance.max() < 1e-10 * np.abs(plain).max()
+    identity = states.left @ states.right
+    np.testing.assert_allclose(identity, np.eye(identity.shape[0]), atol=1e-7)
