@@ -53,7 +53,43 @@ def parser() -> argparse.ArgumentParser:
     command = commands.add_parser("reduce", help=words, description=words)
     command.add_argument("body", metavar="BODY.toml")
     command.add_argument("-o", "--output", metavar="OUT.nc", help="also .npz; BODY.nc if left out")
+    _hammer(_scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=False))
+    _modal_fit(commands)
     return top
+
+
+def _hammer(command: argparse.ArgumentParser) -> None:
+    """Add the options of a simulated hammer test; its -o is a universal file."""
+    command.add_argument("--hits", type=int, default=8, metavar="N", help="at each input of the scene (8)")
+    command.add_argument(
+        "--noise", type=float, default=0.01, metavar="PART", help="standard deviation over the peak of a channel (0.01)"
+    )
+    command.add_argument("--seed", type=int, default=0, metavar="N", help="of heights and noise (0)")
+    command.add_argument("--highest", metavar="FREQUENCY", help='of interest, such as "5 kHz"; else that of [linear]')
+    command.add_argument("--duration", metavar="TIME", help='of a record, such as "1 s"; else by the slowest mode')
+    command.add_argument("--nonlinear", action="store_true", help="integrate the nonlinear system for each hit")
+
+
+def _modal_fit(commands: Any) -> None:
+    """Add the command that reads a universal file instead of a scene."""
+    words = "frequencies and damping ratios from hammer hits or frequency responses"
+    command: argparse.ArgumentParser = commands.add_parser("modal-fit", help=words, description=words)
+    command.add_argument("file", metavar="FILE", help="universal file (UFF), measured or made by `mbs hammer`")
+    command.add_argument("--band", nargs=2, metavar=("FROM", "TO"), help='such as "100 Hz" "5 kHz"')
+    command.add_argument("--modes", type=int, metavar="N", help="how many to keep at most")
+    command.add_argument("--order", type=int, metavar="N", help="highest number of pole pairs (24)")
+    command.add_argument("--method", choices=("rfp", "lscf", "both"), default="rfp", help="rational fractions, p-LSCF")
+    command.add_argument("--estimator", choices=("h1", "h2"), default="h1", help="noise on the responses, on the force")
+    command.add_argument(
+        "--window-decay",
+        metavar="TIME",
+        help='time constant of an exponential window, such as "0.2 s", or none; else by the decay of the hits. Of '
+        "frequency responses: the window that they have been through",
+    )
+    command.add_argument("--no-refine", action="store_true", help="poles as the method finds them")
+    command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
+    command.add_argument("--responses", metavar="FRF.uff", help="estimated responses and coherences")
+    command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
 
 
 def _scene_command(commands: Any, name: str, words: str, compares: bool) -> argparse.ArgumentParser:

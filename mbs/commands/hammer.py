@@ -1,0 +1,113 @@
+"""`mbs hammer`: a simulated hammer test of a scene, written as a universal file."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+from ehdmaps.jobs.progress import progress
+from ehdmaps.units import quantity
+from mbs.assembly import Model
+from mbs.commands.cases import load_model
+from mbs.commands.common import film_limits, film_warnings, heading, outside_at
+from mbs.modal.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
+from mbs.modal.records import Hits
+from mbs.modal.uff import Measurement, write_uff
+from mbs.modes import Modes, modes
+from mbs.reading.fields import MILLISECOND
+from mbs.statics import Equilibrium, equilibrium
+
+_HIGHEST = 5000.0
+"""Highest frequency of a scene that names none [Hz]."""
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Hit, and write the records."""
+    highest, duration = _options(arguments)
+    model = load_model(arguments)
+    scene = model.scene
+    missing = [
+        f"{scene.name}: [[{key}]] missing; a hammer test needs {words}"
+        for key, there, words in (
+            ("inputs", scene.inputs, "places to hit"),
+            ("sensors", scene.sensors, "at least one sensor"),
+        )
+        if not there
+    ]
+    if missing:
+        raise InputError(missing)
+    balance = equilibrium(model.system, model.operation)
+    found = modes(balance)
+    highest = highest or (scene.frequencies[-1] if scene.frequencies else _HIGHEST)
+    duration = duration or suggested_duration(found, highest)
+    test = HammerTest(highest, duration, arguments.hits, arguments.noise, arguments.seed)
+    before = model.outside_calls
+    hits = _hit(model, balance, test, arguments.nonlinear)
+    called = {name: count - before[name] for name, count in model.outside_calls.items() if count > before[name]}
+    outside = [
+        *outside_at(model, balance),
+        *(f"warning: {name}: {n} calls outside the map" for name, n in called.items()),
+    ]
+    path = Path(arguments.output)
+    law = (arguments.law or ["map" if arguments.map else "hertz"])[0]
+    title = f"{scene.name}, law {law}: {test.hits} hits a place, simulated"
+    write_uff(path, Measurement(title, hits))
+    lines = [
+        *heading(model, scene.speed),
+        f"{test.hits} hits at each of {len(hits)} places, {len(scene.sensors)} sensors, "
+        + ("nonlinear" if arguments.nonlinear else "linearised at the equilibrium"),
+        f"  records of {test.samples * test.step:.4g} s, {test.samples} samples at {1.0 / test.step:.6g} Hz; "
+        f"half-sines of {MILLISECOND.text(test.pulse)}, up to {test.highest:.6g} Hz; seed {test.seed}",
+        f"  noise: standard deviation {100.0 * test.noise:.3g} % of the peak of each channel",
+        *_expected(found, test),
+        *film_warnings(film_limits(model, balance.displacement, balance.operation), [test.highest]),
+        *outside,
+        f"{path}: written",
+    ]
+    return "\n".join(lines), 1 if outside else 0
+
+
+def _options(arguments: argparse.Namespace) -> tuple[float | None, float | None]:
+    """Read highest frequency and duration, and check the folder of the output."""
+    problems = []
+    found: list[float | None] = []
+    for option, text, unit in (("--highest", arguments.highest, "Hz"), ("--duration", arguments.duration, "s")):
+        found.append(None)
+        if text is not None:
+            try:
+                found[-1] = quantity(text, unit)
+            except InputError as error:
+                problems.append(f"{option}: {error.problems[0]}")
+            else:
+                if not found[-1]:
+                    problems.append(f"{option}: got {text!r:.60}; allowed: above 0 {unit}")
+    if arguments.plot:
+        problems.append(f"--plot: got {arguments.plot}, but records are not drawn; see `mbs modal-fit --plot`")
+    if not arguments.output:
+        problems.append("-o: missing; give the universal file that the records are written to, such as hits.uff")
+    elif not Path(arguments.output).parent.is_dir():
+        problems.append(f"-o: got {arguments.output}, but its folder does not exist; allowed: a file in a folder")
+    if problems:
+        raise InputError(problems)
+    return found[0], found[1]
+
+
+def _hit(model: Model, balance: Equilibrium, test: HammerTest, nonlinear: bool) -> tuple[Hits, ...]:
+    """Make the hits."""
+    inputs, sensors = model.scene.inputs, model.scene.sensors
+    if not nonlinear:
+        return linear_hits(balance, inputs, sensors, test)
+    bar = progress(test.hits * len(inputs))
+    bar.begin()
+    return nonlinear_hits(balance, inputs, sensors, test, lambda: bar.solved(1))
+
+
+def _expected(found: Modes, test: HammerTest) -> list[str]:
+    """Lines of the eigenvalues that the test should find."""
+    lines = ["  eigenvalues of the same linearised system up to there (a test shows those that are hit and sensed):"]
+    seen = np.nonzero((found.eigenvalues.imag > 0.0) & (found.frequency <= test.highest))[0]
+    lines += [f"  {k + 1:4d} {found.frequency[k]:14.6g} Hz   damping ratio {found.damping_ratio[k]:.4g}" for k in seen]
+    return lines

@@ -1,0 +1,207 @@
+"""`mbs modal-fit`: frequencies and damping ratios from measured or simulated hammer hits or frequency responses."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from ehdmaps.errors import InputError
+from ehdmaps.units import quantity
+from mbs.commands.common import RESOLUTION
+from mbs.errors import AnalysisError
+from mbs.modal.estimation import Estimate, estimate
+from mbs.modal.fit import identify
+from mbs.modal.records import Responses
+from mbs.modal.result import Method, ModalFit, fit_dataset
+from mbs.modal.uff import Measurement, read_uff, write_uff
+from mbs.modal.windows import needed_decay
+from mbs.modal_plot import fit_figure
+from mbs.results import described, write_dataset
+
+TOLERANCE = 0.2
+"""Largest part of a response that a fit may leave, rms over rms, before the status says so."""
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Estimate the responses where there are hits, fit them, and say what was found."""
+    band, decay = _options(arguments)
+    measured = read_uff(Path(arguments.file))
+    responses, lines = _responses(measured, arguments, decay)
+    methods: tuple[Method, ...] = ("rfp", "lscf") if arguments.method == "both" else (arguments.method,)
+    fits: list[ModalFit] = []
+    failed: list[AnalysisError] = []
+    for method in methods:
+        try:
+            fits.append(
+                identify(responses, method, band, arguments.order, arguments.modes, refined=not arguments.no_refine)
+            )
+        except AnalysisError as error:
+            failed.append(error)
+    if not fits:
+        raise AnalysisError("\n".join(str(error) for error in failed))
+    inside = fits[0].responses
+    lines = [
+        f"{arguments.file}: {measured.title or 'no title'}",
+        *(f"  {note}" for note in measured.notes),
+        *lines,
+        f"{len(inside.pairs)} responses, {inside.frequency.size} lines from {inside.frequency[0]:.6g} Hz to "
+        f"{inside.frequency[-1]:.6g} Hz",
+    ]
+    for fit in fits:
+        lines += _table(fit)
+    poor = [*(f"warning: {error}" for error in failed), *_poor(fits)]
+    lines += [*_overlaps(fits[0]), *poor, *_write(arguments, measured, responses, fits)]
+    return "\n".join(lines), 1 if poor else 0
+
+
+def _options(arguments: argparse.Namespace) -> tuple[tuple[float, float] | None, float | None]:
+    """Read band and window, and check the folders of the outputs; a decay of None is found from the records."""
+    problems = []
+    ends = []
+    for text in arguments.band or ():
+        try:
+            ends.append(quantity(text, "Hz"))
+        except InputError as error:
+            problems.append(f"--band: {error.problems[0]}")
+    if len(ends) == 2 and not 0.0 <= ends[0] < ends[1]:
+        problems.append(
+            f"--band: got {arguments.band[0]!r:.40} to {arguments.band[1]!r:.40}; allowed: rising, from 0 Hz on"
+        )
+    decay: float | None = None
+    if arguments.window_decay == "none":
+        decay = 0.0
+    elif arguments.window_decay is not None:
+        try:
+            constant = quantity(arguments.window_decay, "s")
+            if constant > 0.0:
+                decay = 1.0 / constant
+            else:
+                problems.append(f"--window-decay: got {arguments.window_decay!r:.40}; allowed: above 0 s, or none")
+        except InputError as error:
+            problems.append(f"--window-decay: {error.problems[0]}, or none")
+    for option, path in (("-o", arguments.output), ("--plot", arguments.plot), ("--responses", arguments.responses)):
+        if path and not Path(path).parent.is_dir():
+            problems.append(f"{option}: got {path}, but {Path(path).parent} is no folder; allowed: a file in a folder")
+    if problems:
+        raise InputError(problems)
+    return (ends[0], ends[1]) if ends else None, decay
+
+
+def _responses(
+    measured: Measurement, arguments: argparse.Namespace, decay: float | None
+) -> tuple[Responses, list[str]]:
+    """Responses of the file, or those estimated from its hits, and lines on how."""
+    if not measured.hits:
+        if measured.responses is None:
+            raise InputError(f"{arguments.file}: has coherences only; allowed: frequency responses, or hits")
+        found = measured.responses if decay is None else dataclasses.replace(measured.responses, decay=decay)
+        window = f", exponential window of {1.0 / found.decay:.4g} s taken out of the damping" if found.decay else ""
+        return found, [f"  frequency responses of the file{window}"]
+    if decay is None:
+        decay = max(needed_decay(entry.response, entry.step) for entry in measured.hits)
+        why = "; responses had not decayed" if decay else ""
+    else:
+        why = ""
+    made = estimate(measured.hits, arguments.estimator, decay)
+    lines = [
+        f"  hits at {entry.reference.label}: {used} of {entry.force.shape[0]} averaged, {entry.duration:.4g} s each"
+        for entry, used in zip(measured.hits, made.used, strict=True)
+    ]
+    lines += _rejections(made)
+    window = (
+        f"exponential window of {1.0 / decay:.4g} s on force and response, taken out again{why}" if decay else "none"
+    )
+    lines.append(f"  estimator {arguments.estimator.upper()}; window: {window}")
+    if min(made.used) < 2:
+        lines.append("  warning: a single hit has no coherence: all lines count alike")
+    return made.responses, lines
+
+
+def _rejections(made: Estimate) -> list[str]:
+    """Lines on hits that were left out."""
+    return [f"  hit {one.hit} at {one.reference.label} left out: {one.reason}, {one.detail}" for one in made.rejected]
+
+
+def _table(fit: ModalFit) -> list[str]:
+    """Lines of the modes of a fit."""
+    orders = max(entry.order for entry in fit.candidates)
+    how = "refined to the least error" if fit.refined else "medians over the orders"
+    lines = [
+        f"{_NAMES[fit.method]}, orders 1 to {orders}, poles {how}",
+        "  mode   frequency/Hz        +-   damping ratio        +-   orders      (+-: standard uncertainty)",
+    ]
+    for k in range(fit.poles.size):
+        lines.append(
+            f"  {k + 1:4d} {fit.frequency[k]:14.7g} {fit.frequency_uncertainty[k]:9.2g} {fit.damping_ratio[k]:15.5g} "
+            f"{fit.damping_uncertainty[k]:9.2g} {fit.counts[k]:8d}"
+        )
+    return lines + [
+        f"  {label}: {100.0 * error:.3g} % left (rms)"
+        for label, error in zip(fit.responses.labels, fit.error, strict=True)
+    ]
+
+
+_NAMES: dict[Method, str] = {"rfp": "rational fraction polynomials", "lscf": "p-LSCF"}
+
+
+def _poor(fits: list[ModalFit]) -> list[str]:
+    """Lines on responses that a fit does not explain."""
+    return [
+        f"warning: {_NAMES[fit.method]} leaves {100.0 * error:.3g} % of {label}, more than {100.0 * TOLERANCE:.3g} %: "
+        "noise, or modes that are missing; average more hits, or narrow the band"
+        for fit in fits
+        for label, error in zip(fit.responses.labels, fit.error, strict=True)
+        if error > TOLERANCE
+    ]
+
+
+def _overlaps(fit: ModalFit) -> list[str]:
+    """Lines on modes that lie within each other's half widths, whose damping is hard to tell apart."""
+    lines = []
+    for k in range(fit.poles.size - 1):
+        apart = float(fit.poles[k + 1].imag - fit.poles[k].imag)
+        wide = float(-fit.poles[k].real - fit.poles[k + 1].real)
+        if apart < wide:
+            lines.append(
+                f"warning: modes {k + 1} and {k + 2} are {apart / (2.0 * np.pi):.3g} Hz apart, with half widths of "
+                f"{wide / (2.0 * np.pi):.3g} Hz together: their damping ratios depend on each other"
+            )
+    return lines
+
+
+def _write(
+    arguments: argparse.Namespace, measured: Measurement, responses: Responses, fits: list[ModalFit]
+) -> list[str]:
+    """Write what is asked for; a line for each file."""
+    lines = []
+    if arguments.output:
+        dataset = fit_dataset(fits[0])
+        for other in fits[1:]:
+            dataset = dataset.merge(_beside(other))
+        about = {"title": measured.title, "source": Path(arguments.file).name, "estimator": arguments.estimator}
+        write_dataset(described(dataset, **about), Path(arguments.output))
+        lines.append(f"{arguments.output}: written")
+    if arguments.responses:
+        write_uff(Path(arguments.responses), Measurement(measured.title, (), responses))
+        lines.append(f"{arguments.responses}: written")
+    if arguments.plot:
+        try:
+            fit_figure(measured.title or Path(arguments.file).name, fits).savefig(arguments.plot, dpi=RESOLUTION)
+        except (OSError, ValueError) as error:
+            raise InputError(
+                f"--plot: {arguments.plot} cannot be written ({error}); allowed: a .png, .pdf or .svg file in a folder "
+                "that may be written"
+            ) from error
+        lines.append(f"{arguments.plot}: written")
+    return lines
+
+
+def _beside(fit: ModalFit) -> xr.Dataset:
+    """Modes of the second method, under names of its own."""
+    kept = ("frequency", "damping_ratio", "frequency_uncertainty", "damping_ratio_uncertainty")
+    dataset = fit_dataset(fit)[list(kept)].drop_vars("mode")
+    return dataset.rename({"mode": f"{fit.method}_mode", **{name: f"{fit.method}_{name}" for name in kept}})

@@ -1,0 +1,20 @@
+"""Experimental modal analysis, of measured records and of simulated ones alike.
+
+In the order in which data pass through:
+
+================  =====================================================================================
+`records`         channels, time records of hits, frequency responses
+`uff`             universal files (UFF) with either of them, read and written by pyuff
+`hammer`          simulated hammer tests of a linearised or of the nonlinear system
+`windows`         force and exponential windows, and what the latter does to a pole
+`estimation`      H1, H2 and coherence from averaged hits; which hits are left out
+`rational`        rational fraction polynomials: poles of a band by a common denominator
+`lscf`            the same by p-LSCF, of the library sdypy-EMA
+`stabilisation`   which poles are modes: those that come back from order to order
+`residues`        residues for given poles, responses made of them, poles of the least error
+`fit`             all of that for one band
+`result`          the modes found, their uncertainty, and their dataset
+================  =====================================================================================
+
+The libraries pyuff and sdypy-EMA are loaded when they are needed.
+"""

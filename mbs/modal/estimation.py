@@ -1,0 +1,254 @@
+"""Frequency responses and coherence from averaged hammer hits.
+
+Sums over hits of the spectra X of a response and F of the force: H1 = sum(X F*)/sum(F F*) has no bias from noise on
+the response, H2 = sum(X X*)/sum(F X*) none from noise on the force, and coherence = H1/H2 =
+|G_XF|^2/(G_XX G_FF).
+
+References
+----------
+J. S. Bendat, A. G. Piersol, Random Data, 4th ed., Wiley 2010, sections 6 and 9.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import FloatArray
+from mbs.errors import AnalysisError
+from mbs.linear import ComplexArray
+from mbs.modal.records import Channel, Hits, Responses
+from mbs.modal.windows import exponential_window, force_window, pulse
+
+Estimator = Literal["h1", "h2"]
+Reason = Literal["double hit", "overload", "no hit", "not finite"]
+
+_MARGIN = 16
+"""Samples beside a pulse in which an anti-aliasing filter may ring."""
+
+_FLAT = 3
+"""Equal samples at the top of a record that mean that the channel was overloaded."""
+
+
+@dataclass(frozen=True)
+class HitLimits:
+    """Which hits are left out.
+
+    Attributes
+    ----------
+    double : float
+        Largest second pulse, as a part of the first one.
+    silent : float
+        Smallest peak of the force, as a multiple of the rms of the rest of its record.
+    overload : float
+        Largest value that a channel can show, in its SI unit; infinite: only flat tops are seen.
+
+    Raises
+    ------
+    InputError
+        With every value that is not possible.
+    """
+
+    double: float = 0.1
+    silent: float = 10.0
+    overload: float = float("inf")
+
+    def __post_init__(self) -> None:
+        problems = []
+        if not 0.0 < self.double <= 1.0:
+            problems.append(f"hit limits, double: got {self.double!r}; allowed: above 0, up to 1")
+        if not 1.0 <= self.silent < float("inf"):
+            problems.append(f"hit limits, silent: got {self.silent!r}; allowed: finite, from 1")
+        if not self.overload > 0.0:
+            problems.append(f"hit limits, overload: got {self.overload!r}; allowed: > 0")
+        if problems:
+            raise InputError(problems)
+
+
+@dataclass(frozen=True)
+class Rejected:
+    """A hit that was left out.
+
+    Attributes
+    ----------
+    hit : int
+        From 1.
+    reference : Channel
+        The place hit.
+    reason : {"double hit", "overload", "no hit", "not finite"}
+        Why.
+    detail : str
+        What was seen.
+    """
+
+    hit: int
+    reference: Channel
+    reason: Reason
+    detail: str
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """Frequency responses from hits, and what was left out.
+
+    Attributes
+    ----------
+    responses : Responses
+        All places hit, one after the other.
+    used : tuple of int
+        Hits that were averaged at each place.
+    rejected : tuple of Rejected
+        The others.
+    """
+
+    responses: Responses
+    used: tuple[int, ...]
+    rejected: tuple[Rejected, ...] = field(default=())
+
+
+def estimate(
+    records: Sequence[Hits],
+    estimator: Estimator = "h1",
+    decay: float = 0.0,
+    limits: HitLimits | None = None,
+    windowed_force: bool = True,
+) -> Estimate:
+    """Frequency responses and coherence of all places hit.
+
+    Parameters
+    ----------
+    records : sequence of Hits
+        An entry for each place hit; same step and number of samples.
+    estimator : {"h1", "h2"}
+        H1 where noise is on the responses, H2 where it is on the force.
+    decay : float
+        1/tau of an exponential window on force and response [1/s].
+    limits : HitLimits, optional
+        Which hits are left out.
+    windowed_force : bool
+        Whether the force is taken as zero but for its pulse.
+
+    Raises
+    ------
+    InputError
+        If records differ in step or length.
+    AnalysisError
+        If no hit of a place is left.
+    """
+    limits = limits or HitLimits()
+    grids = {(entry.step, entry.force.shape[1]) for entry in records}
+    if len(grids) != 1:
+        shown = ", ".join(f"{samples} samples every {step:.6g} s" for step, samples in sorted(grids))
+        raise InputError(
+            f"hits: got records of {shown or 'no place'}; allowed: the same step and length for all places"
+        )
+    ((step, samples),) = grids
+    responses, coherences, pairs, used, rejected = [], [], [], [], []
+    for entry in records:
+        bad = _rejected(entry, limits)
+        kept = [hit for hit in range(entry.force.shape[0]) if hit + 1 not in {one.hit for one in bad}]
+        if not kept:
+            reasons = "; ".join(f"hit {one.hit}: {one.reason}, {one.detail}" for one in bad)
+            raise AnalysisError(f"hits at {entry.reference.label}: none is left ({reasons}); hit again")
+        force, response = entry.force[kept], entry.response[kept]
+        if windowed_force:
+            force = force * np.stack([force_window(record) for record in force])
+        window = exponential_window(samples, step, decay)
+        H, gamma = transfer(force * window, response * window, estimator)
+        responses.append(H)
+        coherences.append(gamma)
+        pairs += [(sensor, entry.reference) for sensor in entry.sensors]
+        used.append(len(kept))
+        rejected += bad
+    frequency = np.asarray(np.fft.rfftfreq(samples, step), dtype=np.float64)
+    found = Responses(frequency, np.concatenate(responses), np.concatenate(coherences), tuple(pairs), min(used), decay)
+    return Estimate(found, tuple(used), tuple(rejected))
+
+
+def transfer(force: FloatArray, response: FloatArray, estimator: Estimator = "h1") -> tuple[ComplexArray, FloatArray]:
+    """H1 or H2, and the coherence, of records as they are.
+
+    Parameters
+    ----------
+    force : array, shape (hits, samples)
+        Of the same place.
+    response : array, shape (hits, sensors, samples)
+        Of the same hits.
+    estimator : {"h1", "h2"}
+        Which.
+
+    Returns
+    -------
+    response : array of complex, shape (sensors, lines)
+        At the frequencies of `numpy.fft.rfftfreq`. Zero where the force has nothing.
+    coherence : array, shape (sensors, lines)
+        0 to 1; NaN of a single hit, whose coherence is 1 whatever it was.
+    """
+    F = np.fft.rfft(force, axis=-1)[:, None]
+    X = np.fft.rfft(response, axis=-1)
+    by_force = np.sum(np.abs(F) ** 2, axis=0)
+    by_response = np.sum(np.abs(X) ** 2, axis=0)
+    cross = np.sum(X * F.conj(), axis=0)
+    numerator, denominator = (cross, by_force + 0j * by_response) if estimator == "h1" else (by_response, cross.conj())
+    H = np.divide(numerator, denominator, out=np.zeros_like(cross), where=np.abs(denominator) > 0.0)
+    product = by_force * by_response
+    gamma = np.divide(np.abs(cross) ** 2, product, out=np.zeros_like(product), where=product > 0.0)
+    if force.shape[0] < 2:
+        gamma = np.full_like(gamma, np.nan)
+    return H, np.minimum(gamma, 1.0)
+
+
+def relative_deviation(coherence: FloatArray, hits: int) -> FloatArray:
+    """Standard deviation of the magnitude of H1 over the magnitude, sqrt((1 - c)/(2 n c)).
+
+    Parameters
+    ----------
+    coherence : array
+        c, 0 to 1.
+    hits : int
+        n averages.
+
+    References
+    ----------
+    Bendat and Piersol, section 9.1: for many independent averages.
+    """
+    clipped = np.clip(coherence, 1e-12, 1.0)
+    return np.asarray(np.sqrt((1.0 - clipped) / (2.0 * max(hits, 1) * clipped)))
+
+
+def _rejected(entry: Hits, limits: HitLimits) -> list[Rejected]:
+    """Hits that are not fit for use."""
+    found = []
+    for hit, (force, response) in enumerate(zip(entry.force, entry.response, strict=True), start=1):
+        verdict = _verdict(force, response, entry, limits)
+        if verdict:
+            found.append(Rejected(hit, entry.reference, *verdict))
+    return found
+
+
+def _verdict(force: FloatArray, response: FloatArray, entry: Hits, limits: HitLimits) -> tuple[Reason, str] | None:
+    """Why a hit is not fit for use, and what was seen; None if it is."""
+    channels = (("the force", force), *zip((sensor.label for sensor in entry.sensors), response, strict=True))
+    for name, record in channels:
+        if not np.all(np.isfinite(record)):
+            return "not finite", f"{name} has values that are no numbers"
+        size = np.abs(record)
+        top = float(size.max())
+        flat = size >= top * (1.0 - 1e-9)
+        longest = np.max(np.convolve(flat, np.ones(_FLAT), mode="valid"))
+        if top > limits.overload or (top > 0.0 and longest >= _FLAT):
+            return "overload", f"{name} stays at {top:.4g}"
+    first, last = pulse(force)
+    margin = max(last - first + 1, _MARGIN)
+    rest = np.concatenate([force[: max(first - margin, 0)], force[last + 1 + margin :]])
+    peak = float(np.abs(force).max())
+    if peak == 0.0 or (rest.size and peak < limits.silent * float(np.sqrt(np.mean(rest**2)))):
+        return "no hit", f"the force of {peak:.3g} does not stand out of its noise"
+    second = float(np.abs(rest).max(initial=0.0))
+    if second > limits.double * peak:
+        return "double hit", f"a second pulse of {100.0 * second / peak:.3g} % of the first"
+    return None

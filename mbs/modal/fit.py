@@ -1,0 +1,201 @@
+"""Modal identification of a band: poles of rising order, their stabilisation, residues, refinement."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import FloatArray
+from mbs.errors import AnalysisError
+from mbs.linear import ComplexArray
+from mbs.modal.estimation import relative_deviation
+from mbs.modal.lscf import lscf_poles
+from mbs.modal.rational import IMPROPER, rational_poles
+from mbs.modal.records import Responses
+from mbs.modal.residues import Parts, fit_residues, laplace, refine, synthesise
+from mbs.modal.result import Method, ModalFit
+from mbs.modal.stabilisation import Criteria, Stabilisation, stabilise
+from mbs.modal.windows import without_window
+from mbs.modes import IntArray
+
+ORDER = 24
+"""Highest number of pole pairs, if it is left out."""
+
+MOST = 100
+"""Highest number of pole pairs that is taken."""
+
+_SIGNIFICANT = 6.0
+"""Without a mode the error rises by the square of this, in variances of one value, or it is none."""
+
+_STRAYED = 1.0
+"""Half widths that a pole may move when it is refined; one that moves farther was none."""
+
+_SMOOTH = 100
+"""One part in so many of the lines over which the noise is averaged."""
+
+_FLOOR = 1e-6
+"""Least deviation of a value, against the rms of its response: the noise of noiseless data."""
+
+
+def identify(
+    responses: Responses,
+    method: Method = "rfp",
+    band: tuple[float, float] | None = None,
+    order: int | None = None,
+    modes: int | None = None,
+    criteria: Criteria | None = None,
+    refined: bool = True,
+) -> ModalFit:
+    """Modes of a band, by their poles in all responses at once.
+
+    Parameters
+    ----------
+    responses : Responses
+        With an exponential window or without; its decay is taken out of the poles.
+    method : {"rfp", "lscf"}
+        Rational fraction polynomials, or p-LSCF.
+    band : (float, float), optional
+        From, to [Hz]; all if left out.
+    order : int, optional
+        Highest number of pole pairs, 1 to 100; 24 if left out, or what the lines allow.
+    modes : int, optional
+        How many modes to keep at most, those with the most energy in the responses; all stable ones if left out.
+    criteria : Criteria, optional
+        What makes a pole stable.
+    refined : bool
+        Whether the poles are moved to the least error of the responses.
+
+    Raises
+    ------
+    InputError
+        If band, order and number of modes are not possible.
+    AnalysisError
+        If no mode is stable.
+    """
+    problems = []
+    low, high = band or (0.0, float(responses.frequency[-1]))
+    if not (np.isfinite(low) and np.isfinite(high) and 0.0 <= low < high):
+        problems.append(f"band: got {low!r} Hz to {high!r} Hz; allowed: rising, from 0 Hz on")
+    if order is not None and not 1 <= order <= MOST:
+        problems.append(f"order: got {order!r}; allowed: 1 to {MOST} pole pairs")
+    if modes is not None and not 1 <= modes <= MOST:
+        problems.append(f"modes: got {modes!r}; allowed: 1 to {MOST}")
+    if problems:
+        raise InputError(problems)
+    criteria = criteria or Criteria()
+    inside = responses.within(low, high)
+    # Real and imaginary parts of the lines, shared by numerators and the denominator.
+    possible = (2 * inside.frequency.size - IMPROPER) // 8
+    if possible < 1:
+        raise InputError(f"band: got {inside.frequency.size} lines; allowed: 8 or more, and many for a good fit")
+    orders = range(1, min(order or ORDER, possible) + 1)
+    # A mode cannot come back more often than there are orders.
+    criteria = dataclasses.replace(criteria, orders=min(criteria.orders, len(orders)))
+    s, weight = laplace(inside.frequency, inside.decay), weights(inside)
+    even = np.repeat(1.0 / _rms(inside.response)[:, None], inside.frequency.size, axis=1)
+    found = _poles(method, inside, weight, orders)
+    stable = stabilise(
+        found,
+        orders,
+        (float(inside.frequency[0]), float(inside.frequency[-1])),
+        lambda poles: (
+            fit_residues(s, inside.response, even, inside.derivatives, without_window(poles, inside.decay)).residues
+        ),
+        criteria,
+    )
+    chosen, poles, deviation = _significant(s, inside, weight, stable, modes, refined)
+    if not chosen.size:
+        raise AnalysisError(
+            f"modal fit ({method}): no stable mode from {inside.frequency[0]:.6g} Hz to {inside.frequency[-1]:.6g} Hz "
+            f"up to order {orders[-1]}; choose a band around a resonance, average more hits, or raise the order"
+        )
+    parts = fit_residues(s, inside.response, weight, inside.derivatives, poles)
+    rising = np.argsort(np.abs(poles))
+    parts = Parts(parts.residues[rising], parts.below, parts.above)
+    left = inside.response - synthesise(s, inside.derivatives, poles[rising], parts)
+    return ModalFit(
+        method=method,
+        responses=inside,
+        poles=poles[rising],
+        deviation=deviation[rising],
+        scatter=stable.scatter[chosen][rising],
+        counts=tuple(stable.counts[chosen[k]] for k in rising),
+        parts=parts,
+        error=np.sqrt(np.mean(np.abs(left) ** 2, axis=1)) / _rms(inside.response),
+        candidates=stable.candidates,
+        refined=refined,
+    )
+
+
+def weights(responses: Responses) -> FloatArray:
+    """One over the standard deviation of each value, shape (rows, lines).
+
+    From coherence and number of hits, averaged over neighbouring lines, because the coherence of a few hits is itself
+    uncertain; where coherence is not known, the same for all lines of a row.
+    """
+    size = _rms(responses.response)[:, None]
+    known = np.all(np.isfinite(responses.coherence), axis=1) & (responses.hits > 1)
+    width = max(responses.frequency.size // _SMOOTH, 9)
+    coherence = np.where(known[:, None], responses.coherence, 1.0)
+    variance = (np.abs(responses.response) * relative_deviation(coherence, responses.hits)) ** 2
+    smooth = uniform_filter1d(variance, min(width, responses.frequency.size), axis=1, mode="nearest")
+    deviation = np.sqrt(np.maximum(smooth, 0.0) + (_FLOOR * size) ** 2)
+    return np.asarray(1.0 / np.where(known[:, None], deviation, size))
+
+
+def alike(responses: Responses) -> float:
+    """Neighbouring lines that an exponential window gives about the same noise; 1 without a window."""
+    spacing = float(np.diff(responses.frequency).mean())
+    exponent = 2.0 * responses.decay / spacing
+    # Mean of the squared window, inverted.
+    return exponent / -math.expm1(-exponent) if exponent > 0.0 else 1.0
+
+
+def _poles(method: Method, inside: Responses, weight: FloatArray, orders: range) -> list[ComplexArray]:
+    """Poles of each order."""
+    if method == "rfp":
+        return rational_poles(inside.frequency, inside.response, weight, orders)
+    return lscf_poles(inside.frequency, inside.response, orders)
+
+
+def _significant(
+    s: ComplexArray, inside: Responses, weight: FloatArray, stable: Stabilisation, modes: int | None, refined: bool
+) -> tuple[IntArray, ComplexArray, FloatArray]:
+    """Stable poles without which the error would rise by more than noise explains: which, their values, deviations.
+
+    The least needed pole is taken out first, and the others are fitted again.
+    """
+    chosen = np.arange(stable.poles.size)
+    while chosen.size:
+        poles = without_window(stable.poles[chosen], inside.decay)
+        deviation = np.full((chosen.size, 2), np.nan)
+        if refined:
+            poles, deviation, strayed = refine(s, inside.response, weight, inside.derivatives, poles)
+            if strayed.max() > _STRAYED:
+                chosen = np.delete(chosen, int(np.argmax(strayed)))
+                continue
+        error = _error(s, inside, weight, poles)
+        rise = np.array([_error(s, inside, weight, np.delete(poles, k)) - error for k in range(chosen.size)])
+        least = int(np.argmin(rise))
+        enough = rise[least] > _SIGNIFICANT**2 * alike(inside) * error / inside.response.size
+        if enough and (modes is None or chosen.size <= modes):
+            return chosen, poles, deviation
+        chosen = np.delete(chosen, least)
+    return chosen, np.zeros(0, dtype=np.complex128), np.zeros((0, 2))
+
+
+def _error(s: ComplexArray, inside: Responses, weight: FloatArray, poles: ComplexArray) -> float:
+    """Weighted sum of squares of what the best residues leave."""
+    parts = fit_residues(s, inside.response, weight, inside.derivatives, poles)
+    left = weight * (inside.response - synthesise(s, inside.derivatives, poles, parts))
+    return float(np.sum(np.abs(left) ** 2))
+
+
+def _rms(values: ComplexArray) -> FloatArray:
+    """Of each row; 1 for a row of zeros."""
+    size = np.sqrt(np.mean(np.abs(values) ** 2, axis=1))
+    return np.asarray(np.where(size > 0.0, size, 1.0), dtype=np.float64)

@@ -1,0 +1,170 @@
+"""The result of a modal identification, and its dataset."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import xarray as xr
+
+from ehdmaps.physics._values import FloatArray
+from mbs.linear import ComplexArray
+from mbs.modal.records import Responses
+from mbs.modal.residues import Parts, laplace, synthesise
+from mbs.modal.stabilisation import Candidate
+
+Method = Literal["rfp", "lscf"]
+
+
+@dataclass(frozen=True, eq=False)
+class ModalFit:
+    """Modes identified in a band.
+
+    Attributes
+    ----------
+    method : {"rfp", "lscf"}
+        Where the poles come from.
+    responses : Responses
+        What was fitted: the lines of the band.
+    poles : array of complex, shape (modes,)
+        Of the structure, the exponential window taken out, rising in frequency [1/s].
+    deviation : array, shape (modes, 2)
+        Standard deviation of their real and imaginary part by the noise that is left [1/s]; NaN if not refined.
+    scatter : array, shape (modes, 2)
+        Standard deviation over the orders of the fit [1/s].
+    counts : tuple of int
+        Orders that found each mode.
+    parts : Parts
+        Residues and residual terms.
+    error : array, shape (rows,)
+        Rms of what the fit leaves of each response, over the rms of the response.
+    candidates : tuple of Candidate
+        The stabilisation diagram; its poles still have the window in them.
+    refined : bool
+        Whether the poles are those of the least error, else medians over the orders.
+    """
+
+    method: Method
+    responses: Responses
+    poles: ComplexArray
+    deviation: FloatArray
+    scatter: FloatArray
+    counts: tuple[int, ...]
+    parts: Parts
+    error: FloatArray
+    candidates: tuple[Candidate, ...]
+    refined: bool
+
+    @property
+    def frequency(self) -> FloatArray:
+        """|pole|/(2 pi), as of `mbs.modes.Modes` [Hz]."""
+        return np.asarray(np.abs(self.poles) / (2.0 * np.pi))
+
+    @property
+    def damping_ratio(self) -> FloatArray:
+        """-real part over magnitude."""
+        return np.asarray(-self.poles.real / np.abs(self.poles))
+
+    @property
+    def uncertainty(self) -> FloatArray:
+        """Deviation by noise where the poles are refined, else scatter over the orders, shape (modes, 2) [1/s]."""
+        return self.deviation if self.refined else self.scatter
+
+    @property
+    def frequency_uncertainty(self) -> FloatArray:
+        """Standard uncertainty of the frequency [Hz]."""
+        return np.asarray(self._along(self.poles / np.abs(self.poles)) / (2.0 * np.pi))
+
+    @property
+    def damping_uncertainty(self) -> FloatArray:
+        """Standard uncertainty of the damping ratio."""
+        # d zeta for a change of the pole: -d(real)/|p| + real d|p|/|p|^2.
+        size = np.abs(self.poles)
+        real = -1.0 / size + self.poles.real**2 / size**3
+        imaginary = self.poles.real * self.poles.imag / size**3
+        return np.asarray(np.hypot(real * self.uncertainty[:, 0], imaginary * self.uncertainty[:, 1]))
+
+    def synthesise(self, frequency: FloatArray) -> ComplexArray:
+        """Responses of the fit at frequencies [Hz], shape (rows, lines), with the window of the measured ones."""
+        s = laplace(frequency, self.responses.decay)
+        return synthesise(s, self.responses.derivatives, self.poles, self.parts)
+
+    def _along(self, direction: ComplexArray) -> FloatArray:
+        """Uncertainty of the poles along directions in the plane."""
+        return np.asarray(np.hypot(direction.real * self.uncertainty[:, 0], direction.imag * self.uncertainty[:, 1]))
+
+
+def fit_dataset(fit: ModalFit) -> xr.Dataset:
+    """The fit with its measured responses.
+
+    Parameters
+    ----------
+    fit : ModalFit
+        What is described.
+    """
+    units = "SI unit of the sensor per N or N m"
+    measured = fit.responses
+    made = fit.synthesise(measured.frequency)
+    rows, mode = ("row", "frequency_line"), ("mode",)
+    variables = {
+        "frequency": (mode, fit.frequency, {"units": "Hz", "long_name": "|pole|/(2 pi)"}),
+        "damping_ratio": (mode, fit.damping_ratio, {"units": "1", "long_name": "damping ratio"}),
+        "frequency_uncertainty": (
+            mode,
+            fit.frequency_uncertainty,
+            {"units": "Hz", "long_name": "standard uncertainty of the frequency, by noise or by orders of the fit"},
+        ),
+        "damping_ratio_uncertainty": (
+            mode,
+            fit.damping_uncertainty,
+            {"units": "1", "long_name": "standard uncertainty of the damping ratio, by noise or by orders"},
+        ),
+        "pole_real": (mode, fit.poles.real, {"units": "1/s", "long_name": "decay, window taken out"}),
+        "pole_imaginary": (mode, fit.poles.imag, {"units": "rad/s", "long_name": "damped frequency"}),
+        "orders": (mode, np.array(fit.counts, dtype=np.int64), {"units": "1", "long_name": "orders that found it"}),
+        "residue_real": (("mode", "row"), fit.parts.residues.real, _residue("real")),
+        "residue_imaginary": (("mode", "row"), fit.parts.residues.imag, _residue("imaginary")),
+        "term_below": (
+            ("row",),
+            fit.parts.below,
+            {"units": "displacement per N, 1/s2", "long_name": "residual term of the modes below the band"},
+        ),
+        "term_above": (
+            ("row",),
+            fit.parts.above,
+            {"units": "displacement per N", "long_name": "residual term of the modes above the band"},
+        ),
+        "fit_error": (
+            ("row",),
+            fit.error,
+            {"units": "1", "long_name": "rms that the fit leaves, over the rms of the response"},
+        ),
+        "response_real": (rows, measured.response.real, {"units": units, "long_name": "measured, real part"}),
+        "response_imaginary": (rows, measured.response.imag, {"units": units, "long_name": "measured, imaginary part"}),
+        "fit_real": (rows, made.real, {"units": units, "long_name": "fit, real part"}),
+        "fit_imaginary": (rows, made.imag, {"units": units, "long_name": "fit, imaginary part"}),
+        "coherence": (rows, measured.coherence, {"units": "1", "long_name": "coherence; NaN where not known"}),
+        "quantity": (
+            ("row",),
+            [sensor.quantity for sensor, _ in measured.pairs],
+            {"long_name": "what the sensor measures"},
+        ),
+    }
+    coordinates = {
+        "mode": np.arange(1, fit.poles.size + 1),
+        "row": list(measured.labels),
+        "frequency_line": ("frequency_line", measured.frequency, {"units": "Hz", "long_name": "frequency"}),
+    }
+    attributes = {
+        "method": fit.method,
+        "refined": int(fit.refined),
+        "hits": measured.hits,
+        "window_decay_per_s": measured.decay,
+    }
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+def _residue(part: str) -> dict[str, str]:
+    """Attributes of a part of the residues."""
+    return {"units": "displacement per N, 1/s", "long_name": f"residue, {part} part"}

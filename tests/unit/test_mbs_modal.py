@@ -1,0 +1,495 @@
+"""Modal identification, piece by piece."""
+
+from __future__ import annotations
+
+import dataclasses
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from ehdmaps.errors import InputError
+from mbs.errors import AnalysisError
+from mbs.modal.estimation import HitLimits, estimate, relative_deviation, transfer
+from mbs.modal.fit import identify
+from mbs.modal.hammer import HammerTest, suggested_duration
+from mbs.modal.lscf import lscf_poles
+from mbs.modal.rational import orthogonal_basis, rational_poles, roots
+from mbs.modal.records import Channel
+from mbs.modal.residues import assurance
+from mbs.modal.stabilisation import Criteria, stabilise
+from mbs.modal.uff import LARGEST, Measurement, read_uff, write_uff
+from mbs.modal.windows import exponential_window, force_window, needed_decay, pulse, without_window
+from mbs.modes import Modes
+from tests.unit.modal_cases import POLES, REFERENCE, SENSORS, STEP, hits, measured
+
+
+def changed(entry, **keywords):
+    return dataclasses.replace(entry, **keywords)
+
+
+# records
+
+
+def test_channels_say_where_they_are():
+    assert Channel("S1", 3, -2, "acceleration").label == "S1:3-y"
+    assert Channel("", 3, 5, "displacement").label == "node:3+theta_y"
+    assert Channel("S1", 3, 5, "displacement").rotational
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"step": 0.0}, "step: got 0.0 s; allowed: finite and > 0"),
+        ({"step": float("nan")}, "allowed: finite and > 0"),
+        ({"force": np.zeros(32)}, "got force of shape (32,)"),
+        ({"force": np.zeros((6, 30))}, "records of equal length"),
+        ({"sensors": ()}, "at least one of each"),
+    ],
+)
+def test_hits_that_do_not_fit_together(change, words):
+    with pytest.raises(InputError) as caught:
+        changed(hits(), **change)
+    assert words in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"frequency": np.arange(1001.0)[::-1]}, "not finite, >= 0 Hz and rising"),
+        ({"frequency": np.array([1.0])}, "allowed: a list of 2"),
+        ({"coherence": np.zeros((1, 3))}, "coherence of shape (1, 3)"),
+        ({"response": np.full((2, 1001), np.nan + 0j)}, "values that are not finite"),
+        ({"decay": -1.0}, "decay: got -1.0 1/s"),
+    ],
+)
+def test_responses_that_do_not_fit_together(change, words):
+    with pytest.raises(InputError) as caught:
+        changed(measured(), **change)
+    assert words in str(caught.value)
+
+
+def test_band_without_lines():
+    with pytest.raises(InputError, match=r"got 2000 Hz to 3000 Hz, with 0 lines"):
+        measured().within(2000.0, 3000.0)
+
+
+# windows
+
+
+def test_exponential_window_and_its_limits():
+    np.testing.assert_allclose(exponential_window(3, 0.5, 2.0), np.exp([0.0, -1.0, -2.0]), rtol=1e-15)
+    assert np.all(exponential_window(5, 0.1, 0.0) == 1.0)
+    for decay, words in ((-1.0, "finite and >= 0"), (np.inf, "finite and >= 0"), (100.0, "longer than the step")):
+        with pytest.raises(InputError, match=words):
+            exponential_window(10, 0.1, decay)
+
+
+def test_common_correction_is_the_first_order_of_the_exact_one():
+    tau = 0.3
+    seen = POLES - 1.0 / tau
+    exact = without_window(seen, 1.0 / tau)
+    np.testing.assert_allclose(exact, POLES, rtol=1e-14)
+    common = -seen.real / np.abs(seen) - 1.0 / (tau * np.abs(seen))
+    # Its error is of second order, zeta/(tau omega)^2-like, below 1e-6 here.
+    np.testing.assert_allclose(common, -POLES.real / np.abs(POLES), atol=1e-6)
+
+
+def test_force_window_keeps_the_pulse_and_nothing_far_from_it():
+    force = np.zeros(400)
+    force[100:110] = np.sin(np.pi * (np.arange(10) + 0.5) / 10)
+    assert pulse(force) == (100, 109)
+    window = force_window(force)
+    assert np.all(window[100:110] == 1.0)
+    assert np.all(window[:60] == 0.0) and np.all(window[150:] == 0.0)
+
+
+def test_needed_decay():
+    t = np.arange(1000) * 1e-3
+    assert needed_decay(np.exp(-10.0 * t)[None], 1e-3) == 0.0
+    assert needed_decay(np.zeros((2, 1000)), 1e-3) == 0.0
+    np.testing.assert_allclose(needed_decay(np.cos(50.0 * t)[None], 1e-3), np.log(100.0), rtol=1e-12)
+
+
+# estimation
+
+
+@pytest.mark.parametrize("values", [{"double": 0.0}, {"double": np.nan}, {"silent": 0.5}, {"overload": 0.0}])
+def test_limits_of_hits(values):
+    with pytest.raises(InputError, match=f"hit limits, {next(iter(values))}: got"):
+        HitLimits(**values)
+
+
+def spoilt():
+    """Six hits of which four are not fit for use."""
+    good = hits(6, noise=1e-3)
+    force, response = good.force.copy(), good.response.copy()
+    force[:, 1] = 0.5 * force[:, 0]
+    force[1, 300] = 0.3 * force[1, 0]
+    response[2, 1] = np.clip(response[2, 1], -0.3 * response[2, 1].max(), 0.3 * response[2, 1].max())
+    force[3] = np.random.default_rng(0).standard_normal(force.shape[1])
+    response[4, 0, 7] = np.nan
+    return changed(good, force=force, response=response)
+
+
+def test_spoilt_hits_are_left_out_and_reported():
+    found = estimate([spoilt()])
+    assert [(one.hit, one.reason) for one in found.rejected] == [
+        (2, "double hit"),
+        (3, "overload"),
+        (4, "no hit"),
+        (5, "not finite"),
+    ]
+    assert found.used == (2,)
+    assert "second pulse of 30" in found.rejected[0].detail
+    assert found.rejected[0].reference == REFERENCE
+    with pytest.raises(AnalysisError, match="none is left"):
+        estimate([spoilt()], limits=HitLimits(overload=1e-30))
+
+
+def test_places_must_share_step_and_length():
+    with pytest.raises(InputError, match="same step and length for all places"):
+        estimate([hits(), changed(hits(), step=2.0 * STEP)])
+    with pytest.raises(InputError, match="no place"):
+        estimate([])
+
+
+def test_a_single_hit_has_no_coherence():
+    one = hits(1)
+    H, gamma = transfer(one.force, one.response)
+    assert np.all(np.isnan(gamma)) and np.all(np.isfinite(H))
+
+
+def test_nothing_measured_gives_zero_and_no_warning():
+    H, gamma = transfer(np.zeros((2, 32)), np.zeros((2, 1, 32)), "h2")
+    assert np.all(H == 0.0) and np.all(gamma == 0.0)
+
+
+def test_relative_deviation_of_no_and_full_coherence():
+    assert relative_deviation(np.array([1.0]), 8)[0] == 0.0
+    assert np.isfinite(relative_deviation(np.array([0.0]), 8)[0])
+
+
+# rational fractions
+
+
+def test_basis_is_orthonormal_and_its_recurrence_holds():
+    s = 1j * np.linspace(0.3, 1.0, 200)
+    weight = np.linspace(1.0, 50.0, 200)
+    basis = orthogonal_basis(s, weight, 30)
+    gram = (basis.values.conj().T @ basis.values).real
+    np.testing.assert_allclose(gram, np.eye(31), atol=1e-13)  # round-off
+    np.testing.assert_allclose(s[:, None] * basis.values[:, :30], basis.values @ basis.recurrence, atol=1e-13)
+
+
+def test_roots_in_the_basis():
+    s = 1j * np.linspace(0.1, 1.0, 100)
+    known = np.array([-0.01 + 0.5j, -0.01 - 0.5j, -0.2, -0.3])
+    basis = orthogonal_basis(s, np.ones(100), 4)
+    values = np.polyval(np.poly(known), s) * np.abs(basis.values[0, 0])
+    coefficients = (basis.values.conj().T @ values).real
+    found = roots(basis, coefficients)
+    np.testing.assert_allclose(np.sort_complex(found), np.sort_complex(known), atol=1e-12)  # round-off
+
+
+def test_too_few_lines_for_a_degree():
+    with pytest.raises(AnalysisError, match="5 lines do not carry polynomials of degree 10"):
+        rational_poles(np.arange(1.0, 6.0), np.ones((1, 5), dtype=complex), np.ones((1, 5)), [8])
+
+
+def test_an_empty_response_has_no_poles():
+    (found,) = rational_poles(np.arange(1.0, 50.0), np.zeros((1, 49), dtype=complex), np.ones((1, 49)), [2])
+    assert found.size == 0
+
+
+# stabilisation
+
+
+def test_criteria():
+    with pytest.raises(InputError) as caught:
+        Criteria(frequency=0.0, damping=2.0, assurance=-1.0, orders=0)
+    assert len(caught.value.problems) == 4
+
+
+def followed(lists, **keywords):
+    return stabilise(
+        [np.array(poles, dtype=complex) for poles in lists],
+        range(1, len(lists) + 1),
+        (1.0, 1000.0),
+        lambda poles: np.ones((poles.size, 1), dtype=complex),
+        Criteria(**keywords),
+    )
+
+
+def test_steady_poles_are_modes_and_wandering_ones_are_not():
+    random = np.random.default_rng(0)
+    steady = -10.0 + 2000.0j
+    lists = [
+        [steady * (1.0 + 1e-4 * random.standard_normal()), -5.0 + 1j * random.uniform(10, 6000)] for _ in range(12)
+    ]
+    lists[4] = lists[4][1:]  # missing for an order
+    found = followed(lists)
+    assert found.counts == (11,)
+    assert abs(found.poles[0] - steady) < 1e-3 * abs(steady)
+    assert sum(entry.stable for entry in found.candidates) == 10
+
+
+def test_what_low_orders_make_of_two_modes_is_none():
+    lists = [[-40.0 + 2000.0j]] * 7 + [[-10.0 + 1980.0j, -10.0 + 2020.0j]] * 13
+    found = followed(lists)
+    np.testing.assert_allclose(found.poles, [-10.0 + 1980.0j, -10.0 + 2020.0j])
+
+
+def test_growing_overdamped_and_outside_poles_are_no_candidates():
+    lists = [[10.0 + 2000.0j, -1900.0 + 2000.0j, -1.0 + 1e5j, -1.0 - 2000.0j, -3.0 + 0.0j]] * 10
+    found = followed(lists)
+    assert found.candidates == () and found.poles.size == 0
+
+
+def test_shapes_must_agree():
+    lists = [np.array([-10.0 + 2000.0j])] * 12
+    turn = iter(range(100))
+    found = stabilise(
+        lists, range(1, 13), (1.0, 1000.0), lambda poles: np.eye(2, dtype=complex)[[next(turn) % 2]], Criteria()
+    )
+    # Every second order has the other shape: two chains, each with gaps of one order, that are one pole.
+    assert found.counts == (12,)
+    assert assurance(np.array([1.0, 0.0]), np.array([0.0, 1.0])) == 0.0
+    assert assurance(np.zeros(2), np.ones(2)) == 0.0
+
+
+# the fit
+
+
+@pytest.mark.parametrize(
+    ("keywords", "words"),
+    [
+        ({"band": (500.0, 400.0)}, "band: got 500.0 Hz to 400.0 Hz"),
+        ({"band": (np.nan, 400.0)}, "band: got nan Hz"),
+        ({"band": (400.0, 402.0)}, "allowed: 8 or more"),
+        ({"order": 0}, "order: got 0"),
+        ({"order": 10**9}, "order: got 1000000000"),
+        ({"modes": -1}, "modes: got -1"),
+    ],
+)
+def test_fits_that_are_not_possible(keywords, words):
+    with pytest.raises(InputError) as caught:
+        identify(measured(), **keywords)
+    assert words in str(caught.value)
+
+
+@pytest.mark.parametrize("method", ["rfp", "lscf"])
+def test_noise_has_no_modes(method):
+    random = np.random.default_rng(1)
+    noise = random.standard_normal((2, 1001)) + 1j * random.standard_normal((2, 1001))
+    with pytest.raises(AnalysisError, match="no stable mode from 1 Hz to 1000 Hz"):
+        identify(changed(measured(), response=noise), method, order=10)
+
+
+def test_the_strongest_modes_are_kept():
+    fit = identify(measured(noise=1e-3), band=(100.0, 900.0), order=10, modes=2)
+    assert fit.poles.size == 2
+
+
+def test_pieces_of_a_structure_that_are_not_there():
+    silent = changed(measured(), response=measured().response * np.array([[1.0], [0.0]]))
+    fit = identify(silent, order=8)
+    np.testing.assert_allclose(fit.poles, POLES, rtol=1e-6)  # noiseless: round-off of the fit
+    assert fit.error[1] == 0.0
+
+
+# p-LSCF
+
+
+def test_lscf_wants_lines_of_a_transform():
+    uneven = np.geomspace(10.0, 1000.0, 200)
+    with pytest.raises(InputError, match="not evenly spaced"):
+        lscf_poles(uneven, np.ones((1, 200), dtype=complex), range(1, 4))
+
+
+def test_libraries_that_are_missing(monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "sdypy.EMA", None)
+    monkeypatch.setitem(sys.modules, "pyuff", None)
+    with pytest.raises(InputError, match=r"sdypy-EMA is missing .*install it"):
+        identify(measured(), "lscf")
+    with pytest.raises(InputError, match=r"pyuff is missing .*install it"):
+        read_uff(tmp_path / "a.uff")
+
+
+def test_libraries_are_loaded_late():
+    code = "import mbs.modal.fit, mbs.modal.uff, mbs.modal.hammer, sys; "
+    code += "print('pyuff' in sys.modules, 'sdypy' in sys.modules)"
+    result = subprocess.run([sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=True)
+    assert result.stdout.split() == ["False", "False"]
+
+
+# hammer
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"highest": np.inf}, "highest: got inf Hz"),
+        ({"duration": 1e9}, "duration: got 1000000000.0 s"),
+        ({"duration": np.nan}, "duration: got nan s"),
+        ({"hits": 0}, "hits: got 0"),
+        ({"noise": -0.1}, "noise: got -0.1"),
+        ({"seed": -1}, "seed: got -1"),
+        ({"spread": 1.0}, "spread: got 1.0"),
+    ],
+)
+def test_hammer_tests_that_are_not_possible(values, words):
+    with pytest.raises(InputError) as caught:
+        HammerTest(**{"highest": 1000.0, "duration": 1.0} | values)
+    assert words in str(caught.value)
+
+
+def test_duration_follows_the_slowest_mode():
+    def of(*poles):
+        return suggested_duration(
+            Modes(np.array(poles), np.ones((1, len(poles))), (), np.zeros((0, len(poles)))), 1000.0
+        )
+
+    np.testing.assert_allclose(of(-5.0 + 2000.0j, -50.0 + 3000.0j), np.log(1e3) / 5.0)
+    assert of(-5.0 + 2000.0j, -1e-9 + 2000.0j) == of(0.0 + 2000.0j) == 2**14 / 2560.0
+    assert of(-1e5 + 0j) == 1024.0 / 2560.0
+
+
+# universal files
+
+
+def test_hits_come_back(tmp_path):
+    path = tmp_path / "hits.uff"
+    first = hits(3, noise=0.01)
+    second = changed(first, reference=Channel("a place with a long name", 7, 0, "force"))
+    write_uff(path, Measurement("title ü", (first, second)))
+    back = read_uff(path)
+    assert back.title == "title ?" and back.responses is None and back.notes == ()
+    for there, here in zip(back.hits, (first, second), strict=True):
+        np.testing.assert_allclose(there.step, here.step, rtol=5e-6)  # six digits of the step
+        np.testing.assert_allclose(there.force, here.force, rtol=1e-10, atol=1e-12)  # twelve digits of a value
+        np.testing.assert_allclose(there.response, here.response, rtol=1e-10, atol=1e-16)
+        assert [c.quantity for c in there.sensors] == ["displacement", "displacement"]
+    assert back.hits[1].reference.name == "a place wi"
+
+
+def test_responses_come_back(tmp_path):
+    path = tmp_path / "frf.uff"
+    there = changed(measured(decay=2.5), coherence=np.stack([np.full(1001, np.nan), np.linspace(0.0, 1.0, 1001)]))
+    write_uff(path, Measurement("", (), there))
+    back = read_uff(path).responses
+    np.testing.assert_allclose(back.response, there.response, rtol=1e-10, atol=1e-22)
+    np.testing.assert_allclose(back.coherence, there.coherence, atol=1e-11)
+    assert (back.decay, back.derivatives, back.labels) == (2.5, (0, 2), there.labels)
+    assert back.pairs == there.pairs
+
+
+def test_uneven_lines_come_back(tmp_path):
+    there = measured()
+    there = changed(there, frequency=there.frequency + 0.2 * np.sin(there.frequency))
+    write_uff(tmp_path / "a.uff", Measurement("", (), there))
+    back = read_uff(tmp_path / "a.uff").responses
+    np.testing.assert_allclose(back.frequency, there.frequency, rtol=5e-6, atol=5e-6)  # six digits of the abscissa
+
+
+def test_units_of_the_file_are_respected(tmp_path):
+    path = tmp_path / "a.uff"
+    moment = Channel("m", 4, 6, "force")
+    pairs = ((SENSORS[0], REFERENCE), (SENSORS[1], moment))
+    there = changed(measured(), pairs=pairs)
+    write_uff(path, Measurement("", (), there))
+    millimetre = path.read_text().replace(
+        "   1.0000000000000000D+00   1.0000000000000000D+00", "   1.0000000000000000D+03   2.0000000000000000D+00", 1
+    )
+    (tmp_path / "mm.uff").write_text(millimetre)
+    back = read_uff(tmp_path / "mm.uff").responses
+    # In mm and half newtons: displacement per force shrinks by 1000/2, acceleration per moment by 1000/(2 1000).
+    np.testing.assert_allclose(back.response, there.response / np.array([[500.0], [0.5]]), rtol=1e-10, atol=1e-20)
+
+
+def test_a_file_without_units_is_taken_for_si_and_says_so(tmp_path):
+    import pyuff
+
+    path = tmp_path / "a.uff"
+    write_uff(path, Measurement("", (), measured()))
+    sets = [entry for entry in pyuff.UFF(str(path)).read_sets() if entry["type"] == 58]
+    sets.append(sets[0] | {"func_type": 9})
+    for entry in sets:
+        entry["data"], entry["x"] = np.array(entry["data"]), np.array(entry["x"])
+    pyuff.UFF(str(tmp_path / "b.uff")).write_sets(sets, mode="overwrite")
+    back = read_uff(tmp_path / "b.uff")
+    assert back.notes == ("no dataset 164: values are taken for SI", "1 functions of type 9 are left out")
+
+
+def test_hits_are_counted_by_their_order_where_the_file_does_not(tmp_path):
+    path = tmp_path / "a.uff"
+    write_uff(path, Measurement("", (hits(3),)))
+    text = path.read_text()
+    for hit in (1, 2, 3):
+        text = text.replace(f"    1         0{hit:5d}         0", "    1         0    0         0")
+    path.write_text(text)
+    np.testing.assert_allclose(read_uff(path).hits[0].force[:, 0], hits(3).force[:, 0], rtol=1e-10)
+
+
+def hostile(folder):
+    """Files that are none, with what is said about them."""
+    good = folder / "good.uff"
+    write_uff(good, Measurement("x", (hits(2, samples=64),)))
+    text = good.read_text()
+    blocks = text.split("    -1\n    -1\n")
+    first_value = next(line for line in text.splitlines() if line.count("e+") == 4)
+    force_type = "        13    0    1    0"
+    return {
+        "": "no datasets 58",
+        "    -1\n" * 100_000: "no datasets 58",
+        "\x00\xff" * 5000: "no datasets 58",
+        text[: len(text) // 2]: "the file is cut off",
+        text.replace(first_value + "\n", "", 1): "as its header says; the file is cut off",
+        text.replace(first_value, " " * 17 + "nan" + first_value[20:], 1): "values that are not finite",
+        text.replace("2.44141e-04", "0.00000e+00"): "an abscissa that does not rise",
+        text.replace("        64         1", "      9999         1", 1): "as its header says",
+        text.replace("1.0000000000000000D+00", "0.0000000000000000D+00"): "dataset 164: got the factors 0",
+        text.replace("1.0000000000000000D+00", "x.0000000000000000D+00"): "dataset 2, of type 164, cannot be read",
+        text.replace(force_type, "         8    1    0    0"): "0 of a force",
+        "    -1\n    -1\n".join(blocks[:-1]) + "    -1\n": "allowed: one of each for each hit",
+        "    -1\n    -1\n".join(blocks[:2]) + "    -1\n": "none of them a time record",
+    }
+
+
+def test_hostile_files(tmp_path):
+    path = tmp_path / "hostile.uff"
+    for text, words in hostile(tmp_path).items():
+        path.write_text(text)
+        with pytest.raises(InputError) as caught:
+            read_uff(path)
+        assert words in str(caught.value), text[:200]
+
+
+def test_files_that_cannot_be_read_or_written(tmp_path):
+    with pytest.raises(InputError, match="cannot be read"):
+        read_uff(tmp_path / "nowhere.uff")
+    with pytest.raises(InputError, match="or no file"):
+        read_uff(tmp_path)
+    huge = tmp_path / "huge.uff"
+    with huge.open("wb") as file:
+        file.truncate(LARGEST + 1)
+    with pytest.raises(InputError, match="allowed: a universal file of up to"):
+        read_uff(huge)
+    with pytest.raises(InputError, match="cannot be written"):
+        write_uff(tmp_path / "no" / "a.uff", Measurement("", (hits(1),)))
+    bad = hits(1)
+    bad.response[0, 0, 0] = np.inf
+    with pytest.raises(InputError, match="not finite"):
+        write_uff(tmp_path / "a.uff", Measurement("", (bad,)))
+    assert not (tmp_path / "a.uff").exists()
+
+
+def test_sensors_that_share_a_place_are_told_apart(tmp_path):
+    there = hits(2)
+    names = ("accelerometer left", "accelerometer right")
+    there = changed(there, sensors=tuple(Channel(name, 1, 2, "acceleration") for name in names))
+    write_uff(tmp_path / "a.uff", Measurement("", (there,)))
+    back = read_uff(tmp_path / "a.uff").hits[0]
+    assert len({sensor.name for sensor in back.sensors}) == 2
+    np.testing.assert_allclose(back.response, there.response, rtol=1e-10, atol=1e-16)
