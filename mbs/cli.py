@@ -35,27 +35,55 @@ def parser() -> argparse.ArgumentParser:
         ("runup", "integrate the nonlinear system in time over its speed profile"),
     ):
         _scene_command(commands, name, words, compares=False)
-    command = _scene_command(
-        commands, "sweep", "the linear system over speed: modes, responses, bearings", compares=True
+    _sweep(_scene_command(commands, "sweep", "modes, bearings and frequency responses over speed", compares=True))
+    _campbell(_scene_command(commands, "campbell", "run-up in time as levels over speed and frequency", compares=True))
+    _hammer(_scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=False))
+    _modal_fit(commands)
+    _reduce(commands)
+    return top
+
+
+def _sweep(command: argparse.ArgumentParser) -> None:
+    """Add the options of a sweep."""
+    _load_factor(command)
+    command.add_argument(
+        "--speeds",
+        nargs=3,
+        metavar=("FROM", "TO", "POINTS"),
+        help='such as "500 rpm" "2500 rpm" 40, in place of [sweep] of the scene',
     )
     command.add_argument(
-        "--speeds", nargs=3, metavar=("FROM", "TO", "POINTS"), help='such as "200 rpm" "2000 rpm" 10; else [sweep]'
+        "--cage-angles",
+        metavar="COUNT",
+        help="angles within one pitch of the rollers over which k and c of the bearings are averaged (1)",
     )
-    command.add_argument("--load-factor", metavar="F", action="append", help="on all loads; more than once to compare")
-    command.add_argument("--cage-angles", metavar="N", help="also K and C averaged over N cage angles of a pitch")
-    command = _scene_command(commands, "campbell", "run-up in time as levels over speed and frequency", compares=True)
-    command.add_argument("--load-factor", metavar="F", action="append", help="on all loads; more than once to compare")
+
+
+def _campbell(command: argparse.ArgumentParser) -> None:
+    """Add the options of a Campbell diagram."""
+    _load_factor(command)
     command.add_argument("--sensor", metavar="NAME", help="a sensor; default: the first of an acceleration")
     command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
     command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
     command.add_argument("--modes", action="store_true", help="draw in the modes of the linear system")
+
+
+def _load_factor(command: argparse.ArgumentParser) -> None:
+    """Add the factor of all loads."""
+    command.add_argument(
+        "--load-factor",
+        metavar="FACTOR",
+        action="append",
+        help="multiplies all loads of the scene; more than once to compare",
+    )
+
+
+def _reduce(commands: Any) -> None:
+    """Add the command that reads a table of a body instead of a scene."""
     words = "reduce a finite-element body to its interfaces and modes, for [[flexible]] tables"
-    command = commands.add_parser("reduce", help=words, description=words)
+    command: argparse.ArgumentParser = commands.add_parser("reduce", help=words, description=words)
     command.add_argument("body", metavar="BODY.toml")
     command.add_argument("-o", "--output", metavar="OUT.nc", help="also .npz; BODY.nc if left out")
-    _hammer(_scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=False))
-    _modal_fit(commands)
-    return top
 
 
 def _hammer(command: argparse.ArgumentParser) -> None:
