@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from ehdmaps.errors import InputError
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import LawKind
@@ -163,7 +165,34 @@ def find_problems(
         *((f"sensor {entry.name!r}", place) for entry in scene.sensors for place in (entry.on, entry.against)),
         *((f"bearing {entry.name!r}", place) for entry in scene.bearings for place in (entry.inner, entry.outer)),
     ]
-    return problems + [f"{where}: {found}" for where, place in places if (found := plain.check_place(place))]
+    wrong = [f"{where}: {found}" for where, place in places if (found := plain.check_place(place))]
+    return problems + (wrong or _idle_problems(plain, scene))
+
+
+def _idle_problems(plain: System, scene: Scene) -> list[str]:
+    """What does nothing in the system, which is hardly meant: a load that moves nothing, a bearing of one body."""
+    problems = [
+        f"bearing {entry.name!r}: got {entry.inner} and {entry.outer}; allowed: rings on two bodies"
+        for entry in scene.bearings
+        if entry.inner.partition(":")[0] == entry.outer.partition(":")[0]
+    ]
+    problems += [
+        f"spring {spring.name!r}: {spring.on} and {spring.against} do not move against each other; allowed: places of "
+        "two bodies, or of one that moves and the ground"
+        for spring in scene.springs
+        if not np.any(plain.relative(spring.on, spring.against))
+    ]
+    for kind, name, direction, on, against in (
+        *(("load", load.name, load.force, load.on, load.against) for load in scene.loads),
+        *(("input", entry.name, entry.direction, entry.on, entry.against) for entry in scene.inputs),
+        *(("sensor", entry.name, entry.direction, entry.on, entry.against) for entry in scene.sensors),
+    ):
+        if np.any(direction) and not np.any(direction @ plain.relative(on, against)):
+            problems.append(
+                f"{kind} {name!r}: no freedom moves {on} against {against} along its direction; allowed: a direction "
+                "in which the body is free"
+            )
+    return problems
 
 
 def constant_name(law: str) -> str | None:

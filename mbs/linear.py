@@ -24,6 +24,37 @@ _ORDER: dict[Quantity, int] = {"displacement": 0, "velocity": 1, "acceleration":
 _PER_TIME = ("", "/s", "/s2")
 
 
+_AROUND = np.array([-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0])
+"""Places around a peak, in half widths."""
+
+_WIDEST = 0.1
+"""Damping ratio above which a peak is so wide that any axis shows it."""
+
+
+def with_peaks(frequencies: FloatArray, eigenvalues: ComplexArray) -> FloatArray:
+    """The frequencies of an axis and, among them, some around each lightly damped mode, which the axis may step over.
+
+    Parameters
+    ----------
+    frequencies : array, shape (m,)
+        [Hz], rising.
+    eigenvalues : array, shape (modes,)
+        Of the complex modes [1/s]. Modes without any damping have no finite peak, and are left out.
+
+    Returns
+    -------
+    array, shape (>= m,)
+        [Hz], rising; all of `frequencies` are there.
+    """
+    if not frequencies.size:
+        return frequencies
+    half_width, place = -eigenvalues.real / (2.0 * np.pi), eigenvalues.imag / (2.0 * np.pi)
+    narrow = (half_width > 1e-12 * place) & (half_width < _WIDEST * place)
+    added = (place[narrow, None] + half_width[narrow, None] * _AROUND).ravel()
+    inside = added[(added > frequencies[0]) & (added < frequencies[-1])]
+    return np.asarray(np.unique(np.concatenate([frequencies, inside])))
+
+
 def response_unit(sensor: Sensor, entry: Input) -> str:
     """Unit of the response of a sensor to an input, such as m/s2/N; rad for rotations, (N m) for moments."""
     length = "rad" if np.any(sensor.direction[3:]) else "m"

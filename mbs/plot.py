@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
+import math
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -18,21 +21,31 @@ from mbs.statics import Equilibrium
 _RPM = 30.0 / np.pi
 _SIZE = (9.0, 5.5)
 _MOST_LEVEL_LABELS = 12
+_MOST_LABELS = 45
+"""That stand upright beside each other."""
+
 _COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00", "#6a3d9a")
+_FILLS = ("#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377", "#999999")
+"""Apart also for the colour-blind; with each hatch in turn for more parts than these."""
+
+_HATCHES = ("", "////", "....", "xxxx") * 20
 
 
 def statics_figure(model: Model, balance: Equilibrium) -> Figure:
     """Load of each roller around each bearing."""
     figure, axes = _page(model, f"{model.scene.speed * _RPM:.4g} rpm", len(model.bearings))
-    for panel, bearing in zip(axes, model.bearings, strict=True):
+    for panel, bearing in zip(axes, model.bearings, strict=False):
         motion = model.system.relative(bearing.inner, bearing.outer) @ balance.displacement
         rollers = bearing.rollers(motion, balance.operation)
         panel.bar(np.degrees(rollers.angle), rollers.load, width=0.6 * 360.0 / rollers.angle.size, color=_COLOURS[0])
-        panel.set(xlabel="angle of the roller from y towards z, degrees", ylabel="load of the roller, N")
         panel.set_title(bearing.name, fontsize=9)
         panel.set_xlim(-200, 200)
-        panel.set_xticks(np.arange(-180, 181, 60))
+        panel.set_xticks(np.arange(-180, 181, 90))
         _grid(panel)
+    for panel in axes[len(model.bearings) :]:
+        panel.set_visible(False)
+    figure.supxlabel("angle of the roller from y towards z, degrees", fontsize=10)
+    figure.supylabel("load of the roller, N", fontsize=10)
     return figure
 
 
@@ -41,14 +54,16 @@ def modes_figure(model: Model, found: Modes) -> Figure:
     figure, (panel,) = _page(model, f"{model.scene.speed * _RPM:.4g} rpm", 1)
     places = np.arange(found.eigenvalues.size)
     bottom = np.zeros(places.size)
-    shades = np.linspace(0.15, 0.85, max(len(found.parts), 2))
-    for part, share, shade in zip(found.parts, found.shares, shades, strict=False):
-        panel.bar(places, share, bottom=bottom, label=part, color=_shade(float(shade)))
+    styles = itertools.product(_HATCHES, _FILLS)
+    for part, share, (hatch, colour) in zip(found.parts, found.shares, styles, strict=False):
+        panel.bar(places, share, bottom=bottom, label=part, color=colour, hatch=hatch, edgecolor="w", lw=0.0)
         bottom += share
     level = places.size <= _MOST_LEVEL_LABELS
     mark = "\n" if level else ", "
     labels = [f"{f:.5g} Hz{mark}ζ {z:.2g}" for f, z in zip(found.frequency, found.damping_ratio, strict=True)]
-    panel.set_xticks(places, labels, fontsize=7, rotation=0 if level else 90)
+    every = math.ceil(max(places.size, 1) / _MOST_LABELS)
+    panel.set_xticks(places[::every], labels[::every], fontsize=7, rotation=0 if level else 90)
+    panel.set_xlim(-0.8, max(places.size, 1) - 0.2)
     panel.set_xlabel("frequency |eigenvalue|/(2π) and damping ratio ζ of the mode")
     panel.set_ylabel("part of the strain energy")
     panel.legend(fontsize=7, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
@@ -67,8 +82,13 @@ def response_figure(model: Model, frequencies: FloatArray, responses: ComplexArr
     for s, sensor in enumerate(model.scene.sensors):
         for i, entry in enumerate(model.scene.inputs):
             colour, panel = next(colours), panels[_shown(response_unit(sensor, entry))]
+            size = np.abs(responses[:, s, i])
             panel.loglog(
-                frequencies, np.abs(responses[:, s, i]), color=colour, lw=1.0, label=f"{sensor.name} by {entry.name}"
+                frequencies,
+                np.where(size > 0.0, size, np.nan),
+                color=colour,
+                lw=1.0,
+                label=f"{sensor.name} by {entry.name}",
             )
             phase.semilogx(frequencies, np.degrees(np.angle(responses[:, s, i])), color=colour, lw=0.9)
     for unit, panel in panels.items():
@@ -93,22 +113,24 @@ def run_figure(model: Model, run: Trajectory) -> Figure:
     axes[0].set_ylabel("bearing force, N")
     axes[1].set_ylabel("inner ring against\nthe outer one, µm")
     axes[2].set(xlabel="time, s", ylabel="speed, rpm")
-    axes[0].legend(fontsize=8, frameon=False)
+    if model.bearings:
+        axes[0].legend(fontsize=8, frameon=False)
     for panel in axes:
         _grid(panel)
     return figure
 
 
 def _page(model: Model, words: str, panels: int, stacked: bool = False) -> tuple[Figure, list[Axes]]:
-    """A figure with its heading and a row, or a stack, of panels; `words` follow the law."""
+    """A figure with its heading and rows, or a stack, of at least so many panels; `words` follow the law."""
     clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
     at = [
         *([words] if words else []),
         TEMPERATURE.text(model.scene.temperature).replace("deg", "°"),
-        f"clearance {', '.join(_shown(MICROMETRE.text(value)) for value in clearances)}",
+        *([f"clearance {', '.join(_shown(MICROMETRE.text(value)) for value in clearances)}"] if clearances else []),
     ]
     figure = _figure(model.scene.title, f"{model.law}; {', '.join(at)}")
-    shape = (panels, 1) if stacked else (1, panels)
+    rows = panels if stacked else max(round(math.sqrt(panels / 1.5)), 1)
+    shape = (rows, math.ceil(panels / rows))
     axes = figure.subplots(*shape, sharex=stacked, squeeze=False)
     return figure, list(axes.ravel())
 
@@ -130,8 +152,3 @@ def _grid(panel: Axes) -> None:
     panel.grid(color="0.88", lw=0.5)
     panel.set_axisbelow(True)
     panel.tick_params(labelsize=8)
-
-
-def _shade(part: float) -> tuple[float, float, float]:
-    """A shade of blue to brown."""
-    return (0.1 + 0.75 * part, 0.3 + 0.3 * part, 0.75 - 0.6 * part)

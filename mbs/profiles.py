@@ -68,8 +68,13 @@ class Course:
                 f"course: got {len(self.times)} times and {len(self.values)} values; allowed: as many of each, at "
                 "least one"
             )
-        if not np.all(np.isfinite([*self.times, *self.values])) or np.any(np.diff(self.times) <= 0.0):
-            raise InputError(f"course, times: got {self.times}; allowed: finite and rising")
+        problems = []
+        if not np.all(np.isfinite(self.times)) or np.any(np.diff(self.times) <= 0.0):
+            problems.append(f"course, times: got {self.times!r:.80}; allowed: finite and rising")
+        if not np.all(np.isfinite(self.values)):
+            problems.append(f"course, values: got {self.values!r:.80}; allowed: finite")
+        if problems:
+            raise InputError(problems)
 
     def __call__(self, time: float) -> float:
         """Value at a time [s]."""

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from ehdmaps.errors import InputError
@@ -88,7 +89,7 @@ def linear_dataset(
     balance: Equilibrium,
     space: StateSpace,
     responses: ComplexArray,
-    frequencies: Sequence[float],
+    frequencies: FloatArray,
     inputs: Sequence[Input],
     sensors: Sequence[Sensor],
 ) -> xr.Dataset:
@@ -113,7 +114,7 @@ def linear_dataset(
         ),
     }
     coordinates = {
-        "frequency": ("frequency", np.asarray(frequencies), {"units": "Hz", "long_name": "frequency"}),
+        "frequency": ("frequency", frequencies, {"units": "Hz", "long_name": "frequency"}),
         "sensor": [sensor.name for sensor in sensors],
         "input": [entry.name for entry in inputs],
         "state": states,
@@ -148,7 +149,7 @@ def run_dataset(system: System, run: Trajectory, outside: Mapping[str, int]) -> 
     names = _bearing_names(system)
     variables["outside_calls"] = (
         "bearing",
-        np.array([outside.get(name, 0) for name in names], dtype=np.int64),
+        np.array([outside.get(str(name), 0) for name in names], dtype=np.int64),
         {"units": "1", "long_name": "law calls outside the map"},
     )
     coordinates = {
@@ -168,6 +169,9 @@ def write_dataset(dataset: xr.Dataset, path: Path) -> None:
         If it cannot be written.
     """
     aside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    if path.exists() and not path.is_file():
+        # A device would be replaced by a file.
+        raise InputError(f"-o: {path} cannot be written (it is no file); allowed: a file in a folder")
     try:
         try:
             dataset.to_netcdf(aside, engine="netcdf4", mode="w")
@@ -236,9 +240,9 @@ def _ring_variables(
     }
 
 
-def _bearing_names(system: System) -> list[str]:
-    """Names of the bearings."""
-    return [system.elements[i].element.name for i in system.bearings]
+def _bearing_names(system: System) -> npt.NDArray[np.str_]:
+    """Names of the bearings; texts also where there is none."""
+    return np.array([system.elements[i].element.name for i in system.bearings], dtype=np.str_)
 
 
 def _operation(balance: Equilibrium) -> dict[str, Any]:

@@ -73,7 +73,7 @@ def read_scene(source: str) -> Scene:
     if len(head) > LONGEST_FILE:
         raise InputError(f"{source}: longer than {LONGEST_FILE} bytes; allowed: a scene file in TOML")
     try:
-        text = head.decode("utf-8")
+        text = head.decode("utf-8-sig")  # some editors begin a file with a mark
     except UnicodeDecodeError as error:
         raise InputError(f"{source}: is not UTF-8 text (byte {error.start}); allowed: a scene file in TOML") from error
     return parse_scene(text, path.stem, source, path.parent)

@@ -23,6 +23,9 @@ FIRST_STEP = 5e-6
 FARTHEST = 0.1
 """A step that would have to be longer than this [m or rad] means that something moves freely."""
 
+NEGLIGIBLE = 1e-15
+"""A Newton step shorter than this [m or rad] is the last one: without loads only round-off is left to compare with."""
+
 _STEPS = 200
 _CUTS = 40
 
@@ -109,6 +112,9 @@ def equilibrium(
             return _result(system, operation, q, force, loads, steps)
         direction = _newton_step(system, operation, q, force)
         length = float(np.max(np.abs(direction)))
+        if length <= NEGLIGIBLE:
+            q = q + direction
+            return _result(system, operation, q, residual(q)[0], loads, steps + 1)
         clipped = length > longest
         if clipped:
             direction *= longest / length
@@ -121,7 +127,8 @@ def equilibrium(
     raise AnalysisError(
         f"no equilibrium after {steps + 1} steps: {force[worst]:.4g} {'N m' if system.units[worst] == 'rad' else 'N'} "
         f"remain on {system.coordinates[worst]} at {q[worst]:.4g} {system.units[worst]}; something moves freely under "
-        "its load: hold it by a spring, or take the freedom away"
+        f"its load, or by more than the small displacements that are computed (steps of {FARTHEST} m or rad): hold it "
+        "by a spring, take the freedom away, or check units and signs of the loads"
     )
 
 
@@ -177,7 +184,9 @@ def _result(
         parts[connected.element.name] = part
         stiffness += part
         damping += connected.transform.T @ c @ connected.transform
-    largest = max(float(np.max(np.abs(loads))), *(float(np.max(np.abs(f))) for f, _, _ in copies), 1e-300)
+    # Without loads there may be no force at all: then by what moves the stiffest coordinate by a negligible length.
+    least = max(NEGLIGIBLE * float(np.max(np.abs(np.diag(stiffness)))), 1e-300)
+    largest = max(float(np.max(np.abs(loads))), *(float(np.max(np.abs(f))) for f, _, _ in copies), least)
     return Equilibrium(
         system=system,
         operation=operation,

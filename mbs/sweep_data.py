@@ -166,7 +166,7 @@ def sweep_dataset(
         "mode": np.arange(1, first.undamped.frequency.shape[1] + 1),
         "complex_mode": np.arange(1, most + 1),
         "part": list(first.parts),
-        "bearing": list(first.bearings.names),
+        "bearing": np.array(first.bearings.names, dtype=np.str_),
     }
     if first.responses.values.size:
         found = first.responses

@@ -16,11 +16,11 @@ from mbs.linear import response_unit
 from mbs.sweep_result import Sweep, UndampedSweep
 
 _RPM = 30.0 / np.pi
-_COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00", "#6a3d9a", "#0b8a8f")
+_COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00", "#6a3d9a", "#0b8a8f", "#d95f02", "#444444")
 _LEAST_SHARE = 0.05
 _MOST_MAPS = 4
 _MARKS = 16
-_LEVELS_SHOWN = 80.0
+_LEVELS_SHOWN = 50.0
 _NOTHING = 1e-4
 _WIDTH = 9.0
 _ROW = 3.1
@@ -45,7 +45,7 @@ def sweep_figure(title: str, words: str, sweeps: Sequence[Sweep], labels: Sequen
     parts = figure.subfigures(rows, 1, squeeze=False)[:, 0]
     top, middle = parts[0].subplots(1, 2), parts[1].subplots(1, 3)
     handles = []
-    for entry, label, colour in zip(sweeps, labels, _COLOURS * 8, strict=False):
+    for entry, label, colour in zip(sweeps, labels, _COLOURS * 6, strict=False):
         _modes((*top, middle[0]), entry, colour)
         _bearings(middle[1:], entry, colour)
         handles.append(Line2D([], [], color=colour, lw=1.6, label=label.replace(" um", " µm")))
@@ -81,7 +81,7 @@ def _modes(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
     highest = _highest(entry)
     for k in range(plain.frequency.shape[1]):
         share = float(plain.bearing_share[:, k].max())
-        shown = share >= _LEAST_SHARE
+        shown = share >= _least(entry)
         shade, width = (colour, 0.6 + 1.2 * share) if shown else ("0.75", 0.7)
         axes[0].plot(rpm, _positive(plain.frequency[:, k]), color=shade, lw=width, zorder=2 if shown else 1)
         if shown and plain.frequency[:, k].min() <= highest:
@@ -89,7 +89,7 @@ def _modes(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
             axes[2].plot(rpm, _positive(100.0 * plain.damping_ratio[:, k]), color=shade, lw=width)
     every = max(rpm.size // _MARKS, 1)
     for k in range(damped.eigenvalues.shape[1]):
-        if np.nanmax(damped.bearing_share[:, k]) >= _LEAST_SHARE and np.nanmin(damped.frequency[:, k]) <= highest:
+        if np.nanmax(damped.bearing_share[:, k]) >= _least(entry) and np.nanmin(damped.frequency[:, k]) <= highest:
             for panel, values in ((axes[0], damped.frequency), (axes[2], 100.0 * damped.damping_ratio)):
                 panel.plot(
                     rpm[::every], _positive(values[::every, k]), "o", ms=3.2, mfc="white", mec=colour, mew=0.8, zorder=3
@@ -113,7 +113,10 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str]) -> None
     # The last tenths of a per cent are the tips of undamped resonances, which would take the scale for themselves.
     lowest, highest = (5.0 * np.round(np.percentile(np.stack(levels), part) / 5.0) for part in (1.0, 99.7))
     lowest, highest = max(lowest, highest - _LEVELS_SHOWN), max(highest, lowest + 5.0)
-    rising = found.frequencies.size > 1 and bool(np.all(found.frequencies > 0.0))
+    # The axis goes as the frequencies were asked for: the middle of a logarithmic one lies low.
+    middle = found.frequencies[found.frequencies.size // 2]
+    mean = 0.5 * (found.frequencies[0] + found.frequencies[-1])
+    scale = "log" if found.frequencies[0] > 0.0 and middle < 0.8 * mean else "linear"
     image = None
     for panel, entry, level, label in zip(axes, maps, levels, labels, strict=False):
         image = panel.pcolormesh(
@@ -127,7 +130,8 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str]) -> None
             rasterized=True,
         )
         panel.set_xlabel("speed, rpm", fontsize=9)
-        panel.set_yscale("log" if rising else "linear")
+        panel.set_xlim(entry.speeds[0] * _RPM, entry.speeds[-1] * _RPM)
+        panel.set_yscale(scale)
         panel.set_title(label.replace(" um", " µm"), fontsize=8.5)
         panel.tick_params(labelsize=8)
     axes[0].set_ylabel("frequency, Hz", fontsize=9)
@@ -152,7 +156,7 @@ def _axes(panel: Axes, label: str, scale: str = "linear") -> None:
 def _limit(panel: Axes, sweeps: Sequence[Sweep], read: Callable[[UndampedSweep], FloatArray]) -> None:
     """Show the range of the modes with strain energy in the bearings, with room around it."""
     inside = [
-        (entry.undamped.bearing_share.max(axis=0) >= _LEAST_SHARE)
+        (entry.undamped.bearing_share.max(axis=0) >= _least(entry))
         & (entry.undamped.frequency.min(axis=0) <= _highest(entry))
         for entry in sweeps
     ]
@@ -162,6 +166,11 @@ def _limit(panel: Axes, sweeps: Sequence[Sweep], read: Callable[[UndampedSweep],
     found = found[found > _NOTHING]
     if found.size:
         panel.set_ylim(found.min() / 1.4, found.max() * 1.4)
+
+
+def _least(entry: Sweep) -> float:
+    """Part of the strain energy in the bearings from which a mode is of interest; none without bearings."""
+    return _LEAST_SHARE if entry.bearings.names else 0.0
 
 
 def _highest(entry: Sweep) -> float:

@@ -8,7 +8,6 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -36,7 +35,9 @@ from mbs.statics import equilibrium
 from mbs.sweep import sweep
 from mbs.sweep_result import Sweep
 
-_FIGURES = (".png", ".pdf", ".svg")
+LEAST_SAMPLES, MOST_SAMPLES = 64, 5_000_000
+"""Steps of a run: the fewest that have a spectrum, and 50 s of 10 us, beyond any run-up that is waited for."""
+
 _MESH_HARMONICS = 5
 _PASS_HARMONICS = 3
 _MODE_SPEEDS = 9
@@ -71,6 +72,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         except AnalysisError as error:
             # The run-ups with the other laws are worth minutes; keep them.
             failed.append(f"warning: {case.label}: {error}")
+        except KeyboardInterrupt:
+            if not found:
+                raise
+            failed += [f"warning: {left.label}: stopped, no result" for left in cases[len(found) + len(failed) :]]
+            break
     if not found:
         raise AnalysisError("\n".join(failed))
     lines = [
@@ -102,8 +108,6 @@ def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings,
     problems: list[str] = []
     highest = _option("--highest", arguments.highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
     window = _option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems)
-    if arguments.plot and Path(arguments.plot).suffix.lower() not in _FIGURES:
-        problems.append(f"--plot: got {arguments.plot}; allowed: a file that ends in {', '.join(_FIGURES)}")
     try:
         cases = load_cases(arguments)
     except InputError as error:
@@ -139,6 +143,13 @@ def _course(scene: Scene, highest: float, problems: list[str]) -> RunUp | None:
             f"{1e6 * longest:.4g} us for frequencies up to {HERTZ.text(highest)}; take smaller steps, or a "
             "lower --highest"
         )
+    samples = course.duration / course.settings.step
+    if not LEAST_SAMPLES <= samples <= MOST_SAMPLES:
+        problems.append(
+            f"{scene.name}: [runup] duration: got {course.duration:.4g} s, which is {samples:.4g} steps; allowed: "
+            f"{LEAST_SAMPLES} to {MOST_SAMPLES}"
+        )
+        return None
     every_step = dataclasses.replace(course.settings, sample=course.settings.step)
     return dataclasses.replace(course, settings=every_step)
 

@@ -10,6 +10,7 @@ import argparse
 import dataclasses
 import itertools
 import math
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,6 +27,7 @@ WIDEST = 1e-2
 
 _MAP_WORDS = {"reynolds": "Reynolds map", "openfoam": "OpenFOAM map", "formula": "formula map", "hertz": "Hertz map"}
 _WORDS = {"hertz": "dry Hertz", "formula": "film formula"}
+FIGURES = (".png", ".pdf", ".svg")
 MOST_FACTOR = 1e3
 MOST_CASES = 24
 
@@ -104,9 +106,7 @@ def load_cases(arguments: argparse.Namespace, several: bool = True) -> list[Case
         laws = laws[:1] if _given(arguments, "law") else laws
     clearances = [_clearance(text, problems) for text in _given(arguments, "clearance")] or [None]
     factors = [_factor(text, problems) for text in _given(arguments, "load_factor")] or [1.0]
-    for option, path in (("-o", arguments.output), ("--plot", arguments.plot)):
-        if path and not Path(path).parent.is_dir():
-            problems.append(f"{option}: got {path}, but {Path(path).parent} is no folder; allowed: a file in a folder")
+    problems += output_problems(arguments)
     count = len(laws) * len(clearances) * len(factors)
     if count > MOST_CASES:
         problems.append(
@@ -129,6 +129,38 @@ def load_cases(arguments: argparse.Namespace, several: bool = True) -> list[Case
         ]
         cases.append(Case(", ".join(words), model, inside.pop() if len(inside) == 1 else math.nan, factor))
     return cases
+
+
+def output_problems(arguments: argparse.Namespace) -> list[str]:
+    """What is wrong about -o and --plot: said before anything is computed, so that no result is lost by it.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        With `scene`, `map`, `output`, `plot`; each but the scene may be None or left out.
+    """
+    problems = []
+    # What is read must not be written over: a scene is somebody's work, a map many hours.
+    read = [arguments.scene, *_given(arguments, "map")]
+    taken = {os.path.realpath(path): path for path in read if "\0" not in path and os.path.isfile(path)}
+    for option, text in (("-o", arguments.output), ("--plot", arguments.plot)):
+        if text is None:
+            continue
+        if not text or "\0" in text:
+            problems.append(f"{option}: got {text!r:.60}; allowed: the path of a file")
+            continue
+        folder, place = Path(text).parent, os.path.realpath(text)
+        if not os.path.isdir(folder):
+            problems.append(f"{option}: got {text}, but {folder} is no folder; allowed: a file in a folder")
+        elif os.path.exists(text) and not os.path.isfile(text):
+            problems.append(f"{option}: got {text}, which is no file; allowed: a file in a folder")
+        elif place in taken:
+            problems.append(f"{option}: got {text}, which would be written over {taken[place]}; allowed: another file")
+        else:
+            taken[place] = f"the file of {option}"
+        if option == "--plot" and Path(text).suffix.lower() not in FIGURES:
+            problems.append(f"{option}: got {text}; allowed: a file that ends in {', '.join(FIGURES)}")
+    return problems
 
 
 def _given(arguments: argparse.Namespace, name: str) -> list[str]:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import warnings
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
@@ -60,7 +62,11 @@ def film_warnings(limits: Sequence[FilmLimit], frequencies: Iterable[float]) -> 
     highest = max(frequencies, default=0.0)
     for limit in limits:
         ratio = limit.ratio(highest)
-        if ratio > HIGHEST_RATIO:
+        if limit.entrainment_speed == 0.0:
+            lines.append(
+                f"warning: {limit.bearing}: at rest no film: the stiffness is that of dry contacts, no damping"
+            )
+        elif ratio > HIGHEST_RATIO:
             lines.append(
                 f"warning: {limit.bearing}: omega b/u is {ratio:.2g} at {highest:.5g} Hz and passes {HIGHEST_RATIO} at "
                 f"{limit.frequency:.4g} Hz (b = {limit.half_width * 1e6:.3g} um, "
@@ -89,12 +95,18 @@ def write(arguments: argparse.Namespace, model: Model, dataset: xr.Dataset, figu
         write_dataset(described(dataset, **law_attributes(model)), path)
         lines.append(f"{path}: written")
     if arguments.plot and figure is not None:
+        # Names of a scene are no formulas.
+        for text in figure.findobj(Text):
+            text.set_text(text.get_text().replace("$", r"\$"))
         try:
-            figure.savefig(arguments.plot, dpi=RESOLUTION)
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                figure.savefig(arguments.plot, dpi=RESOLUTION)
         except (OSError, ValueError) as error:
             raise InputError(
                 f"--plot: {arguments.plot} cannot be written ({error}); allowed: a .png, .pdf or .svg file in a folder "
                 "that may be written"
             ) from error
         lines.append(f"{arguments.plot}: written")
+        lines += dict.fromkeys(f"warning: {arguments.plot}: {entry.message}" for entry in caught)
     return lines

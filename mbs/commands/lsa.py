@@ -12,7 +12,8 @@ from ehdmaps.physics._values import FloatArray
 from mbs.assembly import Model
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_limits, film_warnings, heading, outside_at, write
-from mbs.linear import ComplexArray, frequency_response, response_unit, state_space
+from mbs.linear import ComplexArray, frequency_response, response_unit, state_space, with_peaks
+from mbs.modes import modes
 from mbs.plot import response_figure
 from mbs.results import linear_dataset
 from mbs.statics import equilibrium
@@ -36,18 +37,20 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if missing:
         raise InputError(missing)
     balance = equilibrium(steady_system(model.system), model.operation)
-    frequencies = np.array(scene.frequencies)
+    frequencies = with_peaks(np.array(scene.frequencies), modes(balance).eigenvalues)
     responses = frequency_response(balance, scene.inputs, scene.sensors, frequencies)
     space = state_space(balance, scene.inputs, scene.sensors)
     figure = response_figure(model, frequencies, responses) if arguments.plot else None
     outside = outside_at(model, balance)
-    dataset = linear_dataset(balance, space, responses, scene.frequencies, scene.inputs, scene.sensors)
+    dataset = linear_dataset(balance, space, responses, frequencies, scene.inputs, scene.sensors)
     amplitudes = {
         entry.name: f"{entry.amplitude:.4g} {'N m' if np.any(entry.direction[3:]) else 'N'}" for entry in scene.inputs
     }
     lines = [
         *heading(model, scene.speed),
-        f"state space: {space.A.shape[0]} states, {len(scene.inputs)} inputs, {len(scene.sensors)} outputs",
+        f"state space: {space.A.shape[0]} states, {len(scene.inputs)} inputs, {len(scene.sensors)} outputs; "
+        f"{len(scene.frequencies)} frequencies, and {frequencies.size - len(scene.frequencies)} more around lightly "
+        "damped modes",
         *_peaks(model, frequencies, responses),
         *film_warnings(film_limits(model, balance.displacement, balance.operation), frequencies),
         *(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import time
 
 import numpy as np
@@ -27,7 +28,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         raise InputError(f"{model.scene.name}: [runup] missing; a run needs from, to, duration and step")
     start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
     before = model.outside_calls
-    bar = progress(round(course.duration / course.settings.sample))
+    bar = progress(math.ceil(course.duration / course.settings.sample - 1e-9))
     bar.begin()
     begin = time.perf_counter()
     result = integrate(

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import math
 
 import numpy as np
 
+from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from mbs.assembly import Model
 from mbs.commands.cases import load_model
@@ -23,6 +25,8 @@ _NAMES = ("y", "z", "theta_y", "theta_z")
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Find the equilibrium at the operating speed and describe it."""
     model = load_model(arguments)
+    if arguments.plot and not model.bearings:
+        raise InputError(f"--plot: {model.scene.name} has no bearing whose rollers could be drawn; leave it out")
     balance = equilibrium(model.system, model.operation)
     figure = statics_figure(model, balance) if arguments.plot else None
     lines = [
@@ -48,6 +52,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines += [
         f"{limit.bearing}: films follow as in the low-frequency limit up to {limit.frequency:.4g} Hz (omega b/u = 0.3)"
         for limit in film_limits(model, balance.displacement, balance.operation)
+        if 0.0 < limit.frequency < math.inf
     ]
     outside = outside_at(model, balance)
     lines += outside + write(arguments, model, statics_dataset(balance), figure)

@@ -162,7 +162,7 @@ def _bearings(result: Sweep) -> list[str]:
 def _undamped(result: Sweep) -> list[str]:
     """Lines on how the undamped modes with strain energy in the bearings change."""
     found = result.undamped
-    shown = np.nonzero(found.bearing_share.max(axis=0) >= _LEAST_SHARE)[0]
+    shown = np.nonzero(found.bearing_share.max(axis=0) >= _least(result))[0]
     if not shown.size:
         return ["  no undamped mode with strain energy in the bearings"]
     lines = [
@@ -182,7 +182,7 @@ def _undamped(result: Sweep) -> list[str]:
 def _complex(result: Sweep) -> list[str]:
     """Lines on the complex modes with strain energy in the bearings."""
     found = result.damped
-    shown = [k for k in range(found.eigenvalues.shape[1]) if np.nanmax(found.bearing_share[:, k]) >= _LEAST_SHARE]
+    shown = [k for k in range(found.eigenvalues.shape[1]) if np.nanmax(found.bearing_share[:, k]) >= _least(result)]
     if not shown:
         return ["  no oscillating complex mode with strain energy in the bearings"]
     lines = ["  complex modes       frequency/Hz        change   damping ratio   whirl d omega/d Omega   oscillates"]
@@ -198,10 +198,15 @@ def _complex(result: Sweep) -> list[str]:
     return lines
 
 
+def _least(result: Sweep) -> float:
+    """Part of the strain energy in the bearings from which a mode is listed; without bearings all are."""
+    return _LEAST_SHARE if result.bearings.names else 0.0
+
+
 def _unsure(result: Sweep) -> list[str]:
     """A line if an undamped mode could not be followed surely."""
     found = result.undamped
-    lost = (found.assurance < _LEAST_ASSURANCE) & (found.bearing_share >= _LEAST_SHARE)
+    lost = (found.assurance < _LEAST_ASSURANCE) & (found.bearing_share >= _least(result))
     if not lost.any():
         return []
     shown = np.where(lost, found.assurance, 1.0)

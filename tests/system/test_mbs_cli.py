@@ -175,7 +175,7 @@ def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys, maps):
         (["sweep", "nu308_rigid", "--speeds", "9 rpm", "5 rpm", "3"], "allowed: rising"),
         (["sweep", "nu308_rigid", "--load-factor", "none"], "--load-factor: got 'none'; allowed: above 0"),
         (["sweep", "nu308_rigid"], "no speeds; allowed: --speeds"),
-        (["statics", "nu308_rigid", "--plot", "a.xyz"], "--plot: a.xyz cannot be written"),
+        (["statics", "nu308_rigid", "--plot", "a.xyz"], "--plot: got a.xyz; allowed: a file that ends in .png"),
     ):
         status, out, err = run(capsys, *arguments)
         assert (status, out) == (2, ""), arguments

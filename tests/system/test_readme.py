@@ -12,6 +12,7 @@ import pytest
 
 from ehdmaps.jobs import cli as ehdmaps_cli
 from mbs import cli
+from mbs.scene_reader import shipped_systems
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -52,12 +53,12 @@ def test_script_prints_what_is_shown(tmp_path, monkeypatch, capsys):
     np.testing.assert_allclose(*values, rtol=0.01, atol=0.1)
 
 
-@pytest.mark.parametrize("page", ["README.md", "mbs/REFERENCE.md"])
+@pytest.mark.parametrize("page", ["README.md", "mbs/REFERENCE.md", "mbs/MACHINES.md"])
 def test_commands_of_mbs_are_understood(page):
     text = (ROOT / page).read_text(encoding="utf-8")
-    commands = re.findall(r"(?m)^(?:`|)(mbs (?:statics|modes|lsa|runup) [^`#\n]*)(?:`|#|$)", text)
+    commands = re.findall(r"(?m)^(?:`|)(mbs (?:statics|modes|lsa|sweep|runup|campbell|hammer) +[^`#\n]*)(?:`|#|$)", text)
     assert len(commands) >= 1
     for command in commands:
         words = shlex.split(command)[1:]
         if "SCENE" not in words:
-            assert cli.parser().parse_args(words).scene in ("n1014_rigid", "nu308_rigid")
+            assert cli.parser().parse_args(words).scene in shipped_systems()

@@ -11,7 +11,7 @@ from ehdmaps.errors import InputError
 from mbs.body import Inertia, lever_arm, rigid_body
 from mbs.elements import Input, Load, Operation, Port, Sensor, Spring
 from mbs.errors import AnalysisError
-from mbs.linear import frequency_response, state_space
+from mbs.linear import frequency_response, state_space, with_peaks
 from mbs.modes import modes, undamped_modes
 from mbs.profiles import Constant, Course, Harmonic, SpeedProfile
 from mbs.statics import equilibrium
@@ -229,3 +229,21 @@ class TestLinear:
         found = modes(balance)
         assert found.parts == ("s", "g")
         np.testing.assert_allclose(found.shares.sum(axis=0), 1.0, rtol=1e-12)
+
+
+def test_an_axis_gets_the_peaks_that_it_steps_over():
+    """Height 1/(2 zeta) of a freedom whose peak is a thousandth of the step of the axis wide."""
+    ratio, omega = 1e-4, 2.0 * np.pi * 505.0
+    eigenvalue = omega * complex(-ratio, np.sqrt(1.0 - ratio**2))
+    coarse = np.linspace(100.0, 1000.0, 10)
+    axis = with_peaks(
+        coarse, np.array([eigenvalue, -200.0 + 0j, 1j * omega * 1.5, omega * (0.3 + 1j), 10.0 * eigenvalue])
+    )
+    assert axis.size == coarse.size + 11
+    assert np.all(np.isin(coarse, axis))
+    assert np.all(np.diff(axis) > 0.0)
+    s = 2j * np.pi * axis
+    height = np.max(np.abs(omega**2 / (s**2 + 2.0 * ratio * omega * s + omega**2)))
+    # between the place of the free vibration and that of the highest response, zeta^2 apart
+    assert height == pytest.approx(1.0 / (2.0 * ratio), rel=1e-6)
+    assert with_peaks(np.zeros(0), np.array([eigenvalue])).size == 0
