@@ -1,4 +1,4 @@
-"""Multibody consumer of the contact maps: bearing force element, statics, linear analysis and time integration.
+"""Multibody consumer of the contact maps: from the bearing force to a machine and its Campbell diagram.
 
 ::
 
@@ -7,7 +7,19 @@
     force = BearingForce(Bearing.named("NU308", clearance=20e-6), law)
     f, K, C = force(pose, velocity, entrainment_speed=1.0, temperature=330.0)
 
-The names are loaded when they are first used, so that importing the package is quick.
+What is where, in the order of the data:
+
+==================  ====================================================================================
+scene file          `reading`, `scene_reader` -> `scene` -> `assembly`
+what bodies are     `body`, `flexible` (beams, finite elements, reduction), `housings` (the shipped ones)
+what connects them  `elements`, `bearings` (the bearing force), `gears`; `profiles` (what is prescribed)
+the system          `system`; `statics` (its equilibrium)
+linear              `linearised` (modes, responses, over speed); `modal` (identified from hammer hits)
+in time             `transient` (method, compiled runs); `spectral` (levels over speed and order)
+for people          `output` (datasets, figures), `commands`, `cli`; `systems` (shipped scenes)
+==================  ====================================================================================
+
+Names of the package are loaded when they are first used, so that importing it is quick.
 """
 
 from __future__ import annotations
@@ -16,12 +28,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from mbs.bearing import Bearing
-    from mbs.bearing_force import BearingForce
+    from mbs.bearings.bearing import Bearing
+    from mbs.bearings.bearing_force import BearingForce
 
 __all__ = ["Bearing", "BearingForce"]
 
-_HOMES = {"Bearing": "bearing", "BearingForce": "bearing_force"}
+_HOMES = {"Bearing": "bearings.bearing", "BearingForce": "bearings.bearing_force"}
 
 
 def __getattr__(name: str) -> object:

@@ -15,16 +15,16 @@ from ehdmaps.maps.law import LawKind
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import closest
-from mbs import laws
-from mbs.bearing import Bearing
-from mbs.bearing_element import BearingElement
-from mbs.bearing_force import BearingForce
+from mbs.bearings import laws
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.laws import DryLaw, Law
+from mbs.bearings.roller_contacts import RollerContacts
+from mbs.bearings.roller_element import RollerElement, roller_body
 from mbs.body import CENTRE, Body
 from mbs.elements import GROUND, Element, Operation
-from mbs.gear import GearMesh, GearPair, gear_mesh
-from mbs.laws import DryLaw, Law
-from mbs.roller_contacts import RollerContacts
-from mbs.roller_element import RollerElement, roller_body
+from mbs.gears.gear import GearMesh, GearPair, gear_mesh
 from mbs.scene import Scene, SceneBearing
 from mbs.system import System
 

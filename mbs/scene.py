@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from mbs.body import Body
-from mbs.campbell import CampbellSettings
 from mbs.elements import Input, Load, Sensor, Spring
-from mbs.gear import GearPair
-from mbs.integration import Settings
+from mbs.gears.gear import GearPair
+from mbs.linearised.sweep import SweepRange
 from mbs.profiles import SpeedProfile
-from mbs.sweep import SweepRange
+from mbs.spectral.campbell import CampbellSettings
+from mbs.transient.integration import Settings
 
 
 @dataclass(frozen=True)

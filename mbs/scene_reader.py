@@ -16,9 +16,7 @@ from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import TEMPERATURE, Display, closest, short
 from mbs.body import FREEDOMS, Body, Inertia, rigid_body
-from mbs.campbell import CampbellSettings
 from mbs.elements import Input, Load, Sensor, Spring
-from mbs.integration import Settings
 from mbs.profiles import Constant, Course, Harmonic, LoadProfile, SpeedProfile
 from mbs.reading import fields
 from mbs.reading.attached import read_attached
@@ -29,6 +27,8 @@ from mbs.reading.gears import read_gears
 from mbs.reading.shaft import read_shaft
 from mbs.reading.sweep import read_sweep
 from mbs.scene import RunUp, Scene, SceneBearing
+from mbs.spectral.campbell import CampbellSettings
+from mbs.transient.integration import Settings
 
 LONGEST_FILE = 1_000_000
 """Bytes of a scene file."""

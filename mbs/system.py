@@ -18,7 +18,7 @@ from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import closest
 from mbs.body import CENTRE, Body
 from mbs.elements import GROUND, Element, Load, Operation, Port, Spring
-from mbs.gear import GearMesh
+from mbs.gears.gear import GearMesh
 from mbs.profiles import Constant, LoadProfile
 
 COINCIDENT = 1e-6

@@ -15,25 +15,25 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import progress
 from ehdmaps.units import TEMPERATURE, Display, closest, quantity
 from mbs.assembly import Model
-from mbs.campbell import CampbellSettings, RunUpSpectra, run_up_spectra
-from mbs.campbell_data import campbell_dataset
-from mbs.campbell_plot import MOST_LAWS, Overlay, campbell_figure
 from mbs.commands.cases import Case, load_cases
 from mbs.commands.common import heading, write
 from mbs.elements import Operation, Sensor
 from mbs.errors import AnalysisError
-from mbs.levels import Reference
-from mbs.orders import OrderPeak
+from mbs.linearised.sweep import sweep
+from mbs.linearised.sweep_result import Sweep
+from mbs.output.campbell_data import campbell_dataset
+from mbs.output.campbell_plot import MOST_LAWS, Overlay, campbell_figure
 from mbs.reading.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.reading.fields import HERTZ, MICROMETRE, MILLISECOND, RPM
-from mbs.run import Recording
-from mbs.run import run as run_system
-from mbs.run_signal import RunSignal
 from mbs.scene import RunUp, Scene
-from mbs.spectra import LEAST_OVERSAMPLING
+from mbs.spectral.campbell import CampbellSettings, RunUpSpectra, run_up_spectra
+from mbs.spectral.levels import Reference
+from mbs.spectral.orders import OrderPeak
+from mbs.spectral.run_signal import RunSignal
+from mbs.spectral.spectra import LEAST_OVERSAMPLING
 from mbs.statics import equilibrium
-from mbs.sweep import sweep
-from mbs.sweep_result import Sweep
+from mbs.transient.run import Recording
+from mbs.transient.run import run as run_system
 
 LEAST_SAMPLES, MOST_SAMPLES = 64, 5_000_000
 """Steps of a run: the fewest that have a spectrum, and 50 s of 10 us, beyond any run-up that is waited for."""

@@ -16,13 +16,13 @@ from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import TEMPERATURE
 from mbs.assembly import Model, law_attributes
-from mbs.bearing_element import BearingElement
-from mbs.bearing_force import BearingForce
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_force import BearingForce
 from mbs.elements import Operation
+from mbs.linearised.validity import HIGHEST_RATIO, FilmLimit, film_limit
+from mbs.output.results import described, write_dataset
 from mbs.reading.fields import MICROMETRE, RPM
-from mbs.results import described, write_dataset
 from mbs.statics import Equilibrium
-from mbs.validity import HIGHEST_RATIO, FilmLimit, film_limit
 
 RESOLUTION = 150
 

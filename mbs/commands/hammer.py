@@ -13,10 +13,10 @@ from ehdmaps.units import quantity
 from mbs.assembly import Model
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_limits, film_warnings, heading, outside_at
+from mbs.linearised.modes import Modes, modes
 from mbs.modal.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
 from mbs.modal.records import Hits
 from mbs.modal.uff import Measurement, write_uff
-from mbs.modes import Modes, modes
 from mbs.reading.fields import MILLISECOND
 from mbs.statics import Equilibrium, equilibrium
 

@@ -12,13 +12,13 @@ from ehdmaps.physics._values import FloatArray
 from mbs.assembly import Model
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_limits, film_warnings, heading, outside_at, write
-from mbs.linear import ComplexArray, frequency_response, response_unit, state_space, with_peaks
-from mbs.modes import modes
-from mbs.plot import response_figure
-from mbs.results import linear_dataset
+from mbs.linearised.linear import ComplexArray, frequency_response, response_unit, state_space, with_peaks
+from mbs.linearised.modes import modes
+from mbs.linearised.steady import steady_system
+from mbs.linearised.validity import dynamic_loads
+from mbs.output.plot import response_figure
+from mbs.output.results import linear_dataset
 from mbs.statics import equilibrium
-from mbs.steady import steady_system
-from mbs.validity import dynamic_loads
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:

@@ -19,8 +19,8 @@ from mbs.modal.records import Responses
 from mbs.modal.result import Method, ModalFit, fit_dataset
 from mbs.modal.uff import Measurement, read_uff, write_uff
 from mbs.modal.windows import needed_decay
-from mbs.modal_plot import fit_figure
-from mbs.results import described, write_dataset
+from mbs.output.modal_plot import fit_figure
+from mbs.output.results import described, write_dataset
 
 TOLERANCE = 0.2
 """Largest part of a response that a fit may leave, rms over rms, before the status says so."""

@@ -8,11 +8,11 @@ import numpy as np
 
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_limits, film_warnings, heading, outside_at, write
-from mbs.modes import Modes, modes
-from mbs.plot import modes_figure
-from mbs.results import modes_dataset
+from mbs.linearised.modes import Modes, modes
+from mbs.linearised.steady import steady_system
+from mbs.output.plot import modes_figure
+from mbs.output.results import modes_dataset
 from mbs.statics import equilibrium
-from mbs.steady import steady_system
 
 _LEAST_SHARE = 0.05
 

@@ -13,11 +13,11 @@ from ehdmaps.jobs.progress import progress
 from mbs.commands.cases import load_model
 from mbs.commands.common import heading, write
 from mbs.elements import Operation
-from mbs.integration import integrate
-from mbs.plot import run_figure
+from mbs.output.plot import run_figure
+from mbs.output.results import run_dataset
 from mbs.reading.fields import RPM
-from mbs.results import run_dataset
 from mbs.statics import equilibrium
+from mbs.transient.integration import integrate
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:

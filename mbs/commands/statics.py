@@ -10,11 +10,11 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from mbs.assembly import Model
+from mbs.bearings.roller_element import ring_matrices
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_limits, heading, outside_at, ring_motions, write
-from mbs.plot import statics_figure
-from mbs.results import statics_dataset
-from mbs.roller_element import ring_matrices
+from mbs.output.plot import statics_figure
+from mbs.output.results import statics_dataset
 from mbs.statics import Equilibrium, equilibrium
 
 _SHOWN = (1, 2, 4, 5)

@@ -15,12 +15,12 @@ from mbs.commands.cases import Case, load_cases
 from mbs.commands.common import film_limits, heading, write
 from mbs.elements import Operation
 from mbs.errors import AnalysisError
+from mbs.linearised.sweep import MOST_ANGLES, MOST_SPEEDS, SweepRange, sweep
+from mbs.linearised.sweep_result import Sweep
+from mbs.linearised.validity import HIGHEST_RATIO
+from mbs.output.sweep_data import sweep_dataset
+from mbs.output.sweep_plot import sweep_figure
 from mbs.reading.fields import RPM
-from mbs.sweep import MOST_ANGLES, MOST_SPEEDS, SweepRange, sweep
-from mbs.sweep_data import sweep_dataset
-from mbs.sweep_plot import sweep_figure
-from mbs.sweep_result import Sweep
-from mbs.validity import HIGHEST_RATIO
 
 _LEAST_SHARE = 0.05
 _LEAST_ASSURANCE = 0.5

@@ -20,7 +20,7 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from mbs.errors import AnalysisError
-from mbs.linear import ComplexArray
+from mbs.linearised.linear import ComplexArray
 from mbs.modal.records import Channel, Hits, Responses
 from mbs.modal.windows import exponential_window, force_window, pulse
 

@@ -11,7 +11,8 @@ from scipy.ndimage import uniform_filter1d
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from mbs.errors import AnalysisError
-from mbs.linear import ComplexArray
+from mbs.linearised.linear import ComplexArray
+from mbs.linearised.modes import IntArray
 from mbs.modal.estimation import relative_deviation
 from mbs.modal.lscf import lscf_poles
 from mbs.modal.rational import IMPROPER, rational_poles
@@ -20,7 +21,6 @@ from mbs.modal.residues import Parts, fit_residues, laplace, refine, synthesise
 from mbs.modal.result import Method, ModalFit
 from mbs.modal.stabilisation import Criteria, Stabilisation, stabilise
 from mbs.modal.windows import without_window
-from mbs.modes import IntArray
 
 ORDER = 24
 """Highest number of pole pairs, if it is left out."""

@@ -21,13 +21,13 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from mbs.elements import Input, Sensor
 from mbs.errors import AnalysisError
-from mbs.integration import Settings, Trajectory, integrate
-from mbs.linear import input_matrix, sensor_matrix, state_space
+from mbs.linearised.linear import input_matrix, sensor_matrix, state_space
+from mbs.linearised.modes import Modes
 from mbs.modal.records import LONGEST, Channel, Hits, Measured
-from mbs.modes import Modes
 from mbs.profiles import Course, SpeedProfile
 from mbs.statics import Equilibrium
 from mbs.system import System
+from mbs.transient.integration import Settings, Trajectory, integrate
 
 OVERSAMPLING = 16
 """Computed samples for each recorded one. What a half-sine has beyond half the rate of the computed samples folds back,

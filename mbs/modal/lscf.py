@@ -21,7 +21,7 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from mbs.errors import AnalysisError
-from mbs.linear import ComplexArray
+from mbs.linearised.linear import ComplexArray
 
 _UNEVEN = 1e-3
 """Largest change of the spacing of the lines, as a part of it."""

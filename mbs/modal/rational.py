@@ -23,7 +23,7 @@ import numpy as np
 
 from ehdmaps.physics._values import FloatArray
 from mbs.errors import AnalysisError
-from mbs.linear import ComplexArray
+from mbs.linearised.linear import ComplexArray
 
 IMPROPER = 2
 """Powers of the numerators above those of a proper fraction."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
-from mbs.linear import ComplexArray
+from mbs.linearised.linear import ComplexArray
 
 Measured = Literal["displacement", "velocity", "acceleration", "force", "unknown"]
 

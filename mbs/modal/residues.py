@@ -21,7 +21,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ehdmaps.physics._values import FloatArray
-from mbs.linear import ComplexArray
+from mbs.linearised.linear import ComplexArray
 
 TERMS = 2
 """Residual terms, L and U."""

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.physics._values import FloatArray
-from mbs.linear import ComplexArray
+from mbs.linearised.linear import ComplexArray
 from mbs.modal.records import Responses
 from mbs.modal.residues import Parts, laplace, synthesise
 from mbs.modal.stabilisation import Candidate
@@ -58,7 +58,7 @@ class ModalFit:
 
     @property
     def frequency(self) -> FloatArray:
-        """|pole|/(2 pi), as of `mbs.modes.Modes` [Hz]."""
+        """|pole|/(2 pi), as of `mbs.linearised.modes.Modes` [Hz]."""
         return np.asarray(np.abs(self.poles) / (2.0 * np.pi))
 
     @property

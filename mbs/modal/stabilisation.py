@@ -13,7 +13,7 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
-from mbs.linear import ComplexArray
+from mbs.linearised.linear import ComplexArray
 from mbs.modal.residues import assurance
 
 _GAP = 2

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
-from mbs.linear import ComplexArray
+from mbs.linearised.linear import ComplexArray
 
 LEFT = 0.01
 """What an exponential window leaves at the end of records that have not decayed by themselves: cutting a mode off at

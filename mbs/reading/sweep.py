@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from ehdmaps.jobs.table import Table
+from mbs.linearised.sweep import MOST_SPEEDS, SweepRange
 from mbs.reading import fields
 from mbs.reading.fields import RPM
-from mbs.sweep import MOST_SPEEDS, SweepRange
 
 
 def read_sweep(section: Table) -> SweepRange | None:

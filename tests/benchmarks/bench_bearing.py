@@ -20,11 +20,11 @@ from numba import njit
 
 import ehdmaps
 from ehdmaps.physics.lubricant import Lubricant
-from mbs import laws
-from mbs.bearing import Bearing
-from mbs.bearing_force import BearingForce
-from mbs.bearing_kernel import bearing_force
-from mbs.force_at_point import ForceAtPoint
+from mbs.bearings import laws
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.bearing_kernel import bearing_force
+from mbs.bearings.force_at_point import ForceAtPoint
 
 SLICES = (11, 21, 41, 81, 161)
 CONVERGED = 401

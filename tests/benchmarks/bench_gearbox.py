@@ -39,17 +39,17 @@ from ehdmaps.maps.emap import EHDMap
 from mbs.assembly import Model, assemble
 from mbs.body import Body, Frame
 from mbs.elements import Operation, Sensor
-from mbs.levels import Reference, level
-from mbs.modes import undamped_modes
+from mbs.linearised.modes import undamped_modes
 from mbs.profiles import Course, SpeedProfile
-from mbs.run import Recording, run
-from mbs.run_signal import RunSignal
 from mbs.scene import RunUp, Scene
 from mbs.scene_reader import parse_scene, read_scene
-from mbs.spectra import short_time_spectra
+from mbs.spectral.levels import Reference, level
+from mbs.spectral.run_signal import RunSignal
+from mbs.spectral.spectra import short_time_spectra
 from mbs.statics import equilibrium
-from mbs.stepping import Settings
 from mbs.system import System
+from mbs.transient.run import Recording, run
+from mbs.transient.stepping import Settings
 
 RPM = math.pi / 30.0
 MIDDLE = 1500.0 * RPM
@@ -303,7 +303,7 @@ def table_error(bench: Bench, duration: float = 5e-3) -> None:
 
 
 def period_rule(step: float, radius: float, frequency: float) -> float:
-    """By how much a period is too long, by the rule that `mbs.run` gives."""
+    """By how much a period is too long, by the rule that `mbs.transient.run` gives."""
     s = (1.0 - radius) / (1.0 + radius)
     return float((2.0 * math.pi * frequency * step) ** 2 * (1.0 / 12.0 + 0.375 * s**2))
 

@@ -25,16 +25,16 @@ import numpy as np
 import ehdmaps
 from ehdmaps.maps.emap import EHDMap
 from mbs.assembly import assemble
-from mbs.bearing import Bearing
+from mbs.bearings.bearing import Bearing
 from mbs.elements import Operation
-from mbs.linear import frequency_response, state_space
-from mbs.modes import state_modes, undamped_modes
+from mbs.linearised.linear import frequency_response, state_space
+from mbs.linearised.modes import state_modes, undamped_modes
+from mbs.linearised.steady import steady_system
+from mbs.linearised.sweep import Sweep, sweep
+from mbs.linearised.sweep_point import along_load
 from mbs.scene import Scene
 from mbs.scene_reader import read_scene
 from mbs.statics import equilibrium
-from mbs.steady import steady_system
-from mbs.sweep import Sweep, sweep
-from mbs.sweep_point import along_load
 from mbs.system import System
 
 RPM = math.pi / 30.0

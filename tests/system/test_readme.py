@@ -56,7 +56,9 @@ def test_script_prints_what_is_shown(tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize("page", ["README.md", "mbs/REFERENCE.md", "mbs/MACHINES.md"])
 def test_commands_of_mbs_are_understood(page):
     text = (ROOT / page).read_text(encoding="utf-8")
-    commands = re.findall(r"(?m)^(?:`|)(mbs (?:statics|modes|lsa|sweep|runup|campbell|hammer) +[^`#\n]*)(?:`|#|$)", text)
+    commands = re.findall(
+        r"(?m)^(?:`|)(mbs (?:statics|modes|lsa|sweep|runup|campbell|hammer) +[^`#\n]*)(?:`|#|$)", text
+    )
     assert len(commands) >= 1
     for command in commands:
         words = shlex.split(command)[1:]

@@ -7,9 +7,9 @@ import functools
 import numpy as np
 
 from ehdmaps.maps.law import ContactLaw
-from mbs import laws
-from mbs.bearing import Bearing
-from mbs.bearing_force import BearingForce
+from mbs.bearings import laws
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_force import BearingForce
 from tests.unit.law_cases import CONTACTS, OIL, SMALL_FIELD
 
 SPEED, TEMPERATURE = 1.0, 330.0

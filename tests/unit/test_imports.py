@@ -32,7 +32,7 @@ ALLOWED = {
 }
 """What each layer may import besides itself and other distributions. `ehdmaps` itself is the shop window of all."""
 
-SCENES = ("__main__", "assembly", "cli", "commands", "plot", "reading", "scene", "scene_reader")
+SCENES = ("__main__", "assembly", "cli", "commands", "output", "reading", "scene", "scene_reader")
 """Modules of mbs that plan a scene or are its command line: they may call ehdmaps.jobs; no other module of mbs may
 call them."""
 

@@ -17,12 +17,12 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.solids import STEEL, Material
-from mbs import laws
-from mbs.bearing import Bearing, iso_profile
-from mbs.bearing_force import BearingForce
-from mbs.bearing_kernel import bearing_force
-from mbs.kinematics import RingState, axial_rotation, relative_motion, spin
-from mbs.roller_contacts import RollerContacts
+from mbs.bearings import laws
+from mbs.bearings.bearing import Bearing, iso_profile
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.bearing_kernel import bearing_force
+from mbs.bearings.kinematics import RingState, axial_rotation, relative_motion, spin
+from mbs.bearings.roller_contacts import RollerContacts
 from tests.unit.law_cases import CONTACTS, OIL, SMALL_FIELD, dataset_of
 from tests.unit.mbs_cases import AT, LAWS, PLANE, bearing, central_difference, force, map_law, single_law
 
@@ -30,7 +30,7 @@ POSE = np.array([0.0, 7e-6, 9e-6, 0.0, 1e-4, -2e-4])
 VELOCITY = np.array([0.0, 2e-4, -3e-4, 0.0, 1e-2, 2e-2])
 
 
-@pytest.mark.parametrize("name", ["mbs.bearing", "mbs.laws", "mbs.kinematics"])
+@pytest.mark.parametrize("name", ["mbs.bearings.bearing", "mbs.bearings.laws", "mbs.bearings.kinematics"])
 def test_examples_of_the_docstrings_hold(name):
     failed, tried = doctest.testmod(importlib.import_module(name))
     assert failed == 0
@@ -466,7 +466,7 @@ def test_formula_without_a_film_says_where():
 def test_laws_that_do_not_belong():
     with pytest.raises(InputError, match=r"bearing: got str; allowed: mbs\.Bearing"):
         BearingForce("NU308", LAWS["hertz"]())
-    with pytest.raises(InputError, match=r"law: got str; allowed: a law of mbs\.laws"):
+    with pytest.raises(InputError, match=r"law: got str; allowed: a law of mbs\.bearings\.laws"):
         BearingForce(bearing(), "hertz")
     with pytest.raises(InputError, match="got the law 'inner'; allowed: 'series'"):
         BearingForce(bearing(), single_law("inner"))

@@ -14,18 +14,18 @@ import xarray as xr
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
-from mbs import levels
-from mbs.campbell import CampbellSettings, campbell, run_up_spectra
-from mbs.campbell_data import campbell_dataset
-from mbs.campbell_plot import Overlay, campbell_figure
 from mbs.elements import Sensor
 from mbs.errors import AnalysisError
-from mbs.levels import LOWEST, Reference, level
-from mbs.orders import OrderTracks, angle_signal, order_peaks, order_spectra, track_orders
+from mbs.output.campbell_data import campbell_dataset
+from mbs.output.campbell_plot import Overlay, campbell_figure
 from mbs.reading.campbell import read_campbell
-from mbs.run import run
-from mbs.run_signal import RPM, RunSignal
-from mbs.spectra import default_window, short_time_spectra
+from mbs.spectral import levels
+from mbs.spectral.campbell import CampbellSettings, campbell, run_up_spectra
+from mbs.spectral.levels import LOWEST, Reference, level
+from mbs.spectral.orders import OrderTracks, angle_signal, order_peaks, order_spectra, track_orders
+from mbs.spectral.run_signal import RPM, RunSignal
+from mbs.spectral.spectra import default_window, short_time_spectra
+from mbs.transient.run import run
 
 RATE = 4000.0
 REFERENCE = Reference("acceleration", 1e-6, "m/s2")

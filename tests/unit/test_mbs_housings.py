@@ -13,7 +13,7 @@ import pytest
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.solids import STEEL
-from mbs.bearing import Bearing
+from mbs.bearings.bearing import Bearing
 from mbs.errors import AnalysisError
 from mbs.housings import __main__ as command_line
 from mbs.housings import geometry, make, solve

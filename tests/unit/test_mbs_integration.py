@@ -11,9 +11,9 @@ from ehdmaps.errors import InputError
 from mbs.body import Inertia, rigid_body
 from mbs.elements import Load, Spring
 from mbs.errors import AnalysisError
-from mbs.integration import Settings, integrate
 from mbs.profiles import Harmonic, SpeedProfile
 from mbs.system import System
+from mbs.transient.integration import Settings, integrate
 from tests.unit.test_mbs_system import MASS, OneSided, force, stiff
 
 REST = SpeedProfile.constant(0.0)

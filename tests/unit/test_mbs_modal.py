@@ -11,6 +11,7 @@ import pytest
 
 from ehdmaps.errors import InputError
 from mbs.errors import AnalysisError
+from mbs.linearised.modes import Modes
 from mbs.modal.estimation import HitLimits, estimate, relative_deviation, transfer
 from mbs.modal.fit import identify
 from mbs.modal.hammer import HammerTest, suggested_duration
@@ -21,7 +22,6 @@ from mbs.modal.residues import assurance
 from mbs.modal.stabilisation import Criteria, stabilise
 from mbs.modal.uff import LARGEST, Measurement, read_uff, write_uff
 from mbs.modal.windows import exponential_window, force_window, needed_decay, pulse, without_window
-from mbs.modes import Modes
 from tests.unit.modal_cases import POLES, REFERENCE, SENSORS, STEP, hits, measured
 
 

@@ -9,23 +9,23 @@ import pytest
 import scipy.linalg
 
 from ehdmaps.errors import InputError, OutsideMapError
-from mbs.bearing import Bearing
-from mbs.bearing_element import BearingElement
-from mbs.bearing_force import BearingForce
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.laws import hertz
 from mbs.body import Inertia, rigid_body
 from mbs.elements import Load, Operation, Port, Sensor, Spring
 from mbs.errors import AnalysisError
-from mbs.integration import integrate
-from mbs.laws import hertz
-from mbs.linear_part import LinearPart
 from mbs.profiles import SpeedProfile
-from mbs.run import CHUNK, run
-from mbs.run_elements import is_known
-from mbs.run_kernel import _expanded_times, _solve
-from mbs.speed_tables import NODES, STEP, SpeedTables
 from mbs.statics import equilibrium
-from mbs.stepping import Method, Settings
 from mbs.system import System
+from mbs.transient.integration import integrate
+from mbs.transient.linear_part import LinearPart
+from mbs.transient.run import CHUNK, run
+from mbs.transient.run_elements import is_known
+from mbs.transient.run_kernel import _expanded_times, _solve
+from mbs.transient.speed_tables import NODES, STEP, SpeedTables
+from mbs.transient.stepping import Method, Settings
 from tests.unit.mbs_cases import TEMPERATURE, map_law
 
 REST = SpeedProfile.constant(0.0)

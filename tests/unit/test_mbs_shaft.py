@@ -26,7 +26,7 @@ from mbs.flexible.beam import (
 from mbs.flexible.damping import modal_damping
 from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_parts import Disc, Section
-from mbs.modes import modes
+from mbs.linearised.modes import modes
 from mbs.reading.shaft import read_shaft
 from mbs.statics import equilibrium
 from mbs.system import System

@@ -17,16 +17,16 @@ from mbs.commands import sweep as command
 from mbs.commands.cases import load_cases
 from mbs.elements import Input, Operation, Port, Sensor, Spring
 from mbs.errors import AnalysisError
+from mbs.linearised.steady import steady_system
+from mbs.linearised.sweep import SweepRange, sweep
+from mbs.linearised.sweep_point import along_load
+from mbs.linearised.tracking import Match, ModeSet, assurance, compose, match, tracks
+from mbs.output.sweep_data import sweep_dataset
+from mbs.output.sweep_plot import sweep_figure
 from mbs.reading.sweep import read_sweep
 from mbs.scene_reader import read_scene
 from mbs.statics import equilibrium
-from mbs.steady import steady_system
-from mbs.sweep import SweepRange, sweep
-from mbs.sweep_data import sweep_dataset
-from mbs.sweep_plot import sweep_figure
-from mbs.sweep_point import along_load
 from mbs.system import System
-from mbs.tracking import Match, ModeSet, assurance, compose, match, tracks
 
 RPM = math.pi / 30.0
 Y = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0])

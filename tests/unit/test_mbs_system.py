@@ -11,8 +11,8 @@ from ehdmaps.errors import InputError
 from mbs.body import Inertia, lever_arm, rigid_body
 from mbs.elements import Input, Load, Operation, Port, Sensor, Spring
 from mbs.errors import AnalysisError
-from mbs.linear import frequency_response, state_space, with_peaks
-from mbs.modes import modes, undamped_modes
+from mbs.linearised.linear import frequency_response, state_space, with_peaks
+from mbs.linearised.modes import modes, undamped_modes
 from mbs.profiles import Constant, Course, Harmonic, SpeedProfile
 from mbs.statics import equilibrium
 from mbs.system import System

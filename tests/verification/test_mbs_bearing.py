@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from mbs import laws
-from mbs.bearing import Bearing
-from mbs.bearing_force import BearingForce
-from mbs.kinematics import RingState
-from mbs.roller_contacts import RollerContacts
+from mbs.bearings import laws
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.kinematics import RingState
+from mbs.bearings.roller_contacts import RollerContacts
 from tests.unit.mbs_cases import AT, PLANE, bearing, equilibrium, map_law, single_law
 
 

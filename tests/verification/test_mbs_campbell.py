@@ -9,10 +9,10 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 from scipy.signal import get_window
 
-from mbs.campbell import campbell, run_up_spectra
-from mbs.orders import angle_signal, order_peaks, order_spectra, track_orders
-from mbs.run_signal import RPM, RunSignal
-from mbs.spectra import default_window, short_time_spectra
+from mbs.spectral.campbell import campbell, run_up_spectra
+from mbs.spectral.orders import angle_signal, order_peaks, order_spectra, track_orders
+from mbs.spectral.run_signal import RPM, RunSignal
+from mbs.spectral.spectra import default_window, short_time_spectra
 
 TURN = 2.0 * math.pi
 

@@ -14,12 +14,12 @@ import pytest
 
 from mbs.assembly import assemble
 from mbs.elements import Load, Operation
-from mbs.integration import Settings, integrate
-from mbs.modes import undamped_modes
+from mbs.linearised.modes import undamped_modes
 from mbs.profiles import Course, SpeedProfile
 from mbs.scene_reader import read_scene
 from mbs.statics import equilibrium
 from mbs.system import System
+from mbs.transient.integration import Settings, integrate
 
 exu = pytest.importorskip("exudyn", reason="Exudyn is a dependency of the tests alone, and has no wheel everywhere")
 pytestmark = pytest.mark.filterwarnings("ignore")

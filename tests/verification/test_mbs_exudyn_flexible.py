@@ -21,10 +21,10 @@ from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import STEEL
-from mbs import laws
-from mbs.bearing import Bearing
-from mbs.bearing_element import BearingElement
-from mbs.bearing_force import BearingForce
+from mbs.bearings import laws
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_force import BearingForce
 from mbs.body import FREEDOMS
 from mbs.elements import Load, Operation, Spring
 from mbs.flexible.finite_elements import FiniteElementModel
@@ -33,11 +33,11 @@ from mbs.flexible.reduction import reduce
 from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_parts import Section
 from mbs.flexible.spiders import Interface
-from mbs.integration import Settings, integrate
-from mbs.modes import modes, undamped_modes
+from mbs.linearised.modes import modes, undamped_modes
 from mbs.profiles import Course, SpeedProfile
 from mbs.statics import equilibrium
 from mbs.system import System
+from mbs.transient.integration import Settings, integrate
 
 exu = pytest.importorskip("exudyn", reason="Exudyn is a dependency of the tests alone, and has no wheel everywhere")
 items, fem = pytest.importorskip("exudyn.utilities"), pytest.importorskip("exudyn.FEM")

@@ -16,21 +16,21 @@ import pytest
 from ehdmaps.jobs import cli as ehdmaps_cli
 from ehdmaps.maps.emap import open_map
 from mbs.assembly import assemble
-from mbs.campbell import run_up_spectra
 from mbs.elements import Operation
-from mbs.integration import Settings
-from mbs.linear import frequency_response, with_peaks
+from mbs.linearised.linear import frequency_response, with_peaks
+from mbs.linearised.modes import modes, undamped_modes
+from mbs.linearised.steady import steady_system
+from mbs.linearised.sweep import sweep
 from mbs.modal.estimation import estimate
 from mbs.modal.fit import identify
 from mbs.modal.hammer import HammerTest, linear_hits
-from mbs.modes import modes, undamped_modes
 from mbs.profiles import SpeedProfile
-from mbs.run import run
-from mbs.run_signal import RunSignal
 from mbs.scene_reader import read_scene
+from mbs.spectral.campbell import run_up_spectra
+from mbs.spectral.run_signal import RunSignal
 from mbs.statics import equilibrium
-from mbs.steady import steady_system
-from mbs.sweep import sweep
+from mbs.transient.integration import Settings
+from mbs.transient.run import run
 
 RPM = math.pi / 30.0
 FROM, TO = 500.0 * RPM, 2500.0 * RPM

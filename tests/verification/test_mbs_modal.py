@@ -9,14 +9,14 @@ import pytest
 from scipy.signal import csd
 
 from mbs.assembly import assemble
-from mbs.linear import frequency_response, state_space
+from mbs.linearised.linear import frequency_response, state_space
+from mbs.linearised.modes import modes
 from mbs.modal.estimation import estimate, transfer
 from mbs.modal.fit import identify
 from mbs.modal.hammer import OVERSAMPLING, HammerTest, linear_hits, nonlinear_hits, suggested_duration
 from mbs.modal.rational import rational_poles
 from mbs.modal.residues import laplace
 from mbs.modal.windows import needed_decay
-from mbs.modes import modes
 from mbs.scene_reader import read_scene
 from mbs.statics import equilibrium
 from tests.unit.modal_cases import (

@@ -7,24 +7,25 @@ import math
 import numpy as np
 import pytest
 
-from mbs import slice_table, speed_tables
-from mbs.bearing import Bearing
-from mbs.bearing_element import BearingElement
-from mbs.bearing_force import BearingForce
-from mbs.bearing_kernel import bearing_force
+from mbs.bearings import slice_table
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.bearing_kernel import bearing_force
+from mbs.bearings.laws import hertz
 from mbs.body import Inertia, rigid_body
 from mbs.elements import Load, Operation, Sensor, Spring
-from mbs.gear import GearPair, gear_mesh
-from mbs.integration import integrate
-from mbs.laws import hertz
+from mbs.gears.gear import GearPair, gear_mesh
 from mbs.profiles import Course, Harmonic, SpeedProfile
-from mbs.run import run
-from mbs.run_arrays import Films
-from mbs.run_kernel import blend
-from mbs.speed_tables import NODES, SpeedTables
 from mbs.statics import equilibrium
-from mbs.stepping import Method, Settings
 from mbs.system import System
+from mbs.transient import speed_tables
+from mbs.transient.integration import integrate
+from mbs.transient.run import run
+from mbs.transient.run_arrays import Films
+from mbs.transient.run_kernel import blend
+from mbs.transient.speed_tables import NODES, SpeedTables
+from mbs.transient.stepping import Method, Settings
 from tests.unit.mbs_cases import TEMPERATURE, map_law
 
 RPM = math.pi / 30.0

@@ -30,7 +30,7 @@ from mbs.flexible.beam import (
 from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_model import WAVE_ERROR
 from mbs.flexible.shaft_parts import Disc, Section
-from mbs.modes import modes
+from mbs.linearised.modes import modes
 from mbs.statics import equilibrium
 from mbs.system import System
 

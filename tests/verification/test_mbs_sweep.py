@@ -15,12 +15,12 @@ import pytest
 from mbs.assembly import assemble
 from mbs.body import Inertia, rigid_body
 from mbs.elements import Input, Operation, Port, Sensor, Spring
-from mbs.linear import frequency_response, state_space
-from mbs.modal_response import TOLERANCE, checked_response, modal_response
-from mbs.modes import state_modes, undamped_modes
+from mbs.linearised.linear import frequency_response, state_space
+from mbs.linearised.modal_response import TOLERANCE, checked_response, modal_response
+from mbs.linearised.modes import state_modes, undamped_modes
+from mbs.linearised.sweep import sweep
 from mbs.scene_reader import read_scene
 from mbs.statics import equilibrium
-from mbs.sweep import sweep
 from mbs.system import System
 
 RPM = math.pi / 30.0

@@ -14,19 +14,19 @@ import pytest
 from scipy.linalg import eigh
 
 from mbs.assembly import assemble
-from mbs.bearing import Bearing
-from mbs.bearing_element import BearingElement
-from mbs.bearing_force import BearingForce
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.roller_element import ring_matrices
 from mbs.elements import Input, Load, Operation, Sensor
-from mbs.integration import Settings, integrate
-from mbs.linear import frequency_response, responses
-from mbs.modes import modes, undamped_modes
+from mbs.linearised.linear import frequency_response, responses
+from mbs.linearised.modes import modes, undamped_modes
+from mbs.linearised.sweep import sweep
 from mbs.profiles import Harmonic, SpeedProfile
-from mbs.roller_element import ring_matrices
 from mbs.scene_reader import read_scene
 from mbs.statics import equilibrium
-from mbs.sweep import sweep
 from mbs.system import System
+from mbs.transient.integration import Settings, integrate
 
 RPM = math.pi / 30.0
 NU308 = read_scene("nu308_rigid")
@@ -397,7 +397,7 @@ class TestRunUp:
 
 
 def _hertz(bearing: Bearing):
-    from mbs import laws
+    from mbs.bearings import laws
 
     return laws.hertz(bearing)
 

@@ -1,0 +1,279 @@
+"""The bearing force at one speed, temperature and centrifugal load: the law made ready once, then called fast."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.maps.kernel import LOAD_TOLERANCE
+from ehdmaps.maps.law import ContactLaw, LawAtPoint
+from ehdmaps.maps.tables import POWER_LAW, Point
+from mbs.bearings import slice_table as table
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_kernel import NOT_FINITE, bearing_force, bearing_force_of_point
+from mbs.bearings.laws import DryLaw
+from mbs.bearings.roller_loads import RollerLoads, roller_loads
+
+if TYPE_CHECKING:
+    from mbs.bearings.bearing_force import BearingForce
+
+FloatArray = npt.NDArray[np.float64]
+Forces = tuple[FloatArray, FloatArray, FloatArray]
+
+_MOST_TILT = 0.5
+_SIX, _OUT = (6,), (13, 6)
+
+
+class Work:
+    """Arrays of one element: its constants for compiled code, and work space."""
+
+    def __init__(self, bearing: Bearing) -> None:
+        geometry = bearing.geometry
+        rollers, slices = geometry.rollers, bearing.slices
+        self.geometry = np.array(
+            [
+                0.5 * geometry.diametral_clearance,
+                bearing.slice_length,
+                geometry.roller_diameter,
+                _MOST_TILT,
+                0.5 * geometry.roller_length,
+                2.0 * float(np.min(bearing.profile_depths)),
+            ]
+        )
+        self.slices = np.stack((bearing.slice_positions, 2.0 * bearing.profile_depths))
+        angles = 2.0 * math.pi * np.arange(rollers) / rollers
+        self.angles = np.stack((np.cos(angles), np.sin(angles)))
+        self.state = np.zeros(13)
+        self.rows = np.zeros((rollers, slices), dtype=np.int64)
+        self.states = np.zeros((4, rollers, slices))
+        self.rollers = np.zeros((7, rollers))
+        self.sums = np.zeros((rollers, 8))
+        self.numbers = np.zeros(table.NUMBERS)
+        self.cells = np.zeros((1, 8))
+        self.buffer = np.zeros((1, 1))
+        self.counts = np.zeros(4, dtype=np.int64)
+
+    def make_room(self) -> None:
+        """Make the arrays that only a tabulated law needs."""
+        if self.cells.shape[0] == 1:
+            self.cells, self.buffer = np.empty((2 * table.ROWS, 8)), np.empty((8, 2 * table.ROWS + 1))
+
+
+class ForceAtPoint:
+    """A `BearingForce` at one speed, temperature and centrifugal load; make it by `BearingForce.at`.
+
+    Attributes
+    ----------
+    conditions : (float, float, float)
+        u [m/s], T [K], centrifugal load [N/m]; NaN where a dry law was given none.
+    arrays : tuple
+        All arguments of `mbs.bearings.bearing_kernel.bearing_force` but the last, for other compiled code.
+    """
+
+    def __init__(
+        self,
+        force: BearingForce,
+        entrainment_speed: float,
+        temperature: float,
+        centrifugal_load: float,
+        work: Work | None = None,
+    ) -> None:
+        self.conditions = (entrainment_speed, temperature, centrifugal_load)
+        self._force = force
+        self._work = work or Work(force.bearing)
+        self._law: LawAtPoint | None = None
+        self._by_slices = False
+        self._outside = False
+        law, numbers = force.law, self._work.numbers
+        if isinstance(law, DryLaw):
+            if centrifugal_load != 0.0:
+                raise InputError(
+                    f"bearing force, centrifugal_load: got {centrifugal_load!r} N/m with the law {law.name!r}; "
+                    "allowed: 0; only a map's law brings rollers into equilibrium"
+                )
+            length = force.bearing.geometry.roller_length
+            _set_power(numbers, law.coefficient / length, law.exponent, law.damping / length, math.inf)
+        else:
+            self._prepare(law)
+        w = self._work
+        self._state = (w.state, w.state[:6], w.state[6:12])
+        self.arrays = (w.state, w.geometry, w.slices, w.angles, w.numbers, w.cells, w.rows, w.states, w.rollers, w.sums)
+
+    def __call__(self, pose: npt.ArrayLike, velocity: npt.ArrayLike | None = None, cage_angle: float = 0.0) -> Forces:
+        """Force, stiffness and damping; as calling the `BearingForce`. The arrays are new ones each time."""
+        state, own_pose, own_velocity = self._state
+        own_pose[...] = pose if type(pose) is np.ndarray and pose.shape == _SIX else _vector("pose", pose)
+        if velocity is None:
+            own_velocity[...] = 0.0
+        elif type(velocity) is np.ndarray and velocity.shape == _SIX:
+            own_velocity[...] = velocity
+        else:
+            own_velocity[...] = _vector("velocity", velocity)
+        state[12] = cage_angle
+        out: FloatArray = np.empty(_OUT)
+        status = self._from_law(out) if self._by_slices else bearing_force(*self.arrays, out)
+        if status != 0 or self._outside:
+            self._settle(status, out)
+        return out[0], out[1:7], out[7:]
+
+    @property
+    def tabulated(self) -> bool:
+        """Whether `arrays` hold the law; else it is called for each slice."""
+        return not self._by_slices
+
+    @property
+    def outside(self) -> bool:
+        """Whether speed or temperature lie outside the map, so that every call counts."""
+        return self._outside
+
+    def rollers(
+        self, pose: npt.ArrayLike, velocity: npt.ArrayLike | None = None, cage_angle: float = 0.0
+    ) -> RollerLoads:
+        """Loads and approaches of all rollers and slices, to look at."""
+        self(pose, velocity, cage_angle)
+        w = self._work
+        return roller_loads(self._force.bearing, w.slices, w.states, w.rollers, cage_angle)
+
+    def _prepare(self, law: ContactLaw) -> None:
+        """Make the law of this point ready for compiled code."""
+        work, force = self._work, self._force
+        q = _check_conditions(self.conditions)
+        if q >= 0.0 and q < law.load_range[1]:
+            conditions = np.array(self.conditions, dtype=np.float64)
+            arrays, workspace = force.law_arrays(law, q > 0.0)
+            counts = np.zeros(4, dtype=np.int64)
+            work.make_room()
+            fits = table.tabulate_law(
+                arrays, workspace, conditions, table.NODES, work.buffer, work.cells, work.numbers, counts
+            )
+            self._outside = bool(counts.any())
+            if fits and not (self._outside and law.outside == "error"):
+                return
+        point = self._point(law)
+        if point.film == 0.0 and point.centrifugal_load == 0.0 and _one_power(point.structure):
+            # Dry contacts in series: delta = (a_1 + a_2) w^b.
+            b = float(point.structure[0, 2])
+            a = float(np.sum(point.structure[:, 1]))
+            highest = min(point.highest_load * (1.0 + LOAD_TOLERANCE), point.held_load)
+            _set_power(work.numbers, a ** (-1.0 / b), 1.0 / b, 0.0, highest)
+            return
+        self._by_slices = True
+        work.numbers[:] = 0.0
+        work.numbers[table.SLOPE] = 1.0
+        work.numbers[table.LIFT_OFF], work.numbers[table.SAFE_APPROACH] = -math.inf, math.inf
+
+    def _point(self, law: ContactLaw) -> Point:
+        """The law at this point, for the calls that no table answers."""
+        if self._law is None:
+            before = int(law.counts.sum())
+            try:
+                self._law = law.at(*self.conditions)
+            except OutsideMapError:
+                self._force.outside_calls += 1
+                raise
+            self._outside = int(law.counts.sum()) > before
+        return self._law.point
+
+    def _from_slices(self, law: ContactLaw, out: FloatArray) -> int:
+        """Call the law for each slice."""
+        w = self._work
+        w.numbers[table.SLOPE] = 1.0
+        w.numbers[table.LIFT_OFF] = -math.inf
+        work = (w.state, w.geometry, w.slices, w.angles, w.numbers, w.states, w.rollers, w.sums, w.counts)
+        status: int = bearing_force_of_point(self._point(law), *work, out)
+        return status
+
+    def _from_law(self, out: FloatArray) -> int:
+        """Call the law for each slice, at conditions that no table fits."""
+        law = self._force.law
+        assert isinstance(law, ContactLaw)
+        return self._from_slices(law, out)
+
+    def _settle(self, status: int, out: FloatArray) -> None:
+        """Raise what a status asks for, or count it; above the load of the table ask the law itself."""
+        work, law = self._work, self._force.law
+        if status < 0:
+            _raise_state(work.state, work.geometry, status == NOT_FINITE)
+        if not isinstance(law, ContactLaw):
+            return
+        if status > 0 and not self._by_slices:
+            numbers = work.numbers.copy()
+            status = self._from_slices(law, out)
+            work.numbers[:] = numbers
+        if status == 0 and not self._outside:
+            return
+        self._force.outside_calls += 1
+        if status > 0 and law.outside == "error":
+            highest = float(np.max(work.states[0]))
+            raise OutsideMapError(
+                f"bearing force, load: got about {highest:.6g} N/m in a slice at the pose {work.state[:6].tolist()}; "
+                f"mapped: up to {law.load_range[1]:.6g} N/m\n"
+                "make a map that reaches there, or take a law with outside='clamp' or outside='asymptote'"
+            )
+
+
+def _check_conditions(conditions: tuple[float, float, float]) -> float:
+    """Refuse conditions that are missing or not finite; the centrifugal load."""
+    problems = []
+    for name, value in zip(("entrainment_speed", "temperature", "centrifugal_load"), conditions, strict=True):
+        try:
+            finite = math.isfinite(value)
+        except TypeError:
+            problems.append(f"bearing force, {name}: got {value!r}; allowed: a finite number")
+            continue
+        if not finite:
+            problems.append(f"bearing force, {name}: got {value!r}; the law of a map needs a finite number; give it")
+    if problems:
+        raise InputError(problems)
+    return float(conditions[2])
+
+
+def _set_power(numbers: FloatArray, coefficient: float, exponent: float, damping: float, highest: float) -> None:
+    """Write a law w = a delta^b."""
+    numbers[:] = 0.0
+    numbers[table.KIND] = table.POWER
+    numbers[table.COEFFICIENT], numbers[table.EXPONENT], numbers[table.DAMPING] = coefficient, exponent, damping
+    numbers[table.HIGHEST], numbers[table.SLOPE] = highest, 1.0
+    numbers[table.SAFE_APPROACH] = (highest / coefficient) ** (1.0 / exponent)
+
+
+def _one_power(structure: FloatArray) -> bool:
+    """Whether contacts in series are one power law."""
+    return bool(np.all(structure[:, 0] == POWER_LAW) and np.ptp(structure[:, 2]) < 1e-12)
+
+
+def _vector(name: str, given: Any) -> FloatArray:
+    """Six numbers."""
+    try:
+        values = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"bearing force, {name}: got {given!r}; allowed: six real numbers") from None
+    if values.shape != _SIX:
+        raise InputError(
+            f"bearing force, {name}: got an array of shape {values.shape}; "
+            "allowed: (6,), in the order x y z theta_x theta_y theta_z"
+        )
+    return values
+
+
+def _raise_state(state: FloatArray, geometry: FloatArray, not_finite: bool) -> None:
+    """Say what is wrong about pose, velocity or cage angle."""
+    named = {"pose": state[:6], "velocity": state[6:12], "cage_angle": state[12:]}
+    if not_finite:
+        raise InputError(
+            [
+                f"bearing force, {name}: got {values.tolist()}; allowed: finite numbers"
+                for name, values in named.items()
+                if not np.all(np.isfinite(values))
+            ]
+            or "bearing force: got numbers whose sum is not finite; allowed: finite numbers of a reasonable size"
+        )
+    raise InputError(
+        f"bearing force, pose: got y = {state[1]:.6g} m, z = {state[2]:.6g} m, theta_y = {state[4]:.6g} rad, "
+        f"theta_z = {state[5]:.6g} rad; allowed: within {geometry[2]:.6g} m (the roller diameter) and "
+        f"{geometry[3]} rad; check units and the step of the solver"
+    )

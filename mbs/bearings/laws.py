@@ -1,0 +1,239 @@
+"""Contact laws for bearings: dry Hertz and constant ones, the film formula; a map's law is taken as it is.
+
+A law here means a roller between both raceways, over the total approach of both contacts. `single` makes the law of
+one of its two contacts, which are alike.
+
+The damping of all laws acts by one rule, which knows no tension: with x = c rate/w_s the load is w_s (1 + x) for
+x >= -1/2, and -w_s/(4 x) below. Laws with a constant c have a jump of the force at lift-off, while bodies approach.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.errors import InputError, SolverError
+from ehdmaps.maps.grid_field import GridField
+from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
+from ehdmaps.physics.approach import STEEL_REDUCED_MODULUS, StructuralLaw
+from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.solids import reduced_modulus
+from mbs.bearings.bearing import Bearing
+
+FloatArray = npt.NDArray[np.float64]
+
+_EXPONENT = 10.0 / 9.0
+_ISO = 35948.0
+
+
+@dataclass(frozen=True)
+class DryLaw:
+    """w = coefficient delta^exponent and a constant damping while delta > 0; nothing else.
+
+    Attributes
+    ----------
+    name : str
+        For messages and provenance.
+    kind : {"series", "single"}
+        A roller between both raceways, or one contact.
+    coefficient : float
+        Load of a roller (not per unit length) at delta = 1 m [N/m^exponent].
+    exponent : float
+        10/9 for Hertz after ISO 16281, 1 for a spring.
+    damping : float
+        c of a roller [N s/m].
+    """
+
+    name: str
+    kind: Literal["series", "single"]
+    coefficient: float
+    exponent: float
+    damping: float
+
+    def __post_init__(self) -> None:
+        problems = []
+        for key, unit, zero in (("coefficient", "N/m^exponent", False), ("damping", "N s/m", True)):
+            value = getattr(self, key)
+            if not (math.isfinite(value) and (value > 0.0 or (zero and value == 0.0))):
+                problems.append(
+                    f"law {self.name!r}, {key}: got {value!r} {unit}; allowed: finite and {'>=' if zero else '>'} 0"
+                )
+        if not 1.0 <= self.exponent <= 3.0:
+            problems.append(f"law {self.name!r}, exponent: got {self.exponent!r}; allowed: 1 to 3")
+        if problems:
+            raise InputError(problems)
+
+    def single(self) -> DryLaw:
+        """Law of one of the two contacts of the roller, which takes half of the approach at the same load."""
+        if self.kind == "single":
+            return self
+        return replace(
+            self, kind="single", coefficient=self.coefficient * 2.0**self.exponent, damping=2.0 * self.damping
+        )
+
+    def load(self, delta: npt.ArrayLike) -> FloatArray:
+        """Load of the roller at rest [N] at the approach delta [m]."""
+        return np.asarray(self.coefficient * np.maximum(np.asarray(delta, dtype=np.float64), 0.0) ** self.exponent)
+
+    def evaluate(self, delta: FloatArray, rate: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Load of the roller and its derivatives, as a `ContactLaw` gives them, but not per unit length.
+
+        Parameters
+        ----------
+        delta, rate : array
+            Approach [m] and its rate [m/s], of one shape.
+
+        Returns
+        -------
+        load, stiffness, damping : array
+            [N], [N/m], [N s/m].
+        """
+        loaded = delta > 0.0
+        positive = np.where(loaded, delta, 1.0)
+        slope = np.where(loaded, self.coefficient * self.exponent * positive ** (self.exponent - 1.0), 0.0)
+        at_rest = slope * positive / self.exponent
+        part = np.where(loaded, self.damping * rate, 0.0)
+        moderate = part >= -0.5 * at_rest
+        ratio = np.where(moderate, 0.0, at_rest / np.where(moderate, 1.0, part))
+        load = np.where(moderate, at_rest + part, -0.25 * at_rest * ratio)
+        stiffness = np.where(moderate, slope, -0.5 * ratio * slope)
+        damping = np.where(loaded, np.where(moderate, 1.0, 0.25 * ratio**2) * self.damping, 0.0)
+        return load, stiffness, damping
+
+
+Law = DryLaw | ContactLaw
+
+
+def hertz(bearing: Bearing, damping: float = 0.0) -> DryLaw:
+    """Dry roller after ISO 16281: Q = c_L delta^(10/9), c_L = 35948 L^(8/9) (N, mm), delta of both contacts.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        Its roller length and material; other materials than steel scale the load by E'/E'_steel.
+    damping : float
+        Constant c of each contact of a roller [N s/m]; both are in series, so that c/2 acts between the rings.
+
+    References
+    ----------
+    ISO/TS 16281:2008.
+
+    Examples
+    --------
+    >>> law = hertz(Bearing.named("NU308"))
+    >>> round(float(law.load(10e-6)), 1)
+    2392.6
+    """
+    length_mm = 1e3 * bearing.geometry.roller_length
+    stiffer = reduced_modulus(bearing.material, bearing.material) / STEEL_REDUCED_MODULUS
+    coefficient = _ISO * length_mm ** (8.0 / 9.0) * 1e3**_EXPONENT * stiffer
+    return DryLaw("hertz", "series", coefficient, _EXPONENT, 0.5 * _number("hertz", "damping", damping))
+
+
+def constant(stiffness: float, damping: float = 0.0) -> DryLaw:
+    """Constant stiffness and damping while there is contact; two contacts in series, so k/2 and c/2.
+
+    Parameters
+    ----------
+    stiffness : float
+        k of each contact of a roller [N/m].
+    damping : float
+        c of each contact of a roller [N s/m].
+    """
+    k, c = _number("constant", "stiffness", stiffness), _number("constant", "damping", damping)
+    return DryLaw("constant", "series", 0.5 * k, 1.0, 0.5 * c)
+
+
+def formula(
+    bearing: Bearing,
+    lubricant: Lubricant,
+    *,
+    load: tuple[float, float] = (100.0, 1e6),
+    entrainment_speed: tuple[float, float] = (0.05, 10.0),
+    temperature: tuple[float, float] = (293.15, 393.15),
+    film_formula: FilmFormula = "moes",
+    structural_law: StructuralLaw = "iso16281",
+    kind: LawKind = "series",
+    outside: OutsidePolicy = "error",
+) -> ContactLaw:
+    """Law of a film formula over a range of loads, speeds and temperatures; takes some seconds.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        Geometry and material.
+    lubricant : Lubricant
+        The oil.
+    load, entrainment_speed, temperature : (float, float)
+        Lowest and highest [N/m], [m/s], [K], as of a map.
+    film_formula, structural_law
+        See `ehdmaps.physics.closed_form.FormulaSolver` and `ehdmaps.physics.approach`.
+    kind, outside
+        See `ContactLaw`.
+
+    Raises
+    ------
+    InputError
+        For ranges that are none.
+    SolverError
+        Where the formula gives no film.
+    """
+    problems = [
+        f"law 'formula', {name}: got {given!r}; allowed: (lowest, highest), finite, 0 < lowest < highest"
+        for name, given in (("load", load), ("entrainment_speed", entrainment_speed), ("temperature", temperature))
+        if not (len(given) == 2 and 0.0 < given[0] < given[1] < math.inf)
+    ]
+    if problems:
+        raise InputError(problems)
+    contacts = bearing.geometry.contacts(bearing.material, structural_law)
+    chosen = tuple(contact for contact in contacts if kind in ("series", contact.name))
+    if not chosen:
+        raise InputError(f"law 'formula', kind: got {kind!r}; allowed: series, inner, outer")
+    loads = _axis(load, 0.25)
+    speeds = _axis(entrainment_speed, 0.25)
+    temperatures = np.linspace(*temperature, max(4, math.ceil((temperature[1] - temperature[0]) / 8.0) + 1))
+    films = [_films(contact, lubricant, FormulaSolver(film_formula), loads, speeds, temperatures) for contact in chosen]
+    offset, compliance, loss = (np.stack(part) for part in zip(*films, strict=True))
+    field = GridField(chosen, lubricant, loads, speeds, temperatures, offset, compliance, loss)
+    return ContactLaw(kind, chosen, lubricant, field, outside)
+
+
+def _films(
+    contact: LineContact,
+    lubricant: Lubricant,
+    solver: FormulaSolver,
+    loads: FloatArray,
+    speeds: FloatArray,
+    temperatures: FloatArray,
+) -> tuple[FloatArray, ...]:
+    """Film offset, film compliance and loss compliance of one contact on the grid."""
+    out = np.empty((3, loads.size, speeds.size, temperatures.size))
+    for j, speed in enumerate(speeds):
+        for k, kelvin in enumerate(temperatures):
+            films = solver.solve_line(contact, lubricant, tuple(loads.tolist()), float(speed), float(kelvin))
+            for i, film in enumerate(films):
+                out[:, i, j, k] = film.film_offset, film.film_compliance, film.loss_compliance
+                if not np.all(np.isfinite(out[:, i, j, k])):
+                    raise SolverError(
+                        f"law 'formula': no film at {loads[i]:.6g} N/m, {speed:.6g} m/s, {kelvin:.6g} K "
+                        f"({film.reason}); choose narrower ranges, or the formula moes"
+                    )
+    return out[0], out[1], out[2]
+
+
+def _axis(ends: tuple[float, float], step: float) -> FloatArray:
+    """Nodes evenly spaced in the logarithm, at least four."""
+    return np.asarray(np.geomspace(*ends, max(4, math.ceil(math.log(ends[1] / ends[0]) / step) + 1)))
+
+
+def _number(law: str, key: str, value: float) -> float:
+    """A number, or a typed error."""
+    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
+        raise InputError(f"law {law!r}, {key}: got {value!r}; allowed: a finite number")
+    return float(value)

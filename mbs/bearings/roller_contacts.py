@@ -1,0 +1,243 @@
+"""A bearing whose rollers are bodies with a radial freedom each, between an inner and an outer contact.
+
+All is linear in a frame that does not move: poses of both rings and radial places of the rollers are small
+displacements from the nominal positions. A roller takes half of the tilt between the rings, as its two contacts, being
+nearly alike, make it do. Clearance and profile divide evenly between the contacts. The rollers being rigid, the slices
+of a roller carry on both sides what the two laws give them; only their sums balance. With equal laws that is what
+`BearingForce` finds with both contacts in series; with the laws of a map the two differ by the square of the small
+difference of the contacts.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.errors import InputError, OutsideMapError, SolverError
+from ehdmaps.maps.law import ContactLaw, LawAtPoint
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.laws import DryLaw, Law
+
+FloatArray = npt.NDArray[np.float64]
+
+_STEPS = 100
+_ALIKE = 1e-6
+
+
+class RollerContacts:
+    """Forces between rings and rollers.
+
+    The vector of displacements is (inner pose, outer pose, radial places of the rollers), 12 + Z long; radial places
+    are positive outwards, along the direction of each roller.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        Geometry, clearance, profile, slices.
+    inner, outer : DryLaw or ContactLaw
+        Laws of a single contact: `hertz(bearing).single()` or `constant(k, c).single()` of `mbs.bearings.laws`, or the
+        laws "inner" and "outer" of a map.
+
+    Attributes
+    ----------
+    outside_calls : int
+        How many calls were outside the map so far.
+
+    Raises
+    ------
+    InputError
+        For laws of other contacts.
+    """
+
+    def __init__(self, bearing: Bearing, inner: Law, outer: Law) -> None:
+        problems = _law_problems(bearing, "inner", inner) + _law_problems(bearing, "outer", outer)
+        if problems:
+            raise InputError(problems)
+        self.bearing = bearing
+        self.laws = (inner, outer)
+        self.outside_calls = 0
+        self._points: dict[int, LawAtPoint] = {}
+        self._x = bearing.slice_positions
+        self._lost = bearing.profile_depths + 0.25 * bearing.geometry.diametral_clearance
+
+    @property
+    def size(self) -> int:
+        """Length of the vector of displacements."""
+        return 12 + self.bearing.geometry.rollers
+
+    def __call__(
+        self,
+        displacement: npt.ArrayLike,
+        velocity: npt.ArrayLike | None = None,
+        *,
+        cage_angle: float = 0.0,
+        entrainment_speed: float = math.nan,
+        temperature: float = math.nan,
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Generalised forces on rings and rollers, and their derivatives.
+
+        Parameters
+        ----------
+        displacement, velocity : array (12 + Z,)
+            [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
+        cage_angle, entrainment_speed, temperature : float
+            As of `BearingForce`.
+
+        Returns
+        -------
+        f, K, C : arrays (m,), (m, m), (m, m)
+            f [N], [N m], K = -df/d displacement, C = -df/d velocity; both symmetric.
+
+        Raises
+        ------
+        InputError
+            For values that are no finite numbers, or of another number.
+        OutsideMapError
+            Outside the map, where a law has the policy "error".
+        """
+        q = self._vector("displacement", displacement)
+        v = np.zeros(self.size) if velocity is None else self._vector("velocity", velocity)
+        f, K, C = np.zeros(self.size), np.zeros((self.size, self.size)), np.zeros((self.size, self.size))
+        outside = False
+        for side in (0, 1):
+            flat, tilted = self._rows(side, cage_angle)
+            delta = (flat @ q)[:, None] + self._x * (tilted @ q)[:, None] - self._lost
+            rate = (flat @ v)[:, None] + self._x * (tilted @ v)[:, None]
+            before = self._outside(side)
+            try:
+                load, k, c = self._evaluate(side, delta, rate, entrainment_speed, temperature)
+            except OutsideMapError:
+                self.outside_calls += 1
+                raise
+            outside |= self._outside(side) > before
+            f -= flat.T @ load.sum(axis=1) + tilted.T @ (load @ self._x)
+            K += self._matrix(flat, tilted, k)
+            C += self._matrix(flat, tilted, c)
+        self.outside_calls += outside
+        return f, K, C
+
+    def settled(
+        self,
+        inner_pose: npt.ArrayLike,
+        outer_pose: npt.ArrayLike | None = None,
+        *,
+        cage_angle: float = 0.0,
+        entrainment_speed: float = math.nan,
+        temperature: float = math.nan,
+    ) -> FloatArray:
+        """Displacements (12 + Z,) with the rollers in equilibrium at rest between rings that are held.
+
+        Rollers without load stay in the middle.
+
+        Raises
+        ------
+        SolverError
+            If a roller finds no equilibrium.
+        """
+        q = np.zeros(self.size)
+        q[:6] = inner_pose
+        q[6:12] = 0.0 if outer_pose is None else outer_pose
+        q = self._vector("pose", q)
+        flat, _ = self._rows(0, cage_angle)
+        other, _ = self._rows(1, cage_angle)
+        q[12:] = 0.5 * (flat[:, :12] @ q[:12] - other[:, :12] @ q[:12])
+        conditions = {"entrainment_speed": entrainment_speed, "temperature": temperature}
+        for _ in range(_STEPS):
+            f, K, _ = self(q, cage_angle=cage_angle, **conditions)
+            stiffness = np.diag(K)[12:]
+            loaded = stiffness > 0.0
+            step = np.where(loaded, f[12:] / np.where(loaded, stiffness, 1.0), 0.0)
+            q[12:] += step
+            if np.max(np.abs(step)) < 1e-15:
+                return q
+        raise SolverError(
+            f"roller contacts: no equilibrium of the rollers, still moving by {np.max(np.abs(step)):.3g} m after "
+            f"{_STEPS} steps at the inner pose {q[:6].tolist()}; look at the law, or start from a smaller load"
+        )
+
+    def _rows(self, side: int, cage_angle: float) -> tuple[FloatArray, FloatArray]:
+        """Approach (Z, m) of the contacts by the displacements, and how it grows along the roller."""
+        count = self.bearing.geometry.rollers
+        angle = cage_angle + 2.0 * math.pi * np.arange(count) / count
+        c, s = np.cos(angle), np.sin(angle)
+        flat, tilted = np.zeros((count, self.size)), np.zeros((count, self.size))
+        sign, ring = (1.0, 0) if side == 0 else (-1.0, 6)
+        flat[:, ring + 1], flat[:, ring + 2] = sign * c, sign * s
+        flat[np.arange(count), 12 + np.arange(count)] = -sign
+        tilted[:, 4], tilted[:, 5] = -0.5 * s, 0.5 * c
+        tilted[:, 10], tilted[:, 11] = 0.5 * s, -0.5 * c
+        return flat, tilted
+
+    def _matrix(self, flat: FloatArray, tilted: FloatArray, values: FloatArray) -> FloatArray:
+        """Sum of values B B^T over the slices."""
+        first, second, third = values.sum(axis=1), values @ self._x, values @ self._x**2
+        mixed = (flat * second[:, None]).T @ tilted
+        flats, tilts = (flat * first[:, None]).T @ flat, (tilted * third[:, None]).T @ tilted
+        return np.asarray(flats + mixed + mixed.T + tilts)
+
+    def _evaluate(
+        self, side: int, delta: FloatArray, rate: FloatArray, speed: float, temperature: float
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Loads and derivatives of the slices of one side [N], [N/m], [N s/m]."""
+        law = self.laws[side]
+        if isinstance(law, DryLaw):
+            w, k, c = law.evaluate(delta, rate)
+            return w / self._x.size, k / self._x.size, c / self._x.size
+        point = self._points.get(side)
+        if point is None or (point.entrainment_speed, point.temperature) != (speed, temperature):
+            if not (math.isfinite(speed) and math.isfinite(temperature)):
+                raise InputError(
+                    f"roller contacts: got the entrainment_speed {speed!r} and the temperature {temperature!r}; "
+                    "the law of a map needs finite numbers; give both"
+                )
+            point = self._points[side] = law.at(speed, temperature)
+        length = self.bearing.slice_length
+        w, k, c = point(delta, rate)
+        return w * length, k * length, c * length
+
+    def _outside(self, side: int) -> int:
+        """How many slices of one side were outside the map so far."""
+        law = self.laws[side]
+        return int(law.counts.sum()) if isinstance(law, ContactLaw) else 0
+
+    def _vector(self, name: str, given: npt.ArrayLike) -> FloatArray:
+        """Finite numbers, as many as there are displacements."""
+        try:
+            values = np.array(given, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InputError(f"roller contacts, {name}: got {given!r}; allowed: real numbers") from None
+        if values.shape != (self.size,):
+            raise InputError(
+                f"roller contacts, {name}: got an array of shape {values.shape}; allowed: ({self.size},), "
+                "the inner pose, the outer pose and the rollers"
+            )
+        if not np.all(np.isfinite(values)):
+            raise InputError(f"roller contacts, {name}: got {values.tolist()}; allowed: finite numbers")
+        return values
+
+
+def _law_problems(bearing: Bearing, side: str, law: Law) -> list[str]:
+    """Why a law is none of this contact."""
+    where, geometry = f"roller contacts, law of the {side} contact", bearing.geometry
+    if isinstance(law, DryLaw):
+        if law.kind != "single":
+            return [
+                f"{where}: got the law {law.name!r} of a whole roller; allowed: that of one contact; use `single()`"
+            ]
+        return []
+    if not isinstance(law, ContactLaw):
+        return [f"{where}: got {type(law).__name__}; allowed: a law of mbs.bearings.laws, or the law {side!r} of a map"]
+    if law.kind != side:
+        return [f"{where}: got the law {law.kind!r}; allowed: {side!r}"]
+    radius = geometry.inner_radius if side == "inner" else geometry.outer_radius
+    pairs = (
+        ("radius", law.contacts[0].radius, radius),
+        ("roller_length", law.contacts[0].roller_length, geometry.roller_length),
+    )
+    return [
+        f"{where}, {name}: got {got:.6g} m; the bearing {geometry.name!r} has {wanted:.6g} m; take a map made for it"
+        for name, got, wanted in pairs
+        if got is not None and abs(got - wanted) > _ALIKE * wanted
+    ]

@@ -1,0 +1,102 @@
+"""A bearing in a system whose rollers are bodies: each has a mass and a radial freedom, between two contacts.
+
+The radial freedoms are counted in the cage, which turns; what its turning adds to the rollers' motion but the
+centrifugal load is left out, as speeds of vibration are small against it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.physics._values import FloatArray
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.roller_contacts import RollerContacts
+from mbs.body import Body
+from mbs.elements import Operation, Port
+
+
+def roller_body(name: str, bearing: Bearing) -> Body:
+    """The rollers of a bearing as one body, with a radial coordinate [m] for each."""
+    count = bearing.geometry.rollers
+    zero = np.zeros((count, count))
+    return Body(
+        name=name,
+        coordinates=tuple(f"roller_{index + 1}" for index in range(count)),
+        units=("m",) * count,
+        mass=bearing.roller_mass * np.eye(count),
+        gyroscopic=zero,
+        damping=zero,
+        stiffness=zero,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class RollerElement:
+    """A bearing between two rings and its rollers.
+
+    Attributes
+    ----------
+    plain : BearingElement
+        The same bearing with massless rollers: places, speeds, and the loads of rollers to look at.
+    contacts : RollerContacts
+        The forces.
+    rollers : str
+        Name of the body of the rollers.
+    """
+
+    plain: BearingElement
+    contacts: RollerContacts
+    rollers: str
+
+    @property
+    def name(self) -> str:
+        """For messages and results."""
+        return self.plain.name
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """Inner ring, outer ring, rollers."""
+        return Port(self.plain.inner), Port(self.plain.outer), Port(self.rollers, coordinates=True)
+
+    @property
+    def outside_calls(self) -> int:
+        """Calls outside the map so far."""
+        return self.contacts.outside_calls
+
+    def evaluate(
+        self, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Forces on rings and rollers, stiffness and damping, see `mbs.elements.Element`."""
+        plain = self.plain
+        f, K, C = self.contacts(
+            displacement,
+            velocity,
+            cage_angle=plain.cage_angle(operation),
+            entrainment_speed=plain.entrainment_speed(operation),
+            temperature=plain.temperature,
+        )
+        f[12:] += plain.centrifugal_load(operation) * plain.bearing.geometry.roller_length
+        return f, K, C
+
+
+def ring_matrices(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """K and C (6, 6) of the inner ring against the outer one from those of an element in its ports.
+
+    Rollers that are bodies follow in equilibrium; those without load are left where they are.
+
+    Parameters
+    ----------
+    stiffness, damping : array, shape (6, 6) or (12 + Z, 12 + Z)
+        Of massless rollers, or of rings and rollers.
+    """
+    if stiffness.shape[0] == 6:
+        return stiffness, damping
+    own = stiffness[12:, 12:]
+    following = np.zeros((stiffness.shape[0], 6))
+    following[:6] = np.eye(6)
+    loaded = np.nonzero(np.diag(own) > 0.0)[0]
+    following[12 + loaded] = -np.linalg.solve(own[np.ix_(loaded, loaded)], stiffness[12 + loaded, :6])
+    return following.T @ stiffness @ following, following.T @ damping @ following

@@ -1,0 +1,1 @@
+"""The mesh of a pair of spur gears."""

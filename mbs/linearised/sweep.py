@@ -1,0 +1,252 @@
+"""The linearised system over speed: equilibrium, modes, bearing stiffness and damping, frequency responses.
+
+At each speed the equilibrium is found from that of the last one, at a fixed angle, which is a fixed cage angle. Modes
+are solved there twice: undamped, because the film of a lightly loaded bearing damps so strongly that its complex modes
+stop to oscillate, and complex with all of damping and gyroscopic terms. Each mode is followed from speed to speed by
+its shape (`mbs.linearised.tracking`); where two speeds are too far apart for that, speeds between them are solved too,
+for the following only. Gear meshes count with their mean stiffness.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import FloatArray
+from mbs.elements import Input, Operation, Sensor
+from mbs.errors import AnalysisError
+from mbs.linearised.linear import ComplexArray
+from mbs.linearised.modal_response import checked_response
+from mbs.linearised.modes import IntArray
+from mbs.linearised.steady import steady_system
+from mbs.linearised.sweep_point import Along, Point, bearing_parts, bridge, first_order_shift, over_pitch, solve_modes
+from mbs.linearised.sweep_result import BearingSweep, ComplexSweep, ResponseSweep, Sweep, UndampedSweep
+from mbs.linearised.tracking import tracks
+from mbs.statics import equilibrium
+from mbs.system import System
+
+__all__ = ["MOST_ANGLES", "MOST_SPEEDS", "Sweep", "SweepRange", "sweep"]
+
+MOST_SPEEDS = 2000
+
+MOST_ANGLES = 1000
+
+FEWEST_BETWEEN = 16
+"""Speeds that may be put in between, however few are asked for."""
+
+MOST_RESPONSES = 10_000_000
+"""Speeds times frequencies times inputs times sensors."""
+
+
+@dataclass(frozen=True)
+class SweepRange:
+    """Speeds of a sweep, equally far apart.
+
+    Attributes
+    ----------
+    begin, end : float
+        Lowest and highest speed [rad/s].
+    points : int
+        How many.
+
+    Raises
+    ------
+    InputError
+        If they do not rise from 0 on, or are too few or too many.
+    """
+
+    begin: float
+    end: float
+    points: int
+
+    def __post_init__(self) -> None:
+        problems = []
+        if not 2 <= self.points <= MOST_SPEEDS:
+            problems.append(f"points: got {self.points}; allowed: a whole number from 2 to {MOST_SPEEDS}")
+        if not 0.0 <= self.begin < self.end < np.inf:
+            problems.append(
+                f"from, to: got {self.begin:.6g} to {self.end:.6g} rad/s; allowed: rising, from 0 rpm on; exchange "
+                "them, or set them apart"
+            )
+        if problems:
+            raise InputError(problems)
+
+    @property
+    def speeds(self) -> FloatArray:
+        """All of them, shape (points,) [rad/s]."""
+        return np.linspace(self.begin, self.end, self.points)
+
+
+def sweep(
+    system: System,
+    speeds: FloatArray,
+    angle: float = 0.0,
+    inputs: Sequence[Input] = (),
+    sensors: Sequence[Sensor] = (),
+    frequencies: FloatArray | Sequence[float] = (),
+    cage_angles: int = 1,
+) -> Sweep:
+    """Equilibria, modes, bearings and frequency responses over speed.
+
+    Parameters
+    ----------
+    system : System
+        Bodies, springs, loads, elements.
+    speeds : array, shape (speeds,)
+        [rad/s], at least one.
+    angle : float
+        What the system has turned [rad]: where the cages stand.
+    inputs, sensors : sequence
+        From where to where; no responses if left out.
+    frequencies : array, shape (frequencies,)
+        Of the responses [Hz].
+    cage_angles : int
+        Angles within one pitch of the rollers over which stiffness and damping of the bearings are averaged; modes
+        and responses are those of the first.
+
+    Raises
+    ------
+    InputError
+        For speeds or frequencies that are none, or more responses than memory should hold.
+    AnalysisError
+        If there is no equilibrium at a speed.
+    """
+    speeds = np.atleast_1d(np.asarray(speeds, dtype=np.float64))
+    frequencies = np.asarray(frequencies, dtype=np.float64)
+    _check(speeds, frequencies, len(inputs) * len(sensors), cage_angles)
+    system = steady_system(system)
+
+    def at(speed: float, start: FloatArray | None) -> Point:
+        try:
+            return solve_modes(equilibrium(system, Operation(speed, angle), start))
+        except AnalysisError as error:
+            raise AnalysisError(f"at {speed:.6g} rad/s: {error}") from error
+
+    points: list[_Recorded] = []
+    links: list[Along] = []
+    values = np.empty((speeds.size, frequencies.size, len(sensors), len(inputs)), dtype=np.complex128)
+    errors = np.zeros(speeds.size)
+    # Speeds in between cost as much as others: together at most as many as were asked for.
+    spare = max(speeds.size, FEWEST_BETWEEN)
+    first = before = at(float(speeds[0]), None)
+    for index, speed in enumerate(speeds.tolist()):
+        point = at(speed, before.balance.displacement) if index else first
+        if index:
+            links.append(bridge(before, point, at, spare))
+            spare -= links[-1].between
+        values[index], errors[index] = checked_response(point.balance, point.states, inputs, sensors, frequencies)
+        points.append(_record(point, cage_angles))
+        before = point
+    return Sweep(
+        speeds=speeds,
+        displacement=np.array([point.displacement for point in points]),
+        forces=tuple(np.array(part) for part in zip(*(point.forces for point in points), strict=True)),
+        parts=tuple(first.balance.parts),
+        undamped=_undamped(points, links, first, before),
+        damped=_damped(points, links, bearing_parts(first.balance)),
+        bearings=_bearings(points, first),
+        responses=ResponseSweep(frequencies, tuple(inputs), tuple(sensors), values, errors),
+        between=sum(link.between for link in links),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Recorded:
+    """What is kept of a speed; the vectors of its modes are not."""
+
+    displacement: FloatArray
+    forces: tuple[FloatArray, ...]
+    frequency: FloatArray
+    damping_ratio: FloatArray
+    shares: FloatArray
+    eigenvalues: ComplexArray
+    complex_shares: FloatArray
+    whirl: FloatArray
+    bearings: FloatArray
+
+
+def _record(point: Point, cage_angles: int) -> _Recorded:
+    """Keep the light part of a point."""
+    return _Recorded(
+        point.balance.displacement,
+        point.balance.forces,
+        point.undamped.frequency,
+        point.undamped.damping_ratio,
+        point.undamped.shares,
+        point.damped.eigenvalues,
+        point.complex_shares,
+        point.whirl,
+        over_pitch(point.balance, cage_angles),
+    )
+
+
+def _check(speeds: FloatArray, frequencies: FloatArray, pairs: int, cage_angles: int) -> None:
+    """Raise with what is wrong about speeds and frequencies."""
+    problems = []
+    if speeds.ndim != 1 or not 1 <= speeds.size <= MOST_SPEEDS or not np.all(np.isfinite(speeds)):
+        problems.append(f"sweep, speeds: got {speeds.size} values; allowed: 1 to {MOST_SPEEDS} finite ones in a row")
+    if frequencies.ndim != 1 or not np.all(np.isfinite(frequencies)) or np.any(frequencies < 0.0):
+        problems.append(f"sweep, frequencies: got {frequencies.size} values; allowed: finite ones from 0 Hz on")
+    if speeds.size * frequencies.size * pairs > MOST_RESPONSES:
+        problems.append(
+            f"sweep: got {speeds.size} speeds, {frequencies.size} frequencies and {pairs} pairs of input and sensor; "
+            f"allowed: a product of at most {MOST_RESPONSES}; take fewer speeds, or fewer frequencies"
+        )
+    if not 1 <= cage_angles <= MOST_ANGLES:
+        problems.append(f"sweep, cage angles: got {cage_angles}; allowed: a whole number from 1 to {MOST_ANGLES}")
+    if problems:
+        raise InputError(problems)
+
+
+def _undamped(points: Sequence[_Recorded], links: Sequence[Along], first: Point, last: Point) -> UndampedSweep:
+    """Put the undamped modes in the order of the first speed."""
+    size = points[0].frequency.size
+    order = tracks(size, [link.undamped for link in links])
+    sure = np.ones(order.shape)
+    logarithm = np.zeros(order.shape)
+    for index, link in enumerate(links):
+        sure[index + 1] = link.undamped.assurance[order[index]]
+        logarithm[index + 1] = logarithm[index] + link.logarithm[order[index]]
+    shares = np.stack([point.shares[:, row] for point, row in zip(points, order, strict=True)], axis=1)
+    return UndampedSweep(
+        frequency=np.array([point.frequency[row] for point, row in zip(points, order, strict=True)]),
+        damping_ratio=np.array([point.damping_ratio[row] for point, row in zip(points, order, strict=True)]),
+        shares=shares,
+        bearing_share=shares[bearing_parts(first.balance)].sum(axis=0),
+        assurance=sure,
+        summed_shift=np.expm1(logarithm),
+        direct_shift=first_order_shift(first, last)[0],
+    )
+
+
+def _damped(points: Sequence[_Recorded], links: Sequence[Along], here: IntArray) -> ComplexSweep:
+    """Put the complex modes into tracks, with NaN where there is none."""
+    order = tracks(points[0].eigenvalues.size, [link.damped for link in links])
+    shape = order.shape
+    values = np.full(shape, complex(np.nan, np.nan))
+    whirl, sure = np.full(shape, np.nan), np.full(shape, np.nan)
+    shares = np.full((points[0].complex_shares.shape[0], *shape), np.nan)
+    for index, (point, row) in enumerate(zip(points, order, strict=True)):
+        there = np.nonzero(row >= 0)[0]
+        values[index, there] = point.eigenvalues[row[there]]
+        whirl[index, there] = point.whirl[row[there]]
+        shares[:, index, there] = point.complex_shares[:, row[there]]
+        sure[index, there] = 1.0
+        if index:
+            old = there[order[index - 1, there] >= 0]
+            sure[index, old] = links[index - 1].damped.assurance[order[index - 1, old]]
+    return ComplexSweep(values, shares, shares[here].sum(axis=0), whirl, sure)
+
+
+def _bearings(points: Sequence[_Recorded], first: Point) -> BearingSweep:
+    """Stack the bearings."""
+    parts = list(first.balance.parts)
+    names = tuple(parts[index] for index in bearing_parts(first.balance))
+    found = np.array([point.bearings for point in points])
+    load, stiffness, damping = np.moveaxis(found.mean(axis=1), 1, 0)
+    half = 0.5 * np.ptp(found, axis=1)
+    spread = np.divide(half, found.mean(axis=1), out=np.zeros_like(half), where=half != 0.0)
+    return BearingSweep(names, load, stiffness, damping, spread[:, 1], spread[:, 2], found.shape[1])

@@ -1,0 +1,166 @@
+"""What a sweep over speed finds, in arrays over speed and mode; `mbs.linearised.sweep` makes it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.physics._values import FloatArray
+from mbs.elements import Input, Sensor
+from mbs.linearised.linear import ComplexArray
+from mbs.linearised.modes import damping_ratio
+
+
+@dataclass(frozen=True, eq=False)
+class UndampedSweep:
+    """Undamped modes over speed, in the order that they have at the first one; all of them exist at every speed.
+
+    Attributes
+    ----------
+    frequency, damping_ratio : array, shape (speeds, n)
+        Of mass and stiffness [Hz]; modal, may exceed 1.
+    shares : array, shape (parts, speeds, n)
+        Part of the strain energy that each part has.
+    bearing_share : array, shape (speeds, n)
+        That of all bearings.
+    assurance : array, shape (speeds, n)
+        Least assurance on the way from the speed before, 1 at the first.
+    summed_shift : array, shape (speeds, n)
+        f/f(first speed) - 1 by energy: the sum of phi' dK phi/(2 phi' K phi) over the steps, dK of the bearings alone.
+    direct_shift : array, shape (n,)
+        The same at the last speed in one step with the first shapes: right to first order in the change.
+    """
+
+    frequency: FloatArray
+    damping_ratio: FloatArray
+    shares: FloatArray
+    bearing_share: FloatArray
+    assurance: FloatArray
+    summed_shift: FloatArray
+    direct_shift: FloatArray
+
+    @property
+    def shift(self) -> FloatArray:
+        """f/f(first speed) - 1, shape (speeds, n); NaN for free motions."""
+        first = np.where(self.frequency[0] > 0.0, self.frequency[0], np.nan)
+        return np.asarray(self.frequency / first - 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class ComplexSweep:
+    """Oscillating complex modes over speed; NaN where a mode does not exist.
+
+    A mode that stops to oscillate ends; if it oscillates again it is counted as another one.
+
+    Attributes
+    ----------
+    eigenvalues : array, shape (speeds, modes)
+        With positive imaginary part [1/s].
+    shares : array, shape (parts, speeds, modes)
+        Part of the strain energy that each part has.
+    bearing_share : array, shape (speeds, modes)
+        That of all bearings.
+    whirl : array, shape (speeds, modes)
+        How fast gyroscopic terms raise the frequency with the speed, d omega/d Omega [1]: positive for forward whirl,
+        negative for backward whirl, 0 for a motion in a plane.
+    assurance : array, shape (speeds, modes)
+        Least assurance on the way from the speed before, 1 where a mode begins.
+    """
+
+    eigenvalues: ComplexArray
+    shares: FloatArray
+    bearing_share: FloatArray
+    whirl: FloatArray
+    assurance: FloatArray
+
+    @property
+    def frequency(self) -> FloatArray:
+        """|eigenvalue|/(2 pi) [Hz]."""
+        return np.asarray(np.abs(self.eigenvalues) / (2.0 * np.pi))
+
+    @property
+    def damping_ratio(self) -> FloatArray:
+        """-real part over magnitude, below 1."""
+        return damping_ratio(self.eigenvalues)
+
+
+@dataclass(frozen=True, eq=False)
+class BearingSweep:
+    """Bearings over speed, along the direction n of their force.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Of the bearings.
+    load : array, shape (speeds, bearings)
+        Radial force [N].
+    stiffness, damping : array, shape (speeds, bearings)
+        n' K n [N/m] and n' C n [N s/m], the mean over the angles of the cage; NaN without a force.
+    stiffness_spread, damping_spread : array, shape (speeds, bearings)
+        Half of what they vary over these angles, as a part of the mean; 0 for one angle.
+    angles : int
+        Angles of the cage within one pitch of the rollers.
+    """
+
+    names: tuple[str, ...]
+    load: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    stiffness_spread: FloatArray
+    damping_spread: FloatArray
+    angles: int
+
+
+@dataclass(frozen=True, eq=False)
+class ResponseSweep:
+    """Frequency responses over speed.
+
+    Attributes
+    ----------
+    frequencies : array, shape (frequencies,)
+        [Hz].
+    inputs, sensors : tuple
+        From where to where.
+    values : array, shape (speeds, frequencies, sensors, inputs)
+        Sensor unit per N or N m.
+    error : array, shape (speeds,)
+        Largest one seen beside direct solutions, see `mbs.linearised.modal_response`.
+    """
+
+    frequencies: FloatArray
+    inputs: tuple[Input, ...]
+    sensors: tuple[Sensor, ...]
+    values: ComplexArray
+    error: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """The linearised system over speed.
+
+    Attributes
+    ----------
+    speeds : array, shape (speeds,)
+        [rad/s].
+    displacement : array, shape (speeds, n)
+        Equilibrium [m or rad].
+    forces : tuple of array, shape (speeds, m)
+        Of each element in its ports [N or N m].
+    parts : tuple of str
+        Flexible bodies, springs, elements.
+    undamped, damped, bearings, responses
+        See there.
+    between : int
+        Speeds that were put in between to follow the modes.
+    """
+
+    speeds: FloatArray
+    displacement: FloatArray
+    forces: tuple[FloatArray, ...]
+    parts: tuple[str, ...]
+    undamped: UndampedSweep
+    damped: ComplexSweep
+    bearings: BearingSweep
+    responses: ResponseSweep
+    between: int

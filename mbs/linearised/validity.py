@@ -1,0 +1,123 @@
+"""Where a linear analysis stops to hold: loads that lift off, and oscillations too quick for low-frequency films."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.physics._values import FloatArray
+from ehdmaps.physics.hertz import half_width
+from ehdmaps.physics.solids import reduced_modulus
+from mbs.bearings.bearing import Bearing
+from mbs.elements import Input
+from mbs.linearised.linear import responses
+from mbs.statics import Equilibrium
+
+HIGHEST_RATIO = 0.3
+"""omega b/u above which stiffness and damping of the low-frequency limit no longer hold."""
+
+
+@dataclass(frozen=True)
+class FilmLimit:
+    """How quick an oscillation a film follows as in the low-frequency limit.
+
+    Attributes
+    ----------
+    bearing : str
+        Its name.
+    half_width : float
+        Hertz half-width b of the most loaded contact [m].
+    entrainment_speed : float
+        u [m/s].
+    """
+
+    bearing: str
+    half_width: float
+    entrainment_speed: float
+
+    def ratio(self, frequency: float) -> float:
+        """omega b/u at a frequency [Hz]; infinite at standstill."""
+        if self.entrainment_speed == 0.0:
+            return math.inf
+        return 2.0 * math.pi * frequency * self.half_width / self.entrainment_speed
+
+    @property
+    def frequency(self) -> float:
+        """Frequency at which omega b/u is 0.3 [Hz]."""
+        if self.half_width == 0.0:
+            return math.inf
+        return HIGHEST_RATIO * self.entrainment_speed / (2.0 * math.pi * self.half_width)
+
+
+def film_limit(name: str, bearing: Bearing, load: float, entrainment_speed: float) -> FilmLimit:
+    """Limit of a bearing at the load per unit length of its most loaded contact [N/m] and a speed u [m/s].
+
+    The outer contact is the wider one.
+    """
+    modulus = reduced_modulus(bearing.material, bearing.material)
+    width = half_width(load, bearing.geometry.outer_radius, modulus)
+    return FilmLimit(name, width, entrainment_speed)
+
+
+@dataclass(frozen=True)
+class DynamicLoad:
+    """Largest dynamic force of an element in a linear analysis, beside its static one.
+
+    Attributes
+    ----------
+    element, input : str
+        Which, and excited by what.
+    dynamic, static : float
+        Radial forces [N], at the amplitude of the input.
+    frequency : float
+        Where the dynamic one is largest [Hz].
+    """
+
+    element: str
+    input: str
+    dynamic: float
+    static: float
+    frequency: float
+
+    @property
+    def exceeds(self) -> bool:
+        """Whether contacts would lift off, so that a linear analysis does not hold."""
+        return self.dynamic > self.static
+
+
+def dynamic_loads(balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatArray) -> tuple[DynamicLoad, ...]:
+    """Largest dynamic force of each bearing for each input.
+
+    Parameters
+    ----------
+    balance : Equilibrium
+        Where.
+    inputs : sequence of Input
+        With their amplitudes.
+    frequencies : array, shape (frequencies,)
+        [Hz].
+    """
+    found: list[DynamicLoad] = []
+    if not inputs or not frequencies.size:
+        return ()
+    motion = responses(balance, inputs, frequencies) * np.array([entry.amplitude for entry in inputs])
+    omega = 2.0 * np.pi * frequencies[:, None, None]
+    for index in balance.system.bearings:
+        connected = balance.system.elements[index]
+        ports = np.einsum("mn,fni->fmi", connected.transform, motion)
+        stiffness, damping = balance.element_stiffness[index], balance.element_damping[index]
+        force = np.einsum("ab,fbi->fai", stiffness, ports) + 1j * omega * np.einsum("ab,fbi->fai", damping, ports)
+        # The first port of a bearing is the inner ring, its rows 1 and 2 are y and z.
+        size = np.linalg.norm(force[:, 1:3], axis=1)
+        static = float(np.linalg.norm(balance.forces[index][1:3]))
+        for i, entry in enumerate(inputs):
+            worst = int(np.argmax(size[:, i]))
+            found.append(
+                DynamicLoad(
+                    connected.element.name, entry.name, float(size[worst, i]), static, float(frequencies[worst])
+                )
+            )
+    return tuple(found)

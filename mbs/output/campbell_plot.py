@@ -1,0 +1,188 @@
+"""The figure of a run-up: Campbell diagrams of all contact laws side by side, sum level and orders below."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
+
+from ehdmaps.physics._values import FloatArray
+from mbs.spectral.campbell import RunUpSpectra
+from mbs.spectral.levels import Reference, level
+from mbs.spectral.run_signal import RPM
+
+MOST_LAWS = 4
+"""That are readable side by side."""
+
+_WIDTH, _HEIGHT = 7.2, 5.4
+"""Of a page with a margin [inch]."""
+
+_COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00")
+_DASHES = ("-", "--", "-.", ":")
+_MAP = "viridis"
+_RANGE, _LEAST_RANGE, _WIDEST_RANGE = 80.0, 40.0, 120.0
+"""Of the colours [dB]: for one law at most, below the strongest line of each law at least, and at most for all."""
+
+_FAINTEST = 20.0
+"""Percentile of the levels of the loudest law where the colours begin, if its range is less."""
+
+_NAMED_AT = 0.96
+_SPARSE = (0.0, (1.0, 4.0))
+"""Dots, between which the ridge of an order is still seen."""
+
+_LEAST_HEIGHT, _LEAST_WIDTH = 0.05, 0.12
+"""Between two names of orders, as parts of a diagram."""
+
+_KILO = 2000.0
+"""Highest frequency that is still shown in Hz."""
+
+
+@dataclass(frozen=True, eq=False)
+class Overlay:
+    """Natural frequencies of the linear system over speed.
+
+    Attributes
+    ----------
+    speeds : array, shape (speeds,)
+        [rad/s].
+    frequencies : array, shape (speeds, modes)
+        [Hz].
+    """
+
+    speeds: FloatArray
+    frequencies: FloatArray
+
+
+def campbell_figure(
+    title: str,
+    laws: Sequence[str],
+    results: Sequence[RunUpSpectra],
+    reference: Reference,
+    orders: Sequence[tuple[float, str]] = (),
+    overlays: Sequence[Overlay | None] = (),
+) -> Figure:
+    """Draw up to four laws.
+
+    Parameters
+    ----------
+    title : str
+        Heading.
+    laws : sequence of str
+        Names of the contact laws.
+    results : sequence of RunUpSpectra
+        Of each law, of the same run.
+    reference : Reference
+        Of the levels.
+    orders : sequence of (float, str)
+        Lines to draw in, with their names.
+    overlays : sequence of Overlay or None
+        Natural frequencies to draw into the diagram of each law.
+    """
+    figure = Figure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
+    figure.suptitle(title, fontsize=8)
+    upper, lower = np.ravel(figure.subfigures(2, 1, squeeze=False, height_ratios=(1.35, 1.0)))
+    panels = upper.subplots(1, len(laws), sharex=True, sharey=True, squeeze=False)[0]
+    colours = _colours(results)
+    for index, (panel, law, result) in enumerate(zip(panels, laws, results, strict=True)):
+        _diagram(panel, result, colours)
+        _order_lines(panel, result, orders)
+        overlay = overlays[index] if index < len(overlays) else None
+        if overlay is not None:
+            factor = _unit(result)[0]
+            panel.plot(overlay.speeds * RPM, overlay.frequencies * factor, "--", color="w", lw=0.6, alpha=0.8)
+        panel.set_title(law, fontsize=8)
+        panel.set_xlabel("speed, rpm", fontsize=7)
+        panel.tick_params(labelsize=7)
+    panels[0].set_ylabel(f"frequency, {_unit(results[0])[1]}", fontsize=7)
+    bar = upper.colorbar(ScalarMappable(colours, _MAP), ax=list(panels), pad=0.01, aspect=25, extend="min")
+    bar.set_label(f"{reference.quantity} level, {_reference(reference)}", fontsize=7)
+    bar.ax.tick_params(labelsize=7)
+    left, right = lower.subplots(1, 2)
+    last = _highest_order(results[0], orders)
+    for order, _ in orders:
+        right.axvline(order, color="0.7", lw=0.5, ls=":")
+    for law, result, colour, dashes in zip(laws, results, _COLOURS, _DASHES, strict=False):
+        left.plot(result.campbell.speeds * RPM, result.campbell.sum_level, dashes, color=colour, lw=1.0, label=law)
+        spectrum = level(result.spectra.mean(), reference.value)
+        place = result.spectra.orders
+        # Below two lines is the mean.
+        shown = (place > 2.0 / result.spectra.window) & (place <= last) & np.isfinite(spectrum)
+        right.plot(place[shown], spectrum[shown], dashes, color=colour, lw=0.8)
+    left.set_xlabel("speed, rpm", fontsize=7)
+    left.set_ylabel(f"sum level, {_reference(reference)}", fontsize=7)
+    left.legend(fontsize=7, frameon=False, ncols=2 if len(laws) > 2 else 1)
+    right.set_xlabel("order (periods a turn)", fontsize=7)
+    right.set_ylabel(f"mean level, {_reference(reference)}", fontsize=7)
+    right.set_xlim(0.0, last)
+    left.set_xlim(panels[0].get_xlim())
+    for panel in (left, right):
+        panel.grid(color="0.88", lw=0.5)
+        panel.set_axisbelow(True)
+        panel.tick_params(labelsize=7)
+    return figure
+
+
+def _colours(results: Sequence[RunUpSpectra]) -> Normalize:
+    """One scale for all diagrams: from the faint parts of the loudest law, or deeper for the sake of others."""
+    tops = [result.campbell.level.max() for result in results]
+    loudest = results[int(np.argmax(tops))].campbell.level
+    top = 5.0 * np.ceil(max(tops) / 5.0)
+    bottom = min(max(np.percentile(loudest, _FAINTEST), top - _RANGE), min(tops) - _LEAST_RANGE)
+    return Normalize(float(max(5.0 * np.floor(bottom / 5.0), top - _WIDEST_RANGE)), float(top))
+
+
+def _unit(result: RunUpSpectra) -> tuple[float, str]:
+    """Factor and unit of the frequency axis."""
+    return (1e-3, "kHz") if result.campbell.frequencies[-1] > _KILO else (1.0, "Hz")
+
+
+def _diagram(panel: Axes, result: RunUpSpectra, colours: Normalize) -> None:
+    """Levels as colours; pixels also in vector files, where each value would be a path."""
+    found = result.campbell
+    frequencies = found.frequencies * _unit(result)[0]
+    panel.pcolormesh(
+        found.speeds * RPM, frequencies, found.level.T, norm=colours, cmap=_MAP, shading="nearest", rasterized=True
+    )
+    panel.set_xlim(found.speeds.min() * RPM, found.speeds.max() * RPM)
+    panel.set_ylim(frequencies[0], frequencies[-1])
+
+
+def _order_lines(panel: Axes, result: RunUpSpectra, orders: Sequence[tuple[float, str]]) -> None:
+    """Thin lines of the orders, each named near where it leaves the diagram if there is room."""
+    factor = _unit(result)[0] / (2.0 * np.pi)
+    begin, end = float(result.campbell.speeds.min()), float(result.campbell.speeds.max())
+    top = float(result.campbell.frequencies[-1]) * _unit(result)[0]
+    named: list[tuple[float, float]] = []
+    for order, name in orders:
+        stop = min(end, top / (order * factor))
+        if stop <= begin:
+            continue
+        ends = np.array([begin, stop])
+        panel.plot(ends * RPM, ends * order * factor, color="w", lw=0.6, ls=_SPARSE)
+        at = begin + _NAMED_AT * (stop - begin)
+        place = ((at - begin) / (end - begin), at * order * factor / top)
+        if all(abs(place[1] - y) > _LEAST_HEIGHT or abs(place[0] - x) > _LEAST_WIDTH for x, y in named):
+            named.append(place)
+            side = "bottom" if place[1] < 1.0 - _LEAST_HEIGHT else "top"
+            text = panel.annotate(name, (at * RPM, at * order * factor), fontsize=6, color="w", ha="right", va=side)
+            text.set_path_effects([withStroke(linewidth=1.2, foreground="0.15")])
+
+
+def _highest_order(result: RunUpSpectra, orders: Sequence[tuple[float, str]]) -> float:
+    """End of the axis of orders: beyond the last one drawn, else what the band holds at the highest speed."""
+    if orders:
+        return float(min(1.15 * max(order for order, _ in orders), result.spectra.orders[-1]))
+    top = float(result.campbell.speeds.max())
+    return float(2.0 * np.pi * result.campbell.frequencies[-1] / top)
+
+
+def _reference(reference: Reference) -> str:
+    """Unit of the levels as figures show it, such as dB re 1 um/s2."""
+    prefix = {1e-12: "p", 1e-9: "n", 1e-6: "µ"}[reference.value]
+    return f"dB re 1 {prefix}{reference.unit.replace('s2', 's²')}"

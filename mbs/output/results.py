@@ -1,0 +1,255 @@
+"""Results of the analyses as labelled datasets with units, and how they are written."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import FloatArray
+from mbs.bearings.roller_element import ring_matrices
+from mbs.body import FREEDOMS
+from mbs.elements import Input, Sensor
+from mbs.linearised.linear import ComplexArray, StateSpace
+from mbs.linearised.modes import Modes
+from mbs.statics import Equilibrium
+from mbs.system import System
+from mbs.transient.integration import Trajectory
+
+SCHEMA_VERSION = 1
+
+_KINDS = (("translation", "m", "displacement"), ("rotation", "rad", "rotation"), ("modal", "1", "modal amplitude"))
+_UNITS = {"m": "m", "rad": "rad", "1": "1"}
+_ORDERS = {"displacement": "", "velocity": "/s", "acceleration": "/s2"}
+
+
+def statics_dataset(balance: Equilibrium) -> xr.Dataset:
+    """Equilibrium: displacements, bearing forces, K and C of the bearings.
+
+    Parameters
+    ----------
+    balance : Equilibrium
+        What is described.
+    """
+    variables = {
+        **_by_kind(balance.system, balance.displacement, (), "displacement"),
+        **_ring_variables(balance.system, balance.forces, ()),
+    }
+    bearings = balance.system.bearings
+    pairs = [ring_matrices(balance.element_stiffness[i], balance.element_damping[i]) for i in bearings]
+    for index, (name, unit) in enumerate((("stiffness", "N/m"), ("damping", "N s/m"))):
+        rings = [pair[index] for pair in pairs]
+        variables[f"bearing_{name}"] = (
+            ("bearing", "freedom", "with_respect_to"),
+            np.stack(rings) if rings else np.zeros((0, 6, 6)),
+            {
+                "units": f"{unit}, N m and rad in place of N and m for tilts",
+                "long_name": f"{name} of the bearing on its inner ring",
+            },
+        )
+    coordinates = {
+        "bearing": _bearing_names(balance.system),
+        "freedom": list(FREEDOMS),
+        "with_respect_to": list(FREEDOMS),
+    }
+    return xr.Dataset(variables, coords={**_coordinates(balance.system), **coordinates}, attrs=_operation(balance))
+
+
+def modes_dataset(found: Modes, balance: Equilibrium) -> xr.Dataset:
+    """Modes: frequency, damping ratio, shapes and strain-energy shares."""
+    real, imaginary = (
+        _by_kind(balance.system, part.T, ("mode",), f"shape_{name}")
+        for name, part in (("real", found.shapes.real), ("imaginary", found.shapes.imag))
+    )
+    variables = {
+        "frequency": ("mode", found.frequency, {"units": "Hz", "long_name": "|eigenvalue|/(2 pi)"}),
+        "damping_ratio": ("mode", found.damping_ratio, {"units": "1", "long_name": "damping ratio"}),
+        "eigenvalue_real": ("mode", found.eigenvalues.real, {"units": "1/s", "long_name": "decay"}),
+        "eigenvalue_imaginary": ("mode", found.eigenvalues.imag, {"units": "rad/s", "long_name": "damped frequency"}),
+        "energy_share": (
+            ("part", "mode"),
+            found.shares,
+            {"units": "1", "long_name": "part of the strain energy of the mode"},
+        ),
+        **real,
+        **imaginary,
+    }
+    coordinates = {"part": list(found.parts), "mode": np.arange(1, found.eigenvalues.size + 1)}
+    return xr.Dataset(variables, coords={**_coordinates(balance.system), **coordinates}, attrs=_operation(balance))
+
+
+def linear_dataset(
+    balance: Equilibrium,
+    space: StateSpace,
+    responses: ComplexArray,
+    frequencies: FloatArray,
+    inputs: Sequence[Input],
+    sensors: Sequence[Sensor],
+) -> xr.Dataset:
+    """State space and frequency responses."""
+    names = list(balance.system.coordinates)
+    states = [*names, *(f"{name}.rate" for name in names)]
+    dims = ("frequency", "sensor", "input")
+    quantities = [sensor.quantity for sensor in sensors]
+    units = "m, m/s or m/s2 by the sensor's quantity (rad for rotations), per N or N m"
+    variables = {
+        "response_real": (dims, responses.real, {"units": units, "long_name": "real part of the response"}),
+        "response_imaginary": (dims, responses.imag, {"units": units, "long_name": "imaginary part of the response"}),
+        "A": (("state", "of_state"), space.A, {"units": "SI", "long_name": "system matrix"}),
+        "B": (("state", "input"), space.B, {"units": "SI", "long_name": "input matrix"}),
+        "C": (("sensor", "of_state"), space.C, {"units": "SI", "long_name": "output matrix"}),
+        "D": (("sensor", "input"), space.D, {"units": "SI", "long_name": "feedthrough"}),
+        "quantity": ("sensor", quantities, {"long_name": "what the sensor measures"}),
+        "amplitude": (
+            "input",
+            [entry.amplitude for entry in inputs],
+            {"units": "N or N m", "long_name": "amplitude in operation"},
+        ),
+    }
+    coordinates = {
+        "frequency": ("frequency", frequencies, {"units": "Hz", "long_name": "frequency"}),
+        "sensor": [sensor.name for sensor in sensors],
+        "input": [entry.name for entry in inputs],
+        "state": states,
+        "of_state": states,
+    }
+    return xr.Dataset(variables, coords=coordinates, attrs=_operation(balance))
+
+
+def run_dataset(system: System, run: Trajectory, outside: Mapping[str, int]) -> xr.Dataset:
+    """Trajectory of a run: motion of all coordinates, and forces of the bearings.
+
+    Parameters
+    ----------
+    system : System
+        Whose run it is.
+    run : Trajectory
+        What was recorded.
+    outside : mapping of str to int
+        Calls outside the map, by bearing.
+    """
+    variables: dict[str, Any] = {
+        "speed": ("time", run.speed, {"units": "rad/s", "long_name": "speed of the system"}),
+        "angle": ("time", run.angle, {"units": "rad", "long_name": "angle turned"}),
+        **_ring_variables(system, run.forces, ("time",)),
+    }
+    for order, values in (
+        ("displacement", run.displacement),
+        ("velocity", run.velocity),
+        ("acceleration", run.acceleration),
+    ):
+        variables |= _by_kind(system, values, ("time",), order)
+    names = _bearing_names(system)
+    variables["outside_calls"] = (
+        "bearing",
+        np.array([outside.get(str(name), 0) for name in names], dtype=np.int64),
+        {"units": "1", "long_name": "law calls outside the map"},
+    )
+    coordinates = {
+        "time": ("time", run.time, {"units": "s", "long_name": "time"}),
+        "bearing": names,
+    }
+    attributes = {"steps": run.steps, "steps_halved": run.halved, "newton_iterations": run.iterations}
+    return xr.Dataset(variables, coords={**_coordinates(system), **coordinates}, attrs=attributes)
+
+
+def write_dataset(dataset: xr.Dataset, path: Path) -> None:
+    """Write a result aside, then rename it over what stands there.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    aside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    if path.exists() and not path.is_file():
+        # A device would be replaced by a file.
+        raise InputError(f"-o: {path} cannot be written (it is no file); allowed: a file in a folder")
+    try:
+        try:
+            dataset.to_netcdf(aside, engine="netcdf4", mode="w")
+            aside.replace(path)
+        finally:
+            aside.unlink(missing_ok=True)
+    except (OSError, RuntimeError) as error:
+        raise InputError(
+            f"-o: {path} cannot be written ({error}); allowed: a file in a folder that may be written, with space "
+            "on the disk"
+        ) from error
+
+
+def described(dataset: xr.Dataset, **attributes: str) -> xr.Dataset:
+    """The dataset with its provenance: scene, law and versions."""
+    try:
+        own = version("ehdmaps")
+    except PackageNotFoundError:  # runs from a folder that is not installed
+        own = "not installed"
+    return dataset.assign_attrs(schema_version=SCHEMA_VERSION, ehdmaps_version=own, **attributes)
+
+
+def _by_kind(system: System, values: FloatArray, dims: tuple[str, ...], order: str) -> dict[str, Any]:
+    """Variables of a quantity of all coordinates, apart by unit; the last axis is that of the coordinates."""
+    found = {}
+    units = np.array(system.units)
+    for dim, unit, words in _KINDS:
+        here = units == unit
+        if here.any():
+            per = _ORDERS.get(order, "")
+            shape = order.startswith("shape")
+            name = order if dim == "translation" else f"{dim}_{order}"
+            if dim == "rotation" and order == "displacement":
+                name = "rotation"
+            found[name] = (
+                (*dims, f"{dim}_coordinate"),
+                values[..., here],
+                {
+                    "units": f"{unit}, scaled" if shape else f"{unit}{per}",
+                    "long_name": f"{order.replace('_', ' ')}, {words}" if shape or per else words,
+                },
+            )
+    return found
+
+
+def _coordinates(system: System) -> dict[str, Any]:
+    """Names of the coordinates, apart by unit."""
+    names, units = np.array(system.coordinates), np.array(system.units)
+    return {f"{dim}_coordinate": names[units == unit].tolist() for dim, unit, _ in _KINDS if (units == unit).any()}
+
+
+def _ring_variables(
+    system: System, forces: Sequence[FloatArray], dims: tuple[str, ...]
+) -> dict[str, tuple[tuple[str, ...], FloatArray, dict[str, str]]]:
+    """Force and moment of the bearings on their inner rings."""
+    if not system.bearings:
+        return {}
+    rings = np.stack([forces[i][..., :6] for i in system.bearings], axis=len(dims))
+    return {
+        name: (
+            (*dims, "bearing", "direction"),
+            rings[..., part],
+            {"units": unit, "long_name": f"{name.split('_')[1]} of the bearing on its inner ring: x, y, z"},
+        )
+        for name, unit, part in (("bearing_force", "N", slice(0, 3)), ("bearing_moment", "N m", slice(3, 6)))
+    }
+
+
+def _bearing_names(system: System) -> npt.NDArray[np.str_]:
+    """Names of the bearings; texts also where there is none."""
+    return np.array([system.elements[i].element.name for i in system.bearings], dtype=np.str_)
+
+
+def _operation(balance: Equilibrium) -> dict[str, Any]:
+    """Speed and quality of an equilibrium."""
+    return {
+        "speed_rad_per_s": balance.operation.speed,
+        "angle_rad": balance.operation.angle,
+        "residual": balance.residual,
+        "newton_steps": balance.steps,
+    }

@@ -1,0 +1,183 @@
+"""Figure of a sweep: modes, stiffness and damping of the bearings, and responses over speed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, SubFigure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import ScalarFormatter
+
+from ehdmaps.physics._values import FloatArray
+from mbs.linearised.linear import response_unit
+from mbs.linearised.sweep_result import Sweep, UndampedSweep
+
+_RPM = 30.0 / np.pi
+_COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00", "#6a3d9a", "#0b8a8f", "#d95f02", "#444444")
+_LEAST_SHARE = 0.05
+_MOST_MAPS = 4
+_MARKS = 16
+_LEVELS_SHOWN = 50.0
+_NOTHING = 1e-4
+_WIDTH = 9.0
+_ROW = 3.1
+
+
+def sweep_figure(title: str, words: str, sweeps: Sequence[Sweep], labels: Sequence[str]) -> Figure:
+    """Modes, bearings and the response of the first sensor to the first input over speed, a colour a case.
+
+    Parameters
+    ----------
+    title, words : str
+        Heading; the words are its second line.
+    sweeps : sequence of Sweep
+        At the same speeds.
+    labels : sequence of str
+        What each is.
+    """
+    maps = [entry for entry in sweeps if entry.responses.values.size][:_MOST_MAPS]
+    rows = 3 if maps else 2
+    figure = Figure(figsize=(_WIDTH, _ROW * rows + 0.4), layout="constrained")
+    figure.suptitle(f"{title}\n{words.replace(' degC', ' °C')}", fontsize=10)
+    parts = figure.subfigures(rows, 1, squeeze=False)[:, 0]
+    top, middle = parts[0].subplots(1, 2), parts[1].subplots(1, 3)
+    handles = []
+    for entry, label, colour in zip(sweeps, labels, _COLOURS * 6, strict=False):
+        _modes((*top, middle[0]), entry, colour)
+        _bearings(middle[1:], entry, colour)
+        handles.append(Line2D([], [], color=colour, lw=1.6, label=label.replace(" um", " µm")))
+    _axes(top[0], "frequency, Hz", "log")
+    _axes(top[1], "change of undamped frequency, %")
+    _axes(middle[0], "damping ratio, %", "log")
+    _axes(middle[1], "bearing k along its load, N/µm")
+    _axes(middle[2], "bearing c along its load, N s/m")
+    for panel in middle[1:]:
+        panel.set_ylim(0.0, 1.05 * panel.get_ylim()[1])
+    _limit(top[0], sweeps, lambda found: found.frequency)
+    _limit(middle[0], sweeps, lambda found: 100.0 * found.damping_ratio)
+    if maps:
+        top[0].set_ylim(top=min(top[0].get_ylim()[1], 1.4 * _highest(maps[0])))
+    if len(handles) > 1:
+        parts[0].legend(handles=handles, loc="outside upper center", ncols=4, fontsize=8, frameon=False)
+    styles = [
+        Line2D([], [], color="0.3", lw=1.8, label="undamped, all energy in the bearings"),
+        Line2D([], [], color="0.3", lw=0.6, label="undamped, 5 % there"),
+        Line2D([], [], color="0.3", lw=0, marker="o", ms=3.2, mfc="white", label="complex, with gyroscopic terms"),
+        Line2D([], [], color="0.75", lw=0.7, label="undamped, less than 5 % there"),
+    ]
+    parts[1].legend(handles=styles, loc="outside lower center", ncols=4, fontsize=7.5, frameon=False)
+    if maps:
+        _maps(parts[2], maps, labels)
+    return figure
+
+
+def _modes(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
+    """Modes over speed: thick where the strain energy is in the bearings, grey where hardly any is."""
+    rpm = entry.speeds * _RPM
+    plain, damped = entry.undamped, entry.damped
+    highest = _highest(entry)
+    for k in range(plain.frequency.shape[1]):
+        share = float(plain.bearing_share[:, k].max())
+        shown = share >= _least(entry)
+        shade, width = (colour, 0.6 + 1.2 * share) if shown else ("0.75", 0.7)
+        axes[0].plot(rpm, _positive(plain.frequency[:, k]), color=shade, lw=width, zorder=2 if shown else 1)
+        if shown and plain.frequency[:, k].min() <= highest:
+            axes[1].plot(rpm, 100.0 * plain.shift[:, k], color=shade, lw=width)
+            axes[2].plot(rpm, _positive(100.0 * plain.damping_ratio[:, k]), color=shade, lw=width)
+    every = max(rpm.size // _MARKS, 1)
+    for k in range(damped.eigenvalues.shape[1]):
+        if np.nanmax(damped.bearing_share[:, k]) >= _least(entry) and np.nanmin(damped.frequency[:, k]) <= highest:
+            for panel, values in ((axes[0], damped.frequency), (axes[2], 100.0 * damped.damping_ratio)):
+                panel.plot(
+                    rpm[::every], _positive(values[::every, k]), "o", ms=3.2, mfc="white", mec=colour, mew=0.8, zorder=3
+                )
+
+
+def _bearings(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
+    """Stiffness and damping of each bearing over speed; bearings that do the same lie on each other."""
+    rpm = entry.speeds * _RPM
+    for index, dashes in zip(range(len(entry.bearings.names)), ("-", "--", "-.", ":") * 16, strict=False):
+        axes[0].plot(rpm, 1e-6 * entry.bearings.stiffness[:, index], dashes, color=colour, lw=1.3)
+        axes[1].plot(rpm, entry.bearings.damping[:, index], dashes, color=colour, lw=1.3)
+
+
+def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str]) -> None:
+    """The first response of each case as a level over speed and frequency, with one scale for all."""
+    axes = part.subplots(1, len(maps), sharey=True, squeeze=False)[0]
+    found = maps[0].responses
+    unit = response_unit(found.sensors[0], found.inputs[0]).replace("s2", "s²")
+    levels = [20.0 * np.log10(np.maximum(np.abs(entry.responses.values[:, :, 0, 0]), 1e-300)) for entry in maps]
+    # The last tenths of a per cent are the tips of undamped resonances, which would take the scale for themselves.
+    lowest, highest = (5.0 * np.round(np.percentile(np.stack(levels), part) / 5.0) for part in (1.0, 99.7))
+    lowest, highest = max(lowest, highest - _LEVELS_SHOWN), max(highest, lowest + 5.0)
+    # The axis goes as the frequencies were asked for: the middle of a logarithmic one lies low.
+    middle = found.frequencies[found.frequencies.size // 2]
+    mean = 0.5 * (found.frequencies[0] + found.frequencies[-1])
+    scale = "log" if found.frequencies[0] > 0.0 and middle < 0.8 * mean else "linear"
+    image = None
+    for panel, entry, level, label in zip(axes, maps, levels, labels, strict=False):
+        image = panel.pcolormesh(
+            entry.speeds * _RPM,
+            found.frequencies,
+            level.T,
+            vmin=lowest,
+            vmax=highest,
+            cmap="viridis",
+            shading="nearest",
+            rasterized=True,
+        )
+        panel.set_xlabel("speed, rpm", fontsize=9)
+        panel.set_xlim(entry.speeds[0] * _RPM, entry.speeds[-1] * _RPM)
+        panel.set_yscale(scale)
+        panel.set_title(label.replace(" um", " µm"), fontsize=8.5)
+        panel.tick_params(labelsize=8)
+    axes[0].set_ylabel("frequency, Hz", fontsize=9)
+    if image is not None:
+        bar = part.colorbar(image, ax=list(axes), pad=0.01, extend="both")
+        bar.set_label(f"{found.sensors[0].name} by {found.inputs[0].name}, dB re 1 {unit}", fontsize=8)
+        bar.ax.tick_params(labelsize=8)
+
+
+def _axes(panel: Axes, label: str, scale: str = "linear") -> None:
+    """Labels and a quiet grid."""
+    panel.set_yscale(scale)
+    panel.set_xlabel("speed, rpm", fontsize=9)
+    panel.set_ylabel(label, fontsize=9)
+    panel.grid(color="0.9", lw=0.5, which="both" if scale == "log" else "major")
+    panel.set_axisbelow(True)
+    panel.tick_params(labelsize=8)
+    if scale == "linear":
+        panel.yaxis.set_major_formatter(ScalarFormatter(useMathText=True))
+
+
+def _limit(panel: Axes, sweeps: Sequence[Sweep], read: Callable[[UndampedSweep], FloatArray]) -> None:
+    """Show the range of the modes with strain energy in the bearings, with room around it."""
+    inside = [
+        (entry.undamped.bearing_share.max(axis=0) >= _least(entry))
+        & (entry.undamped.frequency.min(axis=0) <= _highest(entry))
+        for entry in sweeps
+    ]
+    found = np.concatenate(
+        [read(entry.undamped)[:, shown].ravel() for entry, shown in zip(sweeps, inside, strict=True)]
+    )
+    found = found[found > _NOTHING]
+    if found.size:
+        panel.set_ylim(found.min() / 1.4, found.max() * 1.4)
+
+
+def _least(entry: Sweep) -> float:
+    """Part of the strain energy in the bearings from which a mode is of interest; none without bearings."""
+    return _LEAST_SHARE if entry.bearings.names else 0.0
+
+
+def _highest(entry: Sweep) -> float:
+    """Highest frequency of the responses, up to which modes are of interest; no limit without responses [Hz]."""
+    return float(entry.responses.frequencies.max(initial=0.0)) if entry.responses.values.size else math.inf
+
+
+def _positive(values: FloatArray) -> FloatArray:
+    """Values for a logarithmic axis; damping below a millionth of the critical one is none."""
+    return np.where(values > _NOTHING, values, np.nan)

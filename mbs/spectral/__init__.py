@@ -1,0 +1,1 @@
+"""What a run-up shows: levels over speed, frequency and order."""

@@ -1,0 +1,249 @@
+"""A run in compiled code: what `run_kernel` needs, made ready for a batch of steps, and the steps between.
+
+Steps that have no table of the law (speeds below the map, where films fade; loads above the map) are made by
+`mbs.transient.stepping`, from the same state.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+import scipy.linalg
+
+from ehdmaps.physics._values import FloatArray
+from mbs.bearings import slice_table as table
+from mbs.profiles import LoadProfile, SpeedProfile
+from mbs.system import System
+from mbs.transient.linear_part import LinearPart
+from mbs.transient.run_arrays import Course, Films, IndexArray, Numbers, Records, State
+from mbs.transient.run_elements import RunElements
+from mbs.transient.run_kernel import ABOVE, advance, observe
+from mbs.transient.speed_tables import NODES
+from mbs.transient.stepping import ITERATIONS, Method, Settings, Stepper
+
+Marks = npt.NDArray[np.bool_]
+Places = Sequence[tuple[IndexArray, FloatArray]]
+
+
+class CompiledRun:
+    """Steps of a system in compiled code, with the state that they lead to.
+
+    Parameters
+    ----------
+    system : System
+        With elements that `mbs.transient.run_elements.is_known` knows.
+    speed : SpeedProfile
+        Prescribed speed.
+    settings : Settings
+        Method and steps.
+    stepper : Stepper
+        At the beginning of the run; makes the steps that compiled code cannot.
+    outputs : array, shape (k, n)
+        What is recorded of the coordinates.
+    orders : array, shape (k,)
+        Whether of displacement, velocity or acceleration: 0, 1, 2.
+    samples : int
+        How many records there will be.
+    states : bool
+        Whether all coordinates are recorded.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        speed: SpeedProfile,
+        settings: Settings,
+        stepper: Stepper,
+        outputs: FloatArray,
+        orders: IndexArray,
+        samples: int,
+        states: bool,
+    ) -> None:
+        self._speed, self._settings, self._stepper = speed, settings, stepper
+        values, modes = scipy.linalg.eigh(system.stiffness, system.mass)
+        self._modes, self._by_mass = np.ascontiguousarray(modes), np.ascontiguousarray(modes.T @ system.mass)
+        self._elements = RunElements.of(system.elements)
+        expand = self._elements.expand
+        self._back = np.linalg.pinv(expand) if expand.size else expand.T
+        ports = np.concatenate([np.zeros((0, system.size)), *(entry.transform for entry in system.elements)])
+        self._method = Method(settings.spectral_radius)
+        self._linear = LinearPart(
+            values,
+            np.ascontiguousarray(modes.T @ system.damping @ modes),
+            np.ascontiguousarray(modes.T @ system.gyroscopic @ modes),
+            np.ascontiguousarray(expand @ ports @ modes),
+            self._modes if settings.tolerance < math.inf else self._modes[:0],
+            self._method,
+        )
+        self._films = _room(len(self._elements.films), any(film.varies for film in self._elements.films))
+        self._steady, self._varying, self._profiles = _loads(system, modes)
+        self._state = State(np.zeros((4, system.size)), np.zeros((3, expand.shape[0])))
+        self._records = Records(
+            rows=np.ascontiguousarray(outputs @ modes),
+            orders=orders,
+            outputs=np.zeros((samples, outputs.shape[0])),
+            forces=np.zeros((samples, expand.shape[0])),
+            motions=np.zeros((samples if states else 0, 3, system.size)),
+        )
+        self._counters = np.zeros(1, dtype=np.int64)
+        self.compiled = 0
+        self._take_over()
+        observe(self._state, self._records, 0)
+
+    @property
+    def iterations(self) -> int:
+        """Newton iterations so far."""
+        return self._stepper.iterations + int(self._counters[0])
+
+    def steps(self, times: FloatArray, h: float, rows: IndexArray) -> tuple[int, float]:
+        """Make steps of length h [s] to the given times.
+
+        Parameters
+        ----------
+        times : array, shape (k,)
+            Ends of the steps [s].
+        h : float
+            Their length [s].
+        rows : array, shape (k,)
+            Where to record; negative for not at all.
+
+        Returns
+        -------
+        done, error : int, float
+            How many were made, and the estimated error of the last one that was tried; infinite without a solution.
+        """
+        courses = np.array([self._speed.at(time) for time in times.tolist()])
+        speeds, angles = np.ascontiguousarray(courses[:, 0]), np.ascontiguousarray(courses[:, 1])
+        factors = _factors(self._profiles, times)
+        places = [film.places(speeds) for film in self._elements.films]
+        numbers = self._numbers(h)
+        self._state.forces[1:] = self._state.forces[0]  # the steps before may have had another length
+        done, error = 0, 0.0
+        while done < times.size:
+            linear, reach = self._linear.about(h, speeds[done:])
+            slots, weights, outside, sound = self._prepare(speeds, places, done, reach)
+            count = sound.size if sound.all() else int(np.argmin(sound))
+            made, status = 0, ABOVE
+            if count:
+                here = slice(done, done + count)
+                course = Course(
+                    speeds=speeds[here],
+                    angles=angles[here],
+                    nodes=slots[:count],
+                    weights=weights[:count],
+                    outside=outside[:count],
+                    steady=self._steady,
+                    varying=self._varying,
+                    factors=factors[here],
+                    rows=rows[here],
+                )
+                made, status, error = advance(
+                    linear, numbers, self._elements.arrays, self._films, course, self._state, self._records,
+                    self._counters,
+                )  # fmt: skip
+                self._elements.hand_over_counts()
+                self.compiled += made
+                done += made
+            if made == count > 0:
+                continue
+            if status != ABOVE:
+                return done, error
+            wanted = 1 if count else int(np.argmax(sound)) or sound.size
+            made, error = self._uncompiled(times[done : done + wanted], h, rows[done : done + wanted])
+            done += made
+            if made < wanted:
+                return done, error
+        return done, error
+
+    def recorded(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Outputs (samples, k), forces in all ports (samples, ports), and motions (samples, 3, n) where recorded."""
+        records = self._records
+        return records.outputs, records.forces @ self._elements.expand, records.motions @ self._modes.T
+
+    def _prepare(
+        self, speeds: FloatArray, places: Places, done: int, reach: int
+    ) -> tuple[IndexArray, FloatArray, IndexArray, Marks]:
+        """Tables for the next steps, at most `reach`: slots, weights, whether outside, and whether there are any."""
+        part, found = slice(done, done + reach), []
+        for index, (film, (nodes, weights)) in enumerate(zip(self._elements.films, places, strict=True)):
+            tables = self._films.tables[index], self._films.numbers[index]
+            found.append((*film.prepare(speeds[part], nodes[part], weights[part], *tables), weights[part]))
+        self._films.in_use[:] = -1.0
+        count = min((entry[0].size for entry in found), default=reach)
+        slots, outside = (np.zeros((count, len(found)), dtype=np.int64) for _ in range(2))
+        weights, sound = np.zeros((count, len(found))), np.ones(count, dtype=bool)
+        for index, (slot, whole, beyond, weight) in enumerate(found):
+            slots[:, index], outside[:, index], weights[:, index] = slot[:count], beyond[:count], weight[:count]
+            sound &= whole[:count]
+        return slots, weights, outside, sound
+
+    def _uncompiled(self, times: FloatArray, h: float, rows: IndexArray) -> tuple[int, float]:
+        """Make steps by the reference; as `steps`."""
+        stepper = self._stepper
+        stepper.q, stepper.v, stepper.acceleration, stepper.carried = (
+            self._modes @ part for part in self._state.motion
+        )
+        error = 0.0
+        for done, (time, row) in enumerate(zip(times.tolist(), rows.tolist(), strict=True)):
+            error = stepper.step(time, h)
+            if not error <= self._settings.tolerance or math.isinf(error):
+                return done, error
+            self._take_over()
+            if row >= 0:
+                observe(self._state, self._records, row)
+        return times.size, error
+
+    def _take_over(self) -> None:
+        """Take the state of the reference."""
+        stepper = self._stepper
+        given = (stepper.q, stepper.v, stepper.acceleration, stepper.carried)
+        for part, values in zip(self._state.motion, given, strict=True):
+            part[:] = self._by_mass @ values
+        self._state.forces[:] = stepper.forces @ self._back
+
+    def _numbers(self, h: float) -> Numbers:
+        """Numbers of the method."""
+        method = self._method
+        by_q, by_v = method.weights(h)
+        return Numbers(
+            h=h,
+            by_q=by_q,
+            by_v=by_v,
+            alpha_m=method.alpha_m,
+            alpha_f=method.alpha_f,
+            beta=method.beta,
+            gamma=method.gamma,
+            ratio=method.ratio,
+            error_weight=method.error_weight(h),
+            tolerance=self._settings.tolerance,
+            residual=self._settings.residual,
+            iterations=ITERATIONS,
+        )
+
+
+def _room(films: int, varies: bool) -> Films:
+    """Room for tables."""
+    nodes, cells = (NODES, 2 * table.ROWS) if varies else (1, 1)
+    return Films(
+        tables=np.zeros((films, nodes, cells, 8)),
+        numbers=np.zeros((films, nodes, table.NUMBERS)),
+        cells=np.zeros((films, cells, 8)),
+        current=np.zeros((films, table.NUMBERS)),
+        in_use=np.full((films, 2), -1.0),
+    )
+
+
+def _loads(system: System, modes: FloatArray) -> tuple[FloatArray, FloatArray, list[LoadProfile]]:
+    """Loads by mode: the steady ones, the varying ones and their profiles."""
+    varying = [modes.T @ load for load, _ in system.varying_loads]
+    rows = np.array(varying).reshape(len(varying), system.size)
+    return modes.T @ system.steady_loads, rows, [profile for _, profile in system.varying_loads]
+
+
+def _factors(profiles: Sequence[LoadProfile], times: FloatArray) -> FloatArray:
+    """Factors of loads at times, shape (times, loads)."""
+    columns = [[profile(time) for time in times.tolist()] for profile in profiles]
+    return np.ascontiguousarray(np.array(columns).reshape(len(profiles), times.size).T)

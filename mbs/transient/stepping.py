@@ -1,0 +1,244 @@
+"""Steps in time: the generalised-alpha method with the exact Jacobian, for elements of any kind.
+
+In the form that keeps the equations of motion fulfilled at the end of every step, so that it is of second order for
+nonlinear forces too, and becomes the trapezoidal rule for a spectral radius of 1. This is the reference: it calls
+each element as Python does. `mbs.transient.run` makes the same steps in compiled code, for the elements that it knows.
+
+References
+----------
+J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371-375 (the parameters); M. Arnold, O. Bruels, Multibody Syst.
+Dyn. 18 (2007) 185-202 (equilibrium at the end of the step); O. C. Zienkiewicz, Y. M. Xie, Earthquake Eng. Struct.
+Dyn. 20 (1991) 871-887 (the estimate of the error).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import FloatArray
+from mbs.elements import Operation
+from mbs.profiles import SpeedProfile
+from mbs.system import System
+from mbs.transient.integration_kernel import correction, port_motion, unbalanced
+
+ITERATIONS = 12
+"""Newton iterations of a step at most."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to integrate.
+
+    Attributes
+    ----------
+    step : float
+        Longest time step [s].
+    sample : float
+        Time between recorded states [s]; a whole multiple of the step.
+    spectral_radius : float
+        Of the highest frequencies, 0 to 1: 1 dissipates nothing, 0 all of it within a step.
+    tolerance : float
+        Largest error a step may make in a coordinate [m or rad], by estimate; steps are halved where it is larger.
+        Infinite: steps are equal.
+    residual : float
+        Remaining force after Newton, as a part of the forces in the system.
+
+    Raises
+    ------
+    InputError
+        With every value that is not possible.
+    """
+
+    step: float
+    sample: float
+    spectral_radius: float = 0.8
+    tolerance: float = math.inf
+    residual: float = 1e-10
+
+    def __post_init__(self) -> None:
+        problems = []
+        if not (math.isfinite(self.step) and self.step > 0.0):
+            problems.append(f"integration, step: got {self.step!r} s; allowed: finite and > 0")
+        elif not (math.isfinite(self.sample) and _whole(self.sample / self.step)):
+            problems.append(
+                f"integration, sample: got {self.sample!r} s; allowed: a whole multiple of the step {self.step!r} s"
+            )
+        if not 0.0 <= self.spectral_radius <= 1.0:
+            problems.append(f"integration, spectral_radius: got {self.spectral_radius!r}; allowed: 0 to 1")
+        if not self.tolerance > 0.0:
+            problems.append(f"integration, tolerance: got {self.tolerance!r}; allowed: > 0 (m or rad)")
+        if not 0.0 < self.residual < 1.0:
+            problems.append(f"integration, residual: got {self.residual!r}; allowed: between 0 and 1")
+        if problems:
+            raise InputError(problems)
+
+    @property
+    def steps_per_sample(self) -> int:
+        """How many steps lie between recorded states."""
+        return round(self.sample / self.step)
+
+
+@dataclass(frozen=True)
+class Method:
+    """Parameters of the generalised-alpha method with a spectral radius."""
+
+    spectral_radius: float
+
+    @property
+    def alpha_m(self) -> float:
+        """Weight of the old acceleration in the inertia."""
+        return (2.0 * self.spectral_radius - 1.0) / (self.spectral_radius + 1.0)
+
+    @property
+    def alpha_f(self) -> float:
+        """Weight of the old forces."""
+        return self.spectral_radius / (self.spectral_radius + 1.0)
+
+    @property
+    def gamma(self) -> float:
+        """Of Newmark, for second order."""
+        return 0.5 + self.alpha_f - self.alpha_m
+
+    @property
+    def beta(self) -> float:
+        """Of Newmark, for the most dissipation of the highest frequencies."""
+        return 0.25 * (self.gamma + 0.5) ** 2
+
+    @property
+    def ratio(self) -> float:
+        """Algorithmic acceleration for the one at the end of the step."""
+        return (1.0 - self.alpha_f) / (1.0 - self.alpha_m)
+
+    def weights(self, h: float) -> tuple[float, float]:
+        """Displacement and velocity at the end of a step for the acceleration there."""
+        return h * h * self.beta * self.ratio, h * self.gamma * self.ratio
+
+    def error_weight(self, h: float) -> float:
+        """Estimated error of a displacement for the change of the acceleration over a step."""
+        return abs(self.beta - 1.0 / 6.0) * h * h
+
+
+class Stepper:
+    """State of a system in time, and how it goes on by a step.
+
+    Attributes
+    ----------
+    q, v, acceleration : array, shape (n,)
+        Of the coordinates [m or rad, per s, per s2].
+    carried : array, shape (n,)
+        Algorithmic acceleration, which the method carries along.
+    iterations : int
+        Newton iterations so far.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        speed: SpeedProfile,
+        settings: Settings,
+        displacement: FloatArray,
+        velocity: FloatArray,
+    ) -> None:
+        self._system, self._speed, self._settings = system, speed, settings
+        ends = np.cumsum([0, *(connected.transform.shape[0] for connected in system.elements)]).tolist()
+        self._elements = [
+            (connected.element.evaluate, slice(begin, end))
+            for connected, begin, end in zip(system.elements, ends[:-1], ends[1:], strict=True)
+        ]
+        self._transform = np.concatenate([np.zeros((0, system.size)), *(c.transform for c in system.elements)])
+        ports = ends[-1]
+        self._motion, self._port_force, self._unbalanced = np.zeros((2, ports)), np.zeros(ports), np.zeros(system.size)
+        self._port_stiffness, self._port_damping = np.zeros((ports, ports)), np.zeros((ports, ports))
+        self._damping, self._damped_at = system.damping, math.nan
+        self._linear, self._linear_steps = system.mass, (math.nan, math.nan)
+        self._method = Method(settings.spectral_radius)
+        self._weight = 1.0 / np.sqrt(np.diag(system.mass))
+        self.q, self.v = displacement.copy(), velocity.copy()
+        self.iterations = 0
+        self._residual(self.q, self.v, np.zeros(system.size), 0.0)
+        self.acceleration = np.asarray(np.linalg.solve(system.mass, -self._unbalanced), dtype=np.float64)
+        self.carried = self.acceleration.copy()
+
+    def step(self, time: float, h: float) -> float:
+        """Make a step and return the estimate of its error; leave the state as it is where that is too large.
+
+        Parameters
+        ----------
+        time : float
+            At the end of the step [s].
+        h : float
+            How long [s].
+        """
+        method = self._method
+        by_q, by_v = method.weights(h)
+        # Algorithmic acceleration without the part of the unknown one.
+        known = (method.alpha_f * self.acceleration - method.alpha_m * self.carried) / (1.0 - method.alpha_m)
+        q0 = self.q + h * self.v + h * h * ((0.5 - method.beta) * self.carried + method.beta * known)
+        v0 = self.v + h * ((1.0 - method.gamma) * self.carried + method.gamma * known)
+        unknown = self.acceleration
+        largest = 0.0
+        for _ in range(ITERATIONS):
+            self.iterations += 1
+            q, v = q0 + by_q * unknown, v0 + by_v * unknown
+            size, scale = self._residual(q, v, unknown, time)
+            largest = max(largest, scale)
+            if size <= self._settings.residual * largest:
+                break
+            try:
+                unknown = unknown - self._correction(by_q, by_v)
+            except np.linalg.LinAlgError:
+                return math.inf
+        else:
+            return math.inf
+        error = method.error_weight(h) * float(np.max(np.abs(unknown - self.acceleration)))
+        if error <= self._settings.tolerance:
+            self.q, self.v = q, v
+            self.carried = known + method.ratio * unknown
+            self.acceleration = unknown
+        return error
+
+    def _residual(self, q: FloatArray, v: FloatArray, acceleration: FloatArray, time: float) -> tuple[float, float]:
+        """Find the forces that are out of balance: their size, and that of those which balance each other."""
+        system = self._system
+        speed, angle = self._speed.at(time)
+        operation = Operation(speed, angle, time)
+        if speed != self._damped_at:
+            self._damping, self._damped_at = system.damping + speed * system.gyroscopic, speed
+            self._linear_steps = (math.nan, math.nan)
+        port_motion(self._transform, q, v, self._motion)
+        x, rate = self._motion
+        for evaluate, rows in self._elements:
+            f, k, c = evaluate(x[rows], rate[rows], operation)
+            self._port_force[rows] = f
+            self._port_stiffness[rows, rows] = k
+            self._port_damping[rows, rows] = c
+        matrices = (system.mass, self._damping, system.stiffness, self._transform, self._weight)
+        state = (q, v, acceleration)
+        sizes: tuple[float, float] = unbalanced(
+            *matrices, state, system.loads(time), self._port_force, self._unbalanced
+        )
+        return sizes
+
+    def _correction(self, by_q: float, by_v: float) -> FloatArray:
+        """Newton's change of the acceleration at the end of the step, for the last residual."""
+        if self._linear_steps != (by_q, by_v):
+            system = self._system
+            self._linear = system.mass + by_v * self._damping + by_q * system.stiffness
+            self._linear_steps = (by_q, by_v)
+        ports = (self._transform, self._port_stiffness, self._port_damping)
+        change = np.asarray(correction(self._linear, *ports, by_q, by_v, self._unbalanced), dtype=np.float64)
+        return change
+
+    @property
+    def forces(self) -> FloatArray:
+        """Force of all elements in their ports at the last evaluation, one after the other."""
+        return self._port_force
+
+
+def _whole(ratio: float) -> bool:
+    """Whether a ratio is a whole number >= 1, to rounding."""
+    return round(ratio) >= 1 and abs(ratio - round(ratio)) <= 1e-6 * ratio
