@@ -16,7 +16,7 @@ from ehdmaps.jobs.progress import progress
 from ehdmaps.units import TEMPERATURE, Display, closest, quantity
 from mbs.assembly import Model
 from mbs.commands.cases import Case, load_cases
-from mbs.commands.common import heading, write
+from mbs.commands.common import film_course, heading, write
 from mbs.elements import Operation, Sensor
 from mbs.errors import AnalysisError
 from mbs.linearised.sweep import sweep
@@ -313,7 +313,8 @@ def _report(entry: _Found) -> list[str]:
     lines += [
         f"warning: {name}: {count} calls outside the map" for name, count in entry.record.outside.items() if count
     ]
-    return lines
+    ends = (float(found.speeds[0]), float(found.speeds[-1]))
+    return lines + [f"  {line}" for line in film_course(entry.case.model, ends)]
 
 
 def _peak(peak: OrderPeak, modes: Sweep | None) -> str:

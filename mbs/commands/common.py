@@ -22,7 +22,7 @@ from mbs.elements import Operation
 from mbs.linearised.validity import HIGHEST_RATIO, FilmLimit, film_limit
 from mbs.output.results import described, write_dataset
 from mbs.reading.fields import MICROMETRE, RPM
-from mbs.statics import Equilibrium
+from mbs.statics import Equilibrium, equilibrium
 
 RESOLUTION = 150
 
@@ -73,6 +73,22 @@ def film_warnings(limits: Sequence[FilmLimit], frequencies: Iterable[float]) -> 
                 f"u = {limit.entrainment_speed:.3g} m/s): above it low-frequency stiffness and damping no longer hold"
             )
     return lines
+
+
+def film_course(model: Model, speeds: Iterable[float]) -> list[str]:
+    """A line on the frequencies up to which all films follow at some speeds [rad/s]; none for laws without films."""
+    shown = []
+    for speed in speeds:
+        operation = Operation(speed)
+        limits = film_limits(model, equilibrium(model.system, operation).displacement, operation)
+        if limits and speed != 0.0:
+            shown.append(f"{min(limit.frequency for limit in limits):.4g} Hz at {RPM.text(abs(speed))}")
+    if not shown:
+        return []
+    return [
+        f"films follow as in the low-frequency limit (omega b/u up to {HIGHEST_RATIO}) up to {', '.join(shown)}; "
+        "quicker motion meets a stiffer film with less damping than here"
+    ]
 
 
 def outside_at(model: Model, balance: Equilibrium) -> list[str]:

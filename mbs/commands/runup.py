@@ -11,7 +11,7 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import progress
 from mbs.commands.cases import load_model
-from mbs.commands.common import heading, write
+from mbs.commands.common import film_course, heading, write
 from mbs.elements import Operation
 from mbs.output.plot import run_figure
 from mbs.output.results import run_dataset
@@ -57,5 +57,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             f"{np.abs(np.diff(size)).max(initial=0.0):.3g} N; "
             f"{outside[bearing.name]} calls outside the map"
         )
+    # The equilibria of this line are no part of the run, whose calls were counted above.
+    lines += film_course(model, (float(result.speed[0]), float(result.speed[-1])))
     lines += write(arguments, model, run_dataset(model.system, result, outside), figure)
     return "\n".join(lines), 1 if any(outside.values()) else 0

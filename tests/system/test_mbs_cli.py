@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -207,3 +208,17 @@ def test_as_a_module(here):
         [sys.executable, "-m", "mbs", "statics", "nu308_rigid"], capture_output=True, text=True, check=True
     )
     assert "141.421 N" in result.stdout
+
+
+def test_runs_in_time_say_how_quick_their_films_are(here, capsys, maps):
+    text = read_scene("nu308_rigid").text
+    (here / "fast.toml").write_text(text.replace('speed = "500 rpm"', 'speed = "2000 rpm"'))
+    options = ("fast.toml", "--map", maps["NU308"], "--clearance", "20 um")
+    status, out, _ = run(capsys, "runup", *options)
+    assert status == 0
+    found = re.search(r"low-frequency limit \(omega b/u up to 0\.3\) up to (\S+) Hz at 2000 rpm", out)
+    # the run ends at the speed of the operation
+    same = re.search(r"low-frequency limit up to (\S+) Hz", run(capsys, "statics", *options)[1])
+    assert found is not None and same is not None
+    assert found[1] == same[1]
+    assert "films follow" not in run(capsys, "runup", "nu308_rigid")[1]
