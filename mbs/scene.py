@@ -11,7 +11,7 @@ from mbs.elements import Input, Load, Sensor, Spring
 from mbs.gears.gear import GearPair
 from mbs.linearised.sweep import SweepRange
 from mbs.profiles import SpeedProfile
-from mbs.spectral.campbell import CampbellSettings
+from mbs.spectral.settings import CampbellSettings
 from mbs.transient.integration import Settings
 
 

@@ -27,7 +27,7 @@ from mbs.reading.gears import read_gears
 from mbs.reading.shaft import read_shaft
 from mbs.reading.sweep import read_sweep
 from mbs.scene import RunUp, Scene, SceneBearing
-from mbs.spectral.campbell import CampbellSettings
+from mbs.spectral.settings import CampbellSettings
 from mbs.transient.integration import Settings
 
 LONGEST_FILE = 1_000_000

@@ -26,10 +26,11 @@ from mbs.output.campbell_plot import MOST_LAWS, Overlay, campbell_figure
 from mbs.reading.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.reading.fields import HERTZ, MICROMETRE, MILLISECOND, RPM
 from mbs.scene import RunUp, Scene
-from mbs.spectral.campbell import CampbellSettings, RunUpSpectra, run_up_spectra
+from mbs.spectral.campbell import RunUpSpectra, run_up_spectra
 from mbs.spectral.levels import Reference
 from mbs.spectral.orders import OrderPeak
 from mbs.spectral.run_signal import RunSignal
+from mbs.spectral.settings import CampbellSettings
 from mbs.spectral.spectra import LEAST_OVERSAMPLING
 from mbs.statics import equilibrium
 from mbs.transient.run import Recording
