@@ -43,6 +43,19 @@ class Harmonic:
 
 
 @dataclass(frozen=True)
+class HalfSine:
+    """The half-sine of a blow: it begins at a time and lasts a duration, both [s]; zero before and after."""
+
+    begin: float
+    duration: float
+
+    def __call__(self, time: float) -> float:
+        """Factor at a time [s]."""
+        part = (time - self.begin) / self.duration
+        return math.sin(math.pi * part) if 0.0 < part < 1.0 else 0.0
+
+
+@dataclass(frozen=True)
 class Course:
     """Straight lines between given values; the first and the last value hold before and after.
 

@@ -8,6 +8,7 @@ that a change of speed brings no lateral term.
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -138,6 +139,12 @@ class System:
     def varying_loads(self) -> tuple[tuple[FloatArray, LoadProfile], ...]:
         """Generalised loads that vary, (n,) [N or N m], each with its factor over time."""
         return self._varying
+
+    def with_load(self, load: FloatArray, profile: LoadProfile) -> System:
+        """The system with one more generalised load (n,) [N or N m], and its factor over time."""
+        loaded = copy.copy(self)
+        loaded._varying = (*self._varying, (load, profile))
+        return loaded
 
     def loads(self, time: float) -> FloatArray:
         """Generalised loads at a time [s], shape (n,) [N or N m]."""

@@ -14,6 +14,7 @@ from mbs.assembly import Model
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_limits, film_warnings, heading, outside_at
 from mbs.linearised.modes import Modes, modes
+from mbs.linearised.steady import steady_system
 from mbs.modal.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
 from mbs.modal.records import Hits
 from mbs.modal.uff import Measurement, write_uff
@@ -39,7 +40,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     ]
     if missing:
         raise InputError(missing)
-    balance = equilibrium(model.system, model.operation)
+    balance = equilibrium(steady_system(model.system), model.operation)
     found = modes(balance)
     highest = highest or (scene.frequencies[-1] if scene.frequencies else _HIGHEST)
     duration = duration or suggested_duration(found, highest)

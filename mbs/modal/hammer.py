@@ -24,9 +24,8 @@ from mbs.errors import AnalysisError
 from mbs.linearised.linear import input_matrix, sensor_matrix, state_space
 from mbs.linearised.modes import Modes
 from mbs.modal.records import LONGEST, Channel, Hits, Measured
-from mbs.profiles import Course, SpeedProfile
+from mbs.profiles import Course, HalfSine, SpeedProfile
 from mbs.statics import Equilibrium
-from mbs.system import System
 from mbs.transient.integration import Settings, Trajectory, integrate
 
 OVERSAMPLING = 16
@@ -218,29 +217,14 @@ def nonlinear_hits(
     sine = np.where((part > 0.0) & (part < 1.0), np.sin(np.pi * part), 0.0)
 
     def respond(column: int, height: float) -> FloatArray:
-        struck = _Struck(system, height * forces[:, column], begin, test.pulse)
-        # Compiled runs read loads and speed from tables of their own, which know no hammer and no cage at rest.
-        run = integrate(struck, speed, (count - 1) * fine, settings, displacement=balance.displacement, compiled=False)
+        struck = system.with_load(height * forces[:, column], HalfSine(begin, test.pulse))
+        run = integrate(struck, speed, (count - 1) * fine, settings, displacement=balance.displacement)
         if progress:
             progress()
         seen = _sensed(run, sensors, measured, at_rest)
         return _filtered(np.concatenate([height * sine[None], seen]), test)
 
     return _hits(inputs, sensors, test, respond)
-
-
-class _Struck(System):
-    """A system with the half-sine of a hammer among its loads."""
-
-    def __init__(self, system: System, shape: FloatArray, begin: float, pulse: float) -> None:
-        # All of the system is shared but its loads.
-        vars(self).update(vars(system))
-        self._shape, self._begin, self._pulse = shape, begin, pulse
-
-    def loads(self, time: float) -> FloatArray:
-        """Generalised loads at a time [s], shape (n,) [N or N m]."""
-        part = (time - self._begin) / self._pulse
-        return super().loads(time) + (math.sin(math.pi * part) * self._shape if 0.0 < part < 1.0 else 0.0)
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from mbs.elements import Input, Load, Operation, Port, Sensor, Spring
 from mbs.errors import AnalysisError
 from mbs.linearised.linear import frequency_response, state_space, with_peaks
 from mbs.linearised.modes import modes, undamped_modes
-from mbs.profiles import Constant, Course, Harmonic, SpeedProfile
+from mbs.profiles import Constant, Course, HalfSine, Harmonic, SpeedProfile
 from mbs.statics import equilibrium
 from mbs.system import System
 
@@ -247,3 +247,12 @@ def test_an_axis_gets_the_peaks_that_it_steps_over():
     # between the place of the free vibration and that of the highest response, zeta^2 apart
     assert height == pytest.approx(1.0 / (2.0 * ratio), rel=1e-6)
     assert with_peaks(np.zeros(0), np.array([eigenvalue])).size == 0
+
+
+def test_a_blow_is_added_to_the_loads():
+    body = rigid_body("body", [Inertia(2.0, 1e-3, 2e-3)], ("y", "z"))
+    plain = System([body], loads=[Load("weight", "body", np.array([0.0, 0.0, -20.0, 0.0, 0.0, 0.0]))])
+    struck = plain.with_load(np.array([100.0, 0.0]), HalfSine(1e-3, 2e-4))
+    for time, factor in ((0.0, 0.0), (1.05e-3, np.sqrt(0.5)), (1.1e-3, 1.0), (1.2e-3, 0.0), (1.0, 0.0)):
+        np.testing.assert_allclose(struck.loads(time), [100.0 * factor, -20.0], atol=1e-9)  # sine of pi, rounded
+    np.testing.assert_allclose(plain.loads(1.1e-3), [0.0, -20.0])
