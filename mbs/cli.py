@@ -39,6 +39,7 @@ def parser() -> argparse.ArgumentParser:
     _campbell(_scene_command(commands, "campbell", "run-up in time as levels over speed and frequency", compares=True))
     _hammer(_scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=False))
     _modal_fit(commands)
+    _plan(commands)
     _reduce(commands)
     return top
 
@@ -76,6 +77,20 @@ def _load_factor(command: argparse.ArgumentParser) -> None:
         action="append",
         help="multiplies all loads of the scene; more than once to compare",
     )
+
+
+def _plan(commands: Any) -> None:
+    """Add the command that plans the contact map of a scene; its -o is a job."""
+    words = "which ranges a scene needs of a contact map, and the job that covers just these"
+    command: argparse.ArgumentParser = commands.add_parser("plan", help=words, description=words)
+    command.add_argument("scene", metavar="SCENE")
+    command.add_argument("--map", metavar="MAP.nc", help="say whether this map covers the scene, instead of a job")
+    command.add_argument("--law", metavar="LAW", default="hertz", help="hertz | constant:NAME, for the loads at rest")
+    command.add_argument("--clearance", metavar="LENGTH", help='diametral clearance of all bearings, such as "20 um"')
+    command.add_argument(
+        "--margin", metavar="FACTOR", help="highest load of the map over the largest one at rest, for what moves (3)"
+    )
+    command.add_argument("-o", "--output", metavar="JOB.toml", help="job for `ehdmaps generate`")
 
 
 def _reduce(commands: Any) -> None:

@@ -104,7 +104,7 @@ def load_cases(arguments: argparse.Namespace, several: bool = True) -> list[Case
             if len(given := _given(arguments, option)) > 1
         ]
         laws = laws[:1] if _given(arguments, "law") else laws
-    clearances = [_clearance(text, problems) for text in _given(arguments, "clearance")] or [None]
+    clearances = [read_clearance(text, problems) for text in _given(arguments, "clearance")] or [None]
     factors = [_factor(text, problems) for text in _given(arguments, "load_factor")] or [1.0]
     problems += output_problems(arguments)
     count = len(laws) * len(clearances) * len(factors)
@@ -191,8 +191,8 @@ def _laws(names: list[str], paths: list[str], problems: list[str]) -> list[_Law]
     return laws if names or paths else [_Law(_WORDS["hertz"], None)]
 
 
-def _clearance(text: str, problems: list[str]) -> float | None:
-    """Read a clearance."""
+def read_clearance(text: str, problems: list[str]) -> float | None:
+    """Read what was given for --clearance [m]; None where a problem was noted."""
     try:
         value = quantity(text, "m")
     except InputError as error:

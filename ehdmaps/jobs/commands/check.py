@@ -41,13 +41,13 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"  {'contact':20s} {len(job.contacts):6d}  {names}",
         *axes,
         f"  points  {job.points} of the map, {extra} for its contact laws",
-        f"  time    {_time(job, solver, job.points + extra)}",
+        f"  time    {estimated_time(job, solver, job.points + extra)}",
         f"  memory  about {max(100.0 + (job.points + extra) * _BYTES_PER_POINT / 1e6, 1.0):.0f} MB",
     ]
     return "\n".join(lines), 0
 
 
-def _time(job: Job, solver: ContactSolver, points: int) -> str:
+def estimated_time(job: Job, solver: ContactSolver, points: int) -> str:
     """Estimate the time of a run by solving a few lines of it."""
     tasks = line_tasks(job, solver)
     if is_slow(solver):

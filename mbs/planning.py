@@ -1,0 +1,291 @@
+"""Which operating ranges a system needs of a contact map: only what occurs in it, with a stated margin.
+
+The speeds follow from the spins. The loads are those of dry contacts in equilibrium, over the angles of one pitch of
+the rollers and the extremes of loads that vary, times a margin for what moves; the films themselves take up clearance,
+which a second set of equilibria shows. Below its lowest load and speed a law goes on by itself: the film fades.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context
+from itertools import pairwise
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.films import moes_central
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.moes import film_from_moes, moes_groups
+from ehdmaps.physics.solids import STEEL
+from mbs.bearings.bearing_element import BearingElement
+from mbs.elements import Operation
+from mbs.errors import AnalysisError
+from mbs.profiles import Course, Harmonic, LoadProfile
+from mbs.statics import equilibrium
+from mbs.system import System
+
+ANGLES = 12
+"""Angles within one pitch of the rollers."""
+
+MARGIN = 3.0
+"""Highest load of a map over the largest load at rest: room for what moves."""
+
+MOST_MARGIN = 1000.0
+
+SLOWEST = 1.0 / 20.0
+"""Lowest mapped speed over the highest one, where a system starts from rest; the film fades below it."""
+
+LIGHTEST = 1.0 / 1000.0
+"""Lowest mapped load over the highest one."""
+
+LIGHT_ENOUGH = 1.0 / 100.0
+"""The same of a map that is there: planned maps begin lower for the damping of lightly loaded films. Where one of an
+NU308 begins at 1 N/mm instead of 0.1 N/mm, load and stiffness between the two are within 2 %, damping within 3 %."""
+
+LIGHT = 1e3
+"""The lowest mapped load is not above this [N/m]: lightly loaded films carry the damping of unloaded rollers."""
+
+DIGITS = 2
+"""Of the ends of an axis."""
+
+
+@dataclass(frozen=True)
+class Needed:
+    """Operating ranges that the bearings of one geometry need.
+
+    Attributes
+    ----------
+    geometry : BearingGeometry
+        One of theirs.
+    bearings : tuple of str
+        Their names.
+    load : (float, float)
+        Lowest and highest load per unit length [N/m].
+    entrainment_speed : (float, float)
+        Lowest and highest [m/s].
+    temperature : float
+        Of the oil [K].
+    static_load : float
+        Largest load of a slice at rest, centrifugal load included [N/m].
+    film_room : float
+        How much diametral clearance the films take up at the highest speed [m].
+    """
+
+    geometry: BearingGeometry
+    bearings: tuple[str, ...]
+    load: tuple[float, float]
+    entrainment_speed: tuple[float, float]
+    temperature: float
+    static_load: float
+    film_room: float
+
+
+def same_contacts(geometry: BearingGeometry) -> tuple[float, float, float, float]:
+    """What the contacts of a bearing depend on: raceways and rollers [m], rounded to a nanometre.
+
+    Bearings that agree in it share a map, whatever their clearance and number of rollers.
+    """
+    lengths = (
+        geometry.inner_raceway_diameter,
+        geometry.outer_raceway_diameter,
+        geometry.roller_diameter,
+        geometry.roller_length,
+    )
+    first, second, third, fourth = (round(length, 9) for length in lengths)
+    return first, second, third, fourth
+
+
+def speed_range(steady: Iterable[float], ramp: Sequence[float] = ()) -> tuple[float, float]:
+    """Lowest speed above rest and highest speed that occur, without sign.
+
+    Parameters
+    ----------
+    steady : iterable of float
+        Speeds that are held [rad/s].
+    ramp : sequence of float
+        Corners of a course that the speed follows [rad/s]. One that passes rest gives `SLOWEST` times the highest
+        speed as the lowest one.
+
+    Raises
+    ------
+    AnalysisError
+        If everything stands still: no film, and no map, is needed then.
+
+    Examples
+    --------
+    >>> speed_range([50.0, 0.0], [0.0, 200.0])
+    (10.0, 200.0)
+    >>> speed_range([50.0], [50.0, 200.0])
+    (50.0, 200.0)
+    """
+    corners = list(ramp)
+    sizes = [abs(speed) for speed in (*steady, *corners) if speed != 0.0]
+    if not sizes:
+        raise AnalysisError(
+            "plan: nothing turns at any speed of the scene, so that it needs no map; analyse it with --law hertz, or "
+            "give it a speed in [operation], [sweep] or [runup]"
+        )
+    low, high = min(sizes), max(sizes)
+    passes_rest = any(a * b <= 0.0 for a, b in pairwise(corners))
+    return (min(low, SLOWEST * high) if passes_rest else low), high
+
+
+def largest_loads(system: System, bearings: Sequence[BearingElement], speed: float) -> tuple[float, ...]:
+    """Largest load per unit length of a slice of each bearing at rest [N/m].
+
+    Parameters
+    ----------
+    system : System
+        With dry contact laws.
+    bearings : sequence of BearingElement
+        Those of the system.
+    speed : float
+        Of the system [rad/s].
+
+    Raises
+    ------
+    AnalysisError
+        If there is no equilibrium.
+
+    Notes
+    -----
+    Over `ANGLES` cage angles of one pitch (that of the slowest cage), at time zero and where a load that varies has
+    an extreme. Two loads that vary, each between its own extremes, may together have a larger one.
+    """
+    pitches = [
+        2.0 * math.pi / bearing.bearing.geometry.rollers / abs(bearing.rates[0])
+        for bearing in bearings
+        if bearing.rates[0] != 0.0
+    ]
+    places = [(entry, system.relative(entry.inner, entry.outer)) for entry in bearings]
+    largest = np.zeros(len(places))
+    profiles = [profile for _, profile in system.varying_loads]
+    for time in sorted({0.0, *(time for profile in profiles for time in _extremes(profile))}):
+        start = None
+        for part in range(ANGLES if pitches else 1):
+            operation = Operation(speed, max(pitches, default=0.0) * part / ANGLES, time)
+            start = equilibrium(system, operation, start).displacement
+            loads = [entry.rollers(place @ start, operation).load_per_length.max() for entry, place in places]
+            largest = np.maximum(largest, loads)
+    return tuple(largest.tolist())
+
+
+def film_room(
+    geometry: BearingGeometry, lubricant: Lubricant, load: float, entrainment_speed: float, temperature: float
+) -> float:
+    """Diametral clearance that the films of both contacts take up [m]: twice the sum of their central films.
+
+    Parameters
+    ----------
+    geometry : BearingGeometry
+        Of steel.
+    lubricant : Lubricant
+        The oil.
+    load : float
+        Per unit length [N/m], > 0.
+    entrainment_speed : float
+        [m/s], > 0.
+    temperature : float
+        [K].
+
+    References
+    ----------
+    Films as of `ehdmaps.physics.films.moes_central`.
+    """
+    state = lubricant.at(temperature)
+    viscosity, alpha = state.viscosity, state.pressure_viscosity.pressure_viscosity
+    total = 0.0
+    for contact in geometry.contacts(STEEL, "iso16281"):
+        radius, modulus = contact.radius, contact.reduced_modulus
+        load_number, oil_number = moes_groups(load, entrainment_speed, viscosity, alpha, radius, modulus)
+        total += film_from_moes(moes_central(load_number, oil_number), entrainment_speed, viscosity, radius, modulus)
+    return 2.0 * total
+
+
+def needed_ranges(
+    bearings: Sequence[BearingElement],
+    static_loads: Sequence[float],
+    rooms: Sequence[float],
+    speeds: tuple[float, float],
+    margin: float = MARGIN,
+) -> tuple[Needed, ...]:
+    """Ranges that each geometry needs, in the order of the bearings.
+
+    Parameters
+    ----------
+    bearings : sequence of BearingElement
+        Those of the system.
+    static_loads : sequence of float
+        Of each bearing, from `largest_loads` and the centrifugal load [N/m].
+    rooms : sequence of float
+        Of each bearing, from `film_room` [m].
+    speeds : (float, float)
+        Lowest and highest speed of the system [rad/s].
+    margin : float
+        Highest load over the static one, 1 to `MOST_MARGIN`.
+
+    Raises
+    ------
+    AnalysisError
+        If all bearings of a geometry are unloaded or stand still.
+    InputError
+        For a margin out of range.
+    """
+    if not 1.0 <= margin <= MOST_MARGIN:
+        raise InputError(f"plan, margin: got {margin!r}; allowed: 1 to {MOST_MARGIN:g}")
+    groups: dict[tuple[float, ...], list[int]] = {}
+    for index, bearing in enumerate(bearings):
+        groups.setdefault(same_contacts(bearing.bearing.geometry), []).append(index)
+    found = []
+    for members in groups.values():
+        names = tuple(bearings[index].name for index in members)
+        load = max(static_loads[index] for index in members)
+        rates = [bearings[index].rates[1] for index in members if bearings[index].rates[1] > 0.0]
+        if load <= 0.0 or not rates:
+            lacking = "carry no load" if rates else "do not roll"
+            raise AnalysisError(
+                f"plan: the rollers of {', '.join(names)} {lacking} in any equilibrium of the scene, so that no range "
+                "can be told; give the scene loads, spins, or a smaller clearance"
+            )
+        highest = margin * load
+        found.append(
+            Needed(
+                geometry=bearings[members[0]].bearing.geometry,
+                bearings=names,
+                load=(min(LIGHTEST * highest, LIGHT), highest),
+                entrainment_speed=(min(rates) * speeds[0], max(rates) * speeds[1]),
+                temperature=bearings[members[0]].temperature,
+                static_load=load,
+                film_room=max(rooms[index] for index in members),
+            )
+        )
+    return tuple(found)
+
+
+def outward(low: float, high: float) -> tuple[float, float]:
+    """Ends of a range of positive numbers to two digits, never inward.
+
+    Examples
+    --------
+    >>> outward(0.8247, 4.123)
+    (0.82, 4.2)
+    """
+    down, up = (Context(prec=DIGITS, rounding=rule) for rule in (ROUND_FLOOR, ROUND_CEILING))
+    return float(down.create_decimal_from_float(low)), float(up.create_decimal_from_float(high))
+
+
+def _extremes(profile: LoadProfile) -> tuple[float, ...]:
+    """Times at which a load has its extremes [s]; none where they are not known."""
+    if isinstance(profile, Course):
+        return (
+            profile.times[int(np.argmax(profile.values))],
+            profile.times[int(np.argmin(profile.values))],
+        )
+    if isinstance(profile, Harmonic) and profile.frequency > 0.0:
+        first = (0.25 - profile.phase / (2.0 * math.pi)) % 1.0
+        return first / profile.frequency, ((first + 0.5) % 1.0) / profile.frequency
+    return ()
