@@ -114,7 +114,7 @@ def run_figure(model: Model, run: Trajectory) -> Figure:
     axes[1].set_ylabel("inner ring against\nthe outer one, µm")
     axes[2].set(xlabel="time, s", ylabel="speed, rpm")
     if model.bearings:
-        axes[0].legend(fontsize=8, frameon=False)
+        axes[0].legend(fontsize=8, frameon=False, ncols=4, loc="lower left", bbox_to_anchor=(0.0, 1.0))
     for panel in axes:
         _grid(panel)
     return figure
