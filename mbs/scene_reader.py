@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
@@ -11,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.axes import AxisRule, read_axis
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.table import Table
@@ -72,10 +72,7 @@ def read_scene(source: str) -> Scene:
         ) from error
     if len(head) > LONGEST_FILE:
         raise InputError(f"{source}: longer than {LONGEST_FILE} bytes; allowed: a scene file in TOML")
-    try:
-        text = head.decode("utf-8-sig")  # some editors begin a file with a mark
-    except UnicodeDecodeError as error:
-        raise InputError(f"{source}: is not UTF-8 text (byte {error.start}); allowed: a scene file in TOML") from error
+    text = toml_text.decode(head, source, "a scene file in TOML")
     return parse_scene(text, path.stem, source, path.parent)
 
 
@@ -98,12 +95,7 @@ def parse_scene(text: str, name: str, where: str, folder: Path | None = None) ->
     InputError
         With every problem found, each beginning with `where`.
     """
-    try:
-        values = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise InputError(
-            f"{where}: is not TOML: {error}; allowed: TOML 1.0; strings with units stand in quotes"
-        ) from error
+    values = toml_text.parse(text, where)
     problems: list[str] = []
     scene = _Reader(Table(values, "scene file", problems), folder).scene(text, name)
     if problems or scene is None:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-import tomllib
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs import solvers
+from ehdmaps.jobs import solvers, toml_text
 from ehdmaps.jobs.axes import LOAD_AXIS, SPEED_AXIS, TEMPERATURE_AXIS, AxisRule, read_axis
 from ehdmaps.jobs.job import MOST_CHECKS, MOST_POINTS, Job
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
@@ -68,12 +67,7 @@ def read_job(source: str, solver: str | None = None, to_run: bool = False) -> Jo
         raise InputError(
             f"{source}: longer than {LONGEST_FILE} bytes; allowed: a job file; write long axes as from, to, points"
         )
-    try:
-        text = head.decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise InputError(
-            f"{source}: is not UTF-8 text (byte {error.start}); allowed: a TOML file or a map file"
-        ) from error
+    text = toml_text.decode(head, source, "a TOML file or a map file")
     return parse_job(text, name=path.stem, where=source, solver=solver, to_run=to_run)
 
 
@@ -98,13 +92,7 @@ def parse_job(text: str, name: str, where: str, solver: str | None = None, to_ru
     InputError
         With every problem found, each beginning with `where`.
     """
-    try:
-        values = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        # ValueError covers TOMLDecodeError and numbers with too many digits.
-        raise InputError(
-            f"{where}: is not TOML: {error}; allowed: TOML 1.0; strings with units stand in quotes"
-        ) from error
+    values = toml_text.parse(text, where)
     problems: list[str] = []
     job = _job(Table(values, "job file", problems), text, name, solver, to_run)
     if problems or job is None:

@@ -347,6 +347,12 @@ def test_a_file_that_is_no_text(tmp_path):
         read_job(str(path))
 
 
+def test_a_mark_at_the_beginning_of_a_file_is_left_out(tmp_path):
+    path = tmp_path / "job.toml"
+    path.write_bytes("\ufeff".encode() + read_job("nu308").text.encode())
+    assert read_job(str(path)).text == read_job("nu308").text
+
+
 def test_a_file_that_is_too_long(tmp_path):
     path = tmp_path / "job.toml"
     path.write_bytes(b"#" * 1_000_001)
