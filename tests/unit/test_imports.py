@@ -14,21 +14,31 @@ ROOT = Path(__file__).parents[2]
 ALLOWED = {
     "ehdmaps.errors": set(),
     "ehdmaps.units": {"ehdmaps.errors"},
+    "ehdmaps.outputs": {"ehdmaps.errors"},
     "ehdmaps.physics": {"ehdmaps.errors"},
     "ehdmaps.ehl": {"ehdmaps.errors", "ehdmaps.physics"},
     "ehdmaps.maps": {"ehdmaps.errors", "ehdmaps.units", "ehdmaps.physics"},
-    "ehdmaps.openfoam": {"ehdmaps.errors", "ehdmaps.units", "ehdmaps.physics"},
+    "ehdmaps.openfoam": {"ehdmaps.errors", "ehdmaps.outputs", "ehdmaps.units", "ehdmaps.physics"},
     "ehdmaps.jobs": {
         "ehdmaps",
         "ehdmaps.errors",
+        "ehdmaps.outputs",
         "ehdmaps.units",
         "ehdmaps.physics",
         "ehdmaps.ehl",
         "ehdmaps.openfoam",
         "ehdmaps.maps",
     },
-    "mbs": {"ehdmaps.errors", "ehdmaps.units", "ehdmaps.physics", "ehdmaps.maps"},
-    "mbs.scene": {"ehdmaps.errors", "ehdmaps.units", "ehdmaps.physics", "ehdmaps.maps", "ehdmaps.jobs", "mbs"},
+    "mbs": {"ehdmaps.errors", "ehdmaps.outputs", "ehdmaps.units", "ehdmaps.physics", "ehdmaps.maps"},
+    "mbs.scene": {
+        "ehdmaps.errors",
+        "ehdmaps.outputs",
+        "ehdmaps.units",
+        "ehdmaps.physics",
+        "ehdmaps.maps",
+        "ehdmaps.jobs",
+        "mbs",
+    },
 }
 """What each layer may import besides itself and other distributions. `ehdmaps` itself is the shop window of all."""
 

@@ -1,0 +1,270 @@
+"""Files that the programs write: which file may be replaced, and how it is done. One rule for every writer.
+
+A file is replaced only where it is a regular file, none of those that the command reads, and one that a program of this
+distribution made as the same kind of thing: a map for a map, a figure for a figure. An empty file may be filled. Every
+file carries a mark of its kind, so that this can be told from the file alone. Files are written aside in the same
+folder, brought to the disk and renamed: what stood there is replaced whole, or not at all.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import stat
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ehdmaps.errors import InputError
+
+MARK = "made by ehdmaps"
+"""What files of text and figures carry."""
+
+_SOUGHT = 4096
+"""The mark of a text stands in its first bytes; that of a figure stands there or in its last ones."""
+
+_FIGURE_KEYS = {".png": "Software", ".pdf": "Creator", ".svg": "Creator"}
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What a file is.
+
+    Attributes
+    ----------
+    name : str
+        In words, with its article, such as "a map of ehdmaps".
+    endings : tuple of str
+        Endings that a name may have, in lower case; empty for any.
+    ours : callable
+        Tells of an existing regular file whether a program of this distribution made it as this kind.
+    """
+
+    name: str
+    endings: tuple[str, ...]
+    ours: Callable[[Path], bool]
+
+
+@dataclass(frozen=True)
+class Output:
+    """A file that a command is asked to write.
+
+    Attributes
+    ----------
+    option : str
+        That names it, such as "--plot"; begins the messages.
+    path : str or Path or None
+        As it was given; None if it was not.
+    kind : Kind
+        What it will be.
+    """
+
+    option: str
+    path: str | Path | None
+    kind: Kind
+
+
+def output_problems(outputs: Iterable[Output], read: Iterable[str | Path] = ()) -> list[str]:
+    """Tell what is wrong about the files to be written, before anything is computed, so that no result is lost by it.
+
+    Parameters
+    ----------
+    outputs : iterable of Output
+        All files of a command; those without a path are passed over.
+    read : iterable of str or Path
+        All files that the command reads. Names that are no files (of shipped jobs, say) do no harm.
+
+    Returns
+    -------
+    list of str
+        One sentence a problem.
+    """
+    problems: list[str] = []
+    taken: dict[object, str] = {place: f"{path}, which is read" for path in read if (place := _place(path)) is not None}
+    for output in outputs:
+        if output.path is None:
+            continue
+        problem = _problem(output, taken)
+        if problem:
+            problems.append(problem)
+            continue
+        # A file that is not there yet is known by its name.
+        taken.setdefault(_place(output.path) or os.path.realpath(output.path), f"the file of {output.option}")
+    return problems
+
+
+def check_outputs(outputs: Iterable[Output], read: Iterable[str | Path] = ()) -> None:
+    """Raise what `output_problems` finds.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
+    problems = output_problems(outputs, read)
+    if problems:
+        raise InputError(problems)
+
+
+@contextlib.contextmanager
+def written_aside(path: str | Path, kind: Kind, advice: str = "") -> Iterator[Path]:
+    """Give the place to write to; at the end of the block it becomes the file, or nothing is changed.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file; where it is a symbolic link, the file that it leads to.
+    kind : Kind
+        What is written.
+    advice : str
+        What to do besides where it cannot be written.
+
+    Yields
+    ------
+    Path
+        A name in the same folder, with the same ending, that no other process uses.
+
+    Raises
+    ------
+    InputError
+        If the file may not be replaced (see the module), or cannot be written.
+    """
+    problem = _problem(Output("", path, kind), {})
+    if problem:
+        raise InputError(problem)
+    target = Path(os.path.realpath(path))
+    aside = target.with_name(f".{target.stem[:100]}.{os.getpid()}.part{target.suffix}")
+    try:
+        try:
+            yield aside
+            _sync(aside)
+            problem = _problem(Output("", path, kind), {})
+            if problem:  # it came while we computed
+                raise InputError(problem)
+            aside.replace(target)
+        finally:
+            aside.unlink(missing_ok=True)
+        _sync(target.parent)
+    except (OSError, RuntimeError, ValueError) as error:
+        # netCDF4 reports a full disk as a RuntimeError, matplotlib some of its own as a ValueError.
+        cause = getattr(error, "strerror", None) or str(error) or type(error).__name__
+        raise InputError(
+            f"{path}: cannot be written ({cause}); allowed: a file in a folder that may be written, with space on the "
+            f"disk{'; ' if advice else ''}{advice}"
+        ) from error
+
+
+def write_text(path: str | Path, text: str, kind: Kind) -> None:
+    """Write a text in UTF-8 that carries its mark itself.
+
+    Raises
+    ------
+    InputError
+        If it may not be replaced, or cannot be written.
+    """
+    with written_aside(path, kind) as aside:
+        aside.write_text(text, encoding="utf-8")
+
+
+def write_figure(figure: Any, path: str | Path, resolution: float) -> None:
+    """Write a figure of matplotlib as png, pdf or svg, by the ending of its name.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    path : str or Path
+        The file.
+    resolution : float
+        Dots an inch.
+
+    Raises
+    ------
+    InputError
+        If it may not be replaced, or cannot be written.
+    """
+    with written_aside(path, FIGURE) as aside:
+        ending = aside.suffix.lower()
+        figure.savefig(aside, format=ending[1:], dpi=resolution, metadata={_FIGURE_KEYS[ending]: MARK})
+
+
+def has_mark(path: Path) -> bool:
+    """Tell whether a file carries the mark near its beginning or its end."""
+    with path.open("rb") as file:
+        head = file.read(_SOUGHT)
+        file.seek(max(path.stat().st_size - _SOUGHT, 0))
+        return MARK.encode() in head + file.read(_SOUGHT)
+
+
+def root_attributes(path: Path) -> frozenset[str]:
+    """Return the names of the global attributes of a netCDF file; none if it is no such file."""
+    import netCDF4
+
+    try:
+        with netCDF4.Dataset(path) as file:
+            return frozenset(file.ncattrs())
+    except (OSError, RuntimeError, ValueError, UnicodeError):
+        return frozenset()
+
+
+FIGURE = Kind("a figure of ehdmaps", tuple(_FIGURE_KEYS), has_mark)
+TABLE = Kind("a table of ehdmaps", (".csv",), has_mark)
+MAP = Kind("a map of ehdmaps", (), lambda path: {"schema_version", "job_toml"} <= root_attributes(path))
+
+
+def _problem(output: Output, taken: dict[object, str]) -> str:
+    """Tell in one sentence why a file may not be written; empty if it may."""
+    text, kind = str(output.path), output.kind
+    what = f"{output.option}: got {text!r:.300}" if output.option else text
+    if not text or "\0" in text:
+        return f"{what}; allowed: the path of a file"
+    path = Path(text)
+    if kind.endings and path.suffix.lower() not in kind.endings:
+        return f"{what}; allowed: a file that ends in {', '.join(kind.endings)}"
+    try:
+        if os.path.isdir(text):
+            return f"{what}, which is a folder; allowed: a file in it; add its name"
+        folder = Path(os.path.realpath(text)).parent
+        if not folder.is_dir():
+            return f"{what}, but {path.parent} is no folder; allowed: a file in a folder that exists"
+        place = _place(text)
+        other = taken.get(place or os.path.realpath(text))
+        if other:
+            return f"{what}, which would be written over {other}; choose another name"
+        if place is None:
+            return ""
+        status = os.stat(text)
+        if not stat.S_ISREG(status.st_mode):
+            return f"{what}, which is no regular file; allowed: a file in a folder that exists"
+        if status.st_size == 0:
+            return ""
+        if not os.access(text, os.W_OK):
+            return f"{what}, which may not be written; choose another name, or change its permissions"
+        if not kind.ours(path):
+            return (
+                f"{what}, which is there and is not {kind.name}; allowed: a new file, or one to replace that was "
+                "made as that; choose another name, or remove it"
+            )
+    except (OSError, ValueError) as error:
+        cause = getattr(error, "strerror", None) or str(error)
+        return f"{what}, which cannot be looked at ({cause}); choose another name"
+    return ""
+
+
+def _place(path: str | Path) -> tuple[int, int] | None:
+    """Return what a file is known by, whatever names lead to it; None if it is not there."""
+    try:
+        status = os.stat(path)
+    except (OSError, ValueError):
+        return None
+    return status.st_dev, status.st_ino
+
+
+def _sync(path: Path) -> None:
+    """Bring a file or a folder to the disk."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
