@@ -9,6 +9,7 @@ folder, brought to the disk and renamed: what stood there is replaced whole, or 
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
 import stat
 from collections.abc import Callable, Iterable, Iterator
@@ -23,6 +24,9 @@ MARK = "made by ehdmaps"
 
 _SOUGHT = 4096
 """The mark of a text stands in its first bytes; that of a figure stands there or in its last ones."""
+
+_WRITABLE = 0o222
+"""A file without these bits is protected on purpose, from root too."""
 
 _FIGURE_KEYS = {".png": "Software", ".pdf": "Creator", ".svg": "Creator"}
 
@@ -189,6 +193,23 @@ def write_figure(figure: Any, path: str | Path, resolution: float) -> None:
         figure.savefig(aside, format=ending[1:], dpi=resolution, metadata={_FIGURE_KEYS[ending]: MARK})
 
 
+def sealed(text: str) -> str:
+    """Return a text with a first line of comment by which a change by hand is noticed, see `SEALED`."""
+    return f"{_seal(text)}\n{text}"
+
+
+def _seal(text: str) -> str:
+    """Return the first line of a text that a user may go on with."""
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    return f"# {MARK}; replaced by it only as long as nobody edited it: sha256 {digest}"
+
+
+def _has_seal(path: Path) -> bool:
+    """Tell whether a text is as it was written."""
+    head, _, text = path.read_text(encoding="utf-8").partition("\n")
+    return head == _seal(text)
+
+
 def has_mark(path: Path) -> bool:
     """Tell whether a file carries the mark near its beginning or its end."""
     with path.open("rb") as file:
@@ -197,26 +218,38 @@ def has_mark(path: Path) -> bool:
         return MARK.encode() in head + file.read(_SOUGHT)
 
 
-def root_attributes(path: Path) -> frozenset[str]:
-    """Return the names of the global attributes of a netCDF file; none if it is no such file."""
+def root_attributes(path: Path) -> dict[str, Any]:
+    """Return the global attributes of a netCDF file; none if it is no such file."""
     import netCDF4
 
     try:
         with netCDF4.Dataset(path) as file:
-            return frozenset(file.ncattrs())
+            return {name: file.getncattr(name) for name in file.ncattrs()}
     except (OSError, RuntimeError, ValueError, UnicodeError):
-        return frozenset()
+        return {}
+
+
+MADE_AS = "made_as"
+"""Global attribute of netCDF files other than maps: what the file is."""
+
+
+def dataset_kind(name: str, made_as: str, endings: tuple[str, ...] = ()) -> Kind:
+    """Return the kind of a netCDF file that says by its attribute `MADE_AS` what it is."""
+    return Kind(name, endings, lambda path: root_attributes(path).get(MADE_AS) == made_as)
 
 
 FIGURE = Kind("a figure of ehdmaps", tuple(_FIGURE_KEYS), has_mark)
+SEALED = Kind("a job as it was planned", (".toml",), _has_seal)
+FIELDS = Kind("film fields of ehdmaps", (".vtu", ".xdmf"), has_mark)
 TABLE = Kind("a table of ehdmaps", (".csv",), has_mark)
-MAP = Kind("a map of ehdmaps", (), lambda path: {"schema_version", "job_toml"} <= root_attributes(path))
+MAP = Kind("a map of ehdmaps", (), lambda path: {"schema_version", "job_toml"} <= root_attributes(path).keys())
 
 
 def _problem(output: Output, taken: dict[object, str]) -> str:
     """Tell in one sentence why a file may not be written; empty if it may."""
     text, kind = str(output.path), output.kind
-    what = f"{output.option}: got {text!r:.300}" if output.option else text
+    shown = text if text.isprintable() and text else repr(text)
+    what = f"{output.option}: got {shown:.300}" if output.option else shown[:300]
     if not text or "\0" in text:
         return f"{what}; allowed: the path of a file"
     path = Path(text)
@@ -228,18 +261,18 @@ def _problem(output: Output, taken: dict[object, str]) -> str:
         folder = Path(os.path.realpath(text)).parent
         if not folder.is_dir():
             return f"{what}, but {path.parent} is no folder; allowed: a file in a folder that exists"
-        place = _place(text)
-        other = taken.get(place or os.path.realpath(text))
+        other = taken.get(_place(text) or os.path.realpath(text))
         if other:
             return f"{what}, which would be written over {other}; choose another name"
-        if place is None:
+        try:
+            status = os.stat(text)
+        except FileNotFoundError:
             return ""
-        status = os.stat(text)
         if not stat.S_ISREG(status.st_mode):
             return f"{what}, which is no regular file; allowed: a file in a folder that exists"
         if status.st_size == 0:
             return ""
-        if not os.access(text, os.W_OK):
+        if not status.st_mode & _WRITABLE or not os.access(text, os.W_OK):
             return f"{what}, which may not be written; choose another name, or change its permissions"
         if not kind.ours(path):
             return (

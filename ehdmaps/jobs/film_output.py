@@ -8,13 +8,11 @@ from pathlib import Path
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
+from ehdmaps.outputs import FIELDS, FIGURE, Output, output_problems
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolver, FilmSolution
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
-
-PICTURES = (".png", ".pdf", ".svg")
-"""Endings of a page of pictures."""
 
 
 @dataclass(frozen=True)
@@ -59,9 +57,7 @@ class FilmOutputs:
                 written.append(f"{contact.name}: {film.status.word}, no film to write")
                 continue
             if self.fields is not None:
-                path = self.fields
-                if len(job.contacts) > 1:
-                    path = path.with_name(f"{path.stem}-{contact.name}{path.suffix}")
+                path = _fields_path(self.fields, contact.name, len(job.contacts))
                 write_fields(grid.fields, path)
                 written.append(f"{path}: written")
             half = float(half_width(point.load, contact.radius, contact.reduced_modulus))
@@ -72,39 +68,36 @@ class FilmOutputs:
                 f"{job.title}, {job.lubricant.name}: {LOAD.text(point.load)}, {SPEED.text(point.entrainment_speed)}, "
                 f"{temperature}; OpenFOAM, {solver.flow.replace('_', ' ')}"
             )
-            try:
-                plot_films(rows, heading, self.plot)
-            except OSError as error:
-                raise InputError(
-                    f"--plot: {self.plot} cannot be written ({error.strerror}); "
-                    "allowed: a file in a folder that may be written"
-                ) from error
+            plot_films(rows, heading, self.plot)
             written.append(f"{self.plot}: written")
         return films, written
 
 
-def film_outputs(job: Job, fields: str | None, plot: str | None) -> FilmOutputs | None:
+def film_outputs(job: Job, fields: str | None, plot: str | None, read: str) -> FilmOutputs | None:
     """Check which files are asked for; None if there are none.
 
     Raises
     ------
     InputError
-        If the solver has no fields, or a file has an unknown ending or no folder.
+        If the solver has no fields, or a file may not be written; `read` is the file of the job.
     """
-    problems = []
-    asked = {"--fields": (fields, (".vtu", ".xdmf")), "--plot": (plot, PICTURES)}
-    for option, (name, endings) in asked.items():
-        if name is None:
-            continue
-        path = Path(name)
-        if not solvers.SOLVERS[job.solver].keeps_cases:
-            problems.append(
-                f"{option}: the solver {job.solver!r} has no fields across the film; allowed: with --solver openfoam"
-            )
-        elif path.suffix not in endings or not path.parent.is_dir():
-            problems.append(f"{option}: got {name}; allowed: a {', '.join(endings)} file in a folder that exists")
+    problems = [
+        f"{option}: the solver {job.solver!r} has no fields across the film; allowed: with --solver openfoam"
+        for option, name in (("--fields", fields), ("--plot", plot))
+        if name is not None and not solvers.SOLVERS[job.solver].keeps_cases
+    ]
+    files = [Output("--plot", plot, FIGURE)]
+    if fields is not None:
+        contacts = [contact.name for contact in job.contacts]
+        files += [Output("--fields", _fields_path(Path(fields), name, len(contacts)), FIELDS) for name in contacts]
+    problems = problems or output_problems(files, [read])
     if problems:
         raise InputError(problems)
     if fields is None and plot is None:
         return None
     return FilmOutputs(Path(fields) if fields else None, Path(plot) if plot else None)
+
+
+def _fields_path(path: Path, contact: str, contacts: int) -> Path:
+    """Return the file of a contact."""
+    return path.with_name(f"{path.stem}-{contact}{path.suffix}") if contacts > 1 and path.name else path

@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehdmaps.openfoam.solver import GridSolution
+from ehdmaps.outputs import write_figure
 from ehdmaps.units import FILM, PRESSURE
 
 ROW = (11.69, 3.6)
@@ -61,7 +62,7 @@ def plot_films(rows: Sequence[FilmRow], heading: str, output: Path) -> None:
 
     Raises
     ------
-    OSError, ValueError
+    InputError
         If it cannot be written, or the ending is not known.
     """
     import matplotlib as mpl
@@ -72,7 +73,7 @@ def plot_films(rows: Sequence[FilmRow], heading: str, output: Path) -> None:
         panels = figure.subplots(len(rows), 3, squeeze=False)
         for row, axes in zip(rows, panels, strict=True):
             _row(row, *axes)
-        figure.savefig(output, dpi=RESOLUTION)
+        write_figure(figure, output, RESOLUTION)
 
 
 def places(x: Floats, pressure: Floats) -> dict[str, float]:

@@ -19,6 +19,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocat
 from ehdmaps.jobs.report import span
 from ehdmaps.maps import schema
 from ehdmaps.maps.records import contacts_from_json
+from ehdmaps.outputs import write_figure
 from ehdmaps.physics.solution import Status
 from ehdmaps.units import DAMPING, FILM, LOAD, SPEED, STIFFNESS, TEMPERATURE, Display
 
@@ -52,13 +53,13 @@ def plot_map(dataset: xr.Dataset, output: Path) -> None:
 
     Raises
     ------
-    OSError, ValueError
+    InputError
         If it cannot be written, or the ending is not known.
     """
     import matplotlib as mpl
 
     with mpl.rc_context(_FONT):
-        _page(dataset).savefig(output, dpi=RESOLUTION)
+        write_figure(_page(dataset), output, RESOLUTION)
 
 
 def _page(dataset: xr.Dataset) -> Figure:

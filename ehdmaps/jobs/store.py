@@ -29,6 +29,9 @@ COMMIT_SECONDS = 0.25
 """Results are brought to the disk this often; shorter would wait for the disk more than it computes."""
 
 _APPLICATION_ID = 0x45484D31  # "EHM1"
+_ID_AT = 68
+"""Where SQLite keeps it, see its file format."""
+
 _BUSY = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED)
 _BROKEN = (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT)
 
@@ -63,11 +66,16 @@ class Store:
         self.path = path
         self.damaged = 0
         self._last_commit = time.monotonic()
+        if path.exists() and not path.is_dir() and not path.is_file():
+            # SQLite would wait for ever for a pipe to be filled.
+            raise self._foreign("it is no regular file")
         try:
             self._database = self._open()
         except sqlite3.Error as error:
             if not (fresh and _code(error) in _BROKEN):
                 raise self._told(error) from error
+            if not _is_ours(path):
+                raise self._foreign("it does not begin as one") from error
             self._drop()
             try:
                 self._database = self._open()
@@ -183,6 +191,13 @@ class Store:
         for path in (self.path, Path(f"{self.path}-journal"), Path(f"{self.path}-wal")):
             path.unlink(missing_ok=True)
 
+    def _foreign(self, cause: str) -> StoreError:
+        """Say that something else stands in the place of the store."""
+        return StoreError(
+            f"{self.path}: is no store of ehdmaps ({cause}), and left as it is; allowed: a new file; move it away, or "
+            "choose another output with -o"
+        )
+
     def _told(self, error: sqlite3.Error) -> StoreError:
         """Say what went wrong with the store, and what to do."""
         code = _code(error)
@@ -207,10 +222,22 @@ class Store:
                 "be written; choose another output with -o"
             )
         cause = " ".join(str(error).split())
+        if not _is_ours(self.path):
+            return self._foreign(cause)
         return StoreError(
             f"{self.path}: is not a readable store ({cause}); the map beside it is untouched; move the store "
             "away or start again with --fresh"
         )
+
+
+def _is_ours(path: Path) -> bool:
+    """Tell from the header of a file whether it was made as a store, readable or not."""
+    try:
+        with path.open("rb") as file:
+            head = file.read(_ID_AT + 4)
+    except OSError:
+        return False
+    return head.startswith(b"SQLite format 3\0") and head[_ID_AT:] == _APPLICATION_ID.to_bytes(4, "big")
 
 
 def _code(error: sqlite3.Error) -> int:

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ehdmaps.errors import InputError, SolverError
+from ehdmaps.errors import SolverError
 from ehdmaps.openfoam.pyfoam import parse
+from ehdmaps.outputs import FIELDS, MARK, written_aside
 
 Floats = NDArray[np.float64]
 
@@ -131,7 +132,7 @@ def write_fields(fields: FilmFields, path: Path) -> None:
     Raises
     ------
     InputError
-        If the file cannot be written.
+        If the file cannot be written, or something else stands there.
     """
     import meshio
 
@@ -142,12 +143,10 @@ def write_fields(fields: FilmFields, path: Path) -> None:
     )
     # XML keeps an XDMF file in one piece, without HDF5
     options: dict[str, Any] = {"data_format": "XML"} if path.suffix == ".xdmf" else {}
-    try:
-        mesh.write(path, **options)
-    except OSError as error:
-        raise InputError(
-            f"{path}: cannot be written ({error.strerror}); allowed: a file in a folder that may be written"
-        ) from error
+    with written_aside(path, FIELDS) as aside:
+        mesh.write(aside, **options)
+        with aside.open("a", encoding="utf-8") as file:
+            file.write(f"<!-- {MARK} -->\n")
 
 
 def _list(path: Path, width: int) -> Floats:

@@ -10,14 +10,16 @@ import argparse
 import dataclasses
 import itertools
 import math
-import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
 from ehdmaps.units import quantity
 from mbs.assembly import Model, assemble, find_problems
+from mbs.output.results import RESULT
 from mbs.reading.fields import MICROMETRE
 from mbs.scene import Scene
 from mbs.scene_reader import read_scene
@@ -27,7 +29,6 @@ WIDEST = 1e-2
 
 _MAP_WORDS = {"reynolds": "Reynolds map", "openfoam": "OpenFOAM map", "formula": "formula map", "hertz": "Hertz map"}
 _WORDS = {"hertz": "dry Hertz", "formula": "film formula"}
-FIGURES = (".png", ".pdf", ".svg")
 MOST_FACTOR = 1e3
 MOST_CASES = 24
 
@@ -63,7 +64,7 @@ class _Law:
     emap: EHDMap | None = None
 
 
-def load_model(arguments: argparse.Namespace) -> Model:
+def load_model(arguments: argparse.Namespace, kind: Kind = RESULT) -> Model:
     """Read scene, law or map, and clearance of a command that takes one of each; all problems at once.
 
     Raises
@@ -71,10 +72,10 @@ def load_model(arguments: argparse.Namespace) -> Model:
     InputError
         With every problem.
     """
-    return load_cases(arguments, several=False)[0].model
+    return load_cases(arguments, several=False, kind=kind)[0].model
 
 
-def load_cases(arguments: argparse.Namespace, several: bool = True) -> list[Case]:
+def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind = RESULT) -> list[Case]:
     """Read scene, laws, maps, clearances and load factors into models; all problems at once.
 
     Parameters
@@ -84,6 +85,8 @@ def load_cases(arguments: argparse.Namespace, several: bool = True) -> list[Case
         None, or left out.
     several : bool
         Whether laws and maps stand side by side; else a law goes before a map.
+    kind : Kind
+        Of what -o writes.
 
     Raises
     ------
@@ -106,7 +109,7 @@ def load_cases(arguments: argparse.Namespace, several: bool = True) -> list[Case
         laws = laws[:1] if _given(arguments, "law") else laws
     clearances = [read_clearance(text, problems) for text in _given(arguments, "clearance")] or [None]
     factors = [_factor(text, problems) for text in _given(arguments, "load_factor")] or [1.0]
-    problems += output_problems(arguments)
+    problems += scene_output_problems(arguments, scene.files if scene else (), kind)
     count = len(laws) * len(clearances) * len(factors)
     if count > MOST_CASES:
         problems.append(
@@ -131,36 +134,22 @@ def load_cases(arguments: argparse.Namespace, several: bool = True) -> list[Case
     return cases
 
 
-def output_problems(arguments: argparse.Namespace) -> list[str]:
+def scene_output_problems(
+    arguments: argparse.Namespace, read: Iterable[str | Path] = (), kind: Kind = RESULT
+) -> list[str]:
     """What is wrong about -o and --plot: said before anything is computed, so that no result is lost by it.
 
     Parameters
     ----------
     arguments : argparse.Namespace
         With `scene`, `map`, `output`, `plot`; each but the scene may be None or left out.
+    read : iterable of str or Path
+        Further files that the command reads: those that the scene names.
+    kind : Kind
+        Of what -o writes.
     """
-    problems = []
-    # What is read must not be written over: a scene is somebody's work, a map many hours.
-    read = [arguments.scene, *_given(arguments, "map")]
-    taken = {os.path.realpath(path): path for path in read if "\0" not in path and os.path.isfile(path)}
-    for option, text in (("-o", arguments.output), ("--plot", arguments.plot)):
-        if text is None:
-            continue
-        if not text or "\0" in text:
-            problems.append(f"{option}: got {text!r:.60}; allowed: the path of a file")
-            continue
-        folder, place = Path(text).parent, os.path.realpath(text)
-        if not os.path.isdir(folder):
-            problems.append(f"{option}: got {text}, but {folder} is no folder; allowed: a file in a folder")
-        elif os.path.exists(text) and not os.path.isfile(text):
-            problems.append(f"{option}: got {text}, which is no file; allowed: a file in a folder")
-        elif place in taken:
-            problems.append(f"{option}: got {text}, which would be written over {taken[place]}; allowed: another file")
-        else:
-            taken[place] = f"the file of {option}"
-        if option == "--plot" and Path(text).suffix.lower() not in FIGURES:
-            problems.append(f"{option}: got {text}; allowed: a file that ends in {', '.join(FIGURES)}")
-    return problems
+    files = [Output("-o", arguments.output, kind), Output("--plot", arguments.plot, FIGURE)]
+    return output_problems(files, [arguments.scene, *_given(arguments, "map"), *read])
 
 
 def _given(arguments: argparse.Namespace, name: str) -> list[str]:

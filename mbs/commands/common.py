@@ -11,8 +11,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
+from ehdmaps.outputs import write_figure
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import TEMPERATURE
 from mbs.assembly import Model, law_attributes
@@ -114,15 +114,9 @@ def write(arguments: argparse.Namespace, model: Model, dataset: xr.Dataset, figu
         # Names of a scene are no formulas.
         for text in figure.findobj(Text):
             text.set_text(text.get_text().replace("$", r"\$"))
-        try:
-            with warnings.catch_warnings(record=True) as caught:
-                warnings.simplefilter("always")
-                figure.savefig(arguments.plot, dpi=RESOLUTION)
-        except (OSError, ValueError) as error:
-            raise InputError(
-                f"--plot: {arguments.plot} cannot be written ({error}); allowed: a .png, .pdf or .svg file in a folder "
-                "that may be written"
-            ) from error
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            write_figure(figure, arguments.plot, RESOLUTION)
         lines.append(f"{arguments.plot}: written")
         lines += dict.fromkeys(f"warning: {arguments.plot}: {entry.message}" for entry in caught)
     return lines

@@ -9,6 +9,7 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import progress
+from ehdmaps.outputs import Output, output_problems
 from ehdmaps.units import quantity
 from mbs.assembly import Model
 from mbs.commands.cases import load_model
@@ -17,7 +18,7 @@ from mbs.linearised.modes import Modes, modes
 from mbs.linearised.steady import steady_system
 from mbs.modal.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
 from mbs.modal.records import Hits
-from mbs.modal.uff import Measurement, write_uff
+from mbs.modal.uff import UFF, Measurement, write_uff
 from mbs.reading.fields import MILLISECOND
 from mbs.statics import Equilibrium, equilibrium
 
@@ -28,7 +29,7 @@ _HIGHEST = 5000.0
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Hit, and write the records."""
     highest, duration = _options(arguments)
-    model = load_model(arguments)
+    model = load_model(arguments, UFF)
     scene = model.scene
     missing = [
         f"{scene.name}: [[{key}]] missing; a hammer test needs {words}"
@@ -72,7 +73,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
 
 def _options(arguments: argparse.Namespace) -> tuple[float | None, float | None]:
-    """Read highest frequency and duration, and check the folder of the output."""
+    """Read highest frequency and duration; -o has to be there."""
     problems = []
     found: list[float | None] = []
     for option, text, unit in (("--highest", arguments.highest, "Hz"), ("--duration", arguments.duration, "s")):
@@ -89,8 +90,7 @@ def _options(arguments: argparse.Namespace) -> tuple[float | None, float | None]
         problems.append(f"--plot: got {arguments.plot}, but records are not drawn; see `mbs modal-fit --plot`")
     if not arguments.output:
         problems.append("-o: missing; give the universal file that the records are written to, such as hits.uff")
-    elif not Path(arguments.output).parent.is_dir():
-        problems.append(f"-o: got {arguments.output}, but its folder does not exist; allowed: a file in a folder")
+    problems += output_problems([Output("-o", arguments.output, UFF)])
     if problems:
         raise InputError(problems)
     return found[0], found[1]

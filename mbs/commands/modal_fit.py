@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.errors import InputError
+from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
 from ehdmaps.units import quantity
 from mbs.commands.common import RESOLUTION
 from mbs.errors import AnalysisError
@@ -17,10 +18,10 @@ from mbs.modal.estimation import Estimate, estimate
 from mbs.modal.fit import identify
 from mbs.modal.records import Responses
 from mbs.modal.result import Method, ModalFit, fit_dataset
-from mbs.modal.uff import Measurement, read_uff, write_uff
+from mbs.modal.uff import UFF, Measurement, read_uff, write_uff
 from mbs.modal.windows import needed_decay
 from mbs.output.modal_plot import fit_figure
-from mbs.output.results import described, write_dataset
+from mbs.output.results import RESULT, described, write_dataset
 
 TOLERANCE = 0.2
 """Largest part of a response that a fit may leave, rms over rms, before the status says so."""
@@ -59,7 +60,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
 
 def _options(arguments: argparse.Namespace) -> tuple[tuple[float, float] | None, float | None]:
-    """Read band and window, and check the folders of the outputs; a decay of None is found from the records."""
+    """Read band and window, and check the outputs; a decay of None is found from the records."""
     problems = []
     ends = []
     for text in arguments.band or ():
@@ -83,9 +84,12 @@ def _options(arguments: argparse.Namespace) -> tuple[tuple[float, float] | None,
                 problems.append(f"--window-decay: got {arguments.window_decay!r:.40}; allowed: above 0 s, or none")
         except InputError as error:
             problems.append(f"--window-decay: {error.problems[0]}, or none")
-    for option, path in (("-o", arguments.output), ("--plot", arguments.plot), ("--responses", arguments.responses)):
-        if path and not Path(path).parent.is_dir():
-            problems.append(f"{option}: got {path}, but {Path(path).parent} is no folder; allowed: a file in a folder")
+    files = (
+        ("-o", arguments.output, RESULT),
+        ("--plot", arguments.plot, FIGURE),
+        ("--responses", arguments.responses, UFF),
+    )
+    problems += output_problems([Output(*file) for file in files], [arguments.file])
     if problems:
         raise InputError(problems)
     return (ends[0], ends[1]) if ends else None, decay
@@ -189,13 +193,7 @@ def _write(
         write_uff(Path(arguments.responses), Measurement(measured.title, (), responses))
         lines.append(f"{arguments.responses}: written")
     if arguments.plot:
-        try:
-            fit_figure(measured.title or Path(arguments.file).name, fits).savefig(arguments.plot, dpi=RESOLUTION)
-        except (OSError, ValueError) as error:
-            raise InputError(
-                f"--plot: {arguments.plot} cannot be written ({error}); allowed: a .png, .pdf or .svg file in a folder "
-                "that may be written"
-            ) from error
+        write_figure(fit_figure(measured.title or Path(arguments.file).name, fits), arguments.plot, RESOLUTION)
         lines.append(f"{arguments.plot}: written")
     return lines
 

@@ -21,11 +21,12 @@ from ehdmaps.jobs.reader import parse_job, read_job, shipped_jobs
 from ehdmaps.jobs.refinement import refinement
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.usable import check_usable
+from ehdmaps.outputs import SEALED, Output, output_problems, sealed, write_text
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE, Display
 from mbs import planning
 from mbs.assembly import Model, assemble, constant_name, find_problems
-from mbs.commands.cases import output_problems, read_clearance
+from mbs.commands.cases import read_clearance, scene_output_problems
 from mbs.commands.common import heading
 from mbs.planning import Needed
 from mbs.reading.fields import MICROMETRE, RPM
@@ -99,11 +100,7 @@ def _read(arguments: argparse.Namespace) -> tuple[Scene, EHDMap | None, float | 
             f"--law: got {law!r:.60}; allowed here: hertz, constant:NAME; loads at rest are those of dry contacts"
         )
     files = argparse.Namespace(scene=arguments.scene, map=arguments.map, output=arguments.output, plot=None)
-    problems += output_problems(files)
-    if arguments.output is not None and not arguments.output.endswith(".toml"):
-        problems.append(
-            f"-o: got {arguments.output!r:.200}; allowed: a file that ends in .toml, a job for `ehdmaps generate`"
-        )
+    problems += scene_output_problems(files, scene.files if scene else (), SEALED)
     if arguments.output is not None and arguments.map is not None:
         problems.append(
             "--map: stands beside -o; allowed: a map to be looked at, or a job to be written; leave one out"
@@ -195,13 +192,11 @@ def _needed(
 
 def _plan(scene: Scene, needed: tuple[Needed, ...], arguments: argparse.Namespace) -> list[_Planned]:
     """The job of each geometry, read back by the reader of jobs; all problems at once."""
-    problems: list[str] = []
     planned = []
-    for entry in needed:
-        path = _path(arguments.output, entry, alone=len(needed) == 1)
-        if path is not None and len(needed) > 1:
-            files = argparse.Namespace(scene=arguments.scene, map=None, output=str(path), plot=None)
-            problems += output_problems(files)
+    paths = [_path(arguments.output, entry, alone=len(needed) == 1) for entry in needed]
+    # One name was looked at by `_read`; several only now that they are known.
+    problems = output_problems([Output("-o", path, SEALED) for path in paths], [arguments.scene, *scene.files])
+    for entry, path in zip(needed, paths, strict=True):
         words = f"the job for {', '.join(entry.bearings)}"
         try:
             job = parse_job(job_text(scene, entry), path.stem if path else "plan", words, to_run=True)
@@ -338,12 +333,7 @@ def _points(job: Job) -> int:
 
 def _written(job: Job, path: Path) -> str:
     """Write a job."""
-    try:
-        path.write_text(job.text, encoding="utf-8")
-    except OSError as error:
-        raise InputError(
-            f"-o: {path} cannot be written ({error.strerror}); allowed: a file in a folder that may be written"
-        ) from error
+    write_text(path, sealed(job.text), SEALED)
     return f"{path}: written; `ehdmaps generate {path}` makes the map"
 
 

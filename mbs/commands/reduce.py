@@ -14,9 +14,10 @@ from ehdmaps.errors import InputError
 from ehdmaps.inputs import read_text
 from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.table import Table
+from ehdmaps.outputs import Output, output_problems
 from ehdmaps.units import LENGTH
 from mbs.flexible.reduced_body import ReducedBody
-from mbs.flexible.reduced_file import SUFFIXES, write_reduced
+from mbs.flexible.reduced_file import REDUCED, write_reduced
 from mbs.reading.fields import HERTZ
 from mbs.reading.flexible import Reduction, read_reduction
 from mbs.scene_reader import LONGEST_FILE
@@ -27,14 +28,13 @@ _SHOWN = 30
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Read BODY.toml, reduce, write."""
     source, target = Path(arguments.body), Path(arguments.output or Path(arguments.body).with_suffix(".nc"))
-    problems = []
-    if target.suffix not in SUFFIXES or not target.parent.is_dir():
-        problems.append(f"-o: got {target}; allowed: a {' or '.join(SUFFIXES)} file in a folder that is there")
+    problems: list[str] = []
     plan = None
     try:
         plan = read_body_file(source)
     except InputError as error:
         problems += error.problems
+    problems += output_problems([Output("-o", target, REDUCED)], [source, *(plan.files if plan else ())])
     if problems or plan is None:
         raise InputError(problems)
     began = time.perf_counter()

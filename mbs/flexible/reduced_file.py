@@ -7,7 +7,6 @@ transform; provenance as attributes. npz: arrays mass (n, n), stiffness (n, n), 
 
 from __future__ import annotations
 
-import os
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -19,6 +18,7 @@ import xarray as xr
 
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import check_input
+from ehdmaps.outputs import MADE_AS, Kind, root_attributes, written_aside
 from mbs.body import FREEDOMS, Frame
 from mbs.flexible.reduced_body import MOST_COORDINATES, ReducedBody
 
@@ -28,6 +28,7 @@ SUFFIXES = (".nc", ".npz")
 
 MOST_FRAMES = 10_000
 
+_MADE = {MADE_AS: "reduced body"}
 _ARRAYS = ("mass", "stiffness", "coordinates", "units", "frames", "positions", "transforms")
 _OPTIONAL = "attributes"
 _LONGEST_FILE = 1_000_000_000
@@ -47,7 +48,7 @@ _DAMAGED = (
 
 
 def write_reduced(path: Path, reduced: ReducedBody) -> None:
-    """Write a reduced body aside, then rename it over what stands there.
+    """Write a reduced body, by the rule of all files that are written.
 
     Parameters
     ----------
@@ -62,22 +63,12 @@ def write_reduced(path: Path, reduced: ReducedBody) -> None:
         If it cannot be written.
     """
     _check_suffix(path)
-    aside = path.with_name(f".{path.name}.{os.getpid()}.part{path.suffix}")
-    try:
-        try:
-            if path.suffix == ".npz":
-                with aside.open("wb") as file:
-                    np.savez(file, allow_pickle=False, **_arrays(reduced))
-            else:
-                _dataset(reduced).to_netcdf(aside, engine="netcdf4", mode="w")
-            aside.replace(path)
-        finally:
-            aside.unlink(missing_ok=True)
-    except (OSError, RuntimeError, ValueError) as error:
-        raise InputError(
-            f"{path}: cannot be written ({error}); allowed: a file in a folder that may be written, with space on the "
-            "disk"
-        ) from error
+    with written_aside(path, REDUCED) as aside:
+        if path.suffix == ".npz":
+            with aside.open("wb") as file:
+                np.savez(file, allow_pickle=False, **_arrays(reduced))
+        else:
+            _dataset(reduced).to_netcdf(aside, engine="netcdf4", mode="w")
 
 
 def read_reduced(path: Path) -> ReducedBody:
@@ -102,6 +93,19 @@ def read_reduced(path: Path) -> ReducedBody:
         raise InputError([f"{path}: {problem}" for problem in error.problems]) from error
 
 
+def _ours(path: Path) -> bool:
+    """Tell whether a file was written by `write_reduced`."""
+    if path.suffix != ".npz":
+        return root_attributes(path).get(MADE_AS) == _MADE[MADE_AS]
+    try:
+        return [MADE_AS, _MADE[MADE_AS]] in _npz(path).get(_OPTIONAL, np.empty(0)).tolist()
+    except InputError:
+        return False
+
+
+REDUCED = Kind("a body that was reduced by mbs", SUFFIXES, _ours)
+
+
 def _check_suffix(path: Path) -> None:
     """Raise if a file has another kind of name."""
     if path.suffix not in SUFFIXES:
@@ -119,7 +123,7 @@ def _arrays(reduced: ReducedBody) -> dict[str, Any]:
         "frames": np.array(list(reduced.frames), dtype=np.str_),
         "positions": np.array([frame.position for frame in frames]).reshape(-1, 3),
         "transforms": np.array([frame.transform for frame in frames]).reshape(-1, 6, reduced.size),
-        _OPTIONAL: np.array(sorted(reduced.attributes.items()), dtype=np.str_).reshape(-1, 2),
+        _OPTIONAL: np.array(sorted({**reduced.attributes, **_MADE}.items()), dtype=np.str_).reshape(-1, 2),
     }
 
 
@@ -157,7 +161,9 @@ def _dataset(reduced: ReducedBody) -> xr.Dataset:
         "freedom": ("freedom", list(FREEDOMS), {"long_name": "freedoms of a place"}),
         "axis": ("axis", ["x", "y", "z"], {"long_name": "axes"}),
     }
-    return xr.Dataset(variables, coords=coordinates, attrs={"schema_version": SCHEMA_VERSION, **reduced.attributes})
+    return xr.Dataset(
+        variables, coords=coordinates, attrs={"schema_version": SCHEMA_VERSION, **reduced.attributes, **_MADE}
+    )
 
 
 def _npz(path: Path) -> dict[str, Any]:
@@ -246,7 +252,7 @@ def _body(given: Mapping[str, Any]) -> ReducedBody:
         coordinates=tuple(names["coordinates"].tolist()),
         units=tuple(names["units"].tolist()),
         frames={name: Frame(*place) for name, place in zip(names["frames"].tolist(), places, strict=True)},
-        attributes=dict(texts.tolist()),
+        attributes={key: text for key, text in texts.tolist() if key not in _MADE},
     )
 
 

@@ -7,14 +7,13 @@ import time
 from pathlib import Path
 
 from ehdmaps.errors import InputError
+from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
 from ehdmaps.units import LENGTH, quantity
-from mbs.flexible.reduced_file import SUFFIXES, write_reduced
+from mbs.flexible.reduced_file import REDUCED, write_reduced
 from mbs.housings.designs import Housing, housing
 from mbs.housings.geometry import check_size
 from mbs.housings.make import Made, check_cutoff, make
 from mbs.housings.picture import housing_figure
-
-PICTURES = (".png", ".pdf", ".svg")
 
 RESOLUTION = 120
 
@@ -57,11 +56,7 @@ def run(arguments: argparse.Namespace) -> str:
     except InputError as error:
         problems += [f"--cutoff: {problem}" for problem in error.problems]
     output = Path(arguments.output or f"{arguments.name}.nc")
-    for option, path, endings in (("-o", arguments.output, SUFFIXES), ("--picture", arguments.picture, PICTURES)):
-        if path and not Path(path).parent.is_dir():
-            problems.append(f"{option}: got {path}, but {Path(path).parent} is no folder; allowed: a file in a folder")
-        if path and Path(path).suffix not in endings:
-            problems.append(f"{option}: got {path}; allowed: a file that ends in {', '.join(endings)}")
+    problems += output_problems([Output("-o", output, REDUCED), Output("--picture", arguments.picture, FIGURE)])
     if problems or chosen is None:
         raise InputError(problems)
     if arguments.convergence:
@@ -70,13 +65,7 @@ def run(arguments: argparse.Namespace) -> str:
     made = make(chosen, size, cutoff, Path(arguments.keep) if arguments.keep else None)
     lines = _described(chosen, made, cutoff)
     if arguments.picture:
-        try:
-            housing_figure(chosen, made.mesh).savefig(arguments.picture, dpi=RESOLUTION)
-        except OSError as error:
-            raise InputError(
-                f"--picture: {arguments.picture} cannot be written ({error.strerror}); allowed: a file in a folder "
-                "that may be written"
-            ) from error
+        write_figure(housing_figure(chosen, made.mesh), arguments.picture, RESOLUTION)
         lines.append(f"{arguments.picture}: written")
     write_reduced(output, made.reduced)
     lines.append(f"{output}: written, {output.stat().st_size / 1e3:.0f} kB, after {time.monotonic() - begin:.0f} s")

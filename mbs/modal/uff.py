@@ -25,10 +25,12 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import check_input
+from ehdmaps.outputs import MARK, Kind, has_mark, written_aside
 from ehdmaps.physics._values import FloatArray
 from mbs.modal.lscf import INSTALL
 from mbs.modal.records import LONGEST, Channel, Hits, Measured, Responses
 
+UFF = Kind("a universal file of mbs", (), has_mark)
 LARGEST = 2**29
 """Bytes of a file that is still read."""
 
@@ -107,7 +109,7 @@ def read_uff(path: Path) -> Measurement:
 
 
 def write_uff(path: Path, measurement: Measurement) -> None:
-    """Write a universal file in SI: aside, then renamed over what stands there.
+    """Write a universal file in SI, by the rule of all files that are written.
 
     Parameters
     ----------
@@ -130,19 +132,12 @@ def write_uff(path: Path, measurement: Measurement) -> None:
     # The library would turn them into zeros.
     if not all(np.all(np.isfinite(entry["data"])) for entry in sets if "data" in entry):
         raise InputError(f"{path}: got values that are not finite; leave those records out")
-    aside = path.with_name(f".{path.name}.part")
-    try:
+    with written_aside(path, UFF) as aside:
         try:
-            aside.unlink(missing_ok=True)
+            aside.unlink(missing_ok=True)  # the library adds to what is there
             pyuff.UFF(str(aside)).write_sets(sets, mode="overwrite")
-            aside.replace(path)
-        finally:
-            aside.unlink(missing_ok=True)
-    except Exception as error:  # the library raises nothing more special
-        raise InputError(
-            f"{path}: cannot be written ({error}); allowed: a file in a folder that may be written, with space on the "
-            "disk"
-        ) from error
+        except Exception as error:  # the library raises nothing more special
+            raise OSError(str(error)) from error
 
 
 def _library() -> Any:
@@ -383,7 +378,7 @@ def _header(title: str) -> _Set:
     return {
         "type": 151,
         "model_name": _ascii(title, 78) or "NONE",
-        "description": "NONE",
+        "description": MARK,
         "db_app": "mbs",
         "program": "mbs",
     }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -12,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from ehdmaps.errors import InputError
+from ehdmaps.outputs import MADE_AS, dataset_kind, written_aside
 from ehdmaps.physics._values import FloatArray
 from mbs.bearings.roller_element import ring_matrices
 from mbs.body import FREEDOMS
@@ -24,6 +23,10 @@ from mbs.system import System
 from mbs.transient.integration import Trajectory
 
 SCHEMA_VERSION = 1
+
+_RESULT = "result of mbs"
+RESULT = dataset_kind("a result of mbs", _RESULT)
+"""What -o writes, but where a command says otherwise."""
 
 _KINDS = (("translation", "m", "displacement"), ("rotation", "rad", "rotation"), ("modal", "1", "modal amplitude"))
 _UNITS = {"m": "m", "rad": "rad", "1": "1"}
@@ -161,28 +164,15 @@ def run_dataset(system: System, run: Trajectory, outside: Mapping[str, int]) -> 
 
 
 def write_dataset(dataset: xr.Dataset, path: Path) -> None:
-    """Write a result aside, then rename it over what stands there.
+    """Write a result, by the rule of all files that are written.
 
     Raises
     ------
     InputError
-        If it cannot be written.
+        If it cannot be written, or something else stands there.
     """
-    aside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    if path.exists() and not path.is_file():
-        # A device would be replaced by a file.
-        raise InputError(f"-o: {path} cannot be written (it is no file); allowed: a file in a folder")
-    try:
-        try:
-            dataset.to_netcdf(aside, engine="netcdf4", mode="w")
-            aside.replace(path)
-        finally:
-            aside.unlink(missing_ok=True)
-    except (OSError, RuntimeError) as error:
-        raise InputError(
-            f"-o: {path} cannot be written ({error}); allowed: a file in a folder that may be written, with space "
-            "on the disk"
-        ) from error
+    with written_aside(path, RESULT) as aside:
+        dataset.assign_attrs({MADE_AS: _RESULT}).to_netcdf(aside, engine="netcdf4", mode="w")
 
 
 def described(dataset: xr.Dataset, **attributes: str) -> xr.Dataset:

@@ -2,6 +2,7 @@
 
 import io
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -149,7 +150,9 @@ def test_an_output_that_cannot_be_written(here, capsys, output, message):
 def test_a_broken_store_leaves_the_good_map_alone(here, capsys):
     run(capsys, "generate", "mine.toml", "--workers", "1")
     good = (here / "mine.nc").read_bytes()
-    (here / "mine.nc.store").write_bytes(b"garbage" * 1000)
+    with (here / "mine.nc.store").open("r+b") as store:  # its header is whole
+        store.seek(4096)
+        store.write(b"garbage" * 1000)
     status, _, err = run(capsys, "generate", "mine.toml", "--workers", "1")
     assert status == 2
     assert "is not a readable store" in err and "--fresh" in err
@@ -316,12 +319,65 @@ def test_a_map_that_is_not_there(here, capsys, command):
     assert "none.nc: cannot be read" in err
 
 
-@pytest.mark.parametrize("output", ["missing/page.png", "page.xyz"])
-def test_a_picture_that_cannot_be_written(here, capsys, output):
+@pytest.mark.parametrize(
+    ("output", "message"),
+    [
+        ("missing/page.png", "-o: got missing/page.png, but missing is no folder; allowed: a file in a folder"),
+        ("page.xyz", "-o: got page.xyz; allowed: a file that ends in .png, .pdf, .svg"),
+        ("folder.png", "-o: got folder.png, which is a folder; allowed: a file in it"),
+        ("folder", "-o: got folder; allowed: a file that ends in .png, .pdf, .svg"),
+        ("photo.png", "-o: got photo.png, which is there and is not a figure of ehdmaps"),
+    ],
+)
+def test_a_picture_that_cannot_be_written(here, capsys, output, message):
     run(capsys, "generate", "mine.toml", "--workers", "1")
+    (here / "folder").mkdir()
+    (here / "folder.png").mkdir()
+    (here / "photo.png").write_bytes(b"somebody's")
+    before = names(here)
     status, _, err = run(capsys, "plot", "mine.nc", "-o", output)
+    assert (status, names(here)) == (2, before)
+    assert message in err
+    assert (here / "photo.png").read_bytes() == b"somebody's"
+
+
+def test_a_picture_that_fails_leaves_the_old_one(here, capsys, monkeypatch):
+    run(capsys, "generate", "mine.toml", "--workers", "1")
+    assert run(capsys, "plot", "mine.nc")[0] == 0
+    good = (here / "mine.png").read_bytes()
+
+    def full(_, file, **__):
+        Path(file).write_bytes(b"half")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", full)
+    status, _, err = run(capsys, "plot", "mine.nc")
     assert status == 2
-    assert "cannot be written" in err and "allowed: a .png, .pdf or .svg file" in err
+    assert "mine.png: cannot be written (No space left on device)" in err
+    assert (here / "mine.png").read_bytes() == good
+
+
+def test_generate_writes_over_nothing_but_maps(here, capsys):
+    os.mkfifo(here / "pipe")
+    (here / "letter.doc").write_text("Dear Sir")
+    os.link(here / "mine.toml", here / "hard")
+    for output, message in (
+        ("mine.toml", "-o: got mine.toml, which would be written over mine.toml, which is read"),
+        ("hard", "-o: got hard, which would be written over mine.toml, which is read"),
+        ("pipe", "-o: got pipe, which is no regular file"),
+        ("letter.doc", "-o: got letter.doc, which is there and is not a map of ehdmaps"),
+    ):
+        before = names(here)
+        status, _, err = run(capsys, "generate", "mine.toml", "--workers", "1", "-o", output)
+        assert (status, names(here)) == (2, before), output
+        assert message in err
+    assert (here / "mine.toml").read_text() == TEXT
+    assert (here / "letter.doc").read_text() == "Dear Sir"
+    assert (here / "pipe").is_fifo()
+    for _ in range(2):  # a map over a map
+        assert run(capsys, "generate", "mine.toml", "--workers", "1")[0] == 0
+    status, _, err = run(capsys, "generate", "mine.nc", "--workers", "1", "-o", "mine.nc")
+    assert status == 2 and "written over mine.nc, which is read" in err
 
 
 @pytest.mark.parametrize("workers", ["0", "-1", "two", "99999", "9" * 1000])

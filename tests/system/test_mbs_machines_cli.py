@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 import os
+import shutil
+from pathlib import Path
 
 import matplotlib.image
 import numpy as np
 import pytest
 import xarray as xr
 
+import mbs
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import cli as ehdmaps_cli
 from ehdmaps.maps.emap import open_map
@@ -137,14 +140,14 @@ class TestFiles:
     @pytest.mark.parametrize(
         ("arguments", "words"),
         [
-            (("-o", "own.toml"), "-o: got own.toml, which would be written over own.toml; allowed: another file"),
+            (("-o", "own.toml"), "-o: got own.toml, which would be written over own.toml, which is read"),
             (("-o", "./sub/../own.toml"), "which would be written over own.toml"),
             (("--plot", "own.toml"), "--plot: got own.toml; allowed: a file that ends in .png, .pdf, .svg"),
             (("-o", "a.png", "--plot", "a.png"), "--plot: got a.png, which would be written over the file of -o"),
-            (("-o", "sub"), "-o: got sub, which is no file; allowed: a file in a folder"),
+            (("-o", "sub"), "-o: got sub, which is a folder; allowed: a file in it"),
             (("-o", ""), "-o: got ''; allowed: the path of a file"),
             (("--plot", "a\0.png"), "allowed: the path of a file"),
-            (("-o", "pipe"), "-o: got pipe, which is no file"),
+            (("-o", "pipe"), "-o: got pipe, which is no regular file"),
         ],
     )
     def test_what_cannot_be_written_is_said_before_anything_is_computed(
@@ -174,6 +177,21 @@ class TestFiles:
         assert status == 2
         assert "-o: got map.nc, which would be written over map.nc" in err
         assert (here / "map.nc").read_bytes() == b"hours of work"
+
+    def test_a_body_that_the_scene_reads_is_not_written_over(self, here, capsys):
+        folder = Path(mbs.__file__).parent / "systems"
+        shutil.copy(folder / "nu308_flexible.toml", here / "machine.toml")
+        body = shutil.copy(folder / "nu308_housing.nc", here)
+        before = Path(body).read_bytes()
+        for command in ("statics", "runup"):
+            status, _, err = run(capsys, command, "machine.toml", "-o", "./nu308_housing.nc")
+            assert status == 2
+            assert "nu308_housing.nc, which is read; choose another name" in err
+        # nor, by the kind of file that it is, from a scene that does not read it
+        status, _, err = run(capsys, "statics", "own.toml", "-o", "nu308_housing.nc")
+        assert status == 2
+        assert "nu308_housing.nc, which is there and is not a result of mbs" in err
+        assert Path(body).read_bytes() == before
 
     def test_a_name_too_long_for_a_file(self, here, capsys):
         status, _, err = run(capsys, "statics", 5000 * "a", "-o", 5000 * "b")

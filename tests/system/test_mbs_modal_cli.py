@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
+
 import numpy as np
 import pytest
 import xarray as xr
 
+from ehdmaps.outputs import MARK
 from mbs import cli
+from mbs.modal.uff import read_uff
 from mbs.scene_reader import read_scene
 from tests.unit.modal_cases import DAMPING, FREQUENCY, hits, measured
 
@@ -127,7 +132,10 @@ def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys):
         (("modal-fit", "b.uff", "--window-decay", "0 s"), ("above 0 s, or none",)),
         (("hammer", "a.toml", "-o", "h.uff"), ("[[inputs]] missing", "[[sensors]] missing")),
         (("hammer", "nu308_rigid", "-o", "h.uff", "--hits", "0", "--noise", "7"), ("hits: got 0", "noise: got 7.0")),
-        (("hammer", "nu308_rigid", "-o", "no/h.uff", "--highest", "0 Hz"), ("above 0 Hz", "folder does not exist")),
+        (
+            ("hammer", "nu308_rigid", "-o", "no/h.uff", "--highest", "0 Hz"),
+            ("above 0 Hz", "-o: got no/h.uff, but no is no folder"),
+        ),
         (("hammer", "nu308_rigid", "--plot", "a.png"), ("records are not drawn", "-o: missing")),
         (("hammer", "nowhere", "-o", "h.uff"), ("shipped system",)),
     ):
@@ -136,3 +144,40 @@ def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys):
         for word in words:
             assert word in err
     assert sorted(here.iterdir()) == before
+
+
+def test_no_output_is_written_over_what_was_measured(here, capsys):
+    assert run(capsys, "hammer", "n1014_testrig", "--law", "hertz", "-o", "hits.uff", "--hits", "1")[0] == 0
+    measured = (here / "hits.uff").read_bytes()
+    os.link(here / "hits.uff", here / "again.uff")
+    (here / "other.uff").write_bytes(measured.replace(MARK.encode(), b"a test rig     "))
+    for option, name, words in (
+        ("-o", "hits.uff", "written over hits.uff, which is read"),
+        ("--responses", "hits.uff", "written over hits.uff, which is read"),
+        ("--responses", "again.uff", "written over hits.uff, which is read"),
+        ("--responses", "other.uff", "is not a universal file of mbs"),
+        ("--plot", "hits.uff", "allowed: a file that ends in .png"),
+    ):
+        status, out, err = run(capsys, "modal-fit", "hits.uff", option, name)
+        assert (status, out) == (2, "")
+        assert words in err
+    assert (here / "hits.uff").read_bytes() == measured
+    status, _, err = run(capsys, "hammer", "n1014_testrig", "-o", "other.uff")
+    assert status == 2 and "is not a universal file of mbs" in err
+
+
+def _write_often(seed):
+    for _ in range(5):
+        write("same.uff", hits=(hits(1, seed=seed),))
+
+
+def test_several_processes_leave_a_whole_file(here):
+    context = multiprocessing.get_context("fork")
+    writers = [context.Process(target=_write_often, args=(seed,)) for seed in range(4)]
+    for writer in writers:
+        writer.start()
+    for writer in writers:
+        writer.join()
+        assert writer.exitcode == 0
+    assert len(read_uff(here / "same.uff").hits) == 1
+    assert os.listdir(here) == ["same.uff"]

@@ -229,7 +229,7 @@ def test_options_that_cannot_be(folder, arguments, message):
 def test_a_picture_that_cannot_be_written(folder):
     (folder / "film.png").mkdir()
     result = done(folder, "solve", "job.toml", *POINT, "--plot", "film.png", status=2)
-    assert "--plot: film.png cannot be written (Is a directory); allowed: a file in a folder" in result.stderr
+    assert "--plot: got film.png, which is a folder; allowed: a file in it" in result.stderr
 
 
 def test_check_tries_a_point(folder):

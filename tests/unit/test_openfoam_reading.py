@@ -249,5 +249,5 @@ def test_fields_are_written_for_other_programs(case, tmp_path, ending):
 
 
 def test_fields_that_cannot_be_written(case, tmp_path):
-    with pytest.raises(InputError, match=r"cannot be written .*; allowed: a file in a folder that may be written"):
+    with pytest.raises(InputError, match=r"none is no folder; allowed: a file in a folder that exists"):
         write_fields(read_fields(case), tmp_path / "none" / "film.vtu")

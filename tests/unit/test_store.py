@@ -1,3 +1,4 @@
+import os
 import sqlite3
 import subprocess
 import sys
@@ -84,12 +85,11 @@ def big(path):
     return path.read_bytes()
 
 
-@pytest.mark.parametrize("damage", ["garbage", "truncated", "overwritten"])
+@pytest.mark.parametrize("damage", ["truncated", "overwritten"])
 def test_a_corrupt_store_is_told_and_fresh_goes_on(tmp_path, damage):
     path = tmp_path / "a.store"
     content = big(path)
     broken = {
-        "garbage": b"not a database" * 1000,
         "truncated": content[: len(content) // 2],
         "overwritten": content[:4096] + b"\xff" * (len(content) - 4096),
     }[damage]
@@ -109,8 +109,24 @@ def test_a_database_of_another_program_is_refused(tmp_path):
     with sqlite3.connect(path) as database:
         database.execute("CREATE TABLE music (title TEXT)")
     database.close()
-    with pytest.raises(StoreError, match="a database of another program"):
-        Store(path)
+    for fresh in (False, True):
+        with pytest.raises(StoreError, match=r"no store of ehdmaps .*left as it is; .* move it away"):
+            Store(path, fresh)
+    with sqlite3.connect(path) as database:
+        assert database.execute("SELECT count(*) FROM music").fetchone() == (0,)
+    database.close()
+
+
+@pytest.mark.parametrize("fresh", [False, True])
+def test_what_is_no_store_is_left_as_it_is(tmp_path, fresh):
+    (tmp_path / "a.store").write_bytes(b"not a database" * 1000)
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(StoreError, match=r"a\.store: is no store of ehdmaps .*left as it is"):
+        Store(tmp_path / "a.store", fresh)
+    with pytest.raises(StoreError, match=r"pipe: is no store of ehdmaps \(it is no regular file\)"):
+        Store(tmp_path / "pipe", fresh)
+    assert (tmp_path / "a.store").read_bytes() == b"not a database" * 1000
+    assert (tmp_path / "pipe").is_fifo()
 
 
 def test_a_damaged_entry_counts_as_not_solved(tmp_path):

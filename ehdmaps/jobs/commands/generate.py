@@ -15,6 +15,7 @@ from ehdmaps.jobs.reader import is_map, read_job
 from ehdmaps.jobs.report import holes
 from ehdmaps.jobs.store import store_path
 from ehdmaps.jobs.summary import summary
+from ehdmaps.outputs import MAP, Output, check_outputs
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C, as shells have it."""
@@ -26,10 +27,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if arguments.output is None and is_map(arguments.job):
         raise InputError(f"-o: missing; {arguments.job} is a map itself; give the map to write with -o")
     output = Path(arguments.output or f"{job.name}.nc")
-    if output.is_dir():
-        raise InputError(f"-o: got {output}, a folder; allowed: the name of a map file")
-    if not output.parent.is_dir():
-        raise InputError(f"-o: got {output}, but {output.parent} is no folder; allowed: a file in a folder that exists")
+    check_outputs([Output("-o", output, MAP)], [arguments.job])
     solver = solvers.build(job.solver, {**job.solver_options, **solvers.case_options(job.solver, arguments.keep_cases)})
     try:
         generated = generate(job, output, arguments.workers, arguments.fresh, progress, solver)

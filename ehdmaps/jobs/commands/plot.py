@@ -5,21 +5,15 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ehdmaps.errors import InputError
 from ehdmaps.jobs.plot import plot_map
 from ehdmaps.maps.emap import open_map
+from ehdmaps.outputs import FIGURE, Output, check_outputs
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Draw the page and write it; by default beside the map, as PNG."""
     path = Path(arguments.map)
     output = Path(arguments.output) if arguments.output else path.with_suffix(".png")
-    dataset = open_map(path).dataset
-    try:
-        plot_map(dataset, output)
-    except (OSError, ValueError) as error:
-        raise InputError(
-            f"-o: {output} cannot be written ({error}); allowed: a .png, .pdf or .svg file in a folder "
-            "that may be written"
-        ) from error
+    check_outputs([Output("-o", output, FIGURE)], [path])
+    plot_map(open_map(path).dataset, output)
     return f"{output}: written", 0

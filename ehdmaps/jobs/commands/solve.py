@@ -43,7 +43,7 @@ _SOLUTION_FIELDS = (
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Solve the point for every contact; status 1 if one of them has no solution."""
     job, point, length, frequency = _read(arguments)
-    outputs = film_outputs(job, arguments.fields, arguments.plot)
+    outputs = film_outputs(job, arguments.fields, arguments.plot, arguments.job)
     options = {**job.solver_options, **solvers.case_options(job.solver, arguments.keep_cases)}
     solver = solvers.build(job.solver, options)
     if outputs:
