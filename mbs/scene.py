@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
@@ -97,6 +98,8 @@ class Scene:
         What is drawn of a run-up.
     assumed : tuple of str
         Which of its numbers are assumptions.
+    files : tuple of Path
+        All files that were read for it: the scene file where it came from one, reduced bodies, matrices, meshes.
     """
 
     name: str
@@ -118,3 +121,4 @@ class Scene:
     sweep: SweepRange | None
     campbell: CampbellSettings
     assumed: tuple[str, ...]
+    files: tuple[Path, ...] = ()

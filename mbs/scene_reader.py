@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable
 from importlib import resources
@@ -10,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.errors import InputError
+from ehdmaps.inputs import read_text
 from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.axes import AxisRule, read_axis
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
@@ -58,22 +60,13 @@ def read_scene(source: str) -> Scene:
     """
     if source in shipped_systems():
         with resources.as_file(resources.files("mbs") / "systems") as folder:
-            text = (folder / f"{source}.toml").read_text(encoding="utf-8")
-            return parse_scene(text, source, f"{source} (shipped)", folder)
-    path = Path(source)
-    try:
-        with path.open("rb") as file:
-            head = file.read(LONGEST_FILE + 1)
-    except (OSError, ValueError) as error:
-        cause = getattr(error, "strerror", None) or str(error)
-        raise InputError(
-            f"{source}: cannot be read ({cause}); allowed: a scene file, or a shipped system: "
-            f"{', '.join(shipped_systems())}{closest(source, shipped_systems())}"
-        ) from error
-    if len(head) > LONGEST_FILE:
-        raise InputError(f"{source}: longer than {LONGEST_FILE} bytes; allowed: a scene file in TOML")
-    text = toml_text.decode(head, source, "a scene file in TOML")
-    return parse_scene(text, path.stem, source, path.parent)
+            path = folder / f"{source}.toml"
+            scene = parse_scene(path.read_text(encoding="utf-8"), source, f"{source} (shipped)", folder)
+            return dataclasses.replace(scene, files=(path, *scene.files))
+    path, known = Path(source), shipped_systems()
+    allowed = f"a scene file in TOML, or a shipped system: {', '.join(known)}{closest(source, known)}"
+    scene = parse_scene(read_text(path, LONGEST_FILE, allowed, name=source), path.stem, source, path.parent)
+    return dataclasses.replace(scene, files=(path, *scene.files))
 
 
 def parse_scene(text: str, name: str, where: str, folder: Path | None = None) -> Scene:
@@ -104,11 +97,12 @@ def parse_scene(text: str, name: str, where: str, folder: Path | None = None) ->
 
 
 class _Reader:
-    """Reads the tables of one file and keeps what is marked as assumed."""
+    """Reads the tables of one file and keeps what is marked as assumed, and which files were read for it."""
 
     def __init__(self, top: Table, folder: Path | None) -> None:
         self._top = top
         self._folder = folder
+        self._files: list[Path] = []
         self._assumed: list[str] = []
 
     def scene(self, text: str, name: str) -> Scene | None:
@@ -176,6 +170,7 @@ class _Reader:
             sweep=sweep,
             campbell=campbell or CampbellSettings(),
             assumed=tuple(self._assumed),
+            files=tuple(dict.fromkeys(self._files)),
         )
 
     def _all(self, key: str, read: Callable[[Table, str], Built | None]) -> list[Built]:
@@ -229,7 +224,7 @@ class _Reader:
 
     def _flexible(self, section: Table, name: str) -> Body | None:
         """Read a body of finite elements, and what is fixed to it."""
-        return read_attached(section, read_flexible(section, name, self._folder))
+        return read_attached(section, read_flexible(section, name, self._folder, self._files))
 
     def _parts(self, section: Table) -> list[Inertia]:
         """Read what a body is made of: cylinders, or mass and moments of inertia."""

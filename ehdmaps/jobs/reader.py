@@ -7,6 +7,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from ehdmaps import inputs
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers, toml_text
 from ehdmaps.jobs.axes import LOAD_AXIS, SPEED_AXIS, TEMPERATURE_AXIS, AxisRule, read_axis
@@ -51,23 +52,13 @@ def read_job(source: str, solver: str | None = None, to_run: bool = False) -> Jo
         text = (resources.files("ehdmaps.jobs") / "shipped" / f"{source}.toml").read_text(encoding="utf-8")
         return parse_job(text, name=source, where=f"{source} (shipped)", solver=solver, to_run=to_run)
     path = Path(source)
-    try:
-        with path.open("rb") as file:
-            head = file.read(LONGEST_FILE + 1)
-    except (OSError, ValueError) as error:
-        cause = getattr(error, "strerror", None) or str(error)
-        raise InputError(
-            f"{source}: cannot be read ({cause}); allowed: a job file, a map file, or a shipped job: "
-            f"{', '.join(shipped_jobs())}{closest(source, shipped_jobs())}"
-        ) from error
-    if head.startswith(_SIGNATURES):
+    known = shipped_jobs()
+    allowed = f"a job file, a map file, or a shipped job: {', '.join(known)}{closest(source, known)}"
+    if inputs.first_bytes(path, 8, allowed, source).startswith(_SIGNATURES):
         text, name, of_map = _job_of_map(path)
         return parse_job(text, name=name, where=f"{source} (job of the map)", solver=solver or of_map, to_run=to_run)
-    if len(head) > LONGEST_FILE:
-        raise InputError(
-            f"{source}: longer than {LONGEST_FILE} bytes; allowed: a job file; write long axes as from, to, points"
-        )
-    text = toml_text.decode(head, source, "a TOML file or a map file")
+    advice = "write long axes as from, to, points"
+    text = inputs.read_text(path, LONGEST_FILE, "a job file in TOML, or a map file", advice, source)
     return parse_job(text, name=path.stem, where=source, solver=solver, to_run=to_run)
 
 
@@ -194,9 +185,8 @@ def _check_temperatures(oil: Lubricant, temperatures: tuple[float, ...], grid: T
 def is_map(source: str) -> bool:
     """Whether a job was given as a map file."""
     try:
-        with open(source, "rb") as file:
-            return source not in shipped_jobs() and file.read(8).startswith(_SIGNATURES)
-    except (OSError, ValueError):
+        return source not in shipped_jobs() and inputs.first_bytes(source, 8, "").startswith(_SIGNATURES)
+    except InputError:
         return False
 
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import time
-import tomllib
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import numpy as np
 
 from ehdmaps.errors import InputError
+from ehdmaps.inputs import read_text
+from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import LENGTH
 from mbs.flexible.reduced_body import ReducedBody
@@ -55,12 +57,7 @@ def read_body_file(path: Path) -> Reduction:
     InputError
         With every problem found, each beginning with the path.
     """
-    try:
-        with path.open("rb") as file:
-            head = file.read(LONGEST_FILE + 1)
-        values = tomllib.loads(head[: LONGEST_FILE + 1].decode("utf-8"))
-    except (OSError, UnicodeDecodeError, ValueError, RecursionError) as error:
-        raise InputError(f"{path}: cannot be read as TOML ({error}); allowed: a body file") from error
+    values = toml_text.parse(read_text(path, LONGEST_FILE, "a body file in TOML"), str(path))
     problems: list[str] = []
     top = Table(values, "body file", problems)
     plan = read_reduction(top, path.parent)
@@ -69,7 +66,7 @@ def read_body_file(path: Path) -> Reduction:
     top.close()
     if problems or plan is None:
         raise InputError([f"{path}: {problem}" for problem in problems])
-    return plan
+    return dataclasses.replace(plan, source=path)
 
 
 def _lines(reduced: ReducedBody, source: Path, seconds: float) -> list[str]:

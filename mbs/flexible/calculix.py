@@ -19,7 +19,7 @@ import numpy as np
 from ehdmaps.errors import InputError
 from mbs.flexible.finite_elements import FiniteElementModel, IntArray
 from mbs.flexible.matrix_files import NodePositions, assemble_model, checked_labels, read_triplets
-from mbs.flexible.number_table import read_numbers
+from mbs.flexible.number_table import check_file, read_numbers
 
 _REFUSED = ("RIGIDBODY", "TRANSFORM", "MPC", "DISTRIBUTINGCOUPLING", "KINEMATIC", "DISTRIBUTING", "COUPLING")
 _ROW = re.compile(r"([0-9]+)\.([0-9]+)")
@@ -63,7 +63,7 @@ def read_dofs(path: Path) -> tuple[IntArray, IntArray]:
     """
     # As numbers first, for length, line and finiteness; "12.10" would be direction 1 as a number, so as text then.
     table = read_numbers(path, 1, "#")
-    with path.open(encoding="ascii") as file:
+    with path.open(encoding="utf-8", errors="replace") as file:
         found = [_ROW.fullmatch(text) for line in file if (text := line.partition("#")[0].strip())]
     if None in found:
         raise table.problem(found.index(None), 'allowed: "node.direction", such as 12.1')
@@ -76,6 +76,7 @@ def read_dofs(path: Path) -> tuple[IntArray, IntArray]:
 
 def check_deck(path: Path) -> None:
     """Raise InputError if a deck has constraints that make its matrices unreadable: see the head of this module."""
+    check_file(path)
     wrong = []
     with path.open(encoding="utf-8", errors="replace") as file:
         for number, line in enumerate(file, start=1):

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.errors import InputError
+from ehdmaps.inputs import check_input
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import short
 from mbs.flexible.finite_elements import IntArray
@@ -90,17 +91,8 @@ def read_numbers(path: Path, columns: int, comment: str, delimiter: str | None =
 
 
 def check_file(path: Path) -> None:
-    """Raise InputError if a file is not there or too long."""
-    try:
-        size = path.stat().st_size
-        with path.open("rb"):
-            pass
-    except (OSError, ValueError) as error:
-        raise InputError(
-            f"{path}: cannot be read ({getattr(error, 'strerror', None) or error}); allowed: a file that is there"
-        ) from error
-    if size > LONGEST_FILE:
-        raise InputError(f"{path}: got {size} bytes; allowed: at most {LONGEST_FILE}; take a coarser mesh")
+    """Raise InputError if there is no such file of a finite-element body, or it is too long."""
+    check_input(path, LONGEST_FILE, "a file of the body", "take a coarser mesh")
 
 
 def _found(path: Path, columns: int, comment: str, delimiter: str | None) -> InputError:

@@ -18,8 +18,8 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.errors import InputError
+from ehdmaps.inputs import check_input
 from mbs.body import FREEDOMS, Frame
-from mbs.flexible.number_table import check_file
 from mbs.flexible.reduced_body import MOST_COORDINATES, ReducedBody
 
 SCHEMA_VERSION = 1
@@ -94,9 +94,7 @@ def read_reduced(path: Path) -> ReducedBody:
         If it is none.
     """
     _check_suffix(path)
-    check_file(path)
-    if path.stat().st_size > _LONGEST_FILE:
-        raise InputError(f"{path}: got {path.stat().st_size} bytes; allowed: at most {_LONGEST_FILE}")
+    check_input(path, _LONGEST_FILE, "a file written by mbs reduce")
     given = _npz(path) if path.suffix == ".npz" else _netcdf(path)
     try:
         return _body(given)

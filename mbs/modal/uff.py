@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.errors import InputError
+from ehdmaps.inputs import check_input
 from ehdmaps.physics._values import FloatArray
 from mbs.modal.lscf import INSTALL
 from mbs.modal.records import LONGEST, Channel, Hits, Measured, Responses
@@ -156,14 +157,7 @@ def _library() -> Any:
 def _sets(path: Path) -> list[_Set]:
     """All datasets of a file as the library reads them."""
     pyuff = _library()
-    try:
-        size = path.stat().st_size
-    except OSError as error:
-        raise InputError(
-            f"{path}: cannot be read ({error.strerror}); allowed: a universal file (.uff, .unv)"
-        ) from error
-    if not path.is_file() or size > LARGEST:
-        raise InputError(f"{path}: got {size} bytes, or no file; allowed: a universal file of up to {LARGEST} bytes")
+    size = check_input(path, LARGEST, "a universal file (.uff, .unv)", "measure fewer records in one file")
     try:
         with path.open("rb") as file:
             file.seek(max(size - 200, 0))

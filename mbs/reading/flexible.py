@@ -83,6 +83,8 @@ class Reduction:
         Where forces act.
     points : mapping
         Where the body is observed: places [m], node numbers, or averaging interfaces.
+    source : Path or None
+        The file that says all this, if it is one of its own.
     """
 
     form: str
@@ -94,6 +96,13 @@ class Reduction:
     cutoff: float
     interfaces: Mapping[str, PlannedInterface]
     points: Mapping[str, PlannedInterface | tuple[float, ...] | int] = field(default_factory=dict)
+    source: Path | None = None
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """All files that are read for it."""
+        named = (self.source, self.stiffness, self.mass, self.dofs, self.mesh)
+        return tuple(path for path in named if path is not None)
 
     def model(self) -> FiniteElementModel:
         """Read the files; InputError with file and line."""
@@ -137,7 +146,7 @@ class Reduction:
         )
 
 
-def read_flexible(section: Table, name: str, folder: Path | None) -> Body | None:
+def read_flexible(section: Table, name: str, folder: Path | None, files: list[Path]) -> Body | None:
     """Read a flexible body of a scene.
 
     Parameters
@@ -149,6 +158,8 @@ def read_flexible(section: Table, name: str, folder: Path | None) -> Body | None
         Of the body.
     folder : Path or None
         Where relative paths begin; None for the folder of the shipped systems.
+    files : list of Path
+        All files that are read for the body are added to it.
 
     Returns
     -------
@@ -164,9 +175,11 @@ def read_flexible(section: Table, name: str, folder: Path | None) -> Body | None
             if key in section:
                 section.get(key)
                 section.note(key, "stands beside reduced, which has all of it; allowed: one of the two")
+        files += [path] if path is not None else []
         reduced = fields.built(section, lambda: read_reduced(path)) if path is not None else None
     else:
         plan = read_reduction(section, folder, "reduced, or matrices = { format, stiffness, mass, dofs }")
+        files += plan.files if plan is not None else ()
         reduced = fields.built(section, plan.carry_out) if plan is not None else None
     if reduced is None or position is None or ratio is None or len(section.problems) > before:
         return None

@@ -606,7 +606,9 @@ class TestReaders:
 
     def test_files_that_are_too_long(self, files, monkeypatch):
         monkeypatch.setattr("mbs.flexible.number_table.LONGEST_FILE", 10)
-        with pytest.raises(InputError, match="bytes; allowed: at most 10"):
+        with pytest.raises(
+            InputError, match=r"longer than 10 bytes \(got \d+\); allowed: a file of the body; take a coarser mesh"
+        ):
             read_dof_table(files[0] / "dofs.txt")
 
     def test_files_that_fill_the_memory(self, tmp_path, monkeypatch):
@@ -682,7 +684,7 @@ def table(folder, **changes):
     section = Table(
         {key: value for key, value in values.items() if value is not None}, "[[flexible]] housing", problems
     )
-    body = read_flexible(section, "housing", folder)
+    body = read_flexible(section, "housing", folder, [])
     section.close(("name",))
     return body, "\n".join(problems)
 
@@ -809,8 +811,8 @@ class TestScene:
                 command.run(argparse.Namespace(body=str(source), output=output and str(tmp_path / output)))
             return "\n".join(caught.value.problems)
 
-        assert "cannot be read as TOML" in problem(b"a = ")
-        assert "cannot be read as TOML" in problem(b"\xff")
+        assert "body.toml: is not TOML" in problem(b"a = ")
+        assert "body.toml: is not UTF-8 text (byte 0); allowed: a body file in TOML" in problem(b"\xff")
         both = problem(b"colour = 1", "a.txt")
         assert "-o: got" in both
         assert "body file colour: unknown key" in both

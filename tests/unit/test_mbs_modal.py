@@ -469,12 +469,12 @@ def test_hostile_files(tmp_path):
 def test_files_that_cannot_be_read_or_written(tmp_path):
     with pytest.raises(InputError, match="cannot be read"):
         read_uff(tmp_path / "nowhere.uff")
-    with pytest.raises(InputError, match="or no file"):
+    with pytest.raises(InputError, match=r"cannot be read \(it is a folder\); allowed: a universal file"):
         read_uff(tmp_path)
     huge = tmp_path / "huge.uff"
     with huge.open("wb") as file:
         file.truncate(LARGEST + 1)
-    with pytest.raises(InputError, match="allowed: a universal file of up to"):
+    with pytest.raises(InputError, match=r"longer than 536870912 bytes .*; allowed: a universal file"):
         read_uff(huge)
     with pytest.raises(InputError, match="cannot be written"):
         write_uff(tmp_path / "no" / "a.uff", Measurement("", (hits(1),)))
