@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ehdmaps.errors import SolverError
+from ehdmaps.openfoam.run import RunError
 
 PARAMETER_FILE = Path("constant") / "ehlProperties"
 
@@ -41,7 +42,7 @@ def working_case(template: Path, parameters: str, name: str, keep: Path | None =
     Yields
     ------
     Path
-        The case folder; one that has failed (SolverError) stays.
+        The case folder; one that has failed (SolverError) stays, and a RunError knows it then.
 
     Raises
     ------
@@ -63,8 +64,10 @@ def working_case(template: Path, parameters: str, name: str, keep: Path | None =
     failed = False
     try:
         yield folder
-    except SolverError:
+    except SolverError as error:
         failed = True
+        if isinstance(error, RunError):
+            error.case = folder
         raise
     finally:
         if keep is None and not failed:

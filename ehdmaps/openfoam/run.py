@@ -37,12 +37,17 @@ class RunError(SolverError):
         Of the point.
     iterations : int
         Done until then.
+    case : Path, optional
+        Its folder, where that is left.
     """
 
-    def __init__(self, message: str, status: Status = Status.FAILED, iterations: int = 0) -> None:
+    def __init__(
+        self, message: str, status: Status = Status.FAILED, iterations: int = 0, case: Path | None = None
+    ) -> None:
         super().__init__(message)
         self.status = status
         self.iterations = iterations
+        self.case = case
 
 
 class KilledError(RunError):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import shutil
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -38,7 +39,10 @@ CAVITATION_RANGE = 1e-6
 MOVED_COLUMNS = 1.1
 """Columns of a second try, over those asked for."""
 
-PARAMETER_VERSION = 2
+BETWEEN = 0.75
+"""Cells each way of a grid between the coarse one and the fine one, over those of the fine one."""
+
+PARAMETER_VERSION = 3
 """Raised when a change of this package changes numbers: results of another version are not taken over."""
 
 StartWord = Literal["reynolds", "hertz"]
@@ -285,8 +289,7 @@ class OpenFoamSolver:
             coarse = self._stubborn(halved, name, False, end)
             done = coarse.results.iterations
             stage = "fine grid"
-            start = Start(coarse.film.x, coarse.film.pressure, coarse.results.central_film)
-            grid = self._stubborn(fine, name, with_fields, end, start)
+            grid = self._stubborn(fine, name, with_fields, end, _start(coarse))
         except InputError as error:
             return FilmSolution(Status.OUTSIDE_VALIDITY, str(error)), None
         except SolverError as error:
@@ -300,22 +303,39 @@ class OpenFoamSolver:
     def _stubborn(
         self, parameters: Parameters, name: str, with_fields: bool, end: float, start: Start | None = None
     ) -> GridSolution:
-        """Run one grid from `start`; where that stagnates from its own start, then with its columns elsewhere.
+        """Run one grid from `start`; where that stagnates over a grid between, from its own start, on other columns.
 
-        Behind a steep pressure spike it depends on where the columns stand whether Newton's method finds its way.
+        Behind a steep pressure spike it depends on where the columns stand whether Newton's method finds its way, and
+        the spike of a grid twice as coarse may be too far from that of the fine one.
         """
-        moved = replace(parameters, columns=2 * round(MOVED_COLUMNS * parameters.columns / 2))
-        tries = ([replace(parameters, start=start)] if start is not None else []) + [parameters, moved]
+        moved = _resized(parameters, MOVED_COLUMNS, 1.0)
+        tries: list[tuple[Parameters, ...]] = [(parameters,), (moved,)]
+        if start is not None:
+            begun = replace(parameters, start=start)
+            tries = [(begun,), (_resized(begun, BETWEEN, BETWEEN), parameters), *tries]
         for attempt in tries:
             try:
-                grid = self.run_case(attempt, name, with_fields, end)
+                grid = self._in_turn(attempt, name, with_fields, end)
             except RunError as error:
                 if error.status is not Status.STAGNATED or attempt is tries[-1]:
                     raise
+                self._forget(error)
             else:
-                note = "" if attempt is not moved else f"solved on {moved.columns} columns"
+                note = "" if attempt is not tries[-1] else f"solved on {moved.columns} columns"
                 return replace(grid, note="; ".join(filter(None, [grid.note, note])))
         raise AssertionError("unreachable: the last try returns or raises")
+
+    def _in_turn(self, grids: tuple[Parameters, ...], name: str, with_fields: bool, end: float) -> GridSolution:
+        """Run the last of some grids, from the solution of the one before if there is one."""
+        *before, last = grids
+        for grid in before:
+            last = replace(last, start=_start(self.run_case(grid, name, False, end)))
+        return self.run_case(last, name, with_fields, end)
+
+    def _forget(self, error: RunError) -> None:
+        """Remove the folder of a failed run after which another one follows, unless cases are kept."""
+        if self.keep_cases is None and error.case is not None:
+            shutil.rmtree(error.case, ignore_errors=True)
 
     def parameters(
         self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequency: float = 0.0
@@ -390,11 +410,13 @@ class OpenFoamSolver:
         try:
             return self._run_once(parameters, name, with_fields, end)
         except KilledError as first:
+            self._forget(first)
             try:
                 second = self._run_once(parameters, name, with_fields, end)
             except KilledError as error:
-                raise RunError(f"killed twice: {error}") from error
-            return replace(second, note=f"solved at the second try, the first {first}")
+                raise RunError(f"killed twice: {error}", case=error.case) from error
+            # Its log is gone.
+            return replace(second, note=f"solved at the second try, the first {str(first).partition(';')[0]}")
 
     def _run_once(self, parameters: Parameters, name: str, with_fields: bool, end: float) -> GridSolution:
         """One run in a folder of its own."""
@@ -419,6 +441,20 @@ class OpenFoamSolver:
                 raise RunError(f"{error}; {log_tail(log)}") from error
             message = f"ehlFoam {results.status.word}: {results.reason}; {log_tail(log)}"
             raise RunError(message, results.status, results.iterations)
+
+
+def _start(grid: GridSolution) -> Start:
+    """What another grid starts from."""
+    return Start(grid.film.x, grid.film.pressure, grid.results.central_film)
+
+
+def _resized(parameters: Parameters, columns: float, rows: float) -> Parameters:
+    """The same on so many times the cells, even numbers of them."""
+    return replace(
+        parameters,
+        columns=2 * round(columns * parameters.columns / 2),
+        rows=max(2 * round(rows * parameters.rows / 2), 2),
+    )
 
 
 def _case_name(contact: LineContact, point: OperatingPoint) -> str:

@@ -16,6 +16,7 @@ from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.table import Table
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.units import LENGTH
+from mbs.flexible.extent import Extent, extent
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduced_file import REDUCED, write_reduced
 from mbs.reading.fields import HERTZ
@@ -38,10 +39,13 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if problems or plan is None:
         raise InputError(problems)
     began = time.perf_counter()
-    reduced = plan.carry_out({"command": f"mbs reduce {source.name} -o {target.name}", **_versions()})
+    model = plan.model()
+    found = extent(model)
+    reduced = plan.reduced(model, {"command": f"mbs reduce {source.name} -o {target.name}", **_versions()})
     seconds = time.perf_counter() - began
+    warnings = [f"warning: {source}: {words}" for words in found.warnings(plan.units)]
     write_reduced(target, reduced)
-    return "\n".join([*_lines(reduced, source, seconds), f"{target}: written"]), 0
+    return "\n".join([*_lines(reduced, found, source, seconds), *warnings, f"{target}: written"]), 0
 
 
 def read_body_file(path: Path) -> Reduction:
@@ -69,7 +73,7 @@ def read_body_file(path: Path) -> Reduction:
     return dataclasses.replace(plan, source=path)
 
 
-def _lines(reduced: ReducedBody, source: Path, seconds: float) -> list[str]:
+def _lines(reduced: ReducedBody, found: Extent, source: Path, seconds: float) -> list[str]:
     """What was found."""
     squares = np.diag(reduced.stiffness)
     kept = [np.sqrt(squares[k]) / (2.0 * np.pi) for k, unit in enumerate(reduced.units) if unit == "1"]
@@ -77,11 +81,13 @@ def _lines(reduced: ReducedBody, source: Path, seconds: float) -> list[str]:
     lines = [
         f"{source}: {reduced.attributes['finite_element_freedoms']} degrees of freedom to {reduced.size}: {count} of "
         f"interfaces, {len(kept)} modes up to {reduced.attributes['cutoff']}; {seconds:.3g} s",
+        f"{found.mass:.6g} kg without what fixed nodes have of it",
         "",
         f"{'place':<20}{'x, mm':>12}{'y, mm':>12}{'z, mm':>12}",
     ]
-    for name, frame in reduced.frames.items():
-        lines.append(f"{name:<20}" + "".join(f"{LENGTH.value(value):>12.4f}" for value in frame.position))
+    places = [("centre of mass", found.centre), ("box from", found.lower), ("box to", found.upper)]
+    for name, position in [*places, *((name, frame.position) for name, frame in reduced.frames.items())]:
+        lines.append(f"{name:<20}" + "".join(f"{LENGTH.value(value):>12.4f}" for value in position))
     lines += ["", "modes with all interfaces held:"]
     lines += [f"{k + 1:>6}  {HERTZ.text(value, 6)}" for k, value in enumerate(kept[:_SHOWN])]
     if len(kept) > _SHOWN:

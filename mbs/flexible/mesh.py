@@ -20,6 +20,11 @@ from mbs.flexible.number_table import check_file
 
 DECKS = (".inp",)
 
+_SEVERAL = (".xdmf", ".xmf", ".xml", ".node", ".ele")
+"""Formats of meshio that open further files, whatever those are."""
+
+_PACKED = (".gz",)
+
 
 def read_mesh_nodes(path: Path) -> NodePositions:
     """Read the positions of the nodes, in the units of the file.
@@ -35,6 +40,11 @@ def read_mesh_nodes(path: Path) -> NodePositions:
         With the file, and the line of a deck.
     """
     check_file(path)
+    if path.suffix.lower() in (*_SEVERAL, *_PACKED):
+        raise InputError(
+            f"{path}: got the ending {path.suffix!r}, of a mesh in several files or a packed one; allowed: a mesh in "
+            "one file, such as .inp, .msh, .vtk, .vtu, .bdf; convert it"
+        )
     return _deck_nodes(path) if path.suffix.lower() in DECKS else _meshio_nodes(path)
 
 

@@ -9,13 +9,16 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.errors import InputError
-from ehdmaps.inputs import check_input
+from ehdmaps.inputs import check_input, first_bytes
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import short
 from mbs.flexible.finite_elements import IntArray
 
 LONGEST_FILE = 4_000_000_000
 """Bytes."""
+
+_LONGEST_LINE = 10_000
+"""Bytes; a row of a table has some tens."""
 
 _LARGEST_WHOLE = 1e12
 """Node numbers and indices beyond this are slips."""
@@ -73,6 +76,13 @@ def read_numbers(path: Path, columns: int, comment: str, delimiter: str | None =
         If the file cannot be read, is empty, or a line is not made of so many finite numbers.
     """
     check_file(path)
+    start = first_bytes(path, _LONGEST_LINE, "a table of numbers")
+    # A line is read as one: it must not be the whole of a large file.
+    if len(start) == _LONGEST_LINE and b"\n" not in start:
+        raise InputError(
+            f"{path}: begins with {short(start[:20])}, which is no text in lines; allowed: {columns} numbers a line; "
+            "the file is of another kind, or was damaged"
+        )
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")

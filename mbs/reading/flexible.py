@@ -11,9 +11,11 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
+from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import LENGTH, short
 from mbs.body import FREEDOMS, Body
 from mbs.flexible.calculix import check_deck, read_calculix
+from mbs.flexible.extent import extent
 from mbs.flexible.finite_elements import FiniteElementModel, IntArray
 from mbs.flexible.matrix_files import (
     UNIT_SYSTEMS,
@@ -25,7 +27,7 @@ from mbs.flexible.matrix_files import (
 from mbs.flexible.mesh import DECKS, read_mesh_nodes
 from mbs.flexible.reduced_body import ReducedBody, to_body
 from mbs.flexible.reduced_file import read_reduced
-from mbs.flexible.reduction import Point, reduce
+from mbs.flexible.reduction import NEAREST, Point, reduce
 from mbs.flexible.spiders import KINDS, Interface, Kind, nodes_in_plane, nodes_on_cylinder
 from mbs.reading import fields
 from mbs.reading.fields import HERTZ
@@ -60,7 +62,25 @@ class PlannedInterface:
                 f"interface {name!r}: no node of the mesh is on its surface; allowed: a surface of the mesh; check at, "
                 "axis, diameter, units and tolerance"
             )
+        self._check_place(model, nodes, name)
         return Interface(np.array(self.position), nodes, self.kind, self.freedoms)
+
+    def _check_place(self, model: FiniteElementModel, nodes: IntArray, name: str) -> None:
+        """Refuse a place further from the nodes than they are from each other: a slip in a unit, or in a number."""
+        known = [model.position(node) for node in nodes.tolist() if model.has_position(node)]
+        if len(known) < nodes.size:
+            return  # said when their displacements are looked for
+        lower, upper = np.min(known, axis=0), np.max(known, axis=0)
+        place = np.array(self.position)
+        away = float(np.linalg.norm(place - np.clip(place, lower, upper)))
+        # A single node may have a place beside it, as a point may.
+        allowed = max(float(np.linalg.norm(upper - lower)), NEAREST * float(np.max(np.ptp(model.positions, axis=0))))
+        if away > allowed:
+            raise InputError(
+                f"interface {name!r}, at: got {_shown(place)}, {LENGTH.text(away)} from its {nodes.size} nodes, whose "
+                f"centroid is at {_shown(np.mean(known, axis=0))}; allowed: up to {LENGTH.text(allowed)} from them; "
+                "check at, the nodes and units"
+            )
 
 
 @dataclass(frozen=True)
@@ -120,7 +140,10 @@ class Reduction:
 
     def carry_out(self, attributes: Mapping[str, str] | None = None) -> ReducedBody:
         """Read the files and reduce; InputError or AnalysisError."""
-        model = self.model()
+        return self.reduced(self.model(), attributes)
+
+    def reduced(self, model: FiniteElementModel, attributes: Mapping[str, str] | None = None) -> ReducedBody:
+        """Reduce what was read; InputError or AnalysisError."""
         problems: list[str] = []
 
         def found(name: str, planned: PlannedInterface) -> Interface | None:
@@ -136,7 +159,8 @@ class Reduction:
             for name, planned in self.points.items()
         }
         if problems:
-            raise InputError(problems)
+            # Often it is the unit.
+            raise InputError([*problems, *(f"{self.mesh}: {words}" for words in extent(model).warnings(self.units))])
         return reduce(
             model,
             {name: entry for name, entry in interfaces.items() if entry is not None},
@@ -241,6 +265,11 @@ def read_reduction(
     if stiffness is None or mass is None or mesh is None:
         return None
     return Reduction(form, stiffness, mass, mesh, files.get("dofs"), units, cutoff, interfaces, points)
+
+
+def _shown(place: FloatArray) -> str:
+    """A place in words."""
+    return ", ".join(LENGTH.text(value) for value in place.tolist())
 
 
 def _path(section: Table, key: str, folder: Path | None) -> Path | None:

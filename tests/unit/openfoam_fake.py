@@ -60,6 +60,12 @@ h = 3.0 * R * (0.1 * speed / (E * R)) ** 0.7 * (load / (E * R)) ** -0.1 * 1000
 grid = 1.0 + 4.0 / columns**2 + 1.0 / rows**2
 frequency = float(re.search(r"response \\{ frequencies \\(([^)]*)\\)", text)[1])
 status = mode[0] if mode[0] in ("stagnated", "diverged") else "converged"
+begun = re.search(r"start \\{ x \\(([^)]*)\\)", text)
+grid_name = f"{columns}x{rows}" + (f"<{len(begun[1].split())}" if begun else "")
+with open(folder / "grids", "a") as grids:
+    grids.write(grid_name + "\\n")
+if mode[0] == "stagnates_on" and grid_name in mode[1:]:
+    status = "stagnated"
 entries = {
     "status": status, "reason": '""' if status == "converged" else '"residual 1e-3 after 200 iterations"',
     "iterations": 7, "centralFilm": h * grid, "minimumFilm": 0.8 * h, "maximumPressure": 1e8 * math.sqrt(load / 1e4),
@@ -147,6 +153,11 @@ def build(folder: Path, mode: str = "good") -> dict[str, str]:
 def set_mode(folder: Path, mode: str) -> None:
     """Say how ehlFoam behaves from now on."""
     (folder / "mode").write_text(mode)
+
+
+def grids(folder: Path) -> list[str]:
+    """Grid of every run so far that came to it, and behind < the columns of what it started from."""
+    return (folder / "grids").read_text().split()
 
 
 def starts(folder: Path) -> list[list[str]]:

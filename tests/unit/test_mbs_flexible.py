@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 
 import meshio
 import numpy as np
@@ -17,6 +18,7 @@ from mbs.commands import reduce as command
 from mbs.errors import AnalysisError
 from mbs.flexible import held_body
 from mbs.flexible.calculix import check_deck, read_calculix, read_dofs
+from mbs.flexible.extent import Extent, extent
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.matrix_files import (
     Labelled,
@@ -34,7 +36,7 @@ from mbs.flexible.reduced_file import read_reduced, write_reduced
 from mbs.flexible.reduction import reduce
 from mbs.flexible.spiders import Interface, nearest_node, nodes_in_plane, nodes_on_cylinder, spider
 from mbs.reading.flexible import read_flexible
-from tests.unit.flexible_cases import SIZE, block, ends, rigid_motion
+from tests.unit.flexible_cases import DENSITY, SIZE, block, ends, rigid_motion
 
 ROUND_OFF = 1e-12
 
@@ -822,6 +824,163 @@ class TestScene:
         assert "body file colour: unknown key" in both
         assert "body file matrices: missing" in both
         assert "gone.toml: cannot be read" in "".join(slip_of(tmp_path / "gone.toml"))
+
+
+class TestExtent:
+    def test_mass_centre_and_box_of_bricks(self):
+        found = extent(block())
+        assert found.mass == pytest.approx(DENSITY * np.prod(SIZE), rel=ROUND_OFF)
+        assert found.centre == pytest.approx(0.5 * np.array(SIZE), rel=ROUND_OFF)
+        assert found.lower.tolist() == [0.0, 0.0, 0.0]
+        assert found.upper == pytest.approx(SIZE, rel=ROUND_OFF)
+        assert found.density == pytest.approx(DENSITY, rel=ROUND_OFF)
+        assert found.warnings("SI") == ()
+
+    def test_mass_and_centre_of_beams(self):
+        """Two masses with moments of inertia of their own, which turn with the body."""
+        place = np.array([[0.1, 0.2, 0.3], [1.1, -0.4, 0.8]])
+        mass = np.repeat([3.0, 1.0], 6) * np.tile([1.0, 1.0, 1.0, 0.1, 0.2, 0.3], 2)
+        found = extent(
+            FiniteElementModel(
+                sparse.eye_array(12, format="csc"),
+                sparse.diags_array(mass, format="csc"),
+                np.repeat([1, 2], 6),
+                np.tile(np.arange(6), 2),
+                np.array([1, 2]),
+                place,
+            )
+        )
+        assert found.mass == pytest.approx(4.0, rel=ROUND_OFF)
+        assert found.centre == pytest.approx(0.75 * place[0] + 0.25 * place[1], rel=ROUND_OFF)
+
+    def test_fixed_nodes_and_nodes_without_a_position(self):
+        free, fixed = extent(block()), extent(block(fixed=True))
+        # The shapes of the free nodes add up to a third in the mean square over the first of four bricks.
+        assert fixed.mass == pytest.approx((1.0 - 2.0 / 3.0 / 4.0) * free.mass, rel=ROUND_OFF)
+        model = block()
+        # A node without a position counts with its mass, and turns about the origin of none.
+        lost = FiniteElementModel(
+            model.stiffness, model.mass, model.nodes, model.directions, model.numbers[1:], model.positions[1:]
+        )
+        assert extent(lost).mass == pytest.approx(free.mass, rel=ROUND_OFF)
+
+    def test_a_body_without_thickness_has_no_density(self):
+        flat = Extent(7.0, np.zeros(3), np.zeros(3), np.array([1.0, 0.5, 0.0]))
+        assert flat.density is None
+        assert flat.warnings("SI") == ()
+        assert Extent(7.0, np.zeros(3), np.zeros(3), np.array([60.0, 0.5, 0.0])).warnings("SI") == (
+            'got a box of 60 m with units = "SI"; allowed: 0.001 to 50 m, 1 to 25000 kg/m3; units = "mm-t-s" would '
+            "give a box of 0.06 m",
+        )
+
+    @pytest.mark.parametrize(
+        ("mass", "side", "units", "message"),
+        [
+            (0.2106, 300.0, "SI", 'got a box of 300 m and 7.8e-09 kg/m3 .* units = "mm-t-s" would give a box of 0.3 m'),
+            (210.6e3, 3e-4, "mm-t-s", 'got a box of 0.0003 m .* units = "SI" would give a box of 0.3 m and 7.8e.03'),
+            (210.6e3, 0.3, "SI", "got a box of 0.3 m and 7.8e.06 .*; no units of this program fit: check mesh and mat"),
+            (0.02, 0.3, "SI", "got a box of 0.3 m and 0.741 kg/m3 .*; no units of this program fit"),
+        ],
+    )
+    def test_units_that_cannot_be(self, mass, side, units, message):
+        (told,) = Extent(mass, np.zeros(3), np.zeros(3), np.full(3, side)).warnings(units)
+        assert re.search(message, told), told
+
+    def test_the_command_shows_them(self, files):
+        folder, _ = files
+        source = folder / "body.toml"
+        source.write_text(BODY)
+        text, _ = command.run(argparse.Namespace(body=str(source), output=None))
+        mass = DENSITY * np.prod(SIZE)
+        assert f"{mass:.6g} kg without what fixed nodes have of it" in text
+        assert re.search(r"centre of mass +100\.0000 +25\.0000 +20\.0000\n", text)
+        assert re.search(r"box from +0\.0000 +0\.0000 +0\.0000\nbox to +200\.0000 +50\.0000 +40\.0000\n", text)
+        assert "warning" not in text
+
+    def test_units_left_out(self, files):
+        """A deck in mm, tonne and s that is taken for SI: a thousandth of the mass, a thousand times the size."""
+        folder, model = files
+        source = folder / "body.toml"
+        matrices = 'matrices = { format = "abaqus", stiffness = "k_abaqus.mtx", mass = "m_abaqus.mtx" }'
+        body = re.sub("matrices = .*", matrices, BODY.partition("[interfaces]")[0]).replace('"m.inp"', '"mm.inp"')
+        wrong = body + '[interfaces]\nleft = { at = ["0 m", "25 m", "20 m"], plane = { axis = "x" } }\n'
+        source.write_text(wrong)
+        text, status = command.run(argparse.Namespace(body=str(source), output=None))
+        assert status == 0
+        assert f"{1e-3 * DENSITY * np.prod(SIZE):.6g} kg" in text
+        assert f"warning: {source}: got a box of 200 m" in text
+        assert 'units = "mm-t-s" would give a box of 0.2 m and 7.85e+03 kg/m3 over it' in text
+        right = wrong.replace('units = "SI"', 'units = "mm-t-s"').replace(' m"', ' mm"')
+        source.write_text(right)
+        assert "warning" not in command.run(argparse.Namespace(body=str(source), output=None))[0]
+        corners = [int(10 * node) for node in model.numbers[np.abs(model.positions[:, 0] - 0.2) < 1e-9]]
+        far = f'left = {{ at = ["200 mm", "25 mm", "20 mm"], nodes = {corners} }}'
+        source.write_text(re.sub("left = .*", far, wrong))
+        with pytest.raises(InputError, match=r"at: got 200 mm, 25 mm, 20 mm, .* from its 4 nodes") as caught:
+            command.run(argparse.Namespace(body=str(source), output=None))
+        assert 'units = "mm-t-s" would give a box of 0.2 m' in caught.value.problems[1]
+
+
+class TestFilesOfAnotherKind:
+    @pytest.mark.parametrize("end", [".xdmf", ".XML", ".node", ".ele", ".gz"])
+    def test_meshes_in_several_files(self, tmp_path, end):
+        path = tmp_path / f"m{end}"
+        path.write_text("1\n")
+        with pytest.raises(
+            InputError, match=r"of a mesh in several files or a packed one; allowed: a mesh in one file"
+        ):
+            read_mesh_nodes(path)
+
+    def test_tables_that_are_no_text_in_lines(self, tmp_path):
+        path = tmp_path / "a.sti"
+        path.write_text("1 " * 5001)
+        with pytest.raises(InputError, match=r"which is no text in lines; allowed: 3 numbers a line"):
+            read_triplets(path, np.array([1]), np.array([0]))
+
+    def test_a_large_file_of_nothing(self, tmp_path):
+        path = tmp_path / "a.dof"
+        with path.open("wb") as file:
+            file.truncate(3_000_000_000)  # takes no space on the disk
+        with pytest.raises(InputError, match="which is no text in lines"):
+            read_dofs(path)
+
+    def test_rows_with_a_comment_in_any_language(self, tmp_path):
+        path = tmp_path / "a.dof"
+        path.write_text("# d\u00e9placements\n1.1\n", encoding="utf-8")
+        assert [entry.tolist() for entry in read_dofs(path)] == [[1], [0]]
+
+
+class TestPlaceOfAnInterface:
+    @pytest.mark.parametrize("surface", ["nodes", "plane", "cylinder"])
+    def test_far_from_its_nodes(self, files, surface):
+        folder, model = files
+        corners = [int(10 * node) for node in model.numbers[np.abs(model.positions[:, 0] - 0.2) < 1e-9]]
+        edge = {"axis": "x", "diameter": "64.0312 mm"}
+        # A diagonal of the face is 64.03 mm.
+        for away, good in ((64.0, True), (64.1, False)):
+            at = {"nodes": f"{200 + away} mm", "plane": "200 mm", "cylinder": f"{200 + away} mm"}[surface]
+            given = {
+                "nodes": {"nodes": corners},
+                "plane": {"plane": {"axis": "x"}},
+                "cylinder": {"cylinder": edge | {"from": f"{-away - 1} mm", "to": f"{-away + 1} mm"}},
+            }[surface]
+            y = f"{50 + away} mm" if surface == "plane" else "25 mm"
+            _, problems = table(folder, interfaces={"left": LEFT, "right": {"at": [at, y, "20 mm"], **given}})
+            told = [problem for problem in problems.splitlines() if "interface 'right', at: got" in problem]
+            assert not told if good else told, problems
+            if told:
+                assert "64.1 mm from its 4 nodes, whose centroid is at 200 mm, 25 mm, 20 mm; allowed: up to" in told[0]
+                assert "check at, the nodes and units" in told[0]
+
+    def test_a_single_node_may_have_a_place_beside_it(self, files):
+        """Up to the part of the mesh's extent that a point may be off."""
+        near = {"at": ["109 mm", "0 mm", "0 mm"], "nodes": [30], "freedoms": ["x", "y", "z"]}
+        for change, words in (
+            ({}, "got one, which does not say how the place turns"),
+            ({"at": ["0.3 m", "0 m", "0 m"]}, "at: got 300"),
+        ):
+            _, problems = table(files[0], interfaces={"left": LEFT, "right": near | change})
+            assert words in problems
 
 
 def slip_of(path):

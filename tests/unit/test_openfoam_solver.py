@@ -120,11 +120,56 @@ def test_a_fine_grid_that_fails(fake):
     assert len(left(fake, "temporary")) == 1  # the coarse case was good
 
 
+FINE = ["400x16<200", "300x12<200", "400x16<300", "400x16", "440x16"]
+"""Runs on the fine grid that may follow each other: from the coarse one, over one between, on its own, elsewhere."""
+
+
+@pytest.mark.parametrize(
+    ("stagnates", "tried"),
+    [
+        ([], ["200x8", "400x16<200"]),
+        (["200x8"], ["200x8", "220x8", "400x16<220"]),
+        (["400x16<200"], ["200x8", *FINE[:3]]),
+        (["400x16<200", "300x12<200"], ["200x8", *FINE[:2], *FINE[3:4]]),
+        (["400x16<200", "400x16<300"], ["200x8", *FINE[:4]]),
+        (["400x16<200", "400x16<300", "400x16"], ["200x8", *FINE]),
+    ],
+)
+def test_a_grid_that_stagnates_is_tried_otherwise_and_leaves_nothing(fake, stagnates, tried):
+    openfoam_fake.set_mode(fake, " ".join(["stagnates_on", *stagnates]))
+    film = solved(OpenFoamSolver())
+    assert film.status is Status.CONVERGED
+    assert openfoam_fake.grids(fake) == tried
+    notes = [f"solved on {columns} columns" for columns in (220, 440) if f"{columns}x" in " ".join(tried)]
+    assert film.reason == "; ".join(notes)
+    assert left(fake, "temporary") == []
+
+
+def test_only_the_last_case_of_a_point_that_failed_stays(fake):
+    openfoam_fake.set_mode(fake, " ".join(["stagnates_on", "400x16<200", "400x16<300", "400x16", "440x16"]))
+    film = solved(OpenFoamSolver())
+    assert film.status is Status.STAGNATED
+    assert openfoam_fake.grids(fake) == ["200x8", *FINE]
+    (folder,) = left(fake, "temporary")
+    assert f"/{folder}/log.ehlFoam.logfile" in film.reason
+    openfoam_fake.set_mode(fake, "killed")
+    assert "killed twice" in solved(OpenFoamSolver()).reason
+    assert len(left(fake, "temporary")) == 2
+
+
+def test_kept_cases_are_those_of_all_tries(fake, tmp_path):
+    openfoam_fake.set_mode(fake, "stagnates_on 400x16<200 200x8")
+    assert solved(OpenFoamSolver(keep_cases=tmp_path / "kept")).status is Status.CONVERGED
+    grids = [name.rpartition("_")[2] for name in left(fake, "kept")]
+    assert grids == sorted(["200x8", "220x8", "400x16"])
+
+
 def test_a_process_that_is_killed_by_somebody_is_tried_again(fake):
     openfoam_fake.set_mode(fake, "killed_once")
     film = solved(OpenFoamSolver())
     assert film.status is Status.CONVERGED
-    assert film.reason.startswith("solved at the second try, the first ehlFoam was killed by signal 9 (SIGKILL)")
+    assert film.reason == "solved at the second try, the first ehlFoam was killed by signal 9 (SIGKILL)"
+    assert left(fake, "temporary") == []
 
 
 def test_a_program_that_cannot_be_started(fake, tmp_path):

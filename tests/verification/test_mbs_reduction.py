@@ -14,6 +14,7 @@ from scipy.sparse.linalg import spsolve
 from mbs.errors import AnalysisError
 from mbs.flexible import held_body
 from mbs.flexible.calculix import read_calculix
+from mbs.flexible.extent import extent
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.mesh import read_mesh_nodes
 from mbs.flexible.reduced_body import to_body
@@ -316,6 +317,8 @@ def test_matrices_of_calculix_have_its_frequencies(tmp_path):
     mesh = tmp_path / "stored.inp"
     model = read_calculix(*(tmp_path / f"stored.{end}" for end in ("sti", "mas", "dof")), read_mesh_nodes(mesh))
     assert model.size == 3 * 6 * 9  # without the clamped nodes
+    # Their neighbours' shapes, squared, are a third in the mean over the first of six rows; eight digits again.
+    assert extent(model).mass == pytest.approx(7850.0 * 0.2 * 0.05 * 0.04 * (1.0 - 2.0 / 3.0 / 6.0), rel=1e-6)
     # CalculiX prints eight digits.
     assert full(model)[:8] == pytest.approx(own, rel=1e-6)
     tip = Interface(np.array([0.2, 0.025, 0.02]), nodes_in_plane(model, (0.2, 0.0, 0.0), (1.0, 0.0, 0.0), 1e-6))
