@@ -11,9 +11,10 @@ from ehdmaps.jobs.table import Table
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.correlations import CORRELATIONS
 from ehdmaps.physics.lubricant import DENSITY_LAWS, LUBRICANTS, Lubricant
 from ehdmaps.physics.solids import STEEL, Material
-from ehdmaps.units import LENGTH, Display
+from ehdmaps.units import LENGTH, Display, closest, short
 
 Built = TypeVar("Built")
 
@@ -30,7 +31,6 @@ _OIL_QUANTITIES: dict[str, tuple[str, float, float, Display]] = {
     "viscosity": ("Pa s", 1e-5, 1e3, _VISCOSITY),
     "viscosity_40": ("m^2/s", 1e-7, 1e-1, _KINEMATIC),
     "viscosity_100": ("m^2/s", 1e-7, 1e-1, _KINEMATIC),
-    "pressure_viscosity": ("1/Pa", 1e-10, 1e-7, _COEFFICIENT),
     "pressure_viscosity_40": ("1/Pa", 1e-10, 1e-7, _COEFFICIENT),
     "pressure_viscosity_100": ("1/Pa", 1e-10, 1e-7, _COEFFICIENT),
     "density": ("kg/m^3", 300.0, 3000.0, _DENSITY),
@@ -42,7 +42,8 @@ _OIL_LAWS: dict[str, Callable[..., Lubricant]] = {
     "roelands": Lubricant.roelands,
     "fva3": Lubricant.fva3,
 }
-_OIL_KEYS = ("viscosity_law", *_OIL_QUANTITIES, "roelands_z", "density_law")
+_OIL_KEYS = ("viscosity_law", *_OIL_QUANTITIES, "pressure_viscosity", "roelands_z", "density_law")
+_ISOVISCOUS = ("0 1/GPa", "0 1/Pa")
 
 
 def read_contacts(top: Table, law: str | None) -> tuple[BearingGeometry | None, tuple[LineContact, ...]]:
@@ -164,6 +165,7 @@ def read_lubricant(section: Table) -> Lubricant | None:
     values: dict[str, Any] = {
         key: section.quantity(key, *rule, required=key == "density") for key, rule in _OIL_QUANTITIES.items()
     }
+    values["pressure_viscosity"] = _pressure_viscosity(section)
     density_law = section.choice("density_law", DENSITY_LAWS)
     if law == "roelands":
         values["roelands_z"] = section.number("roelands_z", 0.05, 2.0)
@@ -180,6 +182,27 @@ def read_lubricant(section: Table) -> Lubricant | None:
         return None
     given = {key: value for key, value in values.items() if value is not None}
     return _built(section, lambda: _OIL_LAWS[law](**given))
+
+
+def _pressure_viscosity(section: Table) -> float | str | None:
+    """Read alpha: a quantity, zero for an isoviscous oil, or the name of a correlation."""
+    text = section.get("pressure_viscosity")
+    if "pressure_viscosity" not in section:
+        return None
+    if text in CORRELATIONS:
+        return str(text)
+    if text in _ISOVISCOUS:
+        return 0.0
+    if isinstance(text, str) and text[:1].isalpha():
+        allowed = tuple(CORRELATIONS)
+        names = ", ".join(repr(name) for name in allowed)
+        section.note(
+            "pressure_viscosity",
+            f'got {short(text)}{closest(text, allowed)}; allowed: a quantity such as "22.4 1/GPa", "0 1/GPa" for an '
+            f"isoviscous oil, or a correlation: {names}",
+        )
+        return None
+    return section.quantity_of(text, "pressure_viscosity", "1/Pa", 1e-10, 1e-7, _COEFFICIENT)
 
 
 def _built(section: Table, make: Callable[[], Built]) -> Built | None:
