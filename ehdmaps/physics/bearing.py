@@ -108,6 +108,16 @@ class BearingGeometry:
         """
         return 0.25 * self.pitch_diameter * abs(inner_speed - outer_speed) * (1.0 - self.gamma**2)
 
+    def inner_speed(self, entrainment_speed: float) -> float:
+        """Speed of the inner ring [rad/s] that gives an entrainment speed [m/s], outer ring fixed, pure rolling.
+
+        Examples
+        --------
+        >>> round(BearingGeometry.named("NU308").inner_speed(0.8251) * 60 / (2 * math.pi))
+        500
+        """
+        return entrainment_speed / self.entrainment_speed(1.0)
+
     def contacts(self, material: Material, structural_law: StructuralLaw) -> tuple[LineContact, LineContact]:
         """The contacts "inner" and "outer" of a roller.
 
