@@ -8,6 +8,7 @@ from typing import Any, TypeVar, cast
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
+from ehdmaps.physics._labels import label_problem
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.contact import LineContact
@@ -96,6 +97,7 @@ def _material(section: Table) -> Material | None:
 
 def _bearing(section: Table) -> BearingGeometry | None:
     """Read [bearing]: a name, or dimensions."""
+    label = _label(section)
     if "name" in section:
         name = section.choice("name", tuple(BEARINGS))
         clearance = _clearance(section)
@@ -106,7 +108,7 @@ def _bearing(section: Table) -> BearingGeometry | None:
         section.close(others=_BEARING_KEYS)
         if name is None:
             return None
-        named = BEARINGS[name]
+        named = replace(BEARINGS[name], label=label)
         if clearance is None:
             return named
         return _built(section, lambda: replace(named, diametral_clearance=clearance))
@@ -125,7 +127,18 @@ def _bearing(section: Table) -> BearingGeometry | None:
         return None
     roller = f"{diameter * 1e3:g} x {length * 1e3:g} mm"
     name = f"bearing {inner * 1e3:g}/{outer * 1e3:g} mm, {rollers} rollers {roller}"
-    return _built(section, lambda: BearingGeometry(name, inner, outer, diameter, length, rollers, play))
+    return _built(section, lambda: BearingGeometry(name, inner, outer, diameter, length, rollers, play, label))
+
+
+def _label(section: Table) -> str | None:
+    """Read a label; None where there is none, or a problem was noted."""
+    label = section.get("label")
+    if "label" not in section:
+        return None
+    problems = label_problem(label)
+    for problem in problems:
+        section.note("label", problem)
+    return None if problems else str(label)
 
 
 def _clearance(section: Table) -> float | None:
@@ -153,6 +166,7 @@ def read_lubricant(section: Table) -> Lubricant | None:
     Lubricant or None
         None where a problem was noted.
     """
+    label = _label(section)
     if "name" in section:
         name = section.choice("name", LUBRICANTS)
         for key in _OIL_KEYS:
@@ -160,7 +174,7 @@ def read_lubricant(section: Table) -> Lubricant | None:
                 section.get(key)
                 section.note(key, "stands beside name; allowed: a name, or data without a name; delete one")
         section.close(others=_OIL_KEYS)
-        return Lubricant.named(name) if name is not None else None
+        return replace(Lubricant.named(name), label=label) if name is not None else None
     law = section.choice("viscosity_law", tuple(_OIL_LAWS), required=True)
     values: dict[str, Any] = {
         key: section.quantity(key, *rule, required=key == "density") for key, rule in _OIL_QUANTITIES.items()
@@ -181,7 +195,7 @@ def read_lubricant(section: Table) -> Lubricant | None:
     if law is None or wrong or values["density"] is None:
         return None
     given = {key: value for key, value in values.items() if value is not None}
-    return _built(section, lambda: _OIL_LAWS[law](**given))
+    return _built(section, lambda: replace(_OIL_LAWS[law](**given), label=label))
 
 
 def _pressure_viscosity(section: Table) -> float | str | None:

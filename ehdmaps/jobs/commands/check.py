@@ -43,7 +43,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     extra = (refined.points if refined else 0) + job.law_check
     lines = [
         f"{arguments.job}: no problems",
-        f"  {job.title}, {job.lubricant.name}, solver {job.solver}, structural law {job.contacts[0].structural_law}",
+        f"  {job.title}, {job.lubricant.title}, solver {job.solver}, structural law {job.contacts[0].structural_law}",
         *oil_lines(job),
         f"  {'contact':20s} {len(job.contacts):6d}  {names}",
         *axes,

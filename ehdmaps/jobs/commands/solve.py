@@ -192,7 +192,7 @@ def _table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, lengt
     """Return the printed table: one column a contact, per length and, if known, times the length."""
     rows: list[tuple[str, str, list[Any]]] = list(_rows(records, length))
     law = job.contacts[0].structural_law
-    header = f"{job.title}, {job.lubricant.name}, solver {job.solver}, structural law {law}"
+    header = f"{job.title}, {job.lubricant.title}, solver {job.solver}, structural law {law}"
     place = f"{LOAD.text(point.load)}, {_speed(job, point)}, {TEMPERATURE.text(point.temperature)}"
     if length is not None:
         place += f", slice of {LENGTH.text(length)} ({point.load * length:.5g} N)"
