@@ -190,6 +190,7 @@ class Display:
 
 LOAD = Display("N/mm", 1e-3)
 SPEED = Display("m/s")
+RPM = Display("rpm", 30.0 / math.pi)
 TEMPERATURE = Display("degC", 1.0, -273.15)
 FILM = Display("um", 1e6)
 LENGTH = Display("mm", 1e3)

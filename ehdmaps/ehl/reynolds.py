@@ -46,7 +46,7 @@ class LineProblem(NamedTuple):
     alpha : float
         alpha p_H = L sqrt(M/(2 pi)).
     exponent, pressure_ratio : float
-        ln eta = alpha/(z q) ((1 + q P)^z - 1): z, and q = p_H/p_c. Barus has q = 0.
+        ln eta = alpha/(z q) ((1 + q P)^z - 1): z, and q = p_H/p_c. Barus has q = 0, z = 0 is alpha/q ln(1 + q P).
     density_ratio : float
         p_H/0.59 GPa of the Dowson-Higginson density; 0 is incompressible.
     """
@@ -73,6 +73,9 @@ def oil(
             f = 1.0 / (1.0 + q * p)
             log_eta[i] = alpha * p * f
             log_eta_slope[i] = alpha * f * f
+        elif z == 0.0:
+            log_eta[i] = alpha / q * math.log1p(q * p)
+            log_eta_slope[i] = alpha / (1.0 + q * p)
         else:
             g = (1.0 + q * p) ** z
             log_eta[i] = alpha / (z * q) * (g - 1.0)

@@ -124,7 +124,7 @@ def _attributes(job: Job, solver: ContactSolver) -> dict[str, Any]:
     """Return the provenance: a map alone is enough to repeat it."""
     return {
         "Conventions": "CF-1.10",
-        "title": f"EHD map of {job.title}, {job.lubricant.name}, by the solver {solver.name}",
+        "title": f"EHD map of {job.title}, {job.lubricant.title}, by the solver {solver.name}",
         "schema_version": schema.SCHEMA_VERSION,
         "job_name": job.name,
         "job_toml": job.text,
@@ -137,7 +137,7 @@ def _attributes(job: Job, solver: ContactSolver) -> dict[str, Any]:
         "structural_scaling": _structural_scaling(job.contacts[0]),
         "fill": job.fill,
         "contacts": record_json([dataclasses.asdict(contact) for contact in job.contacts]),
-        "geometry": record_json(job.bearing),
+        "geometry": record_json(job.bearing.record() if job.bearing else None),
         "lubricant": record_json(job.lubricant.record()),
         "lubricant_verified": int(job.lubricant.verified),
         "package_versions": record_json(package_versions()),

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from ehdmaps.jobs.table import Table
-from ehdmaps.units import LOAD, SPEED, TEMPERATURE, Display, short
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display, short
 
 MOST_VALUES = 100_000
 """Values on one axis; the product of the axes has its own limit."""
@@ -36,7 +37,42 @@ class AxisRule:
 
 LOAD_AXIS = AxisRule("load", "N/m", 1.0, 1e7, LOAD)
 SPEED_AXIS = AxisRule("entrainment_speed", "m/s", 0.0, 200.0, SPEED)
+RING_SPEED_AXIS = AxisRule("inner_ring_speed", "rad/s", 0.0, 1e5, RPM)
 TEMPERATURE_AXIS = AxisRule("temperature", "K", 213.15, 573.15, TEMPERATURE)
+
+
+def read_speeds(grid: Table, bearing: BearingGeometry | None) -> tuple[float, ...] | None:
+    """Read the speed axis of [grid]: entrainment speeds, or speeds of the inner ring of a bearing.
+
+    Parameters
+    ----------
+    grid : Table
+        [grid].
+    bearing : BearingGeometry or None
+        Whose inner ring turns, the outer one fixed; None where there is none, or it was wrong already.
+
+    Returns
+    -------
+    tuple of float or None
+        Rising entrainment speeds [m/s]; None where a problem was noted.
+    """
+    ring, own = RING_SPEED_AXIS.key, SPEED_AXIS.key
+    if ring not in grid:
+        return read_axis(grid, SPEED_AXIS)
+    speeds = read_axis(grid, RING_SPEED_AXIS)
+    if own in grid:
+        grid.get(own)
+        grid.note(ring, f"stands beside {own}; allowed: one of the two; delete one")
+        return None
+    if bearing is None:
+        grid.note(ring, f"got no bearing to turn; allowed: with a [bearing]; give {own} in m/s for a bare contact")
+        return None
+    found = tuple(bearing.entrainment_speed(speed) for speed in speeds or ())
+    if found and found[-1] > SPEED_AXIS.high:
+        limit = RPM.text(bearing.inner_speed(SPEED_AXIS.high))
+        grid.note(ring, f"got {RPM.text((speeds or (0.0,))[-1])}; allowed: up to {limit} for this bearing")
+        return None
+    return found or None
 
 
 def read_axis(grid: Table, rule: AxisRule) -> tuple[float, ...] | None:

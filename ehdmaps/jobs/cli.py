@@ -52,7 +52,9 @@ def parser() -> argparse.ArgumentParser:
     solve.add_argument("job", metavar="JOB")
     solve.add_argument("--load", required=True, help='such as "62 N" (with --length) or "88 N/mm"')
     solve.add_argument("--length", help='that carries the load, such as "0.7 mm"')
-    solve.add_argument("--speed", required=True, help='entrainment speed, such as "1.7 m/s"')
+    solve.add_argument(
+        "--speed", required=True, help='entrainment speed, such as "1.7 m/s", or of the inner ring, "500 rpm"'
+    )
     solve.add_argument("--temperature", required=True, help='of the oil, such as "40 degC"')
     solve.add_argument("--frequency", help='of small oscillations, such as "1 kHz"; default: the low-frequency limit')
     solve.add_argument("--solver", metavar="NAME", help=_SOLVER)

@@ -65,7 +65,7 @@ class FilmOutputs:
         if self.plot is not None and rows:
             temperature = TEMPERATURE.text(point.temperature).replace("degC", "°C")
             heading = (
-                f"{job.title}, {job.lubricant.name}: {LOAD.text(point.load)}, {SPEED.text(point.entrainment_speed)}, "
+                f"{job.title}, {job.lubricant.title}: {LOAD.text(point.load)}, {SPEED.text(point.entrainment_speed)}, "
                 f"{temperature}; OpenFOAM, {solver.flow.replace('_', ' ')}"
             )
             plot_films(rows, heading, self.plot)

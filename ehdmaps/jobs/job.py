@@ -89,7 +89,7 @@ class Job:
         """What the contacts belong to, in words."""
         if self.bearing is None:
             return f"line contact R = {self.contacts[0].radius * 1e3:.4g} mm"
-        return self.bearing.name
+        return self.bearing.title
 
 
 def record_json(record: object) -> str:

@@ -8,12 +8,14 @@ from typing import Any, TypeVar, cast
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
+from ehdmaps.physics._labels import label_problem
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.correlations import CORRELATIONS
 from ehdmaps.physics.lubricant import DENSITY_LAWS, LUBRICANTS, Lubricant
 from ehdmaps.physics.solids import STEEL, Material
-from ehdmaps.units import LENGTH, Display
+from ehdmaps.units import LENGTH, Display, closest, short
 
 Built = TypeVar("Built")
 
@@ -30,7 +32,6 @@ _OIL_QUANTITIES: dict[str, tuple[str, float, float, Display]] = {
     "viscosity": ("Pa s", 1e-5, 1e3, _VISCOSITY),
     "viscosity_40": ("m^2/s", 1e-7, 1e-1, _KINEMATIC),
     "viscosity_100": ("m^2/s", 1e-7, 1e-1, _KINEMATIC),
-    "pressure_viscosity": ("1/Pa", 1e-10, 1e-7, _COEFFICIENT),
     "pressure_viscosity_40": ("1/Pa", 1e-10, 1e-7, _COEFFICIENT),
     "pressure_viscosity_100": ("1/Pa", 1e-10, 1e-7, _COEFFICIENT),
     "density": ("kg/m^3", 300.0, 3000.0, _DENSITY),
@@ -42,7 +43,8 @@ _OIL_LAWS: dict[str, Callable[..., Lubricant]] = {
     "roelands": Lubricant.roelands,
     "fva3": Lubricant.fva3,
 }
-_OIL_KEYS = ("viscosity_law", *_OIL_QUANTITIES, "roelands_z", "density_law")
+_OIL_KEYS = ("viscosity_law", *_OIL_QUANTITIES, "pressure_viscosity", "roelands_z", "density_law")
+_ISOVISCOUS = ("0 1/GPa", "0 1/Pa")
 
 
 def read_contacts(top: Table, law: str | None) -> tuple[BearingGeometry | None, tuple[LineContact, ...]]:
@@ -95,6 +97,7 @@ def _material(section: Table) -> Material | None:
 
 def _bearing(section: Table) -> BearingGeometry | None:
     """Read [bearing]: a name, or dimensions."""
+    label = _label(section)
     if "name" in section:
         name = section.choice("name", tuple(BEARINGS))
         clearance = _clearance(section)
@@ -105,7 +108,7 @@ def _bearing(section: Table) -> BearingGeometry | None:
         section.close(others=_BEARING_KEYS)
         if name is None:
             return None
-        named = BEARINGS[name]
+        named = replace(BEARINGS[name], label=label)
         if clearance is None:
             return named
         return _built(section, lambda: replace(named, diametral_clearance=clearance))
@@ -124,7 +127,18 @@ def _bearing(section: Table) -> BearingGeometry | None:
         return None
     roller = f"{diameter * 1e3:g} x {length * 1e3:g} mm"
     name = f"bearing {inner * 1e3:g}/{outer * 1e3:g} mm, {rollers} rollers {roller}"
-    return _built(section, lambda: BearingGeometry(name, inner, outer, diameter, length, rollers, play))
+    return _built(section, lambda: BearingGeometry(name, inner, outer, diameter, length, rollers, play, label))
+
+
+def _label(section: Table) -> str | None:
+    """Read a label; None where there is none, or a problem was noted."""
+    label = section.get("label")
+    if "label" not in section:
+        return None
+    problems = label_problem(label)
+    for problem in problems:
+        section.note("label", problem)
+    return None if problems else str(label)
 
 
 def _clearance(section: Table) -> float | None:
@@ -152,6 +166,7 @@ def read_lubricant(section: Table) -> Lubricant | None:
     Lubricant or None
         None where a problem was noted.
     """
+    label = _label(section)
     if "name" in section:
         name = section.choice("name", LUBRICANTS)
         for key in _OIL_KEYS:
@@ -159,11 +174,12 @@ def read_lubricant(section: Table) -> Lubricant | None:
                 section.get(key)
                 section.note(key, "stands beside name; allowed: a name, or data without a name; delete one")
         section.close(others=_OIL_KEYS)
-        return Lubricant.named(name) if name is not None else None
+        return replace(Lubricant.named(name), label=label) if name is not None else None
     law = section.choice("viscosity_law", tuple(_OIL_LAWS), required=True)
     values: dict[str, Any] = {
         key: section.quantity(key, *rule, required=key == "density") for key, rule in _OIL_QUANTITIES.items()
     }
+    values["pressure_viscosity"] = _pressure_viscosity(section)
     density_law = section.choice("density_law", DENSITY_LAWS)
     if law == "roelands":
         values["roelands_z"] = section.number("roelands_z", 0.05, 2.0)
@@ -179,7 +195,28 @@ def read_lubricant(section: Table) -> Lubricant | None:
     if law is None or wrong or values["density"] is None:
         return None
     given = {key: value for key, value in values.items() if value is not None}
-    return _built(section, lambda: _OIL_LAWS[law](**given))
+    return _built(section, lambda: replace(_OIL_LAWS[law](**given), label=label))
+
+
+def _pressure_viscosity(section: Table) -> float | str | None:
+    """Read alpha: a quantity, zero for an isoviscous oil, or the name of a correlation."""
+    text = section.get("pressure_viscosity")
+    if "pressure_viscosity" not in section:
+        return None
+    if text in CORRELATIONS:
+        return str(text)
+    if text in _ISOVISCOUS:
+        return 0.0
+    if isinstance(text, str) and text[:1].isalpha():
+        allowed = tuple(CORRELATIONS)
+        names = ", ".join(repr(name) for name in allowed)
+        section.note(
+            "pressure_viscosity",
+            f'got {short(text)}{closest(text, allowed)}; allowed: a quantity such as "22.4 1/GPa", "0 1/GPa" for an '
+            f"isoviscous oil, or a correlation: {names}",
+        )
+        return None
+    return section.quantity_of(text, "pressure_viscosity", "1/Pa", 1e-10, 1e-7, _COEFFICIENT)
 
 
 def _built(section: Table, make: Callable[[], Built]) -> Built | None:

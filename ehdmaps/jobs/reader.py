@@ -10,11 +10,12 @@ from typing import Any
 from ehdmaps import inputs
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers, toml_text
-from ehdmaps.jobs.axes import LOAD_AXIS, SPEED_AXIS, TEMPERATURE_AXIS, AxisRule, read_axis
+from ehdmaps.jobs.axes import LOAD_AXIS, TEMPERATURE_AXIS, read_axis, read_speeds
 from ehdmaps.jobs.job import MOST_CHECKS, MOST_POINTS, Job
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
+from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import closest
 
@@ -114,7 +115,7 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
     axes: list[tuple[float, ...] | None] = [None, None, None]
     grid = top.table("grid", "[grid]", required="a table with load, entrainment_speed and temperature")
     if grid:
-        axes = _grid(grid, len(contacts) or 2)
+        axes = _grid(grid, len(contacts) or 2, bearing)
         if oil is not None and axes[2] is not None:
             _check_temperatures(oil, axes[2], grid)
     top.close(others=_TABLES)
@@ -153,10 +154,9 @@ def _solver(section: Table) -> tuple[str | None, dict[str, object], str | None, 
     return name, options, law, rest
 
 
-def _grid(grid: Table, contacts: int) -> list[tuple[float, ...] | None]:
+def _grid(grid: Table, contacts: int, bearing: BearingGeometry | None) -> list[tuple[float, ...] | None]:
     """Read [grid]."""
-    rules: tuple[AxisRule, ...] = (LOAD_AXIS, SPEED_AXIS, TEMPERATURE_AXIS)
-    axes = [read_axis(grid, rule) for rule in rules]
+    axes = [read_axis(grid, LOAD_AXIS), read_speeds(grid, bearing), read_axis(grid, TEMPERATURE_AXIS)]
     grid.close()
     points = contacts
     for axis in axes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -38,4 +39,5 @@ def _lines(generated: Generated, output: Path) -> Iterator[str]:
     seconds = float(np.nansum(dataset["solve_seconds"].values))
     yield f"time: {sweep.wall_seconds:.1f} s now; {seconds:.1f} s of solving in the whole map, all cores"
     if int(dataset.attrs["lubricant_verified"]) == 0:
-        yield "lubricant: its data are not verified; see the reference page"
+        estimated = json.loads(dataset.attrs["lubricant"]).get("estimated")
+        yield f"lubricant: {estimated or 'its data are not verified; see the reference page'}"

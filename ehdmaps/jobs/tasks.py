@@ -20,6 +20,9 @@ from ehdmaps.physics.solution import ContactSolver, FilmSolution, Status
 LONGEST_LINE = 32
 """Loads of one task, which is lost as a whole when its process is killed: well under a second."""
 
+_SHOWN = ("label", "estimated")
+"""Entries of an oil's record that are only shown."""
+
 _TYPES: Mapping[str, Any] = {
     "status": np.int8,
     "reason": np.str_,
@@ -68,7 +71,7 @@ class LineTask:
             "radius": self.contact.radius,
             "youngs_modulus": self.contact.material.youngs_modulus,
             "poisson_ratio": self.contact.material.poisson_ratio,
-            "lubricant": self.lubricant.record(),
+            "lubricant": {key: value for key, value in self.lubricant.record().items() if key not in _SHOWN},
             "loads": self.loads,
             "entrainment_speed": self.entrainment_speed,
             "temperature": self.temperature,

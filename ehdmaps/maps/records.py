@@ -72,6 +72,8 @@ def lubricant_from_json(text: str) -> Lubricant:
             density_law=record["density_law"],
             fitted_pressure=record["fitted_pressure"],
             thermal_conductivity=record.get("thermal_conductivity"),
+            correlation=record.get("correlation"),
+            label=record.get("label"),
         )
     except (ValueError, KeyError, TypeError, AttributeError, InputError) as error:
         raise _broken("lubricant", error) from error

@@ -222,6 +222,11 @@ def _viscosity(oil: LubricantState) -> list[str]:
     scale = _entry("pressureScale", law.pressure_scale)
     if law.exponent == -1.0:
         return ["type FVA3;", *entries, scale]
+    if not law.exponent > 0.0:
+        raise InputError(
+            f"ehlProperties, exponent: got {law.exponent!r}; allowed: > 0 (Roelands), 1 (Barus) or -1 (FVA 3); "
+            "use the solver reynolds for other laws"
+        )
     return ["type Roelands;", *entries, _entry("exponent", law.exponent), scale]
 
 

@@ -9,10 +9,13 @@ approach            the structural part of the approach: ISO 16281, Palmgren, ha
 contact             `LineContact`: one contact, and its structural approach and compliance
 pressure_viscosity  ln(eta/eta0) over pressure: Barus, Roelands and the law of FVA 3 as one family
 viscosity           eta0 over temperature: constant, ASTM D341, Vogel
+correlations        alpha estimated from the viscosity at ambient pressure: So and Klaus, Gold
+own_oil             the laws of an own oil, from what its user states
 lubricant           `Lubricant`, and `LubricantState` at a temperature
 operating_point     `OperatingPoint`: load, entrainment speed, temperature
 hertz               dry line contact: half-width, pressure, gap, compliance
 moes                dimensionless groups and back: M and L; U, W and G
+sensitivity         what an error of alpha makes of the film
 films               published film formulas: rigid, Dowson-Higginson, Pan-Hamrock, Moes
 damping             published damping formulas: rolling film, squeeze film, Dietl
 thermal             reduction of the film by inlet shear heating

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
 
 from ehdmaps.errors import InputError
+from ehdmaps.physics._labels import label_problem
 from ehdmaps.physics.approach import StructuralLaw, roller_reference_depth
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.solids import Material
@@ -27,6 +28,8 @@ class BearingGeometry:
         Number Z of rollers.
     diametral_clearance : float
         P_d [m], < 0 for a preloaded bearing. It is an input of its own and not checked against the raceways.
+    label : str or None
+        Free text shown instead of the name; no part of what makes bearings equal.
 
     Raises
     ------
@@ -47,6 +50,7 @@ class BearingGeometry:
     roller_length: float
     rollers: int
     diametral_clearance: float
+    label: str | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         problems = _problems(self)
@@ -68,6 +72,16 @@ class BearingGeometry:
             raise InputError(
                 f"bearing name: got {name!r}; allowed: {', '.join(BEARINGS)}; give other bearings by their dimensions"
             ) from None
+
+    @property
+    def title(self) -> str:
+        """What the bearing is called in titles: its label, else its name."""
+        return self.label or self.name
+
+    def record(self) -> dict[str, float | str]:
+        """Everything that defines the bearing, for provenance; SI units; what is not given is left out."""
+        values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        return {name: value for name, value in values.items() if value is not None}
 
     @property
     def pitch_diameter(self) -> float:
@@ -108,6 +122,16 @@ class BearingGeometry:
         """
         return 0.25 * self.pitch_diameter * abs(inner_speed - outer_speed) * (1.0 - self.gamma**2)
 
+    def inner_speed(self, entrainment_speed: float) -> float:
+        """Speed of the inner ring [rad/s] that gives an entrainment speed [m/s], outer ring fixed, pure rolling.
+
+        Examples
+        --------
+        >>> round(BearingGeometry.named("NU308").inner_speed(0.8251) * 60 / (2 * math.pi))
+        500
+        """
+        return entrainment_speed / self.entrainment_speed(1.0)
+
     def contacts(self, material: Material, structural_law: StructuralLaw) -> tuple[LineContact, LineContact]:
         """The contacts "inner" and "outer" of a roller.
 
@@ -130,7 +154,7 @@ class BearingGeometry:
 def _problems(bearing: BearingGeometry) -> list[str]:
     """All that is impossible about a geometry, in words."""
     where = f"bearing {bearing.name!r}"
-    problems = []
+    problems = [f"{where}, label: {problem}" for problem in label_problem(bearing.label)]
     lengths_known = True
     for key in ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length"):
         value = getattr(bearing, key)

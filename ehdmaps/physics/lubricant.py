@@ -7,18 +7,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Literal
 
 import numpy as np
 
 from ehdmaps.errors import InputError
+from ehdmaps.physics._labels import label_problem
 from ehdmaps.physics._values import Values, as_given
+from ehdmaps.physics.correlations import CORRELATIONS
+from ehdmaps.physics.own_oil import Laws, Stated, estimated_coefficient, own_laws
 from ehdmaps.physics.pressure_viscosity import (
     ROELANDS_LOG,
     ROELANDS_PRESSURE,
     ZERO_CELSIUS,
-    Barus,
     Fva3,
     PressureViscosity,
     PressureViscosityLaw,
@@ -32,6 +34,9 @@ DensityLaw = Literal["dowson-higginson", "incompressible"]
 DENSITY_LAWS: tuple[DensityLaw, ...] = ("dowson-higginson", "incompressible")
 
 _DENSITY_PRESSURE, _DENSITY_LIMIT = 0.59e9, 1.34
+
+FITTED_PRESSURE = 0.6e9
+"""Pressure [Pa] above which viscosity counts as extrapolated where nobody stated a range; our assumption."""
 
 
 @dataclass(frozen=True)
@@ -107,9 +112,14 @@ class Lubricant:
     density_law : {"dowson-higginson", "incompressible"}
         Density over pressure.
     fitted_pressure : float
-        Above this pressure [Pa] the viscosity law is extrapolated; inf if unknown.
+        Above this pressure [Pa] the viscosity law is extrapolated; `FITTED_PRESSURE` unless stated.
     thermal_conductivity : float or None
         [W/(m K)].
+    correlation : str or None
+        One of `CORRELATIONS`, which then gives alpha at each temperature; the coefficients of `pressure_viscosity` are
+        its values at 40 and 100 degC.
+    label : str or None
+        Free text shown instead of the name; no part of what makes oils equal.
 
     Raises
     ------
@@ -130,12 +140,14 @@ class Lubricant:
     density_15: float
     density_slope: float = 0.0
     density_law: DensityLaw = "dowson-higginson"
-    fitted_pressure: float = math.inf
+    fitted_pressure: float = FITTED_PRESSURE
     thermal_conductivity: float | None = None
+    correlation: str | None = None
+    label: str | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         where = f"lubricant {self.name!r}"
-        problems = []
+        problems = [f"{where}, label: {problem}" for problem in label_problem(self.label)]
         if not (math.isfinite(self.density_15) and self.density_15 > 0):
             problems.append(
                 f"{where}, density: got {self.density_15!r} kg/m3; allowed: finite and > 0; oils have about 880 kg/m3"
@@ -149,8 +161,20 @@ class Lubricant:
         conductivity = self.thermal_conductivity
         if conductivity is not None and not (math.isfinite(conductivity) and conductivity > 0):
             problems.append(f"{where}, thermal_conductivity: got {conductivity!r} W/(m K); allowed: finite and > 0")
+        if self.correlation is not None and self.correlation not in CORRELATIONS:
+            problems.append(f"{where}, correlation: got {self.correlation!r}; allowed: {', '.join(CORRELATIONS)}")
         if problems:
             raise InputError(problems)
+
+    @property
+    def title(self) -> str:
+        """What the oil is called in titles: its label, else its name."""
+        return self.label or self.name
+
+    @property
+    def estimated(self) -> str:
+        """What of it is estimated and how well, in words; empty where nothing is."""
+        return CORRELATIONS[self.correlation].sentence if self.correlation else ""
 
     @classmethod
     def named(cls, name: str) -> Lubricant:
@@ -182,7 +206,7 @@ class Lubricant:
         cls,
         *,
         density: float,
-        pressure_viscosity: float | None = None,
+        pressure_viscosity: float | str | None = None,
         pressure_viscosity_40: float | None = None,
         pressure_viscosity_100: float | None = None,
         viscosity: float | None = None,
@@ -190,7 +214,7 @@ class Lubricant:
         viscosity_100: float | None = None,
         density_slope: float = 0.0,
         density_law: DensityLaw = "dowson-higginson",
-        fitted_pressure: float = math.inf,
+        fitted_pressure: float = FITTED_PRESSURE,
         name: str = "own oil",
     ) -> Lubricant:
         """An oil with Barus' law, eta = eta0 exp(alpha p).
@@ -199,8 +223,9 @@ class Lubricant:
         ----------
         density : float
             rho0 at 15 degC [kg/m3].
-        pressure_viscosity : float, optional
-            alpha [1/Pa], constant; or both of the next two.
+        pressure_viscosity : float or str, optional
+            alpha [1/Pa], constant, or the name of a correlation that estimates it (`CORRELATIONS`); or both of the
+            next two.
         pressure_viscosity_40, pressure_viscosity_100 : float, optional
             alpha at 40 and 100 degC [1/Pa]; ln alpha is linear in temperature.
         viscosity : float, optional
@@ -212,7 +237,7 @@ class Lubricant:
         density_law : {"dowson-higginson", "incompressible"}
             Density over pressure.
         fitted_pressure : float
-            Reach of the viscosity data [Pa].
+            Reach of the viscosity data [Pa]; inf flags nothing.
         name : str
             As in provenance and messages.
 
@@ -227,25 +252,11 @@ class Lubricant:
         >>> round(oil.at(313.15).viscosity_at(50e6), 4)
         0.2718
         """
-        problems: list[str] = []
-        law = _viscosity_law(name, viscosity, viscosity_40, viscosity_100, problems)
-        pair = _coefficient_pair(name, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100, problems)
-        if pair is None and not problems:
-            problems.append(
-                f"lubricant {name!r}, pressure_viscosity: got none; viscosity_law barus needs it; give it in 1/Pa"
-            )
-        if problems or law is None or pair is None:
-            raise InputError(problems)
-        return cls(
-            name,
-            True,
-            law,
-            Barus(*pair),
-            density,
-            density_slope,
-            density_law,
-            fitted_pressure=fitted_pressure,
+        stated = Stated(
+            viscosity, viscosity_40, viscosity_100, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100
         )
+        laws = own_laws(name, "barus", stated, density, density_slope)
+        return cls._own(name, laws, density, density_slope, density_law, fitted_pressure)
 
     @classmethod
     def roelands(
@@ -253,7 +264,7 @@ class Lubricant:
         *,
         density: float,
         roelands_z: float | None = None,
-        pressure_viscosity: float | None = None,
+        pressure_viscosity: float | str | None = None,
         pressure_viscosity_40: float | None = None,
         pressure_viscosity_100: float | None = None,
         viscosity: float | None = None,
@@ -261,7 +272,7 @@ class Lubricant:
         viscosity_100: float | None = None,
         density_slope: float = 0.0,
         density_law: DensityLaw = "dowson-higginson",
-        fitted_pressure: float = math.inf,
+        fitted_pressure: float = FITTED_PRESSURE,
         name: str = "own oil",
     ) -> Lubricant:
         """An oil with Roelands' law, p0 = 1.96e8 Pa.
@@ -276,20 +287,18 @@ class Lubricant:
         >>> round(oil.at(313.15).pressure_viscosity.exponent, 4)
         0.5165
         """
-        problems: list[str] = []
-        law = _viscosity_law(name, viscosity, viscosity_40, viscosity_100, problems)
-        pair = _coefficient_pair(name, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100, problems)
-        if problems or law is None:
-            raise InputError(problems)
-        isotherms = Roelands(roelands_z, *(pair or (None, None)))
-        return cls(name, True, law, isotherms, density, density_slope, density_law, fitted_pressure=fitted_pressure)
+        stated = Stated(
+            viscosity, viscosity_40, viscosity_100, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100
+        )
+        laws = own_laws(name, "roelands", stated, density, density_slope, roelands_z)
+        return cls._own(name, laws, density, density_slope, density_law, fitted_pressure)
 
     @classmethod
     def fva3(
         cls,
         *,
         density: float,
-        pressure_viscosity: float | None = None,
+        pressure_viscosity: float | str | None = None,
         pressure_viscosity_40: float | None = None,
         pressure_viscosity_100: float | None = None,
         viscosity: float | None = None,
@@ -297,28 +306,42 @@ class Lubricant:
         viscosity_100: float | None = None,
         density_slope: float = 0.0,
         density_law: DensityLaw = "dowson-higginson",
-        fitted_pressure: float = math.inf,
+        fitted_pressure: float = FITTED_PRESSURE,
         name: str = "own oil",
     ) -> Lubricant:
         """An own oil with the law p/(a + b p) and the coefficients of FVA 3 over pressure.
 
-        A pressure_viscosity that is given takes the place of 1/a; b is always that of FVA 3.
+        1/a is the pressure_viscosity, which has to be stated as for `barus`; b is that of FVA 3.
         The other parameters and errors are those of `barus`.
 
         Examples
         --------
-        >>> oil = Lubricant.fva3(viscosity=0.05, density=880.0)
-        >>> round(1e8 * oil.at(313.15).pressure_viscosity.pressure_viscosity, 2)
-        2.24
+        >>> oil = Lubricant.fva3(viscosity=0.05, pressure_viscosity=2e-8, density=880.0)
+        >>> round(oil.at(313.15).viscosity_at(0.5e9), 1)
+        267.9
         """
-        problems: list[str] = []
-        law = _viscosity_law(name, viscosity, viscosity_40, viscosity_100, problems)
-        pair = _coefficient_pair(name, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100, problems)
-        if problems or law is None:
-            raise InputError(problems)
-        cold, hot = pair or (None, None)
-        isotherms = Fva3(pressure_viscosity_40=cold, pressure_viscosity_100=hot)
-        return cls(name, True, law, isotherms, density, density_slope, density_law, fitted_pressure=fitted_pressure)
+        stated = Stated(
+            viscosity, viscosity_40, viscosity_100, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100
+        )
+        laws = own_laws(name, "fva3", stated, density, density_slope)
+        return cls._own(name, laws, density, density_slope, density_law, fitted_pressure)
+
+    @classmethod
+    def _own(
+        cls, name: str, laws: Laws, density: float, slope: float, density_law: DensityLaw, fitted_pressure: float
+    ) -> Lubricant:
+        """An own oil of given laws; its user vouches for it, but not for an estimate."""
+        return cls(
+            name=name,
+            verified=laws.correlation is None,
+            viscosity=laws.viscosity,
+            pressure_viscosity=laws.pressure_viscosity,
+            density_15=density,
+            density_slope=slope,
+            density_law=density_law,
+            fitted_pressure=fitted_pressure,
+            correlation=laws.correlation,
+        )
 
     def at(self, temperature: float) -> LubricantState:
         """The oil at a temperature [K].
@@ -339,7 +362,7 @@ class Lubricant:
             )
         try:
             viscosity = self.viscosity.at(temperature, density)
-            isotherm = self.pressure_viscosity.at(temperature, viscosity)
+            isotherm = self._isotherms(viscosity, density).at(temperature, viscosity)
         except InputError as error:
             raise InputError([f"{where}, {problem}" for problem in error.problems]) from None
         return LubricantState(
@@ -351,19 +374,28 @@ class Lubricant:
             fitted_pressure=self.fitted_pressure,
         )
 
+    def _isotherms(self, viscosity: float, density: float) -> PressureViscosityLaw:
+        """The law over pressure, with the alpha of the correlation where there is one."""
+        if self.correlation is None:
+            return self.pressure_viscosity
+        alpha = estimated_coefficient(self.correlation, self.viscosity, viscosity, density)
+        return replace(self.pressure_viscosity, pressure_viscosity_40=alpha, pressure_viscosity_100=alpha)
+
     def record(self) -> dict[str, float | str | bool]:
         """Everything that defines the oil, flat, for provenance; SI units; values not given are left out."""
         record: dict[str, float | str | bool] = {}
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if field.name == "viscosity":
+        for entry in fields(self):
+            value = getattr(self, entry.name)
+            if entry.name == "viscosity":
                 record["viscosity_over_temperature"] = _VISCOSITY_WORDS[type(value)]
                 record.update(_given(value, rename=_VOGEL_WORDS))
-            elif field.name == "pressure_viscosity":
+            elif entry.name == "pressure_viscosity":
                 record["viscosity_law"] = type(value).__name__.lower()
                 record.update(_given(value, rename={"exponent": "roelands_z"}))
             elif value is not None:
-                record[field.name] = value
+                record[entry.name] = value
+        if self.estimated:
+            record["estimated"] = self.estimated
         return record
 
 
@@ -380,53 +412,6 @@ def _given(law: ViscosityLaw | PressureViscosityLaw, rename: Mapping[str, str]) 
     """The parameters of a law that are not None."""
     values = {rename.get(field.name, field.name): getattr(law, field.name) for field in fields(law)}
     return {name: value for name, value in values.items() if value is not None}
-
-
-def _viscosity_law(
-    name: str,
-    viscosity: float | None,
-    viscosity_40: float | None,
-    viscosity_100: float | None,
-    problems: list[str],
-) -> ViscosityLaw | None:
-    """The law that is given, or None with its problems noted."""
-    where = f"lubricant {name!r}"
-    try:
-        if viscosity is not None and viscosity_40 is None and viscosity_100 is None:
-            return ConstantViscosity(viscosity)
-        if viscosity is None and viscosity_40 is not None and viscosity_100 is not None:
-            return AstmViscosity(viscosity_40, viscosity_100)
-    except InputError as error:
-        problems.extend(f"{where}, {problem}" for problem in error.problems)
-        return None
-    problems.append(
-        f"{where}, viscosity: got "
-        f"{_listed(viscosity=viscosity, viscosity_40=viscosity_40, viscosity_100=viscosity_100)}; "
-        "allowed: either viscosity, or viscosity_40 and viscosity_100; give one of the two"
-    )
-    return None
-
-
-def _coefficient_pair(
-    name: str, constant: float | None, cold: float | None, hot: float | None, problems: list[str]
-) -> tuple[float, float] | None:
-    """Alpha at 40 and 100 degC, or None if none is given (or with its problems noted)."""
-    if constant is not None and cold is None and hot is None:
-        return constant, constant
-    if constant is None and cold is not None and hot is not None:
-        return cold, hot
-    if constant is not None or cold is not None or hot is not None:
-        given = _listed(pressure_viscosity=constant, pressure_viscosity_40=cold, pressure_viscosity_100=hot)
-        problems.append(
-            f"lubricant {name!r}, pressure_viscosity: got {given}; allowed: either pressure_viscosity, or "
-            "pressure_viscosity_40 and pressure_viscosity_100; give one of the two"
-        )
-    return None
-
-
-def _listed(**values: float | None) -> str:
-    """What is given, in words."""
-    return ", ".join(f"{name} = {value!r}" for name, value in values.items() if value is not None) or "none"
 
 
 def _fva3() -> Lubricant:

@@ -171,7 +171,8 @@ class Roelands:
         if self.exponent is not None:
             alpha = self.exponent * log_viscosity / ROELANDS_PRESSURE
             return PressureViscosity(alpha, self.exponent, ROELANDS_PRESSURE)
-        alpha = alpha or 0.0
+        if not alpha:  # z = 0: isoviscous, which is the same oil as Barus' with alpha = 0
+            return PressureViscosity(0.0, exponent=1.0, pressure_scale=math.inf)
         return PressureViscosity(alpha, alpha * ROELANDS_PRESSURE / log_viscosity, ROELANDS_PRESSURE)
 
 

@@ -78,6 +78,12 @@ class AstmViscosity:
         if problems:
             raise InputError(problems)
 
+    @property
+    def slope(self) -> float:
+        """m = -d log10 log10(nu + 0.7)/d log10 T."""
+        span = math.log10(_HOT / _COLD)
+        return (_double_log(self.viscosity_40 / _MM2) - _double_log(self.viscosity_100 / _MM2)) / span
+
     def at(self, temperature: float, density: float) -> float:
         """eta0 [Pa s] at a temperature [K], at which the oil has the density [kg/m3]."""
         cold = _double_log(self.viscosity_40 / _MM2)

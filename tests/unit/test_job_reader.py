@@ -387,3 +387,35 @@ def test_a_map_without_its_job(tmp_path):
 
 def test_records_are_json_whatever_the_values():
     assert record_json({"b": (1, 2.5), "a": float("inf")}) == '{"a": "inf", "b": [1, 2.5]}'
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        ('"so-claus"', r"got 'so-claus' \(did you mean 'so-klaus'\?\); allowed: a quantity such as \"22.4 1/GPa\""),
+        ('"1e-12 1/Pa"', r"pressure_viscosity: got '1e-12 1/Pa'; allowed: 0.1 1/GPa to 100 1/GPa"),
+        ("22.4", r"pressure_viscosity: got 22.4 without a unit"),
+    ],
+)
+def test_a_wrong_pressure_viscosity(value, text):
+    with pytest.raises(InputError, match=text):
+        parse(GOOD.replace(NAMED_OIL, OIL.replace('"22.4 1/GPa"', value)))
+
+
+def test_a_pressure_viscosity_may_be_estimated_or_zero():
+    given = {"viscosity_40": 95e-6, "viscosity_100": 10.6e-6, "density": 880.0}
+    for value, alpha in (("so-klaus", "so-klaus"), ("0 1/GPa", 0.0)):
+        job = parse(GOOD.replace(NAMED_OIL, OIL.replace("22.4 1/GPa", value)))
+        assert job.lubricant == Lubricant.roelands(pressure_viscosity=alpha, **given)
+
+
+def test_the_law_of_fva3_needs_a_pressure_viscosity():
+    text = OIL.replace("roelands", "fva3").replace('pressure_viscosity = "22.4 1/GPa"\n', "")
+    with pytest.raises(InputError, match="viscosity_law fva3 needs it; give it in 1/Pa, or the name of a correlation"):
+        parse(GOOD.replace(NAMED_OIL, text))
+
+
+def test_an_estimate_that_does_not_hold_at_a_temperature_of_the_job_is_refused():
+    thin = OIL.replace("95 mm", "2.5 mm").replace("10.6 mm", "1.1 mm").replace("22.4 1/GPa", "so-klaus")
+    with pytest.raises(InputError, match=r"\[grid\] temperature: .*so-klaus: got 0.9\d* mm2/s"):
+        parse(GOOD.replace(NAMED_OIL, thin).replace('"40 degC"]', '"120 degC"]'))

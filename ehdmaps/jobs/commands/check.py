@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Iterator
 
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.generate import available_cores
@@ -12,13 +13,18 @@ from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.refinement import refinement
 from ehdmaps.jobs.report import AXES, span
 from ehdmaps.jobs.tasks import LineTask, is_slow, line_tasks
+from ehdmaps.physics.sensitivity import film_change
 from ehdmaps.physics.solution import ContactSolver, Status
+from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 _BYTES_PER_POINT = 800
 _SECONDS_PER_POINT = 1e-4
 """Results, dataset and the copy that is written; keeping and assembling: measured on a map of 200 000 points."""
 
 _SAMPLES = 4
+
+OFF = 0.2
+"""Relative error of the pressure-viscosity for which the change of the film is told."""
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -37,7 +43,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     extra = (refined.points if refined else 0) + job.law_check
     lines = [
         f"{arguments.job}: no problems",
-        f"  {job.title}, {job.lubricant.name}, solver {job.solver}, structural law {job.contacts[0].structural_law}",
+        f"  {job.title}, {job.lubricant.title}, solver {job.solver}, structural law {job.contacts[0].structural_law}",
+        *oil_lines(job),
         f"  {'contact':20s} {len(job.contacts):6d}  {names}",
         *axes,
         f"  points  {job.points} of the map, {extra} for its contact laws",
@@ -45,6 +52,21 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"  memory  about {max(100.0 + (job.points + extra) * _BYTES_PER_POINT / 1e6, 1.0):.0f} MB",
     ]
     return "\n".join(lines), 0
+
+
+def oil_lines(job: Job) -> Iterator[str]:
+    """Say what of the oil is estimated, and how much its pressure-viscosity matters in the middle of the map."""
+    if job.lubricant.estimated:
+        yield f"  lubricant: {job.lubricant.estimated}"
+    load, speed, temperature = (axis[len(axis) // 2] for axis in (job.loads, job.entrainment_speeds, job.temperatures))
+    state = job.lubricant.at(temperature)
+    if job.solver == "hertz" or speed == 0.0 or state.pressure_viscosity.pressure_viscosity == 0.0:
+        return
+    change = film_change(job.contacts[0], state, load, speed, 1.0 + OFF)
+    yield (
+        f"  a pressure-viscosity that is {OFF:.0%} higher makes the film {change:.1%} thicker (film formula of Moes at "
+        f"{LOAD.text(load)}, {SPEED.text(speed)}, {TEMPERATURE.text(temperature)}, the middle of the map)"
+    )
 
 
 def estimated_time(job: Job, solver: ContactSolver, points: int) -> str:

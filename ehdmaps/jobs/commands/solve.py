@@ -11,6 +11,7 @@ from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
+from ehdmaps.jobs.axes import RING_SPEED_AXIS, SPEED_AXIS
 from ehdmaps.jobs.film_output import film_outputs
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.reader import read_job
@@ -20,7 +21,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
-from ehdmaps.units import FILM, LENGTH, LOAD, PRESSURE, TEMPERATURE, Display, quantity
+from ehdmaps.units import FILM, LENGTH, LOAD, PRESSURE, RPM, SPEED, TEMPERATURE, Display, quantity
 
 _SOLUTION_FIELDS = (
     "approach",
@@ -80,7 +81,7 @@ def _read(arguments: argparse.Namespace) -> tuple[Job, OperatingPoint, float | N
         problems.append(f"{option}: got {text!r}; allowed: {display.text(low)} to {display.text(high)}")
         return None
 
-    per_length = _is_per_length(arguments.load)
+    per_length = _is_of_unit(arguments.load, "N/m")
     length: float | None = None
     if arguments.length is not None:
         length = read("--length", arguments.length, "m", 1e-6, 100.0, LENGTH)
@@ -95,7 +96,18 @@ def _read(arguments: argparse.Namespace) -> tuple[Job, OperatingPoint, float | N
             problems.append(
                 f"--load over --length: got {LOAD.text(load)}; allowed: {LOAD.text(1.0)} to {LOAD.text(1e7)}"
             )
-    speed = read("--speed", arguments.speed, "m/s", 0.0, 200.0, Display("m/s"))
+    speed: float | None = None
+    if not _is_of_unit(arguments.speed, "rad/s"):
+        speed = read("--speed", arguments.speed, SPEED_AXIS.unit, SPEED_AXIS.low, SPEED_AXIS.high, SPEED)
+    elif job is not None and job.bearing is not None:
+        fastest = job.bearing.inner_speed(SPEED_AXIS.high)
+        ring = read("--speed", arguments.speed, RING_SPEED_AXIS.unit, RING_SPEED_AXIS.low, fastest, RPM)
+        speed = None if ring is None else job.bearing.entrainment_speed(ring)
+    elif job is not None:
+        problems.append(
+            f"--speed: got {arguments.speed!r:.60}; allowed: m/s, since the job has a bare contact; rpm are those of "
+            "the inner ring of a bearing"
+        )
     temperature = read("--temperature", arguments.temperature, "K", 213.15, 573.15, TEMPERATURE)
     frequency: float | None = 0.0
     if arguments.frequency is not None:
@@ -110,10 +122,10 @@ def _read(arguments: argparse.Namespace) -> tuple[Job, OperatingPoint, float | N
     return job, OperatingPoint(load, speed, temperature), length, frequency
 
 
-def _is_per_length(load: str) -> bool:
-    """Whether the load was given per length."""
+def _is_of_unit(text: str, unit: str) -> bool:
+    """Whether a quantity was given in a unit of this kind."""
     try:
-        quantity(load, "N/m")
+        quantity(text, unit)
     except InputError:
         return False
     return True
@@ -180,8 +192,8 @@ def _table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, lengt
     """Return the printed table: one column a contact, per length and, if known, times the length."""
     rows: list[tuple[str, str, list[Any]]] = list(_rows(records, length))
     law = job.contacts[0].structural_law
-    header = f"{job.title}, {job.lubricant.name}, solver {job.solver}, structural law {law}"
-    place = f"{LOAD.text(point.load)}, {point.entrainment_speed:g} m/s, {TEMPERATURE.text(point.temperature)}"
+    header = f"{job.title}, {job.lubricant.title}, solver {job.solver}, structural law {law}"
+    place = f"{LOAD.text(point.load)}, {_speed(job, point)}, {TEMPERATURE.text(point.temperature)}"
     if length is not None:
         place += f", slice of {LENGTH.text(length)} ({point.load * length:.5g} N)"
     lines = [header, place, f"{'':38s}" + "".join(f"{record['contact']:>14s}" for record in records)]
@@ -190,6 +202,14 @@ def _table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, lengt
         lines.append(f"  {label:22s} {unit:12s} {shown}")
     lines.extend(f"  {record['contact']}: {record['reason']}" for record in records if record["reason"])
     return "\n".join(lines)
+
+
+def _speed(job: Job, point: OperatingPoint) -> str:
+    """Return the entrainment speed, and what it is of the inner ring of a bearing."""
+    speed = f"{point.entrainment_speed:.6g} m/s"
+    if job.bearing is None:
+        return speed
+    return f"{speed} (inner ring {RPM.text(job.bearing.inner_speed(point.entrainment_speed), 6)}, outer ring fixed)"
 
 
 def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple[str, str, list[Any]]]:

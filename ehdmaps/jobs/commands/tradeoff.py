@@ -14,4 +14,4 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     entries, reference = contestants(job)
     measured, truth = measure(job, arguments.lines, entries, reference)
     points = truth.solved if not measured else max(truth.solved, *(entry.solved for entry in measured))
-    return f"{job.title}, {job.lubricant.name}\n{table(measured, truth, points)}", 0
+    return f"{job.title}, {job.lubricant.title}\n{table(measured, truth, points)}", 0

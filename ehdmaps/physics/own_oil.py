@@ -1,0 +1,161 @@
+"""The laws of an own oil, from what its user states; all that is missing or doubly given at once."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics.correlations import CORRELATIONS, estimate
+from ehdmaps.physics.pressure_viscosity import ZERO_CELSIUS, Barus, Fva3, PressureViscosityLaw, Roelands
+from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw
+
+
+class Stated(NamedTuple):
+    """Viscosity and pressure-viscosity as stated: a constant, or values at 40 and 100 degC.
+
+    `coefficient` may be the name of a correlation.
+    """
+
+    viscosity: float | None
+    viscosity_40: float | None
+    viscosity_100: float | None
+    coefficient: float | str | None
+    coefficient_40: float | None
+    coefficient_100: float | None
+
+
+class Laws(NamedTuple):
+    """What an own oil consists of; `correlation` is the name of the one that gives alpha, if one does."""
+
+    viscosity: ViscosityLaw
+    pressure_viscosity: PressureViscosityLaw
+    correlation: str | None
+
+
+def own_laws(
+    name: str, word: str, stated: Stated, density: float, density_slope: float, roelands_z: float | None = None
+) -> Laws:
+    """Laws of an own oil.
+
+    Parameters
+    ----------
+    name : str
+        Of the oil, for messages.
+    word : {"barus", "roelands", "fva3"}
+        Law over pressure.
+    stated : Stated
+        In SI.
+    density, density_slope : float
+        At 15 degC [kg/m3], and over temperature [kg/(m3 K)].
+    roelands_z : float, optional
+        Exponent of Roelands' law.
+
+    Raises
+    ------
+    InputError
+        With everything that is missing, doubly given or out of its limits.
+    """
+    problems: list[str] = []
+    viscosity = _viscosity_law(name, stated, problems)
+    correlation = _correlation(name, stated, viscosity, problems)
+    pair = None if correlation else _coefficient_pair(name, stated, problems)
+    if pair is None and correlation is None and word != "roelands" and not problems:
+        problems.append(
+            f"lubricant {name!r}, pressure_viscosity: got none; viscosity_law {word} needs it; give it in 1/Pa, or the "
+            f"name of a correlation that estimates it: {', '.join(CORRELATIONS)}"
+        )
+    if problems or viscosity is None:
+        raise InputError(problems)
+    if correlation:
+        pair = _estimated_pair(name, correlation, viscosity, density, density_slope)
+    return Laws(viscosity, _isotherms(word, pair, roelands_z), correlation)
+
+
+def estimated_coefficient(correlation: str, law: ViscosityLaw, viscosity: float, density: float) -> float:
+    """Alpha [1/Pa] by a correlation where an oil has these eta0 [Pa s] and rho0 [kg/m3]."""
+    slope = law.slope if isinstance(law, AstmViscosity) else 0.0
+    return estimate(correlation, viscosity / density, density, slope)
+
+
+def _isotherms(word: str, pair: tuple[float, float] | None, roelands_z: float | None) -> PressureViscosityLaw:
+    """The law over pressure."""
+    if word == "roelands":
+        return Roelands(roelands_z, *(pair or (None, None)))
+    assert pair is not None  # `own_laws` saw to it
+    return Barus(*pair) if word == "barus" else Fva3(pressure_viscosity_40=pair[0], pressure_viscosity_100=pair[1])
+
+
+def _estimated_pair(
+    name: str, correlation: str, law: ViscosityLaw, density: float, density_slope: float
+) -> tuple[float, float]:
+    """Alpha at 40 and 100 degC by a correlation."""
+    values = []
+    for celsius in (40.0, 100.0):
+        temperature = ZERO_CELSIUS + celsius
+        rho = density + density_slope * (celsius - 15.0)
+        try:
+            values.append(estimated_coefficient(correlation, law, law.at(temperature, rho), rho))
+        except InputError as error:
+            raise InputError(
+                [f"lubricant {name!r}, {problem} (at {celsius:g} degC)" for problem in error.problems]
+            ) from None
+    return values[0], values[1]
+
+
+def _viscosity_law(name: str, stated: Stated, problems: list[str]) -> ViscosityLaw | None:
+    """The law that is given, or None with its problems noted."""
+    where = f"lubricant {name!r}"
+    constant, cold, hot = stated[:3]
+    try:
+        if constant is not None and cold is None and hot is None:
+            return ConstantViscosity(constant)
+        if constant is None and cold is not None and hot is not None:
+            return AstmViscosity(cold, hot)
+    except InputError as error:
+        problems.extend(f"{where}, {problem}" for problem in error.problems)
+        return None
+    problems.append(
+        f"{where}, viscosity: got "
+        f"{_listed(viscosity=constant, viscosity_40=cold, viscosity_100=hot)}; "
+        "allowed: either viscosity, or viscosity_40 and viscosity_100; give one of the two"
+    )
+    return None
+
+
+def _correlation(name: str, stated: Stated, law: ViscosityLaw | None, problems: list[str]) -> str | None:
+    """Name of the correlation that is asked for; None if none is, or with its problems noted."""
+    word = stated.coefficient
+    if not isinstance(word, str):
+        return None
+    where = f"lubricant {name!r}, pressure_viscosity"
+    if word not in CORRELATIONS:
+        problems.append(f"{where}: got {word!r:.60}; allowed: a number in 1/Pa, or {', '.join(CORRELATIONS)}")
+    elif CORRELATIONS[word].needs_slope and law is not None and not isinstance(law, AstmViscosity):
+        problems.append(
+            f"{where}: got {word!r}, which needs the viscosity at two temperatures; allowed: with viscosity_40 and "
+            "viscosity_100; give them, or pressure_viscosity in 1/Pa"
+        )
+    return word if word in CORRELATIONS else None
+
+
+def _coefficient_pair(name: str, stated: Stated, problems: list[str]) -> tuple[float, float] | None:
+    """Alpha at 40 and 100 degC, or None if none is given (or with its problems noted)."""
+    constant, cold, hot = stated[3:]
+    if isinstance(constant, str):
+        return None
+    if constant is not None and cold is None and hot is None:
+        return constant, constant
+    if constant is None and cold is not None and hot is not None:
+        return cold, hot
+    if constant is not None or cold is not None or hot is not None:
+        given = _listed(pressure_viscosity=constant, pressure_viscosity_40=cold, pressure_viscosity_100=hot)
+        problems.append(
+            f"lubricant {name!r}, pressure_viscosity: got {given}; allowed: either pressure_viscosity, or "
+            "pressure_viscosity_40 and pressure_viscosity_100; give one of the two"
+        )
+    return None
+
+
+def _listed(**values: float | None) -> str:
+    """What is given, in words."""
+    return ", ".join(f"{name} = {value!r}" for name, value in values.items() if value is not None) or "none"
