@@ -34,7 +34,9 @@ def parser() -> argparse.ArgumentParser:
         ("lsa", "linear system analysis: state space and frequency responses"),
         ("runup", "integrate the nonlinear system in time over its speed profile"),
     ):
-        _scene_command(commands, name, words, compares=False)
+        command = _scene_command(commands, name, words, compares=False)
+        if name == "modes":
+            _modes(command)
     _sweep(_scene_command(commands, "sweep", "modes, bearings and frequency responses over speed", compares=True))
     _campbell(_scene_command(commands, "campbell", "run-up in time as levels over speed and frequency", compares=True))
     _hammer(_scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=False))
@@ -42,6 +44,15 @@ def parser() -> argparse.ArgumentParser:
     _plan(commands)
     _reduce(commands)
     return top
+
+
+def _modes(command: argparse.ArgumentParser) -> None:
+    """Add the option of modes."""
+    command.add_argument(
+        "--highest",
+        metavar="FREQUENCY",
+        help='highest frequency listed and drawn, such as "5 kHz"; default: the highest of [linear], else 10 kHz',
+    )
 
 
 def _sweep(command: argparse.ArgumentParser) -> None:

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -14,10 +15,11 @@ from matplotlib.text import Text
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.outputs import write_figure
 from ehdmaps.physics._values import FloatArray
-from ehdmaps.units import TEMPERATURE
+from ehdmaps.units import TEMPERATURE, Display, quantity
 from mbs.assembly import Model, law_attributes
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
+from mbs.commands.reach import outside_lines
 from mbs.elements import Operation
 from mbs.linearised.validity import HIGHEST_RATIO, FilmLimit, film_limit
 from mbs.output.results import described, write_dataset
@@ -25,6 +27,11 @@ from mbs.reading.fields import MICROMETRE, RPM
 from mbs.statics import Equilibrium, equilibrium
 
 RESOLUTION = 150
+
+MORE_DAMPING = "films as a rule are stiffer and damp less than computed here"
+"""What is known of quicker motion."""
+
+NO_LONGER_VALID = f"above it stiffness and damping of slow motion are no longer valid, {MORE_DAMPING}"
 
 
 def heading(model: Model, speed: float | None = None) -> list[str]:
@@ -70,7 +77,7 @@ def film_warnings(limits: Sequence[FilmLimit], frequencies: Iterable[float]) -> 
             lines.append(
                 f"warning: {limit.bearing}: omega b/u is {ratio:.2g} at {highest:.5g} Hz and passes {HIGHEST_RATIO} at "
                 f"{limit.frequency:.4g} Hz (b = {limit.half_width * 1e6:.3g} um, "
-                f"u = {limit.entrainment_speed:.3g} m/s): above it low-frequency stiffness and damping no longer hold"
+                f"u = {limit.entrainment_speed:.3g} m/s): {NO_LONGER_VALID}"
             )
     return lines
 
@@ -86,9 +93,54 @@ def film_course(model: Model, speeds: Iterable[float]) -> list[str]:
     if not shown:
         return []
     return [
-        f"films follow as in the low-frequency limit (omega b/u up to {HIGHEST_RATIO}) up to {', '.join(shown)}; "
-        "quicker motion meets a stiffer film with less damping than here"
+        f"warning: films are those of slow motion; this is valid (omega b/u up to {HIGHEST_RATIO}) up to "
+        f"{', '.join(shown)}; above, {MORE_DAMPING}"
     ]
+
+
+def lowest_limits(model: Model, speeds: FloatArray, displacements: FloatArray | None = None) -> FloatArray:
+    """Frequency [Hz] above which omega b/u exceeds 0.3 in one of the bearings, at each speed, shape (speeds,).
+
+    Parameters
+    ----------
+    model : Model
+        With its law.
+    speeds : array, shape (speeds,)
+        [rad/s].
+    displacements : array, shape (speeds, n), optional
+        Equilibria; they are found if left out.
+
+    Returns
+    -------
+    array, shape (speeds,)
+        NaN for laws without films; 0 at rest.
+    """
+    found = np.full(speeds.size, np.nan)
+    for index, speed in enumerate(speeds.tolist()):
+        operation = Operation(speed)
+        place = equilibrium(model.system, operation).displacement if displacements is None else displacements[index]
+        limits = film_limits(model, place, operation)
+        if not limits:
+            break
+        found[index] = min(limit.frequency for limit in limits)
+    return found
+
+
+def read_option(
+    option: str, text: str | None, unit: str, limits: tuple[float, float], display: Display, problems: list[str]
+) -> float | None:
+    """Read a quantity of the command line within limits; None if absent or wrong, with the problem noted."""
+    if text is None:
+        return None
+    try:
+        value = quantity(text, unit)
+    except InputError as error:
+        problems.append(f"{option}: {error.problems[0]}")
+        return None
+    if not limits[0] <= value <= limits[1]:
+        problems.append(f"{option}: got {text!r:.60}; allowed: {display.text(limits[0])} to {display.text(limits[1])}")
+        return None
+    return value
 
 
 def outside_at(model: Model, balance: Equilibrium) -> list[str]:
@@ -96,11 +148,8 @@ def outside_at(model: Model, balance: Equilibrium) -> list[str]:
     before = model.outside_calls
     for connected in model.system.elements:
         connected.evaluate(balance.displacement, 0.0 * balance.displacement, balance.operation)
-    return [
-        f"warning: {name}: lies outside the map, where the law is held at its edge; make a map that reaches there"
-        for name, count in model.outside_calls.items()
-        if count > before[name]
-    ]
+    calls = {name: count - before[name] for name, count in model.outside_calls.items()}
+    return outside_lines(calls, "lies outside the map")
 
 
 def write(arguments: argparse.Namespace, model: Model, dataset: xr.Dataset, figure: Figure | None) -> list[str]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import math
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.signal import find_peaks
@@ -12,11 +14,12 @@ from ehdmaps.physics._values import FloatArray
 from mbs.assembly import Model
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_limits, film_warnings, heading, outside_at, write
+from mbs.commands.reach import fade_lines
 from mbs.linearised.linear import ComplexArray, frequency_response, response_unit, state_space, with_peaks
 from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
-from mbs.linearised.validity import dynamic_loads
-from mbs.output.plot import response_figure
+from mbs.linearised.validity import DynamicLoad, dynamic_loads
+from mbs.output.response_plot import response_figure
 from mbs.output.results import linear_dataset
 from mbs.statics import equilibrium
 
@@ -40,7 +43,12 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     frequencies = with_peaks(np.array(scene.frequencies), modes(balance).eigenvalues)
     responses = frequency_response(balance, scene.inputs, scene.sensors, frequencies)
     space = state_space(balance, scene.inputs, scene.sensors)
-    figure = response_figure(model, frequencies, responses) if arguments.plot else None
+    limits = film_limits(model, balance.displacement, balance.operation)
+    lifting = [load for load in dynamic_loads(balance, scene.inputs, frequencies) if load.exceeds]
+    figure = None
+    if arguments.plot:
+        limit = min((entry.frequency for entry in limits), default=math.inf)
+        figure = response_figure(model, frequencies, responses, limit, _lifting_notes(lifting))
     outside = outside_at(model, balance)
     dataset = linear_dataset(balance, space, responses, frequencies, scene.inputs, scene.sensors)
     amplitudes = {
@@ -52,18 +60,30 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"{len(scene.frequencies)} frequencies, and {frequencies.size - len(scene.frequencies)} more around lightly "
         "damped modes",
         *_peaks(model, frequencies, responses),
-        *film_warnings(film_limits(model, balance.displacement, balance.operation), frequencies),
+        *film_warnings(limits, frequencies),
         *(
             f"warning: {load.element}: {load.dynamic:.3g} N of dynamic load at {load.frequency:.4g} Hz exceed the "
             f"static {load.static:.4g} N (input {load.input} at its amplitude of {amplitudes[load.input]}): contacts "
-            "lift off, a linear analysis does not hold there"
-            for load in dynamic_loads(balance, scene.inputs, frequencies)
-            if load.exceeds
+            "lift off, a linear analysis is not valid there"
+            for load in lifting
         ),
+        *(fade_lines(model, np.array([scene.speed])) if scene.speed else []),
         *outside,
         *write(arguments, model, dataset, figure),
     ]
     return "\n".join(lines), 1 if outside else 0
+
+
+def _lifting_notes(loads: Sequence[DynamicLoad]) -> list[str]:
+    """Notes below the figure on loads that lift off, a line for each frequency and input."""
+    names: dict[tuple[str, str], list[str]] = {}
+    for load in loads:
+        names.setdefault((f"{load.frequency:.4g} Hz", load.input), []).append(load.element)
+    return [
+        f"contacts lift off near {at} with the amplitude of {entry}, a linear analysis is not valid there: "
+        + ", ".join(elements)
+        for (at, entry), elements in names.items()
+    ]
 
 
 def _peaks(model: Model, frequencies: FloatArray, responses: ComplexArray) -> list[str]:

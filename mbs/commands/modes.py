@@ -3,46 +3,130 @@
 from __future__ import annotations
 
 import argparse
+import math
 
 import numpy as np
 
+from ehdmaps.errors import InputError
+from mbs.assembly import Model
 from mbs.commands.cases import load_model
-from mbs.commands.common import film_limits, film_warnings, heading, outside_at, write
-from mbs.linearised.modes import Modes, modes
+from mbs.commands.common import film_limits, film_warnings, heading, outside_at, read_option, write
+from mbs.commands.reach import fade_lines
+from mbs.linearised.modes import IntArray, Modes, modes
 from mbs.linearised.steady import steady_system
-from mbs.output.plot import modes_figure
+from mbs.output.modes_plot import modes_figure
 from mbs.output.results import modes_dataset
+from mbs.reading.campbell import HIGHEST_HIGHEST, LOWEST_HIGHEST
+from mbs.reading.fields import HERTZ, MILLISECOND
 from mbs.statics import equilibrium
 
+HIGHEST = 10e3
+"""Highest frequency shown of a scene that asks for no responses [Hz]."""
+
 _LEAST_SHARE = 0.05
+_FREE = 1e-6
+"""Part of the highest frequency below which a motion without strain energy is free."""
+
+_ROUND_OFF = 1e-12
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Find the modes."""
-    model = load_model(arguments)
+    model, highest = _asked(arguments)
     balance = equilibrium(steady_system(model.system), model.operation)
     found = modes(balance)
-    figure = modes_figure(model, found) if arguments.plot else None
+    free, overdamped, swinging = _kinds(found)
+    shown = swinging[found.frequency[swinging] <= highest]
+    above = swinging[found.frequency[swinging] > highest]
+    limits = film_limits(model, balance.displacement, balance.operation)
+    notes = [*_free(free), *_above(found, above, highest)]
+    figure = None
+    if arguments.plot:
+        limit = min((entry.frequency for entry in limits), default=math.inf)
+        figure = modes_figure(model, found, shown, limit, "; ".join([*notes, *_overdamped_count(overdamped)]))
     outside = outside_at(model, balance)
     lines = [
         *heading(model, model.scene.speed),
-        *_table(found),
-        *film_warnings(film_limits(model, balance.displacement, balance.operation), found.frequency),
+        *_table(found, shown),
+        *_overdamped(found, overdamped),
+        *(f"  {note}" for note in notes),
+        *film_warnings(limits, found.frequency[shown]),
+        *(fade_lines(model, np.array([model.scene.speed])) if model.scene.speed else []),
         *outside,
         *write(arguments, model, modes_dataset(found, balance), figure),
     ]
     return "\n".join(lines), 1 if outside else 0
 
 
-def _table(found: Modes) -> list[str]:
-    """Lines of the modes: frequency, damping ratio, and the parts that have most of the strain energy."""
+def _asked(arguments: argparse.Namespace) -> tuple[Model, float]:
+    """The model, and the highest frequency to show [Hz]; all problems at once."""
+    problems: list[str] = []
+    text = getattr(arguments, "highest", None)
+    highest = read_option("--highest", text, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
+    try:
+        model = load_model(arguments)
+    except InputError as error:
+        raise InputError((*problems, *error.problems)) from error
+    if problems:
+        raise InputError(problems)
+    return model, max(model.scene.frequencies, default=HIGHEST) if highest is None else highest
+
+
+def _kinds(found: Modes) -> tuple[IntArray, IntArray, IntArray]:
+    """Which modes are free, which creep back without oscillating, and which oscillate."""
+    still = found.eigenvalues.imag <= 0.0
+    strained = found.shares.sum(axis=0) > 0.0
+    free = ~strained & (found.frequency <= _FREE * found.frequency.max(initial=0.0))
+    creeping = still & ~free
+    return np.flatnonzero(free), np.flatnonzero(creeping), np.flatnonzero(~free & ~creeping)
+
+
+def _table(found: Modes, shown: IntArray) -> list[str]:
+    """Lines of modes: frequency, damping ratio, and the parts that have most of the strain energy."""
     lines = ["  mode   frequency/Hz   damping ratio   strain energy        (frequency: |eigenvalue|/(2 pi))"]
-    for k in range(found.eigenvalues.size):
-        order = np.argsort(-found.shares[:, k], kind="stable")
-        shares = [
-            f"{found.parts[i]} {100.0 * found.shares[i, k]:.3g} %" for i in order if found.shares[i, k] >= _LEAST_SHARE
-        ]
-        lines.append(
-            f"  {k + 1:4d} {found.frequency[k]:14.6g} {found.damping_ratio[k]:15.4g}   {', '.join(shares) or 'none'}"
-        )
+    for k in shown:
+        ratio = float(found.damping_ratio[k])
+        ratio = ratio if abs(ratio) > _ROUND_OFF else 0.0
+        lines.append(f"  {k + 1:4d} {found.frequency[k]:14.6g} {ratio:15.4g}   {_shares(found, k)}")
     return lines
+
+
+def _shares(found: Modes, mode: int) -> str:
+    """The parts that have most of the strain energy of a mode."""
+    order = np.argsort(-found.shares[:, mode], kind="stable")
+    shares = [
+        f"{found.parts[i]} {100.0 * found.shares[i, mode]:.3g} %"
+        for i in order
+        if found.shares[i, mode] >= _LEAST_SHARE
+    ]
+    return ", ".join(shares) or "none"
+
+
+def _overdamped(found: Modes, which: IntArray) -> list[str]:
+    """Lines of motions that creep back: how long they take, and where the strain energy is."""
+    if not which.size:
+        return []
+    lines = ["  overdamped (no oscillation): time to fall to 1/e"]
+    for k in which:
+        decay = -float(found.eigenvalues[k].real)
+        time = MILLISECOND.text(1.0 / decay) if decay > 0.0 else "grows"
+        lines.append(f"  {k + 1:4d} {time:>14}                   {_shares(found, k)}")
+    return lines
+
+
+def _overdamped_count(which: IntArray) -> list[str]:
+    """How many motions creep back."""
+    return [f"{which.size} overdamped motions not drawn"] if which.size else []
+
+
+def _free(which: IntArray) -> list[str]:
+    """A line for all free motions."""
+    return [f"{which.size} free motions at 0 Hz without strain energy, such as unloaded rollers"] if which.size else []
+
+
+def _above(found: Modes, which: IntArray, highest: float) -> list[str]:
+    """A line on modes that are not shown."""
+    if not which.size:
+        return []
+    last = HERTZ.text(float(found.frequency[which].max()), 5)
+    return [f"{which.size} more modes above {HERTZ.text(highest, 5)}, up to {last}, not shown (--highest)"]

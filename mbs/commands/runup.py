@@ -7,17 +7,21 @@ import math
 import time
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import progress
+from ehdmaps.physics._values import FloatArray
+from mbs.assembly import Model
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_course, heading, write
+from mbs.commands.reach import Fade, fade_lines, fade_of
 from mbs.elements import Operation
-from mbs.output.plot import run_figure
 from mbs.output.results import run_dataset
+from mbs.output.run_plot import run_figure
 from mbs.reading.fields import RPM
 from mbs.statics import equilibrium
-from mbs.transient.integration import integrate
+from mbs.transient.integration import Trajectory, integrate
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -41,7 +45,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     )
     seconds = time.perf_counter() - begin
     outside = {name: count - before[name] for name, count in model.outside_calls.items()}
-    figure = run_figure(model, result) if arguments.plot else None
+    fade = fade_of(model)
+    figure = _figure(model, result, fade) if arguments.plot else None
     first, last = (RPM.text(float(speed)) for speed in (result.speed[0], result.speed[-1]))
     lines = [
         *heading(model),
@@ -53,11 +58,35 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         size = np.hypot(force[:, 1], force[:, 2])
         lines.append(
             f"{bearing.name}: {size[0]:.5g} N at the beginning, {size.min():.5g} to {size.max():.5g} N, "
-            f"{size[-1]:.5g} N at the end; largest change from sample to sample "
-            f"{np.abs(np.diff(size)).max(initial=0.0):.3g} N; "
+            f"{size[-1]:.5g} N at the end; largest change from sample to sample {_changes(size, result.speed, fade)}; "
             f"{outside[bearing.name]} calls outside the map"
         )
+    lines += fade_lines(model, result.speed, "the run")
     # The equilibria of this line are no part of the run, whose calls were counted above.
     lines += film_course(model, (float(result.speed[0]), float(result.speed[-1])))
     lines += write(arguments, model, run_dataset(model.system, result, outside), figure)
     return "\n".join(lines), 1 if any(outside.values()) else 0
+
+
+def _changes(size: FloatArray, speed: FloatArray, fade: Fade | None) -> str:
+    """Largest change of a force from sample to sample, inside and outside the fade below the map."""
+    change = np.abs(np.diff(size))
+    slow = np.zeros(speed.size, dtype=np.bool_) if fade is None else fade.below(speed)
+    inside = slow[1:] | slow[:-1]
+    if fade is None or not inside.any():
+        return f"{change.max(initial=0.0):.3g} N"
+    return (
+        f"{change[inside].max():.3g} N below {RPM.text(fade.speed)}, where the film fades, and "
+        f"{change[~inside].max(initial=0.0):.3g} N above"
+    )
+
+
+def _figure(model: Model, result: Trajectory, fade: Fade | None) -> Figure:
+    """The figure, with the fade shaded."""
+    if fade is None:
+        return run_figure(model, result)
+    words = (
+        f"below {fade.source} (below {RPM.text(fade.speed)}, entrainment speed {fade.entrainment_speed:.4g} m/s): "
+        "the film fades to the dry contact"
+    )
+    return run_figure(model, result, fade.speed, words)

@@ -7,20 +7,23 @@ import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from ehdmaps.errors import InputError
 from ehdmaps.units import TEMPERATURE, quantity
 from mbs.assembly import Model
 from mbs.commands.cases import Case, load_cases
-from mbs.commands.common import film_limits, heading, write
+from mbs.commands.common import NO_LONGER_VALID, film_limits, heading, lowest_limits, write
+from mbs.commands.reach import fade_lines, fade_of, outside_lines
 from mbs.elements import Operation
 from mbs.errors import AnalysisError
+from mbs.linearised.crossings import exchanged
 from mbs.linearised.sweep import MOST_ANGLES, MOST_SPEEDS, SweepRange, sweep
 from mbs.linearised.sweep_result import Sweep
 from mbs.linearised.validity import HIGHEST_RATIO
 from mbs.output.sweep_data import sweep_dataset
 from mbs.output.sweep_plot import sweep_figure
-from mbs.reading.fields import RPM
+from mbs.reading.fields import MICROMETRE, RPM
 
 _LEAST_SHARE = 0.05
 _LEAST_ASSURANCE = 0.5
@@ -58,8 +61,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_bearings(result),
             *_undamped(result),
             *_complex(result),
+            *_exchanged(result),
             *_unsure(result),
             *_too_quick(case.model, result),
+            *fade_lines(case.model, result.speeds),
         ]
     model = cases[0].model
     labels = [case.label for case in cases]
@@ -70,14 +75,34 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         [case.clearance for case in cases],
         [case.load_factor for case in cases],
     )
-    words = f"{TEMPERATURE.text(model.scene.temperature)}; cages held, " + (
-        f"law {model.law}" if len({case.model.law for case in cases}) == 1 else "laws side by side"
-    )
-    figure = sweep_figure(model.scene.title, words, found, labels) if arguments.plot else None
+    figure = _figure(cases, found) if arguments.plot else None
     # The file says of each case what its law is.
     named = [f"{case.label}: {case.model.law}" for case in cases] if len(cases) > 1 else [model.law]
     lines += outside + write(arguments, dataclasses.replace(model, law="; ".join(named)), dataset, figure)
     return "\n".join(lines), 1 if outside else 0
+
+
+def _figure(cases: Sequence[Case], found: Sequence[Sweep]) -> Figure:
+    """The figure, with what is not valid marked."""
+    scene = cases[0].model.scene
+    one_law = len({case.model.law for case in cases}) == 1
+    clearances = {entry.geometry.diametral_clearance for case in cases for entry in case.model.scene.bearings}
+    words = [
+        f"law {cases[0].model.law}" if one_law else "laws side by side",
+        TEMPERATURE.text(scene.temperature),
+        *([f"clearance {MICROMETRE.text(clearances.pop())}"] if len(clearances) == 1 else []),
+        *([f"{cases[0].load_factor:g} x load"] if len(cases) == 1 and cases[0].load_factor != 1.0 else []),
+        "cages held",
+    ]
+    fades = [fade for case in cases if (fade := fade_of(case.model)) is not None]
+    return sweep_figure(
+        scene.title,
+        "; ".join(words),
+        found,
+        [case.label for case in cases],
+        [lowest_limits(case.model, entry.speeds, entry.displacement) for case, entry in zip(cases, found, strict=True)],
+        max((fade.speed for fade in fades), default=0.0),
+    )
 
 
 def _read(arguments: argparse.Namespace) -> tuple[SweepRange, int, list[Case]]:
@@ -185,15 +210,37 @@ def _complex(result: Sweep) -> list[str]:
     shown = [k for k in range(found.eigenvalues.shape[1]) if np.nanmax(found.bearing_share[:, k]) >= _least(result)]
     if not shown:
         return ["  no oscillating complex mode with strain energy in the bearings"]
-    lines = ["  complex modes       frequency/Hz        change   damping ratio   whirl d omega/d Omega   oscillates"]
-    for k in shown:
+    lines = [
+        "  complex modes       frequency/Hz        change   damping ratio   whirl d omega/d Omega   oscillates"
+        "   (numbers: nearest undamped mode)"
+    ]
+    for k in sorted(shown, key=lambda k: int(found.number[k])):
         there = np.nonzero(np.isfinite(found.frequency[:, k]))[0][[0, -1]]
         f, z, w = (values[there, k] for values in (found.frequency, found.damping_ratio, found.whirl))
         begin, end = (RPM.text(float(result.speeds[i])) for i in there)
         whole = there[0] == 0 and there[1] == result.speeds.size - 1
         lines.append(
-            f"  {k + 1:4d} {f[0]:12.5g} to {f[1]:9.5g} {_change(*f):>11} {_clean(z[0]):10.3g} to {_clean(z[1]):.3g} "
+            f"  {found.number[k] + 1:4d} {f[0]:12.5g} to {f[1]:9.5g} {_change(*f):>11} "
+            f"{_clean(z[0]):10.3g} to {_clean(z[1]):.3g} "
             f"{_clean(w[1]):+14.2g}           {'everywhere' if whole else f'{begin} to {end}'}"
+        )
+    return lines
+
+
+def _exchanged(result: Sweep) -> list[str]:
+    """Lines on undamped modes that turn away from each other and exchange their shapes."""
+    found = result.undamped
+    shown = found.bearing_share.max(axis=0) >= _least(result)
+    lines = []
+    for k, other in exchanged(found):
+        if not shown[[k, other]].any():
+            continue
+        gap = np.abs(found.frequency[:, k] - found.frequency[:, other])
+        near = int(np.argmin(gap))
+        lines.append(
+            f"  undamped modes {k + 1} and {other + 1} come within {gap[near]:.2g} Hz at "
+            f"{RPM.text(float(result.speeds[near]))}, turn away and exchange their shapes: the shape of mode {k + 1} "
+            f"at {_first(result)} is that of mode {other + 1} at {_last(result)}"
         )
     return lines
 
@@ -228,12 +275,7 @@ def _outside(case: Case, result: Sweep) -> list[str]:
             connected.evaluate(place, rest, Operation(speed))
         for name, calls in case.model.outside_calls.items():
             count[name] += calls > before[name]
-    return [
-        f"warning: {case.label}: {name} lies outside the map at {times} of {result.speeds.size} speeds, where the law "
-        "is held at its edge; make a map that reaches there"
-        for name, times in count.items()
-        if times
-    ]
+    return outside_lines(count, f"lies outside the map at {{}} of {result.speeds.size} speeds", case.label)
 
 
 def _too_quick(model: Model, result: Sweep) -> list[str]:
@@ -248,8 +290,8 @@ def _too_quick(model: Model, result: Sweep) -> list[str]:
             if speed > 0.0 and ratio > max(HIGHEST_RATIO, worst.get(limit.bearing, (0.0,))[0]):
                 worst[limit.bearing] = ratio, highest, speed
     return [
-        f"warning: {name}: omega b/u is up to {ratio:.2g} ({highest:.5g} Hz at {RPM.text(speed)}): above "
-        f"{HIGHEST_RATIO} low-frequency stiffness and damping no longer hold"
+        f"warning: {name}: omega b/u is up to {ratio:.2g} ({highest:.5g} Hz at {RPM.text(speed)}) and passes "
+        f"{HIGHEST_RATIO} at {HIGHEST_RATIO / ratio * highest:.4g} Hz there: {NO_LONGER_VALID}"
         for name, (ratio, highest, speed) in worst.items()
     ]
 

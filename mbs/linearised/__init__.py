@@ -1,1 +1,1 @@
-"""The system linearised at an equilibrium: modes and responses, both over speed, and where that stops to hold."""
+"""The system linearised at an equilibrium: modes and responses, both over speed, and where that is no longer valid."""

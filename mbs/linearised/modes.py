@@ -1,7 +1,7 @@
 """Modes at an equilibrium: eigenvalues, shapes, and where their strain energy is.
 
 Complex modes have all of damping and gyroscopic terms; undamped ones neither, for systems whose films damp so strongly
-that complex modes stop to oscillate.
+that complex modes become overdamped.
 """
 
 from __future__ import annotations

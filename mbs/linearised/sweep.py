@@ -2,9 +2,10 @@
 
 At each speed the equilibrium is found from that of the last one, at a fixed angle, which is a fixed cage angle. Modes
 are solved there twice: undamped, because the film of a lightly loaded bearing damps so strongly that its complex modes
-stop to oscillate, and complex with all of damping and gyroscopic terms. Each mode is followed from speed to speed by
+become overdamped, and complex with all of damping and gyroscopic terms. Each mode is followed from speed to speed by
 its shape (`mbs.linearised.tracking`); where two speeds are too far apart for that, speeds between them are solved too,
-for the following only. Gear meshes count with their mean stiffness.
+for the following only. Where damped modes cross, undamped ones are followed straight on too
+(`mbs.linearised.crossings`). Gear meshes count with their mean stiffness.
 """
 
 from __future__ import annotations
@@ -18,13 +19,14 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from mbs.elements import Input, Operation, Sensor
 from mbs.errors import AnalysisError
+from mbs.linearised.crossings import straightened
 from mbs.linearised.linear import ComplexArray
 from mbs.linearised.modal_response import checked_response
 from mbs.linearised.modes import IntArray
 from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep_point import Along, Point, bearing_parts, bridge, first_order_shift, over_pitch, solve_modes
 from mbs.linearised.sweep_result import BearingSweep, ComplexSweep, ResponseSweep, Sweep, UndampedSweep
-from mbs.linearised.tracking import tracks
+from mbs.linearised.tracking import match, numbers, tracks
 from mbs.statics import equilibrium
 from mbs.system import System
 
@@ -145,7 +147,7 @@ def sweep(
         displacement=np.array([point.displacement for point in points]),
         forces=tuple(np.array(part) for part in zip(*(point.forces for point in points), strict=True)),
         parts=tuple(first.balance.parts),
-        undamped=_undamped(points, links, first, before),
+        undamped=straightened(_undamped(points, links, first, before)),
         damped=_damped(points, links, bearing_parts(first.balance)),
         bearings=_bearings(points, first),
         responses=ResponseSweep(frequencies, tuple(inputs), tuple(sensors), values, errors),
@@ -166,6 +168,7 @@ class _Recorded:
     complex_shares: FloatArray
     whirl: FloatArray
     bearings: FloatArray
+    kinship: FloatArray
 
 
 def _record(point: Point, cage_angles: int) -> _Recorded:
@@ -180,6 +183,7 @@ def _record(point: Point, cage_angles: int) -> _Recorded:
         point.complex_shares,
         point.whirl,
         over_pitch(point.balance, cage_angles),
+        point.kinship,
     )
 
 
@@ -219,12 +223,15 @@ def _undamped(points: Sequence[_Recorded], links: Sequence[Along], first: Point,
         assurance=sure,
         summed_shift=np.expm1(logarithm),
         direct_shift=first_order_shift(first, last)[0],
+        resembles=np.argsort(order[-1])[match(first.shapes, last.shapes).chosen],
     )
 
 
 def _damped(points: Sequence[_Recorded], links: Sequence[Along], here: IntArray) -> ComplexSweep:
     """Put the complex modes into tracks, with NaN where there is none."""
     order = tracks(points[0].eigenvalues.size, [link.damped for link in links])
+    plain = tracks(points[0].frequency.size, [link.undamped for link in links])
+    number = numbers(order, plain, [point.kinship for point in points])
     shape = order.shape
     values = np.full(shape, complex(np.nan, np.nan))
     whirl, sure = np.full(shape, np.nan), np.full(shape, np.nan)
@@ -238,7 +245,7 @@ def _damped(points: Sequence[_Recorded], links: Sequence[Along], here: IntArray)
         if index:
             old = there[order[index - 1, there] >= 0]
             sure[index, old] = links[index - 1].damped.assurance[order[index - 1, old]]
-    return ComplexSweep(values, shares, shares[here].sum(axis=0), whirl, sure)
+    return ComplexSweep(values, shares, shares[here].sum(axis=0), whirl, sure, number)
 
 
 def _bearings(points: Sequence[_Recorded], first: Point) -> BearingSweep:

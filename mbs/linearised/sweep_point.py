@@ -12,6 +12,7 @@ from ehdmaps.physics._values import FloatArray
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.roller_element import RollerElement, ring_matrices
 from mbs.elements import Element, Operation
+from mbs.linearised.linear import ComplexArray
 from mbs.linearised.modes import IntArray, StateModes, UndampedModes, energy_shares, state_modes, undamped_modes
 from mbs.linearised.tracking import Match, ModeSet, compose, match
 from mbs.statics import Equilibrium, equilibrium
@@ -45,6 +46,8 @@ class Point:
         Part of the strain energy.
     whirl : array, shape (complex modes,)
         d omega/d Omega by gyroscopic terms [1]; of an equal pair, as at rest, anything between those of both.
+    kinship : array, shape (complex modes, n)
+        Part of each undamped mode in the shape of a complex one, by kinetic energy: rows sum to 1.
     """
 
     balance: Equilibrium
@@ -54,6 +57,7 @@ class Point:
     damped: ModeSet
     complex_shares: FloatArray
     whirl: FloatArray
+    kinship: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +110,7 @@ def solve_modes(balance: Equilibrium) -> Point:
         energy_shares(balance, shapes),
         # d lambda/d Omega = left . dA/dOmega . right, exact with damping too.
         -np.sum(states.left[kept, system.size :].T * turned, axis=0).imag,
+        _kinship(undamped.shapes.T @ system.mass @ shapes),
     )
 
 
@@ -193,6 +198,12 @@ def over_pitch(balance: Equilibrium, count: int) -> FloatArray:
         at = operation._replace(angle=operation.angle + turn * part / count)
         found.append(along_load(equilibrium(balance.system, at, balance.displacement)))
     return np.array(found)
+
+
+def _kinship(parts: ComplexArray) -> FloatArray:
+    """Squares of the parts (n, complex modes) that undamped modes have in complex ones, in rows that sum to 1."""
+    squares = np.abs(parts.T) ** 2
+    return np.asarray(squares / np.maximum(squares.sum(axis=1, keepdims=True), 1e-300), dtype=np.float64)
 
 
 def _pitch(element: Element) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from ehdmaps.physics._values import FloatArray
 from mbs.elements import Input, Sensor
 from mbs.linearised.linear import ComplexArray
-from mbs.linearised.modes import damping_ratio
+from mbs.linearised.modes import IntArray, damping_ratio
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,9 +27,13 @@ class UndampedSweep:
     assurance : array, shape (speeds, n)
         Least assurance on the way from the speed before, 1 at the first.
     summed_shift : array, shape (speeds, n)
-        f/f(first speed) - 1 by energy: the sum of phi' dK phi/(2 phi' K phi) over the steps, dK of the bearings alone.
+        f/f(first speed) - 1 by energy: the sum of phi' dK phi/(2 phi' K phi) over the steps, dK of the bearings alone,
+        and at a crossing the step from one branch to the other.
     direct_shift : array, shape (n,)
         The same at the last speed in one step with the first shapes: right to first order in the change.
+    resembles : array of int, shape (n,)
+        Mode whose shape at the last speed is most like that of this one at the first: another one where both came close
+        on the way and exchanged their shapes.
     """
 
     frequency: FloatArray
@@ -39,6 +43,7 @@ class UndampedSweep:
     assurance: FloatArray
     summed_shift: FloatArray
     direct_shift: FloatArray
+    resembles: IntArray
 
     @property
     def shift(self) -> FloatArray:
@@ -51,7 +56,7 @@ class UndampedSweep:
 class ComplexSweep:
     """Oscillating complex modes over speed; NaN where a mode does not exist.
 
-    A mode that stops to oscillate ends; if it oscillates again it is counted as another one.
+    A mode that becomes overdamped ends; if it oscillates again it is counted as another one.
 
     Attributes
     ----------
@@ -66,6 +71,8 @@ class ComplexSweep:
         negative for backward whirl, 0 for a motion in a plane.
     assurance : array, shape (speeds, modes)
         Least assurance on the way from the speed before, 1 where a mode begins.
+    number : array of int, shape (modes,)
+        Undamped mode, from 0 on, that it is nearest to where it begins; two that are never there together may share it.
     """
 
     eigenvalues: ComplexArray
@@ -73,6 +80,7 @@ class ComplexSweep:
     bearing_share: FloatArray
     whirl: FloatArray
     assurance: FloatArray
+    number: IntArray
 
     @property
     def frequency(self) -> FloatArray:

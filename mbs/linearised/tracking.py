@@ -132,6 +132,34 @@ def tracks(size: int, matches: Sequence[Match]) -> IntArray:
     return np.stack([np.concatenate([row, np.full(count - row.size, -1)]) for row in found])
 
 
+def numbers(order: IntArray, plain: IntArray, kinship: Sequence[FloatArray]) -> IntArray:
+    """Which undamped mode each complex one is nearest to where it begins, each at most once at a time.
+
+    Parameters
+    ----------
+    order : array, shape (points, complex tracks)
+        Index of each complex track at each point; -1 where it does not exist.
+    plain : array, shape (points, undamped tracks)
+        The same of the undamped ones, which exist everywhere.
+    kinship : sequence of array, shape (complex modes, undamped modes)
+        At each point, how much each complex mode is one of the undamped ones.
+
+    Returns
+    -------
+    array, shape (complex tracks,)
+        Undamped track, from 0 on.
+    """
+    found = np.full(order.shape[1], -1)
+    for row, columns, near in zip(order, plain, kinship, strict=True):
+        here = row >= 0
+        new = np.flatnonzero(here & (found < 0))
+        free = np.setdiff1d(np.arange(columns.size), found[here])
+        if new.size:
+            i, j = linear_sum_assignment(near[np.ix_(row[new], columns[free])], maximize=True)
+            found[new[i]] = free[j]
+    return found
+
+
 def _groups(values: ComplexArray) -> FloatArray:
     """Which eigenvalues are equal, 1 or 0, shape (modes, modes)."""
     size = np.abs(values)

@@ -1,4 +1,4 @@
-"""Where a linear analysis stops to hold: loads that lift off, and oscillations too quick for low-frequency films."""
+"""Where a linear analysis is not valid: loads that lift off, oscillations too quick for low-frequency films."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from mbs.linearised.linear import responses
 from mbs.statics import Equilibrium
 
 HIGHEST_RATIO = 0.3
-"""omega b/u above which stiffness and damping of the low-frequency limit no longer hold."""
+"""omega b/u above which stiffness and damping of the low-frequency limit are no longer valid."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class DynamicLoad:
 
     @property
     def exceeds(self) -> bool:
-        """Whether contacts would lift off, so that a linear analysis does not hold."""
+        """Whether contacts would lift off, so that a linear analysis is not valid."""
         return self.dynamic > self.static
 
 

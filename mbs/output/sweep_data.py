@@ -126,6 +126,16 @@ def sweep_dataset(
             filled(lambda entry: entry.damped.assurance),
             _said("1", "assurance of the complex mode on the way from the speed before"),
         ),
+        "complex_number": (
+            ("case", "complex_mode"),
+            filled(lambda entry: np.asarray(entry.damped.number + 1.0, dtype=np.float64)),
+            _said("1", "number of the undamped mode that the complex one is nearest to where it begins"),
+        ),
+        "resembles": (
+            ("case", "mode"),
+            stacked(lambda entry: np.asarray(entry.undamped.resembles + 1.0, dtype=np.float64)),
+            _said("1", "number of the mode whose shape at the last speed is most like that of this one at the first"),
+        ),
         "bearing_load": (
             bearing,
             stacked(lambda entry: entry.bearings.load),

@@ -6,14 +6,16 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import ScalarFormatter
 
 from ehdmaps.physics._values import FloatArray
 from mbs.linearised.linear import response_unit
 from mbs.linearised.sweep_result import Sweep, UndampedSweep
+from mbs.linearised.validity import HIGHEST_RATIO
+from mbs.output.page import shade, shade_handle, whole_numbers
 
 _RPM = 30.0 / np.pi
 _COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00", "#6a3d9a", "#0b8a8f", "#d95f02", "#444444")
@@ -22,11 +24,30 @@ _MOST_MAPS = 4
 _MARKS = 16
 _LEVELS_SHOWN = 50.0
 _NOTHING = 1e-4
+_DASHES = ("-", "--", "-.", ":")
+_LIMIT = (0.0, (5.0, 1.5, 1.0, 1.5))
+"""Dashes of the limit omega b/u = 0.3."""
+
+_ABOVE = f"omega b/u = {HIGHEST_RATIO}: films not valid above"
+_BELOW = "below the map, film fades to dry"
+_LEAST_ROOM = 0.028
+"""Between two numbers of modes, as a part of the axis."""
+
+_LEAST_CHANGE = 0.01
+"""Least range of changes that is shown, either way [%]: less is round-off."""
+
 _WIDTH = 9.0
 _ROW = 3.1
 
 
-def sweep_figure(title: str, words: str, sweeps: Sequence[Sweep], labels: Sequence[str]) -> Figure:
+def sweep_figure(
+    title: str,
+    words: str,
+    sweeps: Sequence[Sweep],
+    labels: Sequence[str],
+    limits: Sequence[FloatArray] = (),
+    below: float = 0.0,
+) -> Figure:
     """Modes, bearings and the response of the first sensor to the first input over speed, a colour a case.
 
     Parameters
@@ -37,17 +58,23 @@ def sweep_figure(title: str, words: str, sweeps: Sequence[Sweep], labels: Sequen
         At the same speeds.
     labels : sequence of str
         What each is.
+    limits : sequence of array, shape (speeds,)
+        Of each, the frequency at which omega b/u is 0.3 [Hz]; NaN for laws without films.
+    below : float
+        Speed below which the film fades to the dry contact: shaded [rad/s].
     """
+    limits = limits or [np.full(entry.speeds.size, np.nan) for entry in sweeps]
     maps = [entry for entry in sweeps if entry.responses.values.size][:_MOST_MAPS]
     rows = 3 if maps else 2
     figure = Figure(figsize=(_WIDTH, _ROW * rows + 0.4), layout="constrained")
-    figure.suptitle(f"{title}\n{words.replace(' degC', ' °C')}", fontsize=10)
+    figure.suptitle(f"{title}\n{words.replace(' degC', ' °C').replace(' um', ' µm')}", fontsize=10)
     parts = figure.subfigures(rows, 1, squeeze=False)[:, 0]
     top, middle = parts[0].subplots(1, 2), parts[1].subplots(1, 3)
     handles = []
-    for entry, label, colour in zip(sweeps, labels, _COLOURS * 6, strict=False):
+    for index, (entry, label, colour) in enumerate(zip(sweeps, labels, _COLOURS * 6, strict=False)):
         _modes((*top, middle[0]), entry, colour)
         _bearings(middle[1:], entry, colour)
+        top[0].plot(entry.speeds * _RPM, limits[index], color=colour, lw=1.2, ls=_LIMIT)
         handles.append(Line2D([], [], color=colour, lw=1.6, label=label.replace(" um", " µm")))
     _axes(top[0], "frequency, Hz", "log")
     _axes(top[1], "change of undamped frequency, %")
@@ -60,17 +87,32 @@ def sweep_figure(title: str, words: str, sweeps: Sequence[Sweep], labels: Sequen
     _limit(middle[0], sweeps, lambda found: 100.0 * found.damping_ratio)
     if maps:
         top[0].set_ylim(top=min(top[0].get_ylim()[1], 1.4 * _highest(maps[0])))
+    _room(top[1])
+    # With more cases their numbers would lie on each other.
+    for entry, colour, last in zip(sweeps, _COLOURS, (False, True), strict=False):
+        _numbers(top[0], entry, colour, last)
+    _bearing_names(middle[1], sweeps[0].bearings.names)
     if len(handles) > 1:
         parts[0].legend(handles=handles, loc="outside upper center", ncols=4, fontsize=8, frameon=False)
-    styles = [
+    styles: list[Artist] = [
         Line2D([], [], color="0.3", lw=1.8, label="undamped, all energy in the bearings"),
         Line2D([], [], color="0.3", lw=0.6, label="undamped, 5 % there"),
         Line2D([], [], color="0.3", lw=0, marker="o", ms=3.2, mfc="white", label="complex, with gyroscopic terms"),
         Line2D([], [], color="0.75", lw=0.7, label="undamped, less than 5 % there"),
     ]
-    parts[1].legend(handles=styles, loc="outside lower center", ncols=4, fontsize=7.5, frameon=False)
+    if any(np.isfinite(limit).any() for limit in limits):
+        styles.append(Line2D([], [], color="0.3", lw=1.2, ls=_LIMIT, label=_ABOVE))
+    if below > sweeps[0].speeds[0]:
+        styles.append(shade_handle(f"below {below * _RPM:.4g} rpm: {_BELOW}"))
+    parts[1].legend(handles=styles, loc="outside lower center", ncols=3, fontsize=7.5, frameon=False)
     if maps:
-        _maps(parts[2], maps, labels)
+        kept = [limit for limit, entry in zip(limits, sweeps, strict=True) if entry.responses.values.size]
+        _maps(parts[2], maps, labels, kept)
+    if below > sweeps[0].speeds[0]:
+        for panel in (*top, *middle):
+            low, high = panel.get_xlim()
+            shade(panel, low, below * _RPM)
+            panel.set_xlim(low, high)
     return figure
 
 
@@ -99,12 +141,45 @@ def _modes(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
 def _bearings(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
     """Stiffness and damping of each bearing over speed; bearings that do the same lie on each other."""
     rpm = entry.speeds * _RPM
-    for index, dashes in zip(range(len(entry.bearings.names)), ("-", "--", "-.", ":") * 16, strict=False):
+    for index, dashes in zip(range(len(entry.bearings.names)), _DASHES * 16, strict=False):
         axes[0].plot(rpm, 1e-6 * entry.bearings.stiffness[:, index], dashes, color=colour, lw=1.3)
         axes[1].plot(rpm, entry.bearings.damping[:, index], dashes, color=colour, lw=1.3)
 
 
-def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str]) -> None:
+def _numbers(panel: Axes, entry: Sweep, colour: str, last: bool) -> None:
+    """Write the numbers of the modes beside the first speed, or the last one, where there is room for them."""
+    low, high = np.log(panel.get_ylim())
+    rpm = float(entry.speeds[-1 if last else 0]) * _RPM
+    found = entry.undamped.frequency[-1 if last else 0]
+    taken: list[float] = []
+    for k in np.flatnonzero(entry.undamped.bearing_share.max(axis=0) >= _least(entry)):
+        place = (math.log(max(float(found[k]), _NOTHING)) - low) / (high - low)
+        if not 0.0 < place < 1.0 or any(abs(place - other) < _LEAST_ROOM for other in taken):
+            continue
+        taken.append(place)
+        panel.annotate(
+            str(k + 1), (rpm, found[k]), (3 if last else -3, 0), textcoords="offset points", fontsize=6, color=colour,
+            ha="left" if last else "right", va="center",
+        )  # fmt: skip
+
+
+def _bearing_names(panel: Axes, names: Sequence[str]) -> None:
+    """Which dashes are which bearing."""
+    handles = [
+        Line2D([], [], color="0.3", lw=1.3, ls=dashes, label=name)
+        for name, dashes in zip(names, _DASHES * 16, strict=False)
+    ]
+    if handles:
+        panel.legend(handles=handles, fontsize=6.5, frameon=False, loc="lower left")
+
+
+def _room(panel: Axes) -> None:
+    """Widen an axis of changes that would show round-off."""
+    low, high = panel.get_ylim()
+    panel.set_ylim(min(low, -_LEAST_CHANGE), max(high, _LEAST_CHANGE))
+
+
+def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits: Sequence[FloatArray]) -> None:
     """The first response of each case as a level over speed and frequency, with one scale for all."""
     axes = part.subplots(1, len(maps), sharey=True, squeeze=False)[0]
     found = maps[0].responses
@@ -118,7 +193,7 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str]) -> None
     mean = 0.5 * (found.frequencies[0] + found.frequencies[-1])
     scale = "log" if found.frequencies[0] > 0.0 and middle < 0.8 * mean else "linear"
     image = None
-    for panel, entry, level, label in zip(axes, maps, levels, labels, strict=False):
+    for panel, entry, level, label, limit in zip(axes, maps, levels, labels, limits, strict=False):
         image = panel.pcolormesh(
             entry.speeds * _RPM,
             found.frequencies,
@@ -132,6 +207,8 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str]) -> None
         panel.set_xlabel("speed, rpm", fontsize=9)
         panel.set_xlim(entry.speeds[0] * _RPM, entry.speeds[-1] * _RPM)
         panel.set_yscale(scale)
+        panel.plot(entry.speeds * _RPM, limit, color="w", lw=1.2, ls=_LIMIT)
+        panel.set_ylim(found.frequencies[0], found.frequencies[-1])
         panel.set_title(label.replace(" um", " µm"), fontsize=8.5)
         panel.tick_params(labelsize=8)
     axes[0].set_ylabel("frequency, Hz", fontsize=9)
@@ -150,7 +227,7 @@ def _axes(panel: Axes, label: str, scale: str = "linear") -> None:
     panel.set_axisbelow(True)
     panel.tick_params(labelsize=8)
     if scale == "linear":
-        panel.yaxis.set_major_formatter(ScalarFormatter(useMathText=True))
+        whole_numbers(panel)
 
 
 def _limit(panel: Axes, sweeps: Sequence[Sweep], read: Callable[[UndampedSweep], FloatArray]) -> None:

@@ -122,7 +122,7 @@ def test_linear_analysis_with_rollers_as_bodies(here, capsys, maps):
         assert data["A"].shape == (60, 60)
     status, out, _ = run(capsys, "lsa", "n1014_rigid", "--law", "constant:hertz")
     assert "of dynamic load at" in out
-    assert "contacts lift off, a linear analysis does not hold there" in out
+    assert "contacts lift off, a linear analysis is not valid there" in out
 
 
 def short_run(here, **changes):

@@ -15,6 +15,7 @@ import pytest
 from mbs.assembly import assemble
 from mbs.body import Inertia, rigid_body
 from mbs.elements import Input, Operation, Port, Sensor, Spring
+from mbs.linearised import crossings
 from mbs.linearised.linear import frequency_response, state_space
 from mbs.linearised.modal_response import TOLERANCE, checked_response, modal_response
 from mbs.linearised.modes import state_modes, undamped_modes
@@ -107,14 +108,19 @@ class TestWhirl:
             np.testing.assert_allclose(found.eigenvalues[index, :2], roots, rtol=ROUND_OFF)
 
 
-def pair(coupling, begin=5e4, end=2e5, last=100.0):
+def pair(coupling, begin=5e4, end=2e5, last=100.0, damping=0.0):
     """Two masses; the spring of the first one becomes stiffer with the speed, that of the second stays at 1e5 N/m."""
     bodies = [rigid_body(name, [Inertia(MASS, 0.01, 0.02)], ["y"]) for name in ("a", "b")]
     springs = [
         Spring("b_ground", "b", "ground", 1e5 * np.outer(Y, Y)),
         Spring("coupling", "a", "b", coupling * np.outer(Y, Y)),
     ]
-    varying = OverSpeed("bearing", "a", stiffness=lambda speed: begin + (end - begin) * speed / last)
+    varying = OverSpeed(
+        "bearing",
+        "a",
+        stiffness=lambda speed: begin + (end - begin) * speed / last,
+        damping=lambda speed: damping,
+    )
     return System(bodies, springs, (), [varying])
 
 
@@ -146,6 +152,36 @@ class TestVeering:
         np.testing.assert_allclose(2.0 * np.pi * result.undamped.frequency, expected, rtol=ROUND_OFF)
         np.testing.assert_allclose(result.damped.eigenvalues.imag, expected, rtol=ROUND_OFF)
         assert result.between == 0
+
+    @pytest.mark.parametrize("points", [9, 10, 41])
+    def test_where_damped_modes_cross_undamped_ones_go_straight_on(self, points):
+        """A gap narrower than the decay rates are apart: both keep their shapes, wherever the speeds lie.
+
+        One of the speeds of 10 lies in the middle of the corner, where both shapes are halves of each other.
+        """
+        coupling, damping = 4e2, 40.0
+        speeds = np.linspace(0.0, 100.0, points)
+        found = sweep(pair(coupling, damping=damping), speeds)
+        gap = 2.0 * coupling / (2.0 * math.sqrt(1e5 * MASS))
+        assert gap < damping / (2.0 * MASS)
+        plain = 2.0 * np.pi * found.undamped.frequency
+        expected = np.sqrt(np.stack([5e4 + 1.5e3 * speeds + coupling, np.full(points, 1e5 + coupling)], axis=1) / MASS)
+        # half the gap, of straight lines beside the branches that turn away
+        np.testing.assert_allclose(plain, expected, atol=0.51 * gap)
+        assert np.all(found.undamped.bearing_share[:, 0] >= 0.45)
+        assert found.undamped.bearing_share[-1, 0] > 0.99 > 0.01 > found.undamped.bearing_share[-1, 1]
+        np.testing.assert_array_equal(found.damped.number, [0, 1])
+        # Complex modes cross by themselves; where they do, undamped ones are halves of both (the gap), and damping
+        # lowers them by zeta^2/2 (5e-4).
+        np.testing.assert_allclose(found.damped.frequency[:, :2] * 2.0 * np.pi, plain, rtol=5e-4, atol=gap)
+        assert crossings.exchanged(found.undamped) == []
+        # trapezoidal rule over the steps, and the corner between two of them
+        np.testing.assert_allclose(found.undamped.summed_shift[-1], found.undamped.shift[-1], rtol=0.02, atol=4e-3)
+
+    def test_without_damping_they_turn_away_and_it_is_said(self):
+        found = sweep(pair(4e2), np.linspace(0.0, 100.0, 10))
+        assert crossings.exchanged(found.undamped) == [(0, 1)]
+        assert found.undamped.bearing_share[-1, 0] < 0.01
 
     def test_energy_shares(self):
         """Of the varying spring: k_a y_a^2 of the eigenvector written out."""

@@ -1,0 +1,73 @@
+"""What the figures of the analyses share: heading, panels, grid, colours."""
+
+from __future__ import annotations
+
+import math
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from matplotlib.ticker import ScalarFormatter
+
+from ehdmaps.units import TEMPERATURE
+from mbs.assembly import Model
+from mbs.reading.fields import MICROMETRE
+
+COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00", "#6a3d9a")
+
+SHADE = "#f2c14e"
+"""Of what is no longer valid, or not known: the same in all figures."""
+
+SHADE_ALPHA = 0.35
+
+_SIZE = (9.0, 5.5)
+
+
+def page(model: Model, words: str, panels: int, stacked: bool = False) -> tuple[Figure, list[Axes]]:
+    """A figure with its heading and rows, or a stack, of at least so many panels; `words` follow the law."""
+    figure = headed(model, words)
+    rows = panels if stacked else max(round(math.sqrt(panels / 1.5)), 1)
+    axes = figure.subplots(rows, math.ceil(panels / rows), sharex=stacked, squeeze=False)
+    return figure, list(axes.ravel())
+
+
+def headed(model: Model, words: str, size: tuple[float, float] = _SIZE) -> Figure:
+    """A figure with its heading: title, law, `words`, temperature, clearance."""
+    clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
+    at = [
+        *([words] if words else []),
+        TEMPERATURE.text(model.scene.temperature).replace("deg", "°"),
+        *([f"clearance {', '.join(shown(MICROMETRE.text(value)) for value in clearances)}"] if clearances else []),
+    ]
+    figure = Figure(figsize=size, layout="constrained")
+    figure.suptitle(f"{model.scene.title}\n{model.law}; {', '.join(at)}", fontsize=10)
+    return figure
+
+
+def shown(unit: str) -> str:
+    """A unit as figures show it."""
+    return unit.replace("s2", "s²").replace("um", "µm")
+
+
+def grid(panel: Axes) -> None:
+    """A quiet grid."""
+    panel.grid(color="0.88", lw=0.5)
+    panel.set_axisbelow(True)
+    panel.tick_params(labelsize=8)
+
+
+def shade(panel: Axes, begin: float, end: float, bottom: float = 0.0) -> None:
+    """Shade a range of the horizontal axis behind what is drawn, from a part of the height on."""
+    panel.axvspan(begin, end, bottom, 1.0, color=SHADE, alpha=SHADE_ALPHA, lw=0.0, zorder=0)
+
+
+def shade_handle(label: str) -> Patch:
+    """Entry of a legend for the shade."""
+    return Patch(color=SHADE, alpha=SHADE_ALPHA, lw=0.0, label=label)
+
+
+def whole_numbers(panel: Axes) -> None:
+    """Write the numbers of a linear vertical axis in full: an offset or power of ten beside the axis is overlooked."""
+    formatter = ScalarFormatter(useOffset=False)
+    formatter.set_scientific(False)
+    panel.yaxis.set_major_formatter(formatter)
