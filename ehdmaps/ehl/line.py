@@ -19,6 +19,7 @@ from ehdmaps.ehl.profile import Profile, films_of, front, front_node, moved, ref
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.moes import valley_load_number
+from ehdmaps.physics.peak import peak_sampling_error
 
 Array = NDArray[np.float64]
 
@@ -83,8 +84,9 @@ class Resolution:
 
 @dataclass(frozen=True)
 class GroupSolution:
-    """Film of one point in units of b, p_H, b^2/R and b/u, with estimated relative errors (> 0: value too large).
+    """Film of one point in units of b, p_H, b^2/R and b/u, with estimated relative errors.
 
+    Those of film offset, film compliance and loss are positive where the value is too large, the others always.
     `profile` is the fine solution, None where there is none.
     """
 
@@ -99,6 +101,9 @@ class GroupSolution:
     film_offset_error: float = math.nan
     film_compliance_error: float = math.nan
     loss_error: float = math.nan
+    central_film_error: float = math.nan
+    minimum_film_error: float = math.nan
+    max_pressure_error: float = math.nan
     steps: int = 0
 
 
@@ -309,6 +314,7 @@ def _assembled(
     by_offset, by_response = _grid_share(M, L, fine.spike is not None)
     inlet = 1.0 / resolution.inlet_length**2
     central, minimum = films_of(fine)
+    central_error, minimum_error = _film_errors(fine, coarse, by_offset)
 
     def error(value: float, rough_value: float, share: float, lost: float) -> float:
         """Relative, > 0 where refinement lowers the value; what the inlet's end loses is added in magnitude."""
@@ -327,8 +333,42 @@ def _assembled(
         film_offset_error=error(fine.film_offset, coarse.film_offset, by_offset, 3.0),
         film_compliance_error=error(response.compliance, rough.compliance, by_response, 6.0),
         loss_error=error(response.loss, rough.loss, by_response, 6.0),
+        central_film_error=central_error + 3.0 * inlet,
+        minimum_film_error=minimum_error + 3.0 * inlet,
+        max_pressure_error=_peak_error(fine, coarse),
         steps=steps,
     )
+
+
+FIRST_ORDER = 1.5
+"""Share of the difference between both grids that is left where the order is one, half as much again for safety."""
+
+
+def _film_errors(fine: Profile, coarse: Profile, share: float) -> tuple[float, float]:
+    """Relative errors of the central and the smallest film; `share` is that of the film offset.
+
+    Behind a spike the smallest film follows the spike's place, which is found to first order, and it moves with the
+    whole film, to second order.
+    """
+    (central, minimum), (rough, rough_minimum) = films_of(fine), films_of(coarse)
+    moved_by, narrowed = abs(rough / central - 1.0), abs(rough_minimum / minimum - 1.0)
+    if fine.spike is None:
+        return share * moved_by, share * narrowed
+    return share * moved_by, FIRST_ORDER * narrowed + 0.5 * moved_by
+
+
+def _peak_error(fine: Profile, coarse: Profile) -> float:
+    """Relative error of the largest pressure, which is that of a node.
+
+    What stands between two nodes; and the difference between both grids: of the nodes where there is a spike, whose
+    tip is resolved to first order at best, else of the peaks by parabolas, whose order is four.
+    """
+    highest, spiked = float(np.max(fine.pressure)), fine.spike is not None
+    between = peak_sampling_error(fine.position, fine.pressure, spiked)
+    if spiked:
+        return between + FIRST_ORDER * abs(float(np.max(coarse.pressure)) / highest - 1.0)
+    rough = float(np.max(coarse.pressure)) * (1.0 + peak_sampling_error(coarse.position, coarse.pressure, False))
+    return 1.5 * between + 1.5 / 15.0 * abs(rough / highest - 1.0 - between)
 
 
 def _grid_share(M: float, L: float, spike: bool) -> tuple[float, float]:

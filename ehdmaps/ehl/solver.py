@@ -177,6 +177,9 @@ def dry_film(peak: float, reason: str) -> FilmSolution:
         film_offset_error=0.0,
         film_compliance_error=0.0,
         loss_compliance_error=0.0,
+        central_film_error=0.0,
+        minimum_film_error=0.0,
+        max_pressure_error=0.0,
     )
 
 
@@ -224,6 +227,9 @@ def _in_si(
         film_offset_error=groups.film_offset_error,
         film_compliance_error=groups.film_compliance_error,
         loss_compliance_error=groups.loss_error,
+        central_film_error=groups.central_film_error,
+        minimum_film_error=groups.minimum_film_error,
+        max_pressure_error=groups.max_pressure_error,
         iterations=groups.steps,
         solve_seconds=seconds,
         viscosity_extrapolated=groups.max_pressure * peak > state.fitted_pressure,

@@ -19,7 +19,9 @@ from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
 from ehdmaps.jobs.tasks import line_tasks
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
+from ehdmaps.maps.checksum import content_sha256
 from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.validation import validate
 from ehdmaps.physics.solution import ContactSolver
 
 
@@ -79,10 +81,11 @@ def generate(
         told = progress(sum(task.points for task in everything)) if progress else None
         result = sweep(everything, store, workers or available_cores(), told)
         dataset = assemble(job, chosen, tasks, result.arrays)
-        schema.validate(dataset, str(output))
+        validate(dataset, str(output))
         group = backbone_group(refined, result.arrays) if refined else None
         if check:
             dataset.attrs.update(checked_laws(check, EHDMap(dataset, group), result.arrays))
+        dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, group)
         write_map(dataset, output, {schema.BACKBONE_GROUP: group} if group is not None else None)
     return Generated(dataset, result)
 

@@ -11,15 +11,9 @@ import xarray as xr
 from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
+from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import BackbonePlan, plan_backbone
 from ehdmaps.physics.solution import ContactSolver, Status
-
-_VARIABLES = (
-    ("film_offset", "m", "dry minus lubricated approach at equal load, reference contact"),
-    ("film_compliance", "m2 N-1", "minus the derivative of the film offset by load, reference contact"),
-    ("loss_compliance", "m2 s N-1", "damping over squared stiffness, low-frequency limit, reference contact"),
-)
-
 
 @dataclass(frozen=True)
 class Refinement:
@@ -59,9 +53,8 @@ def backbone_group(refined: Refinement, results: Mapping[str, Arrays]) -> xr.Dat
     """Put the lines in their places: the group "backbone" of the map file."""
     plan = refined.plan
     shape = (len(plan.zeta), len(plan.speeds), len(plan.temperatures))
-    dims = ("zeta", "reference_speed", "temperature")
-    values = {name: np.full(shape, np.nan) for name, _, _ in _VARIABLES}
-    status = np.full(shape, -1, dtype=np.int8)
+    values = {entry.name: np.full(shape, np.nan) for entry in schema.BACKBONE_VARIABLES if not entry.flags}
+    status = np.full(shape, schema.NOT_NEEDED, dtype=np.int8)
     for line, task in zip(plan.lines, refined.tasks, strict=True):
         first, speed, temperature = line.place
         along = slice(first, first + task.points)
@@ -70,32 +63,11 @@ def backbone_group(refined: Refinement, results: Mapping[str, Arrays]) -> xr.Dat
         usable = np.isin(arrays["status"], [int(known) for known in Status if known.usable])
         for name, array in values.items():
             array[along, speed, temperature] = np.where(usable, arrays[name], np.nan)
-    group = xr.Dataset(
-        {name: (dims, values[name], {"units": units, "long_name": long_name}) for name, units, long_name in _VARIABLES},
-        coords={
-            "zeta": (dims[:1], np.array(plan.zeta), {"units": "1", "long_name": "ln(M/M_valley(L))"}),
-            "reference_speed": (
-                dims[1:2],
-                np.array(plan.speeds),
-                {"units": "m s-1", "long_name": "entrainment speed of the reference contact"},
-            ),
-            "temperature": (dims[2:], np.array(plan.temperatures), {"units": "K", "long_name": "oil temperature"}),
-        },
-        attrs={
-            "title": "films of a reference contact, from which the contact laws of the map are made",
-            "reference_contact": record_json(plan.contact),
-        },
-    )
-    group["status"] = (
-        dims,
-        status,
+    return schema.backbone(
+        {"zeta": plan.zeta, "reference_speed": plan.speeds, "temperature": plan.temperatures},
+        {**values, "status": status},
         {
-            "units": "1",
-            "long_name": "how the point ended; -1: no contact of the map comes here",
-            "flag_values": np.array([-1, *(int(known) for known in Status)], dtype=np.int8),
-            "flag_meanings": " ".join(["not_needed", *(known.word for known in Status)]),
+            "title": "films of a reference contact, from which the contact laws of the map are made",
+            schema.REFERENCE_CONTACT: record_json(plan.contact),
         },
     )
-    for variable in group.data_vars.values():
-        variable.encoding = {"zlib": True, "complevel": 4, "shuffle": True}
-    return group

@@ -65,7 +65,7 @@ class LineTask:
 
     @cached_property
     def key(self) -> str:
-        """Hash of everything that changes the numbers; the structural law does not change a film."""
+        """Hash of everything that changes the numbers, and of their names; the structural law does not change a film."""
         record = {
             "kind": "line",
             "radius": self.contact.radius,
@@ -78,6 +78,7 @@ class LineTask:
             "solver": self.solver.name,
             "settings": self.solver.settings(),
             "version": solver_version(self.solver),
+            "fields": FILM_FIELDS,
         }
         return hashlib.sha256(record_json(record).encode()).hexdigest()
 

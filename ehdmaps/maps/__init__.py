@@ -5,6 +5,9 @@ The modules in the order in which data pass through them:
 =============  =======================================================================================
 schema         names, units and types of everything in a map file
 records        contacts, bearing and oil from the attributes of a map
+validation     whether a file or a dataset is a map
+reading        a map file as datasets
+checksum       whether a map was changed since it was made
 emap           `EHDMap`, `open_map`: a map file as a value
 usable         whether a law can be made from a map
 film_field     `FilmField`: film of each contact at any load, speed and temperature

@@ -12,11 +12,14 @@ import xarray as xr
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import BackboneField
+from ehdmaps.maps.checksum import check_content
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
-from ehdmaps.maps.records import bearing_from_json, contacts_from_json, lubricant_from_json
-from ehdmaps.maps.usable import check_usable
+from ehdmaps.maps.reading import read_map
+from ehdmaps.maps.records import bearing_from_json, check_oil, contacts_from_json, lubricant_from_json
+from ehdmaps.maps.usable import check_backbone, check_usable
+from ehdmaps.maps.validation import validate
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
@@ -46,7 +49,7 @@ class EHDMap:
     """
 
     def __init__(self, dataset: xr.Dataset, backbone: xr.Dataset | None = None, where: str = "map") -> None:
-        schema.validate(dataset, where)
+        validate(dataset, where, backbone)
         self.dataset = dataset
         self.backbone = backbone
 
@@ -66,7 +69,9 @@ class EHDMap:
     @cached_property
     def lubricant(self) -> Lubricant:
         """The oil."""
-        return lubricant_from_json(self.dataset.attrs["lubricant"])
+        oil = lubricant_from_json(self.dataset.attrs["lubricant"])
+        check_oil(oil, self.dataset["temperature"].values[[0, -1]].tolist())
+        return oil
 
     @cached_property
     def bearing(self) -> BearingGeometry | None:
@@ -88,7 +93,7 @@ class EHDMap:
         InputError
             For a kind that the map does not have.
         MapError
-            If the map has holes left, or clusters of filled ones.
+            If the map has holes left, or clusters of filled ones, or its backbone has.
         """
         by_name = {contact.name: contact for contact in self.contacts}
         allowed = [name for name in get_args(LawKind) if name in by_name or (name == "series" and "inner" in by_name)]
@@ -96,6 +101,8 @@ class EHDMap:
             raise InputError(f"contact law, kind: got {kind!r}; allowed in this map: {', '.join(allowed)}")
         names = ("inner", "outer") if kind == "series" else (kind,)
         check_usable(self.dataset, names)
+        if self.backbone is not None:
+            check_backbone(self.backbone)
         return ContactLaw(kind, tuple(by_name[name] for name in names), self.lubricant, self.film_field(names), outside)
 
     def film_field(self, contacts: tuple[str, ...] | None = None) -> FilmField:
@@ -126,7 +133,7 @@ class EHDMap:
 
     def _backbone_field(self, group: xr.Dataset, contacts: tuple[LineContact, ...]) -> FilmField:
         """Field from the group of refinement lines."""
-        (reference,) = contacts_from_json(f"[{group.attrs['reference_contact']}]")
+        (reference,) = contacts_from_json(f"[{group.attrs[schema.REFERENCE_CONTACT]}]")
         loads, speeds, temperatures = (
             self.dataset[name].values.astype(np.float64) for name in ("load", "entrainment_speed", "temperature")
         )
@@ -145,22 +152,14 @@ class EHDMap:
 def open_map(path: str | PathLike[str]) -> EHDMap:
     """Read a map file written by `ehdmaps generate`; all of it, the file is closed again.
 
+    Variables that are not in the table of `ehdmaps.maps.schema` are left alone.
+
     Raises
     ------
     MapError
-        If it cannot be read, or is no map.
+        If it cannot be read, is no map, or was changed since it was made.
     """
     name = fspath(path)
-    try:
-        with xr.open_dataset(name, engine="netcdf4") as opened:
-            dataset = opened.load()
-    except (OSError, ValueError) as error:
-        raise MapError(
-            f"{name}: cannot be read ({error}); expected a map file written by `ehdmaps generate`"
-        ) from error
-    try:
-        with xr.open_dataset(name, group=schema.BACKBONE_GROUP, engine="netcdf4") as group:
-            backbone = group.load()
-    except OSError:  # a map need not have the group
-        backbone = None
-    return EHDMap(dataset, backbone, name)
+    emap = EHDMap(*read_map(name), name)
+    check_content(emap.dataset, emap.backbone, name)
+    return emap

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ehdmaps.errors import InputError, MapError
@@ -15,6 +16,50 @@ from ehdmaps.physics.solids import Material
 from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw, VogelViscosity
 
 
+_UNREADABLE = (ValueError, KeyError, TypeError, AttributeError, ArithmeticError, RecursionError, InputError)
+"""What a record that is none stumbles over."""
+
+_RADII, _MODULI = (1e-7, 1e3), (1e4, 1e14)
+"""Reduced radii [m] and moduli [Pa]: far outside of every contact, what lies beyond is damage."""
+
+
+def read_json(text: str, attribute: str) -> Any:
+    """Value of an attribute in JSON; finite numbers and printable texts only.
+
+    Parameters
+    ----------
+    text : str
+        Of the attribute.
+    attribute : str
+        Its name, for the message.
+
+    Raises
+    ------
+    MapError
+        If it is no such JSON.
+    """
+    try:
+        value = json.loads(text, parse_constant=_refused)
+        _check_texts(value)
+        return value
+    except _UNREADABLE as error:
+        raise _broken(attribute, error) from error
+
+
+def record_from_json(text: str, attribute: str) -> dict[str, Any]:
+    """Record of an attribute in JSON, empty for null.
+
+    Raises
+    ------
+    MapError
+        If it is neither.
+    """
+    record = read_json(text, attribute)
+    if record is not None and not isinstance(record, dict):
+        raise _broken(attribute, TypeError(f"got a {type(record).__name__}"))
+    return record or {}
+
+
 def contacts_from_json(text: str) -> tuple[LineContact, ...]:
     """Contacts of a map, from its attribute `contacts`: a list of the fields of each `LineContact`.
 
@@ -24,8 +69,8 @@ def contacts_from_json(text: str) -> tuple[LineContact, ...]:
         If the text is no such list.
     """
     try:
-        return tuple(_contact(record) for record in json.loads(text))
-    except (ValueError, KeyError, TypeError, InputError) as error:
+        return tuple(_contact(record) for record in read_json(text, "contacts"))
+    except _UNREADABLE as error:
         raise _broken("contacts", error) from error
 
 
@@ -38,9 +83,9 @@ def bearing_from_json(text: str) -> BearingGeometry | None:
         If the text is neither.
     """
     try:
-        record = json.loads(text)
+        record = read_json(text, "geometry")
         return None if record is None else BearingGeometry(**record)
-    except (ValueError, TypeError, InputError) as error:
+    except _UNREADABLE as error:
         raise _broken("geometry", error) from error
 
 
@@ -60,7 +105,7 @@ def lubricant_from_json(text: str) -> Lubricant:
     """
     try:
         record: dict[str, Any] = {
-            key: float("inf") if value == "inf" else value for key, value in json.loads(text).items()
+            key: float("inf") if value == "inf" else value for key, value in read_json(text, "lubricant").items()
         }
         return Lubricant(
             name=record["name"],
@@ -75,13 +120,38 @@ def lubricant_from_json(text: str) -> Lubricant:
             correlation=record.get("correlation"),
             label=record.get("label"),
         )
-    except (ValueError, KeyError, TypeError, AttributeError, InputError) as error:
+    except _UNREADABLE as error:
+        raise _broken("lubricant", error) from error
+
+
+def check_oil(lubricant: Lubricant, temperatures: Iterable[float]) -> None:
+    """Refuse an oil that has no state at the temperatures of its map [K].
+
+    Raises
+    ------
+    MapError
+        If its record holds something else than numbers, or numbers that no oil has.
+    """
+    try:
+        for temperature in temperatures:
+            state = lubricant.at(temperature)
+            numbers = (state.viscosity, state.pressure_viscosity.pressure_viscosity, state.density_ratio(1e8))
+            if not all(math.isfinite(number) and number > 0.0 for number in numbers):
+                raise ValueError(f"viscosity and density of {numbers} at {temperature:g} K")
+    except _UNREADABLE as error:
         raise _broken("lubricant", error) from error
 
 
 def _contact(record: Mapping[str, Any]) -> LineContact:
-    """One contact."""
-    return LineContact(**{**record, "material": Material(**record["material"])})
+    """One contact, with lengths and moduli that the formulas stand."""
+    contact = LineContact(**{**record, "material": Material(**record["material"])})
+    _check_named(contact.name)
+    for what, value, (low, high) in (("radius", contact.radius, _RADII), ("E'", contact.reduced_modulus, _MODULI)):
+        if not low <= value <= high:
+            raise ValueError(f"{what} of {value:g}; allowed: {low:g} to {high:g}")
+    if not math.isfinite(contact.structural_approach(1.0)):
+        raise ValueError("lengths of which no approach can be made")
+    return contact
 
 
 def _viscosity(record: Mapping[str, Any]) -> ViscosityLaw:
@@ -110,9 +180,33 @@ def _isotherms(record: Mapping[str, Any]) -> PressureViscosityLaw:
     raise KeyError(word)
 
 
+def _refused(constant: str) -> float:
+    """Refuse NaN and Infinity, which are no JSON."""
+    raise ValueError(f"got {constant}")
+
+
+def _check_texts(value: Any) -> None:
+    """Refuse control characters: what a record holds is printed."""
+    if isinstance(value, dict):
+        for key, entry in value.items():
+            _check_texts(key)
+            _check_texts(entry)
+    elif isinstance(value, list):
+        for entry in value:
+            _check_texts(entry)
+    elif isinstance(value, str) and not value.isprintable():
+        raise ValueError(f"control characters in {value!r:.60}")
+
+
+def _check_named(name: object) -> None:
+    """Refuse a name that is no text."""
+    if not isinstance(name, str):
+        raise TypeError(f"got the name {name!r:.60}")
+
+
 def _broken(attribute: str, error: Exception) -> MapError:
     """Say that an attribute does not read."""
     return MapError(
-        f"map, attribute {attribute}: does not read ({type(error).__name__}: {error}); "
+        f"map, attribute {attribute}: does not read ({type(error).__name__}: {str(error):.300}); "
         "expected the record that `ehdmaps generate` writes; generate the map again"
     )

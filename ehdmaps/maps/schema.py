@@ -1,19 +1,16 @@
 """The map file: names, dims, units, types and meanings of everything in it, in one table.
 
-Both sides stand on this table: `jobs` writes by it, `maps` and `mbs` read by it, and `validate` holds a file
-to it.
+Both sides stand on this table: `jobs` writes by it, `maps` and `mbs` read by it, and `validation` holds a file to it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from ehdmaps.errors import MapError
 from ehdmaps.physics.solution import Status
 
 SCHEMA_VERSION = 1
@@ -27,6 +24,18 @@ CONTACT_NAMES = (("inner", "outer"), ("line",))
 
 BACKBONE_GROUP = "backbone"
 """netCDF group with the refinement lines of the contact law, where a map has them."""
+
+BACKBONE_DIMS = ("zeta", "reference_speed", "temperature")
+"""Order of the dims of every variable of that group."""
+
+NOT_NEEDED = -1
+"""Status of a place of the backbone that no contact of the map comes to."""
+
+MOST_POINTS = 2_000_000
+"""Largest number of values of one variable; a file that declares more is no map."""
+
+LONGEST_TEXTS = 2**31
+"""Most bytes of one variable of texts."""
 
 
 @dataclass(frozen=True)
@@ -64,9 +73,10 @@ class Variable:
         return attributes
 
     def encoding(self) -> dict[str, Any]:
-        """Return how xarray stores it: numbers compressed (netCDF cannot compress strings)."""
+        """Return how xarray stores it: compressed; texts as characters, which Octave and old MATLAB can read."""
         if self.dtype == "str":
-            return {"dtype": "str"}
+            length = f"{self.name}_length"
+            return {"dtype": "S1", "_Encoding": "utf-8", "char_dim_name": length, "zlib": True, "complevel": 4}
         return {"dtype": self.dtype, "zlib": True, "complevel": 4, "shuffle": True}
 
 
@@ -94,6 +104,9 @@ VARIABLES = (
     Variable("film_compliance_error", "1", "estimated relative numerical error of 1/stiffness minus its dry part"),
     Variable("stiffness_error", "1", "estimated relative numerical error of stiffness"),
     Variable("damping_error", "1", "estimated relative numerical error of damping"),
+    Variable("central_film_error", "1", "estimated relative numerical error of central_film", required=False),
+    Variable("minimum_film_error", "1", "estimated relative numerical error of minimum_film", required=False),
+    Variable("max_pressure_error", "1", "estimated relative numerical error of max_pressure", required=False),
     Variable("iterations", "1", "iterations of the solver, all grids together", "int32"),
     Variable("solve_seconds", "s", "time to solve the point"),
     Variable(
@@ -104,6 +117,38 @@ VARIABLES = (
         flags=_NO_YES,
     ),
     Variable("filled", "1", "values interpolated from neighbours; status keeps the cause", "int8", flags=_NO_YES),
+)
+
+BACKBONE_COORDINATES = (
+    Variable("zeta", "1", "ln(M/M_valley(L))", dims=("zeta",)),
+    Variable("reference_speed", "m s-1", "entrainment speed of the reference contact", dims=("reference_speed",)),
+    Variable("temperature", "K", "oil temperature", dims=("temperature",)),
+)
+
+BACKBONE_VARIABLES = (
+    Variable(
+        "film_offset", "m", "dry minus lubricated approach at equal load, reference contact", dims=BACKBONE_DIMS
+    ),
+    Variable(
+        "film_compliance",
+        "m2 N-1",
+        "minus the derivative of the film offset by load, reference contact",
+        dims=BACKBONE_DIMS,
+    ),
+    Variable(
+        "loss_compliance",
+        "m2 s N-1",
+        "damping over squared stiffness, low-frequency limit, reference contact",
+        dims=BACKBONE_DIMS,
+    ),
+    Variable(
+        "status",
+        "1",
+        "how the point ended; -1: no contact of the map comes here",
+        "int8",
+        flags=((NOT_NEEDED, "not_needed"), *((int(s), s.word) for s in Status)),
+        dims=BACKBONE_DIMS,
+    ),
 )
 
 ATTRIBUTES = {
@@ -118,7 +163,16 @@ ATTRIBUTES = {
     "lubricant": "JSON: the oil",
     "package_versions": "JSON: versions of ehdmaps and of the libraries under it",
 }
-"""Attributes that every map has, and what they hold."""
+"""Attributes that every map has, and what they hold: a whole number the first, texts the others."""
+
+NUMBERS = ("lubricant_verified", "structural_scaling")
+"""Attributes that are numbers, where a map has them; those of the check of the laws, `law_*`, may be."""
+
+CHECKSUM = "content_sha256"
+"""Attribute with the checksum of everything that a law or a reader of the map relies on; see `checksum`."""
+
+REFERENCE_CONTACT = "reference_contact"
+"""Attribute of the backbone, JSON: the contact that it was solved for."""
 
 
 def variable(name: str) -> Variable:
@@ -147,13 +201,26 @@ def dataset(coordinates: dict[str, Any], values: dict[str, Any], attributes: dic
     attributes : dict
         Attributes of the file (see `ATTRIBUTES`).
     """
+    return _built(_BY_NAME, coordinates, values, attributes)
+
+
+def backbone(coordinates: dict[str, Any], values: dict[str, Any], attributes: dict[str, Any]) -> xr.Dataset:
+    """Build the group of refinement lines; arguments as for `dataset`, dims in the order of `BACKBONE_DIMS`."""
+    entries = {entry.name: entry for entry in BACKBONE_COORDINATES + BACKBONE_VARIABLES}
+    return _built(entries, coordinates, values, attributes)
+
+
+def _built(
+    entries: dict[str, Variable], coordinates: dict[str, Any], values: dict[str, Any], attributes: dict[str, Any]
+) -> xr.Dataset:
+    """Build a dataset by a table."""
     built = xr.Dataset(
-        {name: _typed(variable(name), data) for name, data in values.items()},
-        coords={name: _typed(variable(name), data) for name, data in coordinates.items()},
+        {name: _typed(entries[name], data) for name, data in values.items()},
+        coords={name: _typed(entries[name], data) for name, data in coordinates.items()},
         attrs=attributes,
     )
     for name in built.variables:
-        built[name].encoding = variable(str(name)).encoding()
+        built[name].encoding = entries[str(name)].encoding()
     return built
 
 
@@ -161,73 +228,3 @@ def _typed(entry: Variable, data: Any) -> xr.Variable:
     """Give an array the dims, type and attributes of its entry."""
     array = np.asarray(data, dtype=object if entry.dtype == "str" else entry.dtype)
     return xr.Variable(entry.dims, array, entry.attributes())
-
-
-def validate(opened: xr.Dataset, where: str = "map") -> None:
-    """Hold a dataset to the table.
-
-    Parameters
-    ----------
-    opened : xarray.Dataset
-        What was read from a map file.
-    where : str
-        File name, for the message.
-
-    Raises
-    ------
-    MapError
-        With every problem found, one a line.
-    """
-    problems = list(_problems(opened))
-    if problems:
-        raise MapError("\n".join(f"{where}: {problem}" for problem in problems))
-
-
-def _problems(opened: xr.Dataset) -> Iterable[str]:
-    """Yield what is wrong with a dataset."""
-    version = opened.attrs.get("schema_version")
-    if version is None:
-        yield "has no attribute schema_version; expected a map written by `ehdmaps generate`"
-        return
-    if version != SCHEMA_VERSION:
-        yield f"schema_version is {version}; this ehdmaps reads {SCHEMA_VERSION}; generate the map again"
-        return
-    for name in ATTRIBUTES:
-        if name not in opened.attrs:
-            yield f"attribute {name} is missing; generate the map again"
-    for entry in COORDINATES:
-        if entry.name not in opened.coords:
-            yield f"coordinate {entry.name} is missing; generate the map again"
-        elif entry.name != "contact":
-            yield from _axis_problems(entry, opened)
-    if "contact" in opened.coords:
-        names = tuple(str(name) for name in np.atleast_1d(opened["contact"].values))
-        if names not in CONTACT_NAMES:
-            yield f"contact holds {', '.join(names)}; expected inner, outer or line"
-    for entry in VARIABLES:
-        if entry.name not in opened.data_vars:
-            if entry.required:
-                yield f"variable {entry.name} is missing; generate the map again"
-            continue
-        found = opened[entry.name]
-        if found.dims != entry.dims:
-            yield f"variable {entry.name} has dims {tuple(map(str, found.dims))}; expected {entry.dims}"
-        if found.attrs.get("units") != entry.units:
-            yield f"variable {entry.name} has units {found.attrs.get('units')!r}; expected {entry.units!r}"
-    if "status" in opened.data_vars:
-        known = [int(status) for status in Status]
-        unknown = np.setdiff1d(opened["status"].values, known)
-        if unknown.size:
-            yield f"status holds {unknown[:5].tolist()}; expected {known}"
-
-
-def _axis_problems(entry: Variable, opened: xr.Dataset) -> Iterable[str]:
-    """Yield what is wrong with a numeric axis."""
-    axis = opened[entry.name]
-    if axis.attrs.get("units") != entry.units:
-        yield f"coordinate {entry.name} has units {axis.attrs.get('units')!r}; expected {entry.units!r}"
-    values = np.atleast_1d(axis.values)
-    if not np.issubdtype(values.dtype, np.number) or values.size == 0 or not np.all(np.isfinite(values)):
-        yield f"coordinate {entry.name} is empty or holds values that are not finite numbers"
-    elif np.any(np.diff(values) <= 0):
-        yield f"coordinate {entry.name} does not rise from value to value"

@@ -1,4 +1,7 @@
-"""Whether a law can be made from a map: no holes, no clusters of filled points, films and stiffness positive."""
+"""Whether a law can be made from a map: no holes, no clusters of filled points, films and stiffness positive.
+
+Of a map with a backbone both are looked at: the backbone is what laws read, the grid is what the map promises.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from ehdmaps.errors import MapError
-from ehdmaps.maps.schema import DIMS
+from ehdmaps.maps.schema import BACKBONE_DIMS, BACKBONE_VARIABLES, DIMS, NOT_NEEDED
 from ehdmaps.physics.solution import Status
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
@@ -54,6 +57,59 @@ def check_usable(dataset: xr.Dataset, contacts: tuple[str, ...]) -> None:
         problems = _unphysical(chosen)
     if problems:
         raise MapError("\n".join(f"law of {', '.join(contacts)}: the map has {problem}" for problem in problems))
+
+
+def check_backbone(group: xr.Dataset) -> None:
+    """Refuse a backbone that holds no numbers where it says that it was solved, or two unsolved points in a row.
+
+    One unsolved point between solved ones is bridged as one of the grid is filled; the ends of a line, where the last
+    points may be beyond reach, are continued.
+
+    Parameters
+    ----------
+    group : xarray.Dataset
+        Group "backbone" of a map.
+
+    Raises
+    ------
+    MapError
+        With every reason, each with places and what to do.
+    """
+    group = group.transpose(*BACKBONE_DIMS, ...)
+    status = group["status"].values
+    usable = np.isin(status, [int(known) for known in Status if known.usable])
+    solved = usable & (group["film_offset"].values > 0.0)
+    for entry in BACKBONE_VARIABLES:
+        solved &= np.isfinite(group[entry.name].values)
+    problems = []
+    if np.any(usable & ~solved):
+        problems.append(
+            f"{np.count_nonzero(usable & ~solved)} solved points without a number, or with a film that is not positive, "
+            f"{_lines(group, usable & ~solved)}"
+        )
+    between = np.logical_or.accumulate(solved, 0) & np.logical_or.accumulate(solved[::-1], 0)[::-1]
+    missing = ~solved & between
+    clusters = missing & (status == NOT_NEEDED)
+    clusters[1:] |= missing[1:] & missing[:-1]
+    if np.any(clusters):
+        problems.append(
+            f"{np.count_nonzero(clusters)} unsolved points beside one another within a line, {_lines(group, clusters)}"
+        )
+    if problems:
+        raise MapError(
+            "\n".join(f"backbone of the map: has {problem}; generate the map again" for problem in problems)
+        )
+
+
+def _lines(group: xr.Dataset, where: Mask) -> str:
+    """Name the first few lines of the backbone that have such points."""
+    found = np.argwhere(where.any(axis=0))
+    names = [
+        f"at reference speed {float(group['reference_speed'].values[j]):.4g} m/s and "
+        f"{TEMPERATURE.text(float(group['temperature'].values[k]))}"
+        for j, k in found[:_SHOWN]
+    ]
+    return "; ".join(names) + (f"; and {len(found) - len(names)} more lines" if len(found) > len(names) else "")
 
 
 def _shape(chosen: xr.Dataset) -> tuple[int, ...]:

@@ -28,6 +28,7 @@ from ehdmaps.physics.hertz import half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import film_from_moes, moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.peak import peak_sampling_error
 from ehdmaps.physics.solution import FilmSolution, Status
 
 LARGEST_PRESSURE = 10e9
@@ -475,7 +476,10 @@ def _expected_film(contact: LineContact, state: LubricantState, point: Operating
 def _film(
     contact: LineContact, state: LubricantState, coarse: GridSolution, fine: GridSolution, seconds: float
 ) -> FilmSolution:
-    """The fine solution with its errors, estimated as a third of the difference between both."""
+    """The fine solution with its errors, estimated as a third of the difference between both.
+
+    To that of the largest pressure comes what a spike may rise above the columns beside it.
+    """
     found, rough = fine.results, coarse.results
 
     def error(value: float, of_coarse: float) -> float:
@@ -500,6 +504,10 @@ def _film(
         film_offset_error=error(found.film_offset, rough.film_offset),
         film_compliance_error=error(found.film_compliance[0], rough.film_compliance[0]),
         loss_compliance_error=error(found.loss_compliance[0], rough.loss_compliance[0]),
+        central_film_error=abs(error(found.central_film, rough.central_film)),
+        minimum_film_error=abs(error(found.minimum_film, rough.minimum_film)),
+        max_pressure_error=abs(error(found.max_pressure, rough.max_pressure))
+        + peak_sampling_error(fine.film.x, fine.film.pressure, cusp=True),
         iterations=rough.iterations + found.iterations,
         solve_seconds=seconds,
         viscosity_extrapolated=found.max_pressure > state.fitted_pressure,

@@ -146,6 +146,9 @@ class FormulaSolver:
             film_offset_error=0.0,
             film_compliance_error=0.0,
             loss_compliance_error=0.0,
+        central_film_error=0.0,
+        minimum_film_error=0.0,
+        max_pressure_error=0.0,
             viscosity_extrapolated=peak > state.fitted_pressure,
         )
 
@@ -167,6 +170,9 @@ def _dry(contact: LineContact, load: float, status: Status, reason: str = "") ->
         film_offset_error=0.0,
         film_compliance_error=0.0,
         loss_compliance_error=0.0,
+        central_film_error=0.0,
+        minimum_film_error=0.0,
+        max_pressure_error=0.0,
     )
 
 

@@ -58,6 +58,8 @@ class FilmSolution:
     film_offset_error, film_compliance_error, loss_compliance_error : float
         Estimated numerical errors, relative to the value beside them; positive where the value is too large, so that
         errors of compliance and loss that come from one cause can cancel in the damping.
+    central_film_error, minimum_film_error, max_pressure_error : float
+        The same without a sign.
     iterations : int
         Newton steps (or the solver's own count), all grids together.
     solve_seconds : float
@@ -77,6 +79,9 @@ class FilmSolution:
     film_offset_error: float = math.nan
     film_compliance_error: float = math.nan
     loss_compliance_error: float = math.nan
+    central_film_error: float = math.nan
+    minimum_film_error: float = math.nan
+    max_pressure_error: float = math.nan
     iterations: int = 0
     solve_seconds: float = 0.0
     viscosity_extrapolated: bool = False
@@ -95,6 +100,7 @@ class ContactSolution:
     damping : float
         c [N s/m2].
     film_offset_error, film_compliance_error, stiffness_error, damping_error : float
+    central_film_error, minimum_film_error, max_pressure_error : float
         Estimated relative numerical errors.
     frequency : float
         [Hz]; 0 is the low-frequency limit.
@@ -115,6 +121,9 @@ class ContactSolution:
     film_compliance_error: float
     stiffness_error: float
     damping_error: float
+    central_film_error: float
+    minimum_film_error: float
+    max_pressure_error: float
     iterations: int
     solve_seconds: float
     viscosity_extrapolated: bool
@@ -185,6 +194,9 @@ def contact_solution(
         film_compliance_error=abs(film.film_compliance_error),
         stiffness_error=abs(stiffness_error),
         damping_error=damping_error,
+        central_film_error=film.central_film_error,
+        minimum_film_error=film.minimum_film_error,
+        max_pressure_error=film.max_pressure_error,
         iterations=film.iterations,
         solve_seconds=film.solve_seconds,
         viscosity_extrapolated=film.viscosity_extrapolated,

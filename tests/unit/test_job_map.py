@@ -20,6 +20,7 @@ from ehdmaps.jobs.tradeoff import Contestant, contestants, measure, table
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import open_map
+from ehdmaps.maps.validation import validate
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import FilmSolution, Status, contact_solution
@@ -97,7 +98,7 @@ def made(job, solver=None):
 def test_every_point_is_in_its_place():
     job = job_of()
     dataset = made(job)
-    schema.validate(dataset)
+    validate(dataset)
     assert dataset["stiffness"].dims == schema.DIMS
     for i, j, k, n in [(0, 0, 0, 0), (1, 6, 2, 1), (0, 3, 1, 0)]:
         (film,) = FormulaSolver().solve_line(
@@ -246,7 +247,7 @@ def test_validate_lists_every_problem():
     broken["approach"] = broken["approach"].isel(load=0)
     del broken.attrs["lubricant"]
     with pytest.raises(MapError) as raised:
-        schema.validate(broken, "a.nc")
+        validate(broken, "a.nc")
     text = str(raised.value)
     for part in (
         "a.nc: attribute lubricant is missing",
@@ -260,7 +261,7 @@ def test_validate_lists_every_problem():
         assert part in text
     dataset.attrs["schema_version"] = 99
     with pytest.raises(MapError, match="schema_version is 99; this ehdmaps reads 1"):
-        schema.validate(dataset)
+        validate(dataset)
 
 
 @pytest.mark.parametrize(
@@ -273,7 +274,7 @@ def test_validate_lists_every_problem():
 )
 def test_validate_refuses_broken_axes(change, message):
     with pytest.raises(MapError, match=message):
-        schema.validate(change(made(job_of())))
+        validate(change(made(job_of())))
 
 
 def test_describe_says_what_is_in_the_map():

@@ -15,6 +15,7 @@ from ehdmaps.jobs.axes import RING_SPEED_AXIS, SPEED_AXIS
 from ehdmaps.jobs.film_output import film_outputs
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.reader import read_job
+from ehdmaps.jobs.report import ERRORS
 from ehdmaps.physics import hertz
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
@@ -35,6 +36,9 @@ _SOLUTION_FIELDS = (
     "film_compliance_error",
     "stiffness_error",
     "damping_error",
+    "central_film_error",
+    "minimum_film_error",
+    "max_pressure_error",
     "iterations",
     "solve_seconds",
     "viscosity_extrapolated",
@@ -235,8 +239,8 @@ def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple
     if length is not None:
         yield row("k x length", "stiffness", Display("N/m"), length)
         yield row("c x length", "damping", Display("N s/m"), length)
-    for name in ("film_offset", "film_compliance", "stiffness", "damping"):
-        yield row(f"error of {name.replace('_', ' ')}", f"{name}_error", plain)
+    for name in ERRORS:
+        yield row(f"error of {name.removesuffix('_error').replace('_', ' ')}", name, plain)
     yield row("time to solve", "solve_seconds", Display("ms", 1e3))
 
 

@@ -1,0 +1,76 @@
+"""Checksum of what a map holds, so that values changed after the map was made are noticed.
+
+Over names, dims, shapes and values of all variables of the table, of the grid and of the backbone, and over the
+attributes that laws are made from. Not over the way they are stored: compression, chunks and the form of texts may
+change.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+
+import numpy as np
+import xarray as xr
+
+from ehdmaps.errors import MapError
+from ehdmaps.maps import schema
+
+_ATTRIBUTES = ("contacts", "geometry", "lubricant", "structural_law", schema.REFERENCE_CONTACT)
+
+
+def content_sha256(dataset: xr.Dataset, backbone: xr.Dataset | None) -> str:
+    """Return the checksum of a map, in hexadecimal digits.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map.
+    backbone : xarray.Dataset or None
+        Its group of refinement lines.
+    """
+    digest = hashlib.sha256()
+    tables = (
+        ("", dataset, schema.COORDINATES + schema.VARIABLES),
+        (schema.BACKBONE_GROUP, backbone, schema.BACKBONE_COORDINATES + schema.BACKBONE_VARIABLES),
+    )
+    for group, held, entries in tables:
+        if held is None:
+            continue
+        for name in _ATTRIBUTES:
+            digest.update(_header(group, name, held.attrs.get(name)))
+        for entry in entries:
+            if entry.name in held.variables:
+                found = held[entry.name]
+                digest.update(_header(group, entry.name, [*map(str, found.dims), *found.shape, entry.dtype]))
+                digest.update(_content(found, entry.dtype))
+    return digest.hexdigest()
+
+
+def check_content(dataset: xr.Dataset, backbone: xr.Dataset | None, where: str) -> None:
+    """Refuse a map that is not what its checksum says; maps without one, made before there was any, pass.
+
+    Raises
+    ------
+    MapError
+        With what to do.
+    """
+    stated = dataset.attrs.get(schema.CHECKSUM)
+    if stated is not None and stated != content_sha256(dataset, backbone):
+        raise MapError(
+            f"{where}: was changed since it was made: variables, contacts, geometry, oil or group "
+            f"{schema.BACKBONE_GROUP} do not match its attribute {schema.CHECKSUM}; generate it again; or, if the "
+            "change is meant, delete that attribute, and the map counts as yours"
+        )
+
+
+def _header(*words: object) -> bytes:
+    """A line that no other content can look like."""
+    return json.dumps(words, default=str).encode() + b"\n"
+
+
+def _content(found: xr.DataArray, dtype: str) -> bytes:
+    """Values as bytes: numbers in the type of the table, little-endian."""
+    if dtype == "str":
+        return _header(*(str(text) for text in found.values.ravel()))
+    return np.ascontiguousarray(found.values, dtype=np.dtype(found.dtype).newbyteorder("<")).tobytes()

@@ -1,0 +1,178 @@
+"""Whether a file or a dataset is a map: attributes, axes and variables held to the table of `schema`.
+
+The shape that a file declares is checked before anything is loaded, so that a damaged or foreign file costs neither
+memory nor time; values are checked when they are there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from ehdmaps.errors import MapError
+from ehdmaps.maps import schema
+from ehdmaps.maps.schema import Variable
+
+_AGAIN = "generate the map again"
+_WHOLE, _REAL, _TEXT = "iu", "iuf", "OSUT"
+"""Kinds of numpy types that may stand for whole numbers, for numbers and for texts."""
+
+_MULTILINE = ("job_toml",)
+"""Attributes that hold lines; the others are printed, so that they hold no control characters."""
+
+
+def validate(dataset: xr.Dataset, where: str = "map", backbone: xr.Dataset | None = None) -> None:
+    """Hold a dataset to the table.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A map.
+    where : str
+        File name, for the message.
+    backbone : xarray.Dataset, optional
+        Its group of refinement lines.
+
+    Raises
+    ------
+    MapError
+        With every problem found, one a line.
+    """
+    refuse(version_problems(dataset.attrs), where)
+    problems = [*attribute_problems(dataset.attrs), *_grid_problems(dataset)]
+    if backbone is not None:
+        problems += [f"group {schema.BACKBONE_GROUP}: {problem}" for problem in _backbone_problems(backbone)]
+    refuse(problems, where)
+
+
+def refuse(problems: Iterable[str], where: str) -> None:
+    """Raise the problems, if there are any."""
+    lines = [f"{where}: {problem}" for problem in problems]
+    if lines:
+        raise MapError("\n".join(lines))
+
+
+def version_problems(attributes: Mapping[str, Any]) -> Iterator[str]:
+    """Yield why the attributes are not those of a map of this version."""
+    version = attributes.get("schema_version")
+    if version is None:
+        yield "has no attribute schema_version; expected a map written by `ehdmaps generate`"
+    elif not isinstance(version, (int, np.integer)):
+        yield f"attribute schema_version is {version!r:.60}, no whole number; {_AGAIN}"
+    elif version != schema.SCHEMA_VERSION:
+        yield f"schema_version is {version}; this ehdmaps reads {schema.SCHEMA_VERSION}; {_AGAIN}"
+
+
+def attribute_problems(attributes: Mapping[str, Any]) -> Iterator[str]:
+    """Yield which attributes are missing, or of a type that they do not have in a map."""
+    for name in schema.ATTRIBUTES:
+        if name not in attributes:
+            yield f"attribute {name} is missing; {_AGAIN}"
+    for name, value in attributes.items():
+        number = isinstance(value, (int, float, np.integer, np.floating)) and math.isfinite(value)
+        if name in schema.NUMBERS or name.endswith("_within_bar"):
+            if not number:
+                yield f"attribute {name} is {value!r:.60}; expected a finite number; {_AGAIN}"
+        elif name == "schema_version" or (number and name not in schema.ATTRIBUTES):
+            continue
+        elif not isinstance(value, str):
+            yield f"attribute {name} is {value!r:.60}; expected a text; {_AGAIN}"
+        elif name not in _MULTILINE and not all(c.isprintable() or c == "\n" for c in value):
+            yield f"attribute {name} is {value!r:.60}, with control characters; expected a plain text; {_AGAIN}"
+
+
+def shape_problems(entry: Variable, dims: Sequence[str], shape: Sequence[int], kind: str) -> Iterator[str]:
+    """Yield what is wrong with the shape and type that a variable is declared to have.
+
+    Parameters
+    ----------
+    entry : Variable
+        Of the table.
+    dims, shape : sequence
+        Names and lengths of its dims, without that of the characters of a text.
+    kind : str
+        Kind of its numpy type.
+    """
+    what = _what(entry)
+    if tuple(dims) != entry.dims:
+        yield f"{what} has dims {tuple(map(str, dims))}; expected {entry.dims}; {_AGAIN}"
+    allowed = _TEXT if entry.dtype == "str" else _WHOLE if entry.dtype.startswith("int") else _REAL
+    if kind not in allowed:
+        yield f"{what} has values of another type (kind {kind!r}); expected {entry.dtype}; {_AGAIN}"
+    if math.prod(shape) > schema.MOST_POINTS:
+        yield f"{what} has {' x '.join(map(str, shape))} values; allowed: at most {schema.MOST_POINTS}; {_AGAIN}"
+
+
+def _grid_problems(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield what is wrong with the axes and variables of a map."""
+    yield from _table_problems(dataset, schema.COORDINATES, schema.VARIABLES)
+    if "contact" in dataset.coords:
+        names = tuple(str(name) for name in np.atleast_1d(dataset["contact"].values))
+        if names not in schema.CONTACT_NAMES:
+            yield f"contact holds {', '.join(names)!r:.60}; expected inner, outer or line"
+
+
+def _backbone_problems(group: xr.Dataset) -> Iterator[str]:
+    """Yield what is wrong with the group of refinement lines."""
+    if not isinstance(group.attrs.get(schema.REFERENCE_CONTACT), str):
+        yield f"attribute {schema.REFERENCE_CONTACT} is missing or no text; {_AGAIN}"
+    yield from _table_problems(group, schema.BACKBONE_COORDINATES, schema.BACKBONE_VARIABLES)
+
+
+def _table_problems(
+    dataset: xr.Dataset, coordinates: Sequence[Variable], variables: Sequence[Variable]
+) -> Iterator[str]:
+    """Yield what is wrong with a dataset, by a table."""
+    for entry in (*coordinates, *variables):
+        held = dataset.coords if entry in coordinates else dataset.data_vars
+        if entry.name not in held:
+            if entry.required:
+                yield f"{_what(entry)} is missing; {_AGAIN}"
+            continue
+        found = held[entry.name]
+        yield from shape_problems(entry, list(map(str, found.dims)), found.shape, found.dtype.kind)
+        if entry.dtype == "str":
+            continue
+        if found.attrs.get("units") != entry.units:
+            yield f"{_what(entry)} has units {found.attrs.get('units')!r:.60}; expected {entry.units!r}"
+        if found.dtype.kind in _REAL:
+            yield from _value_problems(entry, found.values, entry in coordinates)
+
+
+def _value_problems(entry: Variable, values: npt.NDArray[Any], axis: bool) -> Iterator[str]:
+    """Yield what is wrong with the numbers of an axis or a flag."""
+    if axis:
+        yield from _axis_problems(entry, np.atleast_1d(values))
+    elif entry.flags:
+        known = [value for value, _ in entry.flags]
+        unknown = np.setdiff1d(values, known)
+        if unknown.size:
+            yield f"{entry.name} holds {unknown[:5].tolist()}; expected {known}"
+
+
+_LOWEST = {"load": 1e-6, "entrainment_speed": 0.0, "reference_speed": 1e-12, "temperature": 1.0, "zeta": -100.0}
+_HIGHEST = {"load": 1e12, "entrainment_speed": 1e6, "reference_speed": 1e6, "temperature": 1e4, "zeta": 100.0}
+"""Far outside of what a job may ask for; what lies beyond is damage, and would overflow somewhere."""
+
+
+def _axis_problems(entry: Variable, values: npt.NDArray[Any]) -> Iterator[str]:
+    """Yield what is wrong with a numeric axis."""
+    what = _what(entry)
+    low, high = _LOWEST[entry.name], _HIGHEST[entry.name]
+    if values.size == 0 or not np.all(np.isfinite(values)):
+        yield f"{what} is empty or holds values that are not finite numbers"
+    elif np.any(np.diff(values) <= 0):
+        yield f"{what} does not rise from value to value"
+    elif values[0] < low or values[-1] > high:
+        wrong = values[0] if values[0] < low else values[-1]
+        yield f"{what} holds {wrong:g} {entry.units}; allowed: {low:g} to {high:g}; {_AGAIN}"
+
+
+def _what(entry: Variable) -> str:
+    """What a variable is called in a message."""
+    return f"{'coordinate' if entry.dims == (entry.name,) else 'variable'} {entry.name}"

@@ -1,0 +1,377 @@
+"""Damaged map files: whatever is wrong with one, it is told in words, and nothing of absurd size is loaded."""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import shutil
+from pathlib import Path
+
+import h5py
+import netCDF4
+import numpy as np
+import pytest
+
+from ehdmaps.errors import EhdmapsError, InputError, MapError
+from ehdmaps.jobs import job
+from ehdmaps.jobs.cli import main
+from ehdmaps.jobs.generate import generate
+from ehdmaps.jobs.reader import read_job
+from ehdmaps.maps import schema
+from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.maps.records import read_json
+from ehdmaps.physics.closed_form import FormulaSolver
+
+JOB = """
+schema = 1
+[bearing]
+name = "NU308"
+[lubricant]
+name = "FVA3"
+[grid]
+load = { from = "1 N/mm", to = "100 N/mm", points = 9, spacing = "log" }
+entrainment_speed = ["0.5 m/s", "1 m/s", "2 m/s"]
+temperature = ["40 degC", "60 degC"]
+[solver]
+name = "formula"
+structural_law = "iso16281"
+"""
+
+
+class WithBackbone(FormulaSolver):
+    """Closed formulas that ask for a backbone: a whole map without a solve."""
+
+    wants_backbone = True
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A map with a backbone, as `generate` writes it."""
+    folder = tmp_path_factory.mktemp("damage")
+    (folder / "job.toml").write_text(JOB)
+    generate(read_job(str(folder / "job.toml"), None), folder / "map.nc", workers=1, solver=WithBackbone())
+    return folder / "map.nc"
+
+
+@pytest.fixture(scope="module")
+def unsealed(made):
+    """The same map without its checksum, so that what is damaged is met by the check of its own."""
+    path = made.with_name("unsealed.nc")
+    shutil.copy(made, path)
+    set_attribute(schema.CHECKSUM, None)(path)
+    open_map(path).law("series")
+    return path
+
+
+def set_attribute(name, value, group="/"):
+    """Set or delete an attribute."""
+
+    def damage(path):
+        with netCDF4.Dataset(path, "a") as file:
+            holder = file[group] if group != "/" else file
+            if value is None:
+                holder.delncattr(name)
+            elif isinstance(value, str):
+                holder.setncattr_string(name, value)
+            else:
+                holder.setncattr(name, value)
+
+    return damage
+
+
+def set_value(name, index, value):
+    """Overwrite values."""
+
+    def damage(path):
+        with netCDF4.Dataset(path, "a") as file:
+            file.set_auto_maskandscale(False)
+            file[name][index] = value
+
+    return damage
+
+
+def replaced(name, dims=None, dtype="f8", units=True, shape=None):
+    """Replace a variable by one of other dims or another type, chunked and never written."""
+
+    def damage(path):
+        group_name, _, short = name.rpartition("/")
+        with netCDF4.Dataset(path, "a") as file:
+            group = file[group_name] if group_name else file
+            old = group.variables[short]
+            attributes = {key: old.getncattr(key) for key in ("units", "long_name")}
+            names = old.dimensions if dims is None else dims
+            group.renameVariable(short, "old_" + short)
+            for number, length in enumerate(shape or ()):
+                file.createDimension(f"huge{number}", length)
+            names = [f"huge{number}" for number in range(len(shape))] if shape else names
+            new = group.createVariable(short, dtype, names, chunksizes=[1] * len(names) if shape else None)
+            if units:
+                new.setncatts(attributes)
+
+    return damage
+
+
+def of_hdf5(change):
+    """Change the HDF5 file itself."""
+
+    def damage(path):
+        with h5py.File(path, "a") as file:
+            change(file)
+
+    return damage
+
+
+def external_link(name):
+    def change(file):
+        del file[name]
+        file[name] = h5py.ExternalLink("elsewhere.h5", "/stiffness")
+
+    return of_hdf5(change)
+
+
+def deleted(name):
+    return of_hdf5(lambda file: file.__delitem__(name))
+
+
+def cut(share):
+    def damage(path):
+        os.truncate(path, int(share * path.stat().st_size))
+
+    return damage
+
+
+def overwritten(share, count):
+    def damage(path):
+        with path.open("r+b") as file:
+            file.seek(int(share * path.stat().st_size))
+            file.write(b"\xff" * count)
+
+    return damage
+
+
+def record(attribute, change):
+    """Change a record in JSON."""
+
+    def damage(path):
+        with netCDF4.Dataset(path, "a") as file:
+            value = json.loads(file.getncattr(attribute))
+            file.setncattr_string(attribute, json.dumps(change(value)))
+
+    return damage
+
+
+DEEP = "[" * 10_000 + "]" * 10_000
+JSON = ("contacts", "geometry", "lubricant")
+ANY = "."
+DAMAGES = {
+    "axis deleted": (deleted("load"), ANY),
+    "contact deleted": (deleted("contact"), ANY),
+    "variable deleted": (deleted("stiffness"), "variable stiffness is missing|cannot be read"),
+    "external link": (external_link("stiffness"), ANY),
+    "soft link to itself": (of_hdf5(lambda f: f.__setitem__("self", h5py.SoftLink("/self"))), ANY),
+    "cut to nothing": (cut(0.0), "cannot be read"),
+    "cut in the middle": (cut(0.5), "cannot be read"),
+    "bytes overwritten": (overwritten(0.5, 2000), ANY),
+    "negative load": (set_value("load", 0, -1e4), "coordinate load holds -10000 N m-1; allowed: 1e-06 to"),
+    "load of zero": (set_value("load", 0, 0.0), "coordinate load holds 0 N m-1"),
+    "load NaN": (set_value("load", 1, np.nan), "coordinate load is empty or holds values that are not finite"),
+    "load not rising": (set_value("load", 1, 1e9), "coordinate load does not rise"),
+    "load of 1e300": (set_value("load", -1, 1e300), "coordinate load holds 1e\\+300"),
+    "negative speed": (set_value("entrainment_speed", 0, -1.0), "coordinate entrainment_speed holds -1 m s-1"),
+    "temperature of 0 K": (set_value("temperature", 0, 0.0), "coordinate temperature holds 0 K"),
+    "unknown status": (set_value("status", (0, 0, 0, 0), 77), "status holds \\[77\\]"),
+    "stiffness negative": (set_value("stiffness", (0, 0, 0, 0), -1.0), "1 points whose stiffness is not positive"),
+    "stiffness infinite": (set_value("stiffness", (0, 0, 0, 0), np.inf), "1 holes"),
+    "film NaN": (set_value("film_offset", (0, 0, 0, 0), np.nan), "1 holes"),
+    "other dims": (
+        replaced("damping", dims=("load", "contact", "entrainment_speed", "temperature")),
+        r"variable damping has dims \('load', 'contact'",
+    ),
+    "a number": (replaced("damping", dims=()), "variable damping has dims|cannot be read"),
+    "status of floats": (replaced("status", dtype="f4"), "variable status has values of another type"),
+    "stiffness of texts": (replaced("stiffness", dtype=str), "variable stiffness has values of another type"),
+    "reason of numbers": (replaced("reason", dims=schema.DIMS), "variable reason has values of another type"),
+    "no units": (replaced("damping", units=False), "variable damping has units None"),
+    "a variable of terabytes": (replaced("damping", shape=(10**6, 10**6)), "1000000 x 1000000 values; allowed: at"),
+    "an axis of terabytes": (replaced("load", shape=(10**12,)), "coordinate load has 1000000000000 values"),
+    "texts of terabytes": (replaced("reason", dtype="S1", shape=(2, 9, 3, 2, 10**11)), "characters; generate"),
+    "packed": (
+        lambda path: [set_attribute("scale_factor", 2.0, "damping")(path)],
+        "variable damping is packed",
+    ),
+    "group: no axis": (deleted("backbone/zeta"), ANY),
+    "group: no variable": (deleted("backbone/film_offset"), "group backbone: variable film_offset is missing|cannot"),
+    "group: zeta NaN": (set_value("backbone/zeta", 3, np.nan), "group backbone: coordinate zeta is empty or holds"),
+    "group: speed negative": (set_value("backbone/reference_speed", 0, -1.0), "group backbone: coordinate reference"),
+    "group: other type": (replaced("backbone/status", dtype="f8"), "group backbone: variable status has values of an"),
+    "group: terabytes": (replaced("backbone/loss_compliance", shape=(10**7, 10**6)), "group backbone: variable loss_c"),
+    "group: no contact": (set_attribute("reference_contact", None, "backbone"), "attribute reference_contact is miss"),
+    "group: contact no JSON": (set_attribute("reference_contact", "{", "backbone"), "does not read"),
+    "group: film NaN": (
+        set_value("backbone/film_offset", (30, 0, 0), np.nan),
+        "backbone of the map: has 1 solved points without a number, .* at reference speed .* m/s and 40 degC; generate",
+    ),
+    "group: film negative": (set_value("backbone/film_offset", (30, 0, 0), -1.0), "1 solved points without a number"),
+    "group: not needed": (
+        set_value("backbone/status", (30, 0, 0), schema.NOT_NEEDED),
+        "1 unsolved points beside one another within a line",
+    ),
+    "group: two failed": (
+        set_value("backbone/status", (slice(30, 32), 0, 0), 5),
+        "unsolved points beside one another within a line, at reference speed",
+    ),
+    **{
+        f"{name}: {what}": (set_attribute(name, text), f"attribute {name}: does not read .*generate the map again")
+        for name in JSON
+        for what, text in {
+            "no JSON": "not JSON",
+            "nested": DEEP,
+            "a number": "17",
+            "NaN": '{"name": NaN}',
+            "huge": '{"name": 1e999, "radius": 1' + 400 * "0" + "}",
+            "control": '{"name": "\\u001b[2J"}',
+        }.items()
+    },
+    **{f"{name}: of numbers": (set_attribute(name, 3.5), f"attribute {name} is .*3.5") for name in JSON},
+    "radius of text": (record("contacts", lambda r: [r[0] | {"radius": "5 mm"}, r[1]]), "contacts: does not read"),
+    "radius of 1e300": (record("contacts", lambda r: [r[0] | {"radius": 1e300}, r[1]]), ANY),
+    "no contacts": (record("contacts", lambda r: []), "attribute contacts: names"),
+    "unknown key": (record("geometry", lambda r: r | {"colour": "red"}), "geometry: does not read"),
+    "viscosity of text": (record("lubricant", lambda r: r | {"vogel_factor": "thick"}), ANY),
+    "versions": (set_attribute("package_versions", "[1]"), ""),
+    "settings": (set_attribute("solver_settings", DEEP), ""),
+    "control characters": (set_attribute("title", "\x1b[2J\x07"), "attribute title is .*control characters"),
+    "scaling of text": (set_attribute("structural_scaling", "one"), "attribute structural_scaling is 'one'; expected"),
+    "verified of text": (set_attribute("lubricant_verified", "yes"), "attribute lubricant_verified is 'yes'"),
+    "within_bar of text": (set_attribute("law_damping_within_bar", "all"), "attribute law_damping_within_bar is 'all'"),
+    "created of numbers": (set_attribute("created", np.array([1.0, 2.0])), "attribute created is array"),
+    "version of text": (set_attribute("schema_version", "one"), "attribute schema_version is 'one', no whole number"),
+    "version of numbers": (set_attribute("schema_version", np.array([1, 1])), "attribute schema_version is array"),
+    "solver missing": (set_attribute("solver", None), "attribute solver is missing"),
+    "build without version": (set_attribute("openfoam_build", "x"), ""),
+    "mathematics in a title": (set_attribute("job_name", "$\\frac{$"), ""),
+}
+
+
+def used(path):
+    """Open a map and take from it what a multibody model needs."""
+    emap = open_map(path)
+    assert emap.bearing.name == "NU308"
+    return emap.law("series")
+
+
+@pytest.mark.parametrize("name", DAMAGES)
+def test_a_damaged_map_is_told_in_words(unsealed, tmp_path, capsys, name):
+    damage, message = DAMAGES[name]
+    path = tmp_path / "damaged.nc"
+    shutil.copy(unsealed, path)
+    damage(path)
+    # An empty message: the damage is of no importance to a law.
+    if message:
+        with pytest.raises(MapError, match=message):
+            used(path)
+    else:
+        used(path)
+    figure, table = str(tmp_path / "a.png"), str(path)
+    for command in (["show", table], ["plot", table, "-o", figure], ["compare", table, str(unsealed)]):
+        status = main(command)
+        told = capsys.readouterr()
+        assert status in (0, 2)
+        assert "Traceback" not in told.err
+        assert "\x1b" not in told.out + told.err
+        assert (status == 2) == bool(told.err)
+
+
+def test_foreign_variables_are_not_loaded(made, tmp_path):
+    """Of terabytes, chunked and never written; as axes of their own too, which xarray would load to open the file."""
+    path = tmp_path / "foreign.nc"
+    shutil.copy(made, path)
+    with netCDF4.Dataset(path, "a") as file:
+        for number, length in enumerate((10**7, 10**6)):
+            file.createDimension(f"d{number}", length)
+        file.createVariable("mine", "f8", ("d0", "d1"), chunksizes=(1, 10**6))
+        file.createDimension("foreign", 10**12)
+        file.createVariable("foreign", "f8", ("foreign",), chunksizes=(10**6,))
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    emap = open_map(path)
+    assert set(emap.dataset.variables) == set(open_map(made).dataset.variables)
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 200_000  # kB; what is foreign has 80 TB
+
+
+def test_places_that_are_no_files(tmp_path):
+    os.mkfifo(tmp_path / "pipe.nc")
+    for path in (tmp_path, tmp_path / "pipe.nc", tmp_path / "none.nc", "a\0b"):
+        with pytest.raises(MapError, match="cannot be read"):
+            open_map(path)
+
+
+def test_the_largest_map_is_the_largest_job():
+    assert schema.MOST_POINTS == job.MOST_POINTS
+
+
+def change(path, edit):
+    """Change a map with xarray and save it, its group too, as a user would."""
+    import xarray as xr
+
+    with xr.open_dataset(path) as opened, xr.open_dataset(path, group="backbone") as group:
+        dataset, backbone = edit(opened.load(), group.load())
+    dataset.to_netcdf(path)
+    if backbone is not None:
+        backbone.to_netcdf(path, mode="a", group="backbone")
+
+
+def scaled(name):
+    def edit(dataset, backbone):
+        held = backbone if name.startswith("backbone/") else dataset
+        values = held[name.removeprefix("backbone/")].values
+        values[values > 0] *= 3.0
+        return dataset, backbone
+
+    return edit
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        scaled("stiffness"),
+        scaled("backbone/film_offset"),
+        lambda dataset, backbone: (dataset.assign_attrs(lubricant=dataset.lubricant.replace("887.6", "900.1")), backbone),
+        lambda dataset, backbone: (dataset, None),
+        lambda dataset, backbone: (dataset.isel(load=slice(1, None)), backbone),
+    ],
+    ids=["grid", "backbone", "oil", "backbone lost", "load lost"],
+)
+def test_a_map_changed_since_it_was_made_is_refused_until_its_owner_says_so(made, tmp_path, capsys, edit):
+    path = tmp_path / "changed.nc"
+    shutil.copy(made, path)
+    change(path, edit)
+    with pytest.raises(MapError, match=r"changed\.nc: was changed since it was made: .*generate it again; or, if the ch"):
+        open_map(path)
+    assert main(["show", str(path)]) == 2
+    assert "content_sha256" in capsys.readouterr().err
+    set_attribute(schema.CHECKSUM, None)(path)
+    open_map(path).law("series")
+
+
+def test_a_map_saved_again_without_a_change_is_the_same_map(made, tmp_path):
+    path = tmp_path / "again.nc"
+    shutil.copy(made, path)
+    change(path, lambda dataset, backbone: (dataset.assign_attrs(note="mine"), backbone))
+    assert open_map(path).dataset.attrs["note"] == "mine"
+
+
+def test_json_is_read_in_one_place():
+    assert read_json('{"a": [1, null]}', "solver_settings") == {"a": [1, None]}
+    with pytest.raises(MapError, match="attribute x: does not read .*got Infinity"):
+        read_json("[Infinity]", "x")
+    with pytest.raises(MapError, match="attribute x: does not read .*RecursionError"):
+        read_json(DEEP, "x")
+
+
+def test_errors_of_a_map_in_memory_are_the_same(made):
+    emap = open_map(made)
+    with pytest.raises(MapError, match="map: group backbone: coordinate zeta does not rise"):
+        EHDMap(emap.dataset, emap.backbone.isel(zeta=slice(None, None, -1)))
+    assert issubclass(MapError, EhdmapsError) and issubclass(InputError, EhdmapsError)
+    assert Path(made).is_file()
