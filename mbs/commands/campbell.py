@@ -13,16 +13,17 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import progress
-from ehdmaps.units import TEMPERATURE, Display, closest, quantity
+from ehdmaps.units import TEMPERATURE, closest
 from mbs.assembly import Model
 from mbs.commands.cases import Case, load_cases
-from mbs.commands.common import film_course, heading, write
+from mbs.commands.common import film_course, heading, lowest_limits, read_option, write
+from mbs.commands.reach import fade_lines, fade_of, outside_lines
 from mbs.elements import Operation, Sensor
 from mbs.errors import AnalysisError
 from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_result import Sweep
 from mbs.output.campbell_data import campbell_dataset
-from mbs.output.campbell_plot import MOST_LAWS, Overlay, campbell_figure
+from mbs.output.campbell_plot import MOST_LAWS, Overlay, Reach, campbell_figure
 from mbs.reading.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.reading.fields import HERTZ, MICROMETRE, MILLISECOND, RPM
 from mbs.scene import RunUp, Scene
@@ -95,7 +96,15 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     figure = None
     if arguments.plot:
         title = _title(found[0].case.model, sensor)
-        figure = campbell_figure(title, names, spectra, reference, orders, [_overlay(entry) for entry in found])
+        figure = campbell_figure(
+            title,
+            names,
+            spectra,
+            reference,
+            orders,
+            [_overlay(entry) for entry in found],
+            [_reach(entry) for entry in found],
+        )
     # The file says of each law what it is.
     several = dataclasses.replace(
         found[0].case.model, law="; ".join(f"{entry.case.label}: {entry.case.model.law}" for entry in found)
@@ -107,8 +116,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings, Sensor, RunUp]:
     """Laws, what is looked at, and the run with a sample a step; all problems at once."""
     problems: list[str] = []
-    highest = _option("--highest", arguments.highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
-    window = _option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems)
+    highest = read_option("--highest", arguments.highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
+    window = read_option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems)
     try:
         cases = load_cases(arguments)
     except InputError as error:
@@ -153,28 +162,6 @@ def _course(scene: Scene, highest: float, problems: list[str]) -> RunUp | None:
         return None
     every_step = dataclasses.replace(course.settings, sample=course.settings.step)
     return dataclasses.replace(course, settings=every_step)
-
-
-def _option(
-    option: str,
-    text: str | None,
-    unit: str,
-    limits: tuple[float, float],
-    display: Display,
-    problems: list[str],
-) -> float | None:
-    """Read a quantity of the command line within limits; None if absent or wrong."""
-    if text is None:
-        return None
-    try:
-        value = quantity(text, unit)
-    except InputError as error:
-        problems.append(f"{option}: {error.problems[0]}")
-        return None
-    if not limits[0] <= value <= limits[1]:
-        problems.append(f"{option}: got {text!r:.60}; allowed: {display.text(limits[0])} to {display.text(limits[1])}")
-        return None
-    return value
 
 
 def _sensor(name: str | None, scene: Scene, problems: list[str]) -> Sensor | None:
@@ -284,6 +271,14 @@ def _overlay(entry: _Found) -> Overlay | None:
     return Overlay(entry.modes.speeds, entry.modes.undamped.frequency[:, shown])
 
 
+def _reach(entry: _Found) -> Reach:
+    """Where the films of a law are not valid, over the speeds of the run."""
+    speeds = entry.spectra.campbell.speeds
+    at = np.linspace(float(speeds.min()), float(speeds.max()), _MODE_SPEEDS)
+    fade = fade_of(entry.case.model)
+    return Reach(at, lowest_limits(entry.case.model, at), 0.0 if fade is None else fade.speed)
+
+
 def _resolution(spectra: RunUpSpectra, settings: CampbellSettings) -> list[str]:
     """How finely speed and frequency are resolved."""
     found = spectra.campbell
@@ -311,11 +306,9 @@ def _report(entry: _Found) -> list[str]:
         lines += [_peak(peak, entry.modes) for peak in entry.spectra.peaks]
     elif entry.spectra.tracks:
         lines.append("  no peak along the orders")
-    lines += [
-        f"warning: {name}: {count} calls outside the map" for name, count in entry.record.outside.items() if count
-    ]
+    lines += outside_lines(record.outside, "{} calls outside the map", entry.case.label)
     ends = (float(found.speeds[0]), float(found.speeds[-1]))
-    return lines + [f"  {line}" for line in film_course(entry.case.model, ends)]
+    return [*lines, *fade_lines(entry.case.model, record.speed, "the run"), *film_course(entry.case.model, ends)]
 
 
 def _peak(peak: OrderPeak, modes: Sweep | None) -> str:

@@ -6,13 +6,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 
 from ehdmaps.physics._values import FloatArray
+from mbs.linearised.validity import HIGHEST_RATIO
+from mbs.output.page import SHADE, shade_handle
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, level
 from mbs.spectral.run_signal import RPM
@@ -35,6 +39,10 @@ _FAINTEST = 20.0
 _NAMED_AT = 0.96
 _SPARSE = (0.0, (1.0, 4.0))
 """Dots, between which the ridge of an order is still seen."""
+
+_LIMIT = (0.0, (5.0, 1.5, 1.0, 1.5))
+_LIMIT_COLOUR = "#ff7f0e"
+"""Of the limit omega b/u = 0.3: seen on the colours of the levels and on paper."""
 
 _LEAST_HEIGHT, _LEAST_WIDTH = 0.05, 0.12
 """Between two names of orders, as parts of a diagram."""
@@ -59,6 +67,25 @@ class Overlay:
     frequencies: FloatArray
 
 
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """How far the films of a law reach over speed.
+
+    Attributes
+    ----------
+    speeds : array, shape (speeds,)
+        [rad/s].
+    limit : array, shape (speeds,)
+        Frequency at which omega b/u is 0.3 [Hz]; NaN for laws without films.
+    below : float
+        Speed below which the film fades to the dry contact [rad/s]; 0 for laws without films.
+    """
+
+    speeds: FloatArray
+    limit: FloatArray
+    below: float
+
+
 def campbell_figure(
     title: str,
     laws: Sequence[str],
@@ -66,6 +93,7 @@ def campbell_figure(
     reference: Reference,
     orders: Sequence[tuple[float, str]] = (),
     overlays: Sequence[Overlay | None] = (),
+    reaches: Sequence[Reach] = (),
 ) -> Figure:
     """Draw up to four laws.
 
@@ -83,6 +111,8 @@ def campbell_figure(
         Lines to draw in, with their names.
     overlays : sequence of Overlay or None
         Natural frequencies to draw into the diagram of each law.
+    reaches : sequence of Reach
+        How far the films of each law reach.
     """
     figure = Figure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
     figure.suptitle(title, fontsize=8)
@@ -96,6 +126,8 @@ def campbell_figure(
         if overlay is not None:
             factor = _unit(result)[0]
             panel.plot(overlay.speeds * RPM, overlay.frequencies * factor, "--", color="w", lw=0.6, alpha=0.8)
+        if index < len(reaches):
+            _reach(panel, reaches[index], _unit(result)[0])
         panel.set_title(law, fontsize=8)
         panel.set_xlabel("speed, rpm", fontsize=7)
         panel.tick_params(labelsize=7)
@@ -103,6 +135,9 @@ def campbell_figure(
     bar = upper.colorbar(ScalarMappable(colours, _MAP), ax=list(panels), pad=0.01, aspect=25, extend="min")
     bar.set_label(f"{reference.quantity} level, {_reference(reference)}", fontsize=7)
     bar.ax.tick_params(labelsize=7)
+    handles = _handles(orders, overlays, reaches, float(results[0].campbell.speeds.min()))
+    if handles:
+        upper.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=6, frameon=False)
     left, right = lower.subplots(1, 2)
     last = _highest_order(results[0], orders)
     for order, _ in orders:
@@ -126,6 +161,34 @@ def campbell_figure(
         panel.set_axisbelow(True)
         panel.tick_params(labelsize=7)
     return figure
+
+
+def _reach(panel: Axes, reach: Reach, factor: float) -> None:
+    """The limit of slow films as a line, and what lies below the map shaded; the axes stay as they are."""
+    limits = panel.get_xlim(), panel.get_ylim()
+    panel.plot(reach.speeds * RPM, reach.limit * factor, color=_LIMIT_COLOUR, lw=0.9, ls=_LIMIT)
+    if reach.below * RPM > limits[0][0]:
+        panel.axvspan(limits[0][0], reach.below * RPM, color=SHADE, alpha=0.6, lw=0.0)
+    panel.set_xlim(*limits[0])
+    panel.set_ylim(*limits[1])
+
+
+def _handles(
+    orders: Sequence[tuple[float, str]], overlays: Sequence[Overlay | None], reaches: Sequence[Reach], begin: float
+) -> list[Artist]:
+    """What the lines in the diagrams are."""
+    found: list[Artist] = []
+    if orders:
+        found.append(Line2D([], [], color="0.5", lw=0.8, ls=_SPARSE, label="orders"))
+    if any(overlay is not None for overlay in overlays):
+        found.append(Line2D([], [], color="0.5", lw=0.8, ls="--", label="undamped modes"))
+    if any(np.isfinite(reach.limit).any() for reach in reaches):
+        words = f"omega b/u = {HIGHEST_RATIO}: films not valid above"
+        found.append(Line2D([], [], color=_LIMIT_COLOUR, lw=0.9, ls=_LIMIT, label=words))
+    slow = max((reach.below for reach in reaches), default=0.0)
+    if slow > begin:
+        found.append(shade_handle(f"below {slow * RPM:.4g} rpm: below the map, film fades to dry"))
+    return found
 
 
 def _colours(results: Sequence[RunUpSpectra]) -> Normalize:

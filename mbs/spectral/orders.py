@@ -28,7 +28,7 @@ from ehdmaps.physics._values import FloatArray
 from mbs.linearised.linear import ComplexArray
 from mbs.spectral.levels import level
 from mbs.spectral.run_signal import RPM, RunSignal
-from mbs.spectral.spectra import LEAST_OVERSAMPLING, MOST_WINDOWS
+from mbs.spectral.spectra import LEAST_OVERSAMPLING, MOST_WINDOWS, without_mean
 
 _DENSE = 10.0
 """Samples a period of the highest frequency before interpolation."""
@@ -227,7 +227,7 @@ def angle_signal(run: RunSignal, highest: float, lowest_speed: float | None = No
 
 
 def order_spectra(signal: AngleSignal, window: float | None = None) -> OrderSpectra:
-    """Spectra of windows over turns, Hann, that overlap by three quarters; each without its mean.
+    """Spectra of windows over turns, Hann, that overlap by three quarters; each without its weighted mean.
 
     Parameters
     ----------
@@ -255,7 +255,7 @@ def order_spectra(signal: AngleSignal, window: float | None = None) -> OrderSpec
             f"orders: got {last - first} windows of {lines.size} lines each; allowed: {MOST_WINDOWS} windows, and "
             f"{_MOST_VALUES} values in all; take a longer window, a higher lowest speed or a lower highest frequency"
         )
-    parts = transform.stft_detrend(signal.signal, "constant", first, last)[lines]
+    parts = transform.stft_detrend(signal.signal, without_mean(weights), first, last)[lines]
     twice = np.where(lines == 0, 1.0, 2.0)[:, None] / weights.sum() ** 2
     power = (twice * (parts.real**2 + parts.imag**2)).T
     middles = np.arange(first, last) * hop

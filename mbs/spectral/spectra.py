@@ -17,6 +17,7 @@ F. J. Harris, Proc. IEEE 66 (1978) 51-83 (Hann: noise bandwidth 1.5, 3 dB width 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -95,7 +96,7 @@ def default_window(ramp: RunSignal, highest_order: float) -> float:
 
 
 def short_time_spectra(run: RunSignal, window: float, band: tuple[float, float]) -> Spectra:
-    """Spectra of windows that lie in the run as a whole and overlap by three quarters; each without its mean.
+    """Spectra of windows that lie in the run as a whole and overlap by three quarters; each without its weighted mean.
 
     Parameters
     ----------
@@ -131,11 +132,36 @@ def short_time_spectra(run: RunSignal, window: float, band: tuple[float, float])
     windows = max(_CHUNK // transform.mfft, 1)
     for begin in range(first, last, windows):
         end = min(begin + windows, last)
-        parts = transform.stft_detrend(run.signal, "constant", begin, end)[lines]
+        parts = transform.stft_detrend(run.signal, without_mean(weights), begin, end)[lines]
         power[begin - first : end - first] = (twice * (parts.real**2 + parts.imag**2)).T
     middles = np.arange(first, last) * hop
     noise_bandwidth = run.rate * float((weights**2).sum() / weights.sum() ** 2)
     return Spectra(run.time[middles], run.speed[middles], transform.f[lines], power, length / run.rate, noise_bandwidth)
+
+
+def without_mean(weights: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """Take the mean off each window, weighted as the window is.
+
+    The plain mean of a window holds what an oscillation leaves over where the window cuts it off. Taken off, that would
+    be a constant which is not in the signal, and its lines, some 60 dB below the oscillation, would cover all that is
+    at the lowest frequencies.
+
+    Parameters
+    ----------
+    weights : array, shape (length,)
+        Of the window.
+
+    Returns
+    -------
+    callable
+        From a part of the signal (..., length) to the part without its mean.
+    """
+    unit = weights / weights.sum()
+
+    def without(part: FloatArray) -> FloatArray:
+        return np.asarray(part - (part @ unit)[..., None], dtype=np.float64)
+
+    return without
 
 
 def _band_problems(run: RunSignal, band: tuple[float, float]) -> list[str]:

@@ -17,7 +17,7 @@ from ehdmaps.jobs.table import Table
 from mbs.elements import Sensor
 from mbs.errors import AnalysisError
 from mbs.output.campbell_data import campbell_dataset
-from mbs.output.campbell_plot import Overlay, campbell_figure
+from mbs.output.campbell_plot import Overlay, Reach, campbell_figure
 from mbs.reading.campbell import read_campbell
 from mbs.spectral import levels
 from mbs.spectral.campbell import campbell, run_up_spectra
@@ -396,6 +396,41 @@ def test_figures_are_drawn(spectra, tmp_path, count, ending):
     path = tmp_path / f"figure.{ending}"
     figure.savefig(path)
     assert path.stat().st_size > 10_000
+
+
+def test_what_is_not_valid_is_drawn_and_named(spectra):
+    speeds = np.array([300.0, 1500.0]) / RPM
+    films = Reach(speeds, np.array([100.0, 500.0]), 400.0 / RPM)
+    nothing = Reach(speeds, np.full(2, np.nan), 0.0)
+    figure = campbell_figure("title", ["a", "b"], [spectra] * 2, REFERENCE, reaches=[films, nothing])
+    with_films, without = (panel for panel in figure.axes if panel.get_title())
+    assert any(np.array_equal(line.get_ydata(), [100.0, 500.0]) for line in with_films.lines)
+    (band,) = with_films.patches
+    assert band.get_x() + band.get_width() == pytest.approx(400.0)
+    assert not without.patches
+    words = [text.get_text() for part in figure.subfigs for legend in part.legends for text in legend.get_texts()]
+    assert words == [
+        "omega b/u = 0.3: films not valid above",
+        "below 400 rpm: below the map, film fades to dry",
+    ]
+
+
+def test_an_oscillation_leaves_nothing_at_order_and_frequency_zero():
+    """Windows cut it anywhere; the plain mean of a window is then -60 dB of it, and seen at the lowest lines."""
+    run = ramp(signal=lambda time: np.sin(2.0 * np.pi * 303.7 * time))
+    turned = order_spectra(angle_signal(run, 800.0))
+    low = turned.orders < 3.0
+    # The side lobes of a Hann window fall with the cube of the distance: 303.7 Hz are 12 orders or more, 97 lines.
+    assert 10.0 * np.log10(np.nanmax(turned.mean()[low]) / np.nanmax(turned.mean())) < -100.0
+    found = short_time_spectra(run, 0.2, (0.0, 800.0))
+    slow = found.frequencies < 60.0
+    assert 10.0 * np.log10(found.power[:, slow].max() / found.power.max()) < -100.0
+
+
+def test_a_constant_is_no_oscillation():
+    turned = order_spectra(angle_signal(ramp(signal=lambda time: 0.0 * time + 3.0), 800.0))
+    # 1e-9: the band filter keeps a constant to 100 dB
+    assert np.nanmax(turned.power) < 9.0 * 1e-9
 
 
 def test_silence_can_be_drawn(tmp_path):
