@@ -6,7 +6,7 @@ import argparse
 import dataclasses
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,7 +28,7 @@ from mbs.reading.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORT
 from mbs.reading.fields import HERTZ, MICROMETRE, MILLISECOND, RPM
 from mbs.scene import RunUp, Scene
 from mbs.spectral.campbell import RunUpSpectra, run_up_spectra
-from mbs.spectral.levels import Reference
+from mbs.spectral.levels import Reference, difference_text
 from mbs.spectral.orders import OrderPeak
 from mbs.spectral.run_signal import RunSignal
 from mbs.spectral.settings import CampbellSettings
@@ -89,7 +89,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     ]
     for entry in found:
         lines += _report(entry)
-    lines += failed
+    lines += [*_differences(found), *failed]
     names = [entry.case.label for entry in found]
     spectra = [entry.spectra for entry in found]
     dataset = campbell_dataset(names, spectra, reference, sensor.name)
@@ -309,6 +309,18 @@ def _report(entry: _Found) -> list[str]:
     lines += outside_lines(record.outside, "{} calls outside the map", entry.case.label)
     ends = (float(found.speeds[0]), float(found.speeds[-1]))
     return [*lines, *fade_lines(entry.case.model, record.speed, "the run"), *film_course(entry.case.model, ends)]
+
+
+def _differences(found: Sequence[_Found]) -> list[str]:
+    """Lines on the sum level of each law beside that of the first one with the same clearance and loads."""
+    lines = []
+    first: dict[tuple[str, float], _Found] = {}
+    for entry in found:
+        beside = first.setdefault((repr(entry.case.clearance), entry.case.load_factor), entry)
+        if beside is not entry:
+            levels = (beside.spectra.campbell.sum_level, entry.spectra.campbell.sum_level)
+            lines.append(f"  {entry.case.label} beside {beside.case.label}: {difference_text(*levels)}")
+    return ["sum level at the same speed", *lines] if lines else []
 
 
 def _peak(peak: OrderPeak, modes: Sweep | None) -> str:

@@ -16,6 +16,9 @@ import numpy as np
 from ehdmaps.physics._values import FloatArray
 from mbs.elements import Quantity, Sensor
 
+SPREAD = (0.05, 0.5, 0.95)
+"""Quantiles by which differences of levels are told."""
+
 LOWEST = -200.0
 """Level of nothing [dB]: a signal of zero has this one and not minus infinity."""
 
@@ -73,3 +76,23 @@ def level(mean_square: FloatArray, reference: float) -> FloatArray:
     lowest = 10.0 ** (LOWEST / 10.0)
     # The square of a reference of 1e-12 is far from the smallest number, so divide before taking the logarithm.
     return np.asarray(10.0 * np.log10(np.maximum(mean_square / reference**2, lowest)), dtype=np.float64)
+
+
+def difference_text(first: FloatArray, other: FloatArray) -> str:
+    """Say how two courses of a level differ, window by window and not only where each is highest.
+
+    Parameters
+    ----------
+    first, other : array, shape (windows,)
+        Levels at the same speeds [dB].
+
+    Examples
+    --------
+    >>> difference_text(np.array([80.0, 90.0, 100.0]), np.array([80.0, 85.0, 90.0]))
+    'median -5.0 dB, 5 to 95 % of the windows -9.5 to -0.5 dB; highest of each, at any speed, -10.0 dB'
+    """
+    low, middle, high = np.quantile(other - first, SPREAD)
+    return (
+        f"median {middle:.1f} dB, 5 to 95 % of the windows {low:.1f} to {high:.1f} dB; highest of each, at any speed, "
+        f"{np.max(other) - np.max(first):.1f} dB"
+    )

@@ -21,7 +21,7 @@ from mbs.output.campbell_plot import Overlay, Reach, campbell_figure
 from mbs.reading.campbell import read_campbell
 from mbs.spectral import levels
 from mbs.spectral.campbell import campbell, run_up_spectra
-from mbs.spectral.levels import LOWEST, Reference, level
+from mbs.spectral.levels import LOWEST, Reference, difference_text, level
 from mbs.spectral.orders import OrderTracks, angle_signal, order_peaks, order_spectra, track_orders
 from mbs.spectral.run_signal import RPM, RunSignal
 from mbs.spectral.settings import CampbellSettings
@@ -280,7 +280,7 @@ def test_peaks_are_local_maxima_strongest_first():
 
 def test_examples_of_the_docstrings_hold():
     for module in (levels,):
-        assert doctest.testmod(importlib.import_module(module.__name__)) == (0, 1)
+        assert doctest.testmod(importlib.import_module(module.__name__)) == (0, 2)
 
 
 def test_references_are_those_of_the_quantity():
@@ -473,6 +473,11 @@ def test_the_command_compares_laws(scene, tmp_path, capsys):
     assert status == 0
     assert "sensor S1, dB re 1e-06 m/s2" in text
     assert text.count("highest sum level") == 2
+    with xr.open_dataset(out) as data:
+        dry, other = data["sum_level"].values
+    # told at the same speed, and not only where each is highest
+    assert f"  constant hertz beside dry Hertz: {difference_text(dry, other)}" in text
+    assert f"median {np.median(other - dry):.1f} dB" in text
     assert plot.stat().st_size > 10_000
     with xr.open_dataset(out) as data:
         assert data["law"].values.tolist() == ["dry Hertz", "constant hertz"]
