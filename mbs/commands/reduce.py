@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import time
 import tomllib
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import LENGTH
+from ehdmaps.version import version
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduced_file import SUFFIXES, write_reduced
 from mbs.reading.fields import HERTZ
@@ -94,10 +94,4 @@ def _lines(reduced: ReducedBody, source: Path, seconds: float) -> list[str]:
 
 def _versions() -> dict[str, str]:
     """Versions of what computed the reduction."""
-    found = {}
-    for package in ("ehdmaps", "numpy", "scipy"):
-        try:
-            found[f"{package}_version"] = version(package)
-        except PackageNotFoundError:  # runs from a folder that is not installed
-            found[f"{package}_version"] = "not installed"
-    return found
+    return {f"{package}_version": version(package) for package in ("ehdmaps", "numpy", "scipy")}
