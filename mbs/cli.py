@@ -4,29 +4,27 @@ from __future__ import annotations
 
 import argparse
 import importlib
-import os
 import sys
 from collections.abc import Sequence
 from typing import Any
 
-from ehdmaps.errors import EhdmapsError, InputError
-
-DONE, NOT_MET, BAD_INPUT = 0, 1, 2
-"""0: done; 1: done outside the map, or no result from valid input; 2: bad input, nothing written."""
+from ehdmaps.program import Parser, run
+from mbs.errors import AnalysisError
 
 _LAW = "hertz | formula | constant:NAME | map; default: map with --map, else hertz. NAME is a table [laws.NAME]"
 
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
-    top = argparse.ArgumentParser(
+    top = Parser(
         prog="mbs",
         description="Statics, modes, linear analysis, speed sweeps and run-ups of systems with cylindrical roller "
         "bearings, and modal identification.",
         epilog="SCENE is a scene file or the name of a shipped system: n1014_rigid, n1014_testrig, nu308_rigid, "
         "nu308_flexible, gearbox. Exit status: 0 done; 1 done outside the map, or no result from valid input; 2 bad "
-        "input, nothing written.",
+        "input, nothing written; 130 stopped with Ctrl-C.",
     )
+    top.add_version()
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name, words in (
         ("statics", "equilibrium, loads of the rollers, stiffness and damping of the bearings"),
@@ -180,29 +178,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     int
         Exit status.
     """
-    arguments = parser().parse_args(argv)
-    # Before numpy loads: the matrices are small, and threads only get in each other's way.
-    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(name, "1")
-    try:
-        text, status = importlib.import_module(f"mbs.commands.{arguments.command.replace('-', '_')}").run(arguments)
-    except EhdmapsError as error:
-        from mbs.errors import AnalysisError
+    return run(parser(), _command, argv, no_result=AnalysisError)
 
-        problems = error.problems if isinstance(error, InputError) else tuple(str(error).splitlines())
-        head = f"mbs {arguments.command}: {len(problems)} problem{'s' if len(problems) > 1 else ''}"
-        sys.stderr.write("\n".join([head, *(f"  {problem}" for problem in problems)]) + "\n")
-        return NOT_MET if isinstance(error, AnalysisError) else BAD_INPUT
-    except KeyboardInterrupt:
-        sys.stderr.write("\nstopped\n")
-        return 130
-    try:
-        print(text)
-        sys.stdout.flush()
-    except BrokenPipeError:
-        # The interpreter flushes again at its end: give it somewhere to write.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return int(status)
+
+def _command(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Load the command that is asked for, and do it."""
+    result: tuple[str, int] = importlib.import_module(f"mbs.commands.{arguments.command.replace('-', '_')}").run(
+        arguments
+    )
+    return result
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ assemble     results -> dataset of the map
 write        dataset -> map file, aside and renamed
 generate     the whole story: job -> map file
 progress     a bar on a terminal, lines elsewhere
+status       how far a map is, for others to look at while it is made
 report       statuses by cause and error estimates, for the next two
 summary      what happened, in words
 describe     what a map file holds, in words

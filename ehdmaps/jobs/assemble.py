@@ -6,7 +6,6 @@ import dataclasses
 import platform
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import numpy as np
@@ -22,6 +21,7 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
+from ehdmaps.version import version
 
 _PACKAGES = ("ehdmaps", "numpy", "scipy", "numba", "xarray", "netCDF4", "PyFoam")
 _FILLED_FIELDS = (
@@ -155,10 +155,4 @@ def _structural_scaling(contact: LineContact) -> float:
 
 def package_versions() -> dict[str, str]:
     """Return the versions under the numbers; a package that runs without being installed says so."""
-    versions = {"python": platform.python_version()}
-    for package in _PACKAGES:
-        try:
-            versions[package] = version(package)
-        except PackageNotFoundError:
-            versions[package] = "not installed"
-    return versions
+    return {"python": platform.python_version(), **{package: version(package) for package in _PACKAGES}}

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import argparse
 import importlib
-import os
 import sys
 from collections.abc import Sequence
 
-from ehdmaps.errors import EhdmapsError, InputError
-
-DONE, NOT_DONE = 0, 2
-"""0: done; 1, from commands: done, with failed points or an unmet tolerance; 2: nothing written."""
+from ehdmaps.program import Parser, run
 
 _KEEP = "openfoam: keep the case folders of all runs; default folder: ehdmaps-cases"
 _SOLVER = "hertz | formula | reynolds | openfoam; instead of the job's, with its default settings"
@@ -19,14 +15,15 @@ _SOLVER = "hertz | formula | reynolds | openfoam; instead of the job's, with its
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
-    top = argparse.ArgumentParser(
+    top = Parser(
         prog="ehdmaps",
         description="Elastohydrodynamic contact maps for roller bearings.",
         epilog="JOB is a job file, a map (its job is repeated), or the name of a shipped job: nu308, n1014, "
         "nu308_openfoam. "
         "Exit status: 0 done; 1 done, with failed points or an unmet tolerance; 2 bad input, nothing "
-        "written.",
+        "written; 130 stopped with Ctrl-C.",
     )
+    top.add_version()
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     generate = commands.add_parser("generate", help="make a map; the same command goes on after an interruption")
@@ -36,6 +33,11 @@ def parser() -> argparse.ArgumentParser:
     generate.add_argument("--workers", metavar="N", type=_workers, help="processes; default: all cores")
     generate.add_argument("--fresh", action="store_true", help="forget what is solved already")
     generate.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
+
+    status = commands.add_parser("status", help="how far a map is that is being made, or was interrupted")
+    status.add_argument(
+        "map", metavar="MAP.nc", nargs="?", help="or its store, or its JOB; default: all maps in this folder"
+    )
 
     check = commands.add_parser("check", help="list every problem of a job; estimate points, time, memory")
     check.add_argument("job", metavar="JOB")
@@ -90,25 +92,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     int
         Exit status.
     """
-    arguments = parser().parse_args(argv)
-    # Before numpy loads: the matrices are small, and more threads than processes only get in each other's
-    # way.
-    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(name, "1")
-    try:
-        command = importlib.import_module(f"ehdmaps.jobs.commands.{arguments.command}")
-        text, status = command.run(arguments)
-    except EhdmapsError as error:
-        problems = error.problems if isinstance(error, InputError) else str(error).splitlines()
-        _complain(
-            f"ehdmaps {arguments.command}: {len(problems)} problem{'s' if len(problems) > 1 else ''}",
-            problems,
-        )
-        return NOT_DONE
-    except KeyboardInterrupt:
-        sys.stderr.write("\nstopped\n")
-        return 130
-    return _print(text, status)
+    return run(parser(), _command, argv)
+
+
+def _command(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Load the command that is asked for, and do it."""
+    result: tuple[str, int] = importlib.import_module(f"ehdmaps.jobs.commands.{arguments.command}").run(arguments)
+    return result
 
 
 def _workers(text: str) -> int:
@@ -116,23 +106,6 @@ def _workers(text: str) -> int:
     if not (text.isascii() and text.isdigit() and 1 <= int(text[:6]) <= 1024 and len(text) <= 4):
         raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 1 to 1024")
     return int(text)
-
-
-def _complain(head: str, problems: Sequence[str]) -> None:
-    """List problems on stderr."""
-    sys.stderr.write("\n".join([head, *(f"  {problem}" for problem in problems)]) + "\n")
-
-
-def _print(text: str, status: int) -> int:
-    """Print a result; a reader that closes the pipe early has had enough, which is no error of ours."""
-    try:
-        if text:
-            print(text)
-        sys.stdout.flush()
-    except BrokenPipeError:
-        # The interpreter flushes again at its end: give it somewhere to write.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return status
 
 
 if __name__ == "__main__":

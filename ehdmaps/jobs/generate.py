@@ -14,6 +14,7 @@ from ehdmaps.jobs.assemble import assemble
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.law_check import checked_laws, plan_check
 from ehdmaps.jobs.refinement import backbone_group, refinement
+from ehdmaps.jobs.status import StatusFile
 from ehdmaps.jobs.store import Store, store_path
 from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
 from ehdmaps.jobs.tasks import line_tasks
@@ -77,9 +78,12 @@ def generate(
     refined = refinement(job, chosen)
     check = plan_check(job, chosen)
     everything = (*tasks, *(refined.tasks if refined else ()), *(check.tasks if check else ()))
-    with Store(store_path(output), fresh) as store:
-        told = progress(sum(task.points for task in everything)) if progress else None
-        result = sweep(everything, store, workers or available_cores(), told)
+    total = sum(task.points for task in everything)
+    processes = workers or available_cores()
+    with Store(store_path(output), fresh) as store, StatusFile(output, job, total, processes) as status:
+        told = progress(total) if progress else None
+        result = sweep(everything, store, processes, told, [status])
+        status.write()
         dataset = assemble(job, chosen, tasks, result.arrays)
         validate(dataset, str(output))
         group = backbone_group(refined, result.arrays) if refined else None

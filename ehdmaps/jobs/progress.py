@@ -2,71 +2,178 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import time
+from collections.abc import Callable
+from math import inf
 from typing import Any
+
+from ehdmaps.program import tell
 
 LINE_SECONDS = 10.0
 """Between two plain lines; a log of a night stays readable."""
 
+FIRST_SECONDS = 0.05
+"""What is told this soon after the first piece of work belongs to it: runs in time tell many steps at once."""
+
+_BAR = "{percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt} {unit}s [{elapsed}{postfix}]"
+
+_DURATIONS = ((120.0, 1.0, "s"), (7200.0, 60.0, "min"), (172800.0, 3600.0, "h"), (inf, 86400.0, "days"))
+"""Up to which time [s] which unit [s] is shown."""
+
+
+class Pace:
+    """How fast it goes, and how long it will take.
+
+    It counts from the end of the first piece of work on: what compiles does so in the first one. Until a second one is
+    done there is no estimate.
+
+    Parameters
+    ----------
+    total : int
+        Points, steps or hits.
+    clock : callable
+        Gives the time [s].
+    """
+
+    def __init__(self, total: int, clock: Callable[[], float] = time.monotonic) -> None:
+        self.total = total
+        self.done = 0
+        self._clock = clock
+        self._first_told: float | None = None
+        self._since = self._last = 0.0, 0
+
+    def taken_over(self, count: int) -> None:
+        """Count what was there."""
+        self.done += count
+
+    def solved(self, count: int) -> None:
+        """Count what is done now."""
+        self.done += count
+        now = self._clock()
+        self._last = now, self.done
+        if self._first_told is None:
+            self._first_told = now
+        if now <= self._first_told + FIRST_SECONDS:
+            self._since = self._last
+
+    @property
+    def rate(self) -> float | None:
+        """Number a second [1/s]; None as long as nobody can know."""
+        seconds, count = self._last[0] - self._since[0], self._last[1] - self._since[1]
+        return count / seconds if seconds > 0.0 else None
+
+    @property
+    def seconds_left(self) -> float | None:
+        """Expected time to the end [s]; None as long as nobody can know."""
+        if self.done >= self.total:
+            return 0.0
+        return None if self.rate is None else (self.total - self.done) / self.rate
+
+    def text(self, unit: str) -> str:
+        """Rate and time left in words; empty as long as nobody can know."""
+        if self.rate is None or self.seconds_left is None:
+            return ""
+        return f"{self.rate:.3g} {unit}s/s, {duration(self.seconds_left)} left"
+
 
 class Bar:
-    """A tqdm bar with rate and time left; points taken over do not count for the rate."""
+    """A tqdm bar with rate and time left; what was taken over does not count for the rate."""
 
-    def __init__(self, total: int) -> None:
-        self._total = total
+    def __init__(self, total: int, unit: str = "point") -> None:
+        self._pace = Pace(total)
+        self._unit = unit
         self._bar: Any = None
 
     def begin(self) -> None:
         """Begin with nothing."""
         self.taken_over(0)
 
-    def taken_over(self, points: int) -> None:
-        """Begin at the points that were there."""
+    def taken_over(self, count: int) -> None:
+        """Begin at what was there."""
         from tqdm import tqdm
 
-        self._bar = tqdm(total=self._total, initial=points, unit="point", file=sys.stderr, dynamic_ncols=True)
+        self._pace.taken_over(count)
+        self._bar = tqdm(
+            total=self._pace.total, initial=count, file=_Stderr(), dynamic_ncols=True, bar_format=_BAR, unit=self._unit
+        )
 
-    def solved(self, points: int) -> None:
+    def solved(self, count: int) -> None:
         """Advance."""
-        self._bar.update(points)
-        if self._bar.n >= self._total:
+        self._pace.solved(count)
+        self._bar.set_postfix_str(self._pace.text(self._unit), refresh=False)
+        self._bar.update(count)
+        if self._bar.n >= self._bar.total:
             self._bar.close()
 
 
 class Lines:
     """One line at the beginning, one every `LINE_SECONDS`, one at the end."""
 
-    def __init__(self, total: int) -> None:
-        self._total = total
-        self._done = 0
-        self._taken = 0
-        self._begin = self._last = time.monotonic()
+    def __init__(self, total: int, unit: str = "point") -> None:
+        self._pace = Pace(total)
+        self._unit = unit
+        self._last = time.monotonic()
 
     def begin(self) -> None:
         """Begin with nothing, which is not worth a line."""
 
-    def taken_over(self, points: int) -> None:
-        """Say how many points were there."""
-        self._done = self._taken = points
-        self._say(f"{points} of {self._total} points taken over")
+    def taken_over(self, count: int) -> None:
+        """Say how much was there."""
+        self._pace.taken_over(count)
+        tell(f"{count} of {self._pace.total} {self._unit}s taken over")
 
-    def solved(self, points: int) -> None:
+    def solved(self, count: int) -> None:
         """Count, and say so now and then."""
-        self._done += points
+        self._pace.solved(count)
         now = time.monotonic()
-        if self._done >= self._total or now - self._last >= LINE_SECONDS:
-            rate = (self._done - self._taken) / max(now - self._begin, 1e-9)
-            left = (self._total - self._done) / rate
-            self._say(f"{self._done} of {self._total} points, {rate:.3g} points/s, {left:.0f} s left")
+        if self._pace.done >= self._pace.total or now - self._last >= LINE_SECONDS:
+            pace = self._pace.text(self._unit)
+            tell(f"{self._pace.done} of {self._pace.total} {self._unit}s{pace and ', '}{pace}")
             self._last = now
 
-    @staticmethod
-    def _say(text: str) -> None:
-        sys.stderr.write(text + "\n")
-        sys.stderr.flush()
+
+class _Stderr:
+    """Stderr for a bar, which must not end a run because nobody can see it."""
+
+    encoding = property(lambda _: sys.stderr.encoding)
+
+    def write(self, text: str) -> None:
+        """Write, if it is possible."""
+        with contextlib.suppress(OSError, ValueError):
+            sys.stderr.write(text)
+
+    def flush(self) -> None:
+        """Flush, if it is possible."""
+        with contextlib.suppress(OSError, ValueError):
+            sys.stderr.flush()
+
+    def isatty(self) -> bool:
+        """Whether it is a terminal."""
+        return sys.stderr.isatty()
+
+    def fileno(self) -> int:
+        """Return its number, for its width."""
+        return sys.stderr.fileno()
 
 
-def progress(total: int) -> Bar | Lines:
-    """Return what suits stderr."""
-    return Bar(total) if sys.stderr.isatty() else Lines(total)
+def progress(total: int, unit: str = "point") -> Bar | Lines:
+    """Return what suits stderr.
+
+    Parameters
+    ----------
+    total : int
+        How many there are.
+    unit : str
+        What is counted, in the singular: point, step, hit.
+    """
+    terminal = sys.stderr is not None and sys.stderr.isatty()
+    return Bar(total, unit) if terminal else Lines(total, unit)
+
+
+def duration(seconds: float) -> str:
+    """Return a time in the unit that a reader would choose, such as "12 min"."""
+    size, unit = next((size, unit) for limit, size, unit in _DURATIONS if seconds < limit)
+    value = seconds / size
+    return f"{value:.0f} {unit}" if value >= 10.0 or unit == "s" else f"{value:.1f} {unit}"

@@ -21,6 +21,7 @@ from multiprocessing.connection import wait as wait_for_process
 from typing import Protocol
 
 from ehdmaps.errors import SolverError
+from ehdmaps.interrupts import deaf_children
 from ehdmaps.jobs.store import COMMIT_SECONDS, Arrays, Store
 
 _THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -81,6 +82,14 @@ class NoProgress:
         """Do nothing."""
 
 
+class Watch(Protocol):
+    """Who looks at every result."""
+
+    def found(self, task: Task, arrays: Arrays, now: bool) -> None:
+        """Look at the arrays of a task, which were found now or were in the store already."""
+        ...
+
+
 @dataclass
 class SweepResult:
     """Results of a sweep, and how they came about.
@@ -104,7 +113,13 @@ class SweepResult:
     damaged: int = 0
 
 
-def sweep(tasks: Sequence[Task], store: Store, workers: int, progress: Progress | None = None) -> SweepResult:
+def sweep(
+    tasks: Sequence[Task],
+    store: Store,
+    workers: int,
+    progress: Progress | None = None,
+    watches: Sequence[Watch] = (),
+) -> SweepResult:
     """Take over what the store has, run the rest, and keep every result in the store.
 
     Parameters
@@ -117,6 +132,8 @@ def sweep(tasks: Sequence[Task], store: Store, workers: int, progress: Progress 
         Processes; 1 runs in this one.
     progress : Progress, optional
         Told about points.
+    watches : sequence of Watch
+        Shown every result.
 
     Returns
     -------
@@ -141,6 +158,8 @@ def sweep(tasks: Sequence[Task], store: Store, workers: int, progress: Progress 
         else:
             result.arrays[task.key] = known
             result.taken_over += task.points
+            for watch in watches:
+                watch.found(task, known, now=False)
     result.damaged = store.damaged
     told.taken_over(result.taken_over)
     outcomes = _in_process(todo) if workers <= 1 else _in_pool(todo, min(workers, len(todo)), store)
@@ -151,6 +170,8 @@ def sweep(tasks: Sequence[Task], store: Store, workers: int, progress: Progress 
             result.arrays[task.key] = arrays
             result.solved += task.points
             told.solved(task.points)
+            for watch in watches:
+                watch.found(task, arrays, now=True)
     finally:
         outcomes.close()
         store.commit()
@@ -185,7 +206,8 @@ def _in_pool(tasks: Sequence[Task], workers: int, store: Store) -> _Outcomes:
             with _pool(workers) as pool:
                 while waiting or running:
                     while waiting and len(running) < workers * _AHEAD:
-                        running[pool.submit(_run, waiting[0])] = waiting[0]
+                        with deaf_children():  # workers start with the first task
+                            running[pool.submit(_run, waiting[0])] = waiting[0]
                         waiting.popleft()
                     done, _ = wait(running, timeout=COMMIT_SECONDS, return_when=FIRST_COMPLETED)
                     store.commit_if_due()
@@ -202,7 +224,9 @@ def _alone(tasks: Sequence[Task]) -> _Outcomes:
     for task in tasks:
         try:
             with _pool(1) as pool:
-                outcome = pool.submit(_run, task).result(), True
+                with deaf_children():
+                    outcome_of = pool.submit(_run, task)
+                outcome = outcome_of.result(), True
         except BrokenProcessPool:
             reason = "the worker process died twice (killed, or out of memory); the same command tries again"
             outcome = task.failed(reason), False

@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     reference = Reference.of(sensor)
     orders = _orders(cases[0].model, settings, course)
     _rehearse(settings, course, orders)
-    bar = progress(len(cases) * round(course.duration / course.settings.sample))
+    bar = progress(len(cases) * round(course.duration / course.settings.sample), "step")
     bar.begin()
     found, failed = [], []
     for case in cases:

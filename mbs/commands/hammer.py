@@ -101,7 +101,7 @@ def _hit(model: Model, balance: Equilibrium, test: HammerTest, nonlinear: bool) 
     inputs, sensors = model.scene.inputs, model.scene.sensors
     if not nonlinear:
         return linear_hits(balance, inputs, sensors, test)
-    bar = progress(test.hits * len(inputs))
+    bar = progress(test.hits * len(inputs), "hit")
     bar.begin()
     return nonlinear_hits(balance, inputs, sensors, test, lambda: bar.solved(1))
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import time
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +15,7 @@ from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.table import Table
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.units import LENGTH
+from ehdmaps.version import version
 from mbs.flexible.extent import Extent, extent
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduced_file import REDUCED, write_reduced
@@ -97,10 +97,4 @@ def _lines(reduced: ReducedBody, found: Extent, source: Path, seconds: float) ->
 
 def _versions() -> dict[str, str]:
     """Versions of what computed the reduction."""
-    found = {}
-    for package in ("ehdmaps", "numpy", "scipy"):
-        try:
-            found[f"{package}_version"] = version(package)
-        except PackageNotFoundError:  # runs from a folder that is not installed
-            found[f"{package}_version"] = "not installed"
-    return found
+    return {f"{package}_version": version(package) for package in ("ehdmaps", "numpy", "scipy")}

@@ -32,7 +32,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         raise InputError(f"{model.scene.name}: [runup] missing; a run needs from, to, duration and step")
     start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
     before = model.outside_calls
-    bar = progress(math.ceil(course.duration / course.settings.sample - 1e-9))
+    steps = course.settings.steps_per_sample
+    bar = progress(math.ceil(course.duration / course.settings.sample - 1e-9) * steps, "step")
     bar.begin()
     begin = time.perf_counter()
     result = integrate(
@@ -41,7 +42,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         course.duration,
         course.settings,
         displacement=start.displacement,
-        progress=lambda done: bar.solved(1),
+        progress=lambda done: bar.solved(steps),
     )
     seconds = time.perf_counter() - begin
     outside = {name: count - before[name] for name, count in model.outside_calls.items()}

@@ -6,8 +6,6 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError
-from importlib.metadata import version as version_of
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +14,7 @@ from scipy.linalg import eigh
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import LENGTH
+from ehdmaps.version import version
 from mbs.errors import AnalysisError
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.reduced_body import ReducedBody
@@ -164,7 +163,7 @@ def _attributes(
     return {
         "title": housing.title,
         "command": f'python -m mbs.housings {housing.name} --size "{LENGTH.text(size)}" --cutoff "{cutoff:.6g} Hz"',
-        "versions": f"ehdmaps {_own_version()}, gmsh {load_gmsh().__version__}, CalculiX {solve.version()}",
+        "versions": f"ehdmaps {version()}, gmsh {load_gmsh().__version__}, CalculiX {solve.version()}",
         "dimensions": f"assumed; m: {housing.shape}",
         "material": f"E {material.youngs_modulus / 1e9:.6g} GPa, nu {material.poisson_ratio:.6g}, density "
         f"{material.density:.6g} kg/m3",
@@ -174,14 +173,6 @@ def _attributes(
         "total_mass": f"{mesh.volume * material.density:.6g} kg, with the clamped nodes",
         "clamped_frequencies": ", ".join(f"{value:.6g}" for value in frequencies) + " Hz, by CalculiX, seats free",
     }
-
-
-def _own_version() -> str:
-    """Version of this package."""
-    try:
-        return version_of("ehdmaps")
-    except PackageNotFoundError:  # runs from a folder that is not installed
-        return "not installed"
 
 
 @contextmanager

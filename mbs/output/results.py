@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ import xarray as xr
 
 from ehdmaps.outputs import MADE_AS, dataset_kind, written_aside
 from ehdmaps.physics._values import FloatArray
+from ehdmaps.version import version
 from mbs.bearings.roller_element import ring_matrices
 from mbs.body import FREEDOMS
 from mbs.elements import Input, Sensor
@@ -177,11 +177,7 @@ def write_dataset(dataset: xr.Dataset, path: Path) -> None:
 
 def described(dataset: xr.Dataset, **attributes: str) -> xr.Dataset:
     """The dataset with its provenance: scene, law and versions."""
-    try:
-        own = version("ehdmaps")
-    except PackageNotFoundError:  # runs from a folder that is not installed
-        own = "not installed"
-    return dataset.assign_attrs(schema_version=SCHEMA_VERSION, ehdmaps_version=own, **attributes)
+    return dataset.assign_attrs(schema_version=SCHEMA_VERSION, ehdmaps_version=version(), **attributes)
 
 
 def _by_kind(system: System, values: FloatArray, dims: tuple[str, ...], order: str) -> dict[str, Any]:

@@ -1,6 +1,5 @@
 """The command line as a person or a script meets it."""
 
-import io
 import json
 import os
 import subprocess
@@ -418,33 +417,3 @@ def test_help_loads_no_heavy_library():
     assert (found.returncode, found.stderr) == (0, "")
     for command in ("generate", "check", "show", "plot", "solve", "compare", "tradeoff"):
         assert command in found.stdout
-
-
-def test_progress_on_a_terminal_is_a_bar(monkeypatch):
-    from ehdmaps.jobs.progress import progress
-
-    class Terminal(io.StringIO):
-        def isatty(self):
-            return True
-
-    terminal = Terminal()
-    monkeypatch.setattr(sys, "stderr", terminal)
-    bar = progress(100)
-    bar.taken_over(40)
-    bar.solved(60)
-    assert "40/100" in terminal.getvalue() and "100/100" in terminal.getvalue()
-    assert "point/s" in terminal.getvalue()
-
-
-def test_progress_elsewhere_is_lines(monkeypatch, capsys):
-    from ehdmaps.jobs import progress
-
-    monkeypatch.setattr(progress, "LINE_SECONDS", 0.0)
-    lines = progress.Lines(10)
-    lines.taken_over(4)
-    lines.solved(3)
-    lines.solved(3)
-    err = capsys.readouterr().err.splitlines()
-    assert err[0] == "4 of 10 points taken over"
-    assert err[1].startswith("7 of 10 points, ") and err[1].endswith(" s left")
-    assert err[2].startswith("10 of 10 points, ") and err[2].endswith(" 0 s left")

@@ -13,6 +13,7 @@ import xarray as xr
 
 from ehdmaps import errors
 from ehdmaps.maps.emap import open_map
+from tests.system.interruptible import start
 
 JOB = """
 schema = 1
@@ -132,9 +133,7 @@ def test_kill_9_loses_at_most_what_ran(folder, workers):
 
 @pytest.mark.parametrize("workers", ["1", "2"])
 def test_ctrl_c_stops_cleanly_and_says_how_to_go_on(folder, workers):
-    run = subprocess.Popen(
-        command("--workers", workers), cwd=folder, stderr=subprocess.PIPE, text=True, start_new_session=True
-    )
+    run = start(command("--workers", workers), cwd=folder, stderr=subprocess.PIPE, text=True, start_new_session=True)
     wait_for(lambda: len(begun(folder)) >= 20)
     os.killpg(run.pid, signal.SIGINT)  # as a terminal does: to the workers too
     _, err = run.communicate(timeout=60)
@@ -147,6 +146,33 @@ def test_ctrl_c_stops_cleanly_and_says_how_to_go_on(folder, workers):
     taken_over, solved = counts(again.stdout)
     assert taken_over + solved == POINTS
     assert taken_over >= 5 * (lines - 3 * int(workers) - 1)  # all but the lines that were out
+
+
+def deaf_workers(pid):
+    """Of the workers of a process: whether they block Ctrl-C, which a starting Python answers with a traceback."""
+    found = []
+    try:
+        for task in Path(f"/proc/{pid}/task").iterdir():
+            for child in (task / "children").read_text().split():
+                blocked = Path(f"/proc/{child}/status").read_text().split("SigBlk:")[1].split()[0]
+                if "spawn_main" in Path(f"/proc/{child}/cmdline").read_text():
+                    found.append(bool(int(blocked, 16) >> (signal.SIGINT - 1) & 1))
+    except OSError:
+        return []
+    return found
+
+
+def test_workers_that_just_start_are_quiet_about_ctrl_c(folder):
+    if not Path(f"/proc/self/task/{os.getpid()}/children").exists():
+        pytest.skip("no list of children here")
+    run = start(command("--workers", "2"), cwd=folder, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    wait_for(lambda: len(deaf_workers(run.pid)) == 2)
+    assert deaf_workers(run.pid) == [True, True]
+    os.killpg(run.pid, signal.SIGINT)
+    _, err = run.communicate(timeout=60)
+    assert run.returncode == 130
+    assert "stopped; what is solved is kept in job.nc.store" in err
+    assert "Traceback" not in err
 
 
 def test_a_second_job_on_the_same_store_is_refused(folder):

@@ -137,7 +137,7 @@ def short_run(here, **changes):
 def test_run_up(here, capsys, maps):
     status, out, err = run(capsys, "runup", short_run(here), "--map", maps["NU308"], "-o", "r.nc", "--plot", "r.png")
     assert status == 0
-    assert "20 of 20 points" in err
+    assert "100 of 100 steps" in err
     assert "from 0 rpm to 2000 rpm in 0.002 s: 100 steps" in out
     assert "0 calls outside the map" in out
     with xr.open_dataset("r.nc") as data:

@@ -14,6 +14,7 @@ import pytest
 
 from ehdmaps import errors
 from ehdmaps.maps.emap import open_map
+from tests.system.interruptible import start
 from tests.unit import openfoam_fake
 
 JOB = """
@@ -111,9 +112,7 @@ def test_a_map_and_the_same_command_again(folder, workers):
 @pytest.mark.parametrize("workers", ["1", "2"])
 def test_kill_9_of_a_running_solver_costs_nothing(folder, workers):
     openfoam_fake.set_mode(build_of(folder), "patient 0.3")
-    job = subprocess.Popen(
-        command("generate", "job.toml", "--workers", workers), cwd=folder, stdout=subprocess.PIPE, text=True
-    )
+    job = start(command("generate", "job.toml", "--workers", workers), cwd=folder, stdout=subprocess.PIPE, text=True)
     wait_for(lambda: len(openfoam_fake.starts(build_of(folder))) >= 3)
     os.kill(int(openfoam_fake.starts(build_of(folder))[-1][0]), signal.SIGKILL)
     out, _ = job.communicate(timeout=60)
@@ -144,7 +143,7 @@ def test_failed_points_are_summed_up_and_tried_again_by_the_next_run(folder):
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGKILL], ids=["ctrl-c", "kill -9"])
 def test_the_end_of_a_job_is_the_end_of_its_solvers(folder, workers, end):
     openfoam_fake.set_mode(build_of(folder), "hang")
-    job = subprocess.Popen(
+    job = start(
         command("generate", "job.toml", "--workers", workers),
         cwd=folder,
         stderr=subprocess.PIPE,

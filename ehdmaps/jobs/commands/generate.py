@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 from ehdmaps.errors import InputError
@@ -16,6 +15,7 @@ from ehdmaps.jobs.report import holes
 from ehdmaps.jobs.store import store_path
 from ehdmaps.jobs.summary import summary
 from ehdmaps.outputs import MAP, Output, check_outputs
+from ehdmaps.program import tell
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C, as shells have it."""
@@ -32,9 +32,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     try:
         generated = generate(job, output, arguments.workers, arguments.fresh, progress, solver)
     except KeyboardInterrupt:
-        sys.stderr.write(
-            f"\nstopped; what is solved is kept in {store_path(output)}: the same command goes on from there\n"
-        )
+        tell(f"\nstopped; what is solved is kept in {store_path(output)}: the same command goes on from there")
         return "", INTERRUPTED
     missed = unmet(generated.dataset)
     return "\n".join([summary(generated, output), *missed]), 1 if holes(generated.dataset) or missed else 0

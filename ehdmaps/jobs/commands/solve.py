@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -22,6 +21,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
+from ehdmaps.program import tell
 from ehdmaps.units import FILM, LENGTH, LOAD, PRESSURE, RPM, SPEED, TEMPERATURE, Display, quantity
 
 _SOLUTION_FIELDS = (
@@ -53,7 +53,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     solver = solvers.build(job.solver, options)
     if outputs:
         films, written = outputs.solve(solver, job, point, frequency)
-        sys.stderr.writelines(f"{line}\n" for line in written)
+        for line in written:
+            tell(line)
     else:
         films = [_film(solver, contact, job.lubricant, point, frequency) for contact in job.contacts]
     records = [

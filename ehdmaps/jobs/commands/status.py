@@ -1,0 +1,98 @@
+"""`ehdmaps status`: how far a map is that is being made, or whose making was interrupted."""
+
+from __future__ import annotations
+
+import argparse
+from datetime import UTC, datetime
+from pathlib import Path
+
+from ehdmaps.errors import InputError
+from ehdmaps.jobs.progress import duration
+from ehdmaps.jobs.reader import is_map, read_job, shipped_jobs
+from ehdmaps.jobs.status import RunStatus, look, status_path
+from ehdmaps.jobs.store import store_path
+from ehdmaps.outputs import MAP
+
+_STORE = ".store"
+_STATUS = ".store.status"
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Look; status 1 if a map is neither finished nor being made."""
+    outputs = _here() if arguments.map is None else [_output(arguments.map)]
+    found = [_described(output) for output in outputs]
+    return "\n".join(text for text, _ in found), max(status for _, status in found)
+
+
+def _here() -> list[Path]:
+    """Maps of this folder that are being made, or were."""
+    names = {path.name.removesuffix(_STATUS).removesuffix(_STORE) for path in Path().iterdir() if _is_trace(path)}
+    if not names:
+        raise InputError(
+            "no store of a map is in this folder; allowed: a folder where `ehdmaps generate` runs or ran, or the "
+            "name of a map, of its store, or of a job"
+        )
+    return [Path(name) for name in sorted(names)]
+
+
+def _is_trace(path: Path) -> bool:
+    """Whether a file is a store or a status of a map."""
+    return path.name.endswith((_STORE, _STATUS)) and path.is_file()
+
+
+def _output(name: str) -> Path:
+    """Return the map that is meant by a map, a store or a job."""
+    for ending in (_STATUS, _STORE):
+        if name.endswith(ending):
+            return Path(name.removesuffix(ending))
+    output = Path(name)
+    if store_path(output).exists() or status_path(output).exists() or is_map(name):
+        return output
+    if name in shipped_jobs() or output.is_file():
+        return Path(f"{read_job(name).name}.nc")
+    raise InputError(
+        f"{name}: is not there, nor its store; allowed: a map, its store, or a job whose map is made in this folder"
+    )
+
+
+def _described(output: Path) -> tuple[str, int]:
+    """Tell about a map, and the exit status."""
+    seen = look(output)
+    if seen is not None:
+        return "\n".join(_lines(output, seen.status, seen.running)), 0 if seen.running else 1
+    if output.is_file() and MAP.ours(output):
+        return f"{output}: finished; no process works on it; see `ehdmaps show`", 0
+    if not store_path(output).exists():
+        raise InputError(f"{output}: is not there, nor its store; allowed: a map that `ehdmaps generate` makes or made")
+    return f"{output}: not finished; what is solved is kept in {store_path(output)}; how far it is, is not known", 1
+
+
+def _lines(output: Path, status: RunStatus, running: bool) -> list[str]:
+    """Lines on a map that is not finished."""
+    who = f"process {status.process} on {status.host}"
+    head = (
+        f"running, {who} with {status.workers} worker{'s' if status.workers > 1 else ''}"
+        if running
+        else f"interrupted, {who} has ended; the same command goes on"
+    )
+    part = f" ({100.0 * status.done / status.total:.1f} %)" if status.total else ""
+    failed = ", ".join(f"{count} {word.replace('_', ' ')}" for word, count in sorted(status.failed.items()))
+    written = datetime.fromisoformat(status.written)
+    ago = duration(max((datetime.now(UTC) - written).total_seconds(), 0.0))
+    return [
+        f"{output}: {head}",
+        f"  job      {status.job}",
+        f"  points   {status.done} of {status.total}{part}, {status.taken_over} of them taken over",
+        f"  rate     {_pace(status, running)}",
+        f"  failed   {failed or 'none'}",
+        f"  begun    {status.begun}",
+        f"  written  {status.written}, {ago} ago",
+    ]
+
+
+def _pace(status: RunStatus, running: bool) -> str:
+    """Rate and, of a run that goes on, time left."""
+    if status.rate is None:
+        return "not known yet" if running else "not known"
+    left = f", {duration((status.total - status.done) / status.rate)} left" if running else ""
+    return f"{status.rate:.3g} points/s{left}"

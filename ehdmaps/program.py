@@ -1,0 +1,223 @@
+"""What all programs of this distribution share: from the arguments of the process to its exit status.
+
+Everything that a program prints goes through here: results on stdout (`deliver`), problems and progress on stderr
+(`tell`). Foreign text reaches a terminal without its control characters, and what the encoding of a stream lacks is
+written as an escape.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import sys
+from collections.abc import Callable, Sequence
+from typing import Any, NoReturn, TextIO
+
+from ehdmaps.errors import EhdmapsError, InputError
+from ehdmaps.interrupts import STOPPED, careful_interrupts
+
+DONE, NOT_DELIVERED, NO_RESULT, BAD_INPUT = 0, 1, 1, 2
+
+_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+_CONTROLS = {code: f"\\x{code:02x}" for code in (*range(0x20), *range(0x80, 0xA0)) if chr(code) not in "\n\t"}
+# Four digits, which JSON understands as well: its own escapes leave this character as it is.
+_CONTROLS[0x7F] = "\\u007f"
+_DIRECTIONS = {code: f"\\u{code:04x}" for code in (*range(0x202A, 0x202F), *range(0x2066, 0x206A))}
+_ESCAPES = _CONTROLS | _DIRECTIONS
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser of arguments that prints as the rest of the program does."""
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong about the arguments, and end."""
+        tell(f"{self.format_usage()}{self.prog}: error: {message}")
+        raise SystemExit(BAD_INPUT)
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Print help, or the version."""
+        status = deliver(self.prog, message.rstrip("\n"), DONE)
+        if status:
+            raise SystemExit(status)
+
+    def add_version(self) -> None:
+        """Add the option `--version`."""
+        self.add_argument("--version", action=_Version, nargs=0, help="show the version and end")
+
+
+class _Version(argparse.Action):
+    """Looks the version up only where it is asked for."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        """Print it, and end."""
+        from ehdmaps.version import version
+
+        parser._print_message(f"{_plain(parser.prog)} {version()}", sys.stdout)
+        parser.exit()
+
+
+def run(
+    parser: argparse.ArgumentParser,
+    work: Callable[[argparse.Namespace], tuple[str, int]],
+    argv: Sequence[str] | None = None,
+    no_result: type[EhdmapsError] | tuple[type[EhdmapsError], ...] = (),
+) -> int:
+    """Run a program.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+        Of its arguments; messages begin with its name.
+    work : callable
+        Takes the arguments, gives the text for stdout and the exit status.
+    argv : sequence of str, optional
+        Arguments; those of the process if left out, which ends after this then.
+    no_result : type or types of error
+        That mean that valid input has no result: exit status 1 instead of 2.
+
+    Returns
+    -------
+    int
+        Exit status: that of the work; 1 also if its result could not be printed; 2 for input that cannot be used; 130
+        after Ctrl-C.
+    """
+    try:
+        with careful_interrupts(last=argv is None):
+            return _run(parser, work, sys.argv[1:] if argv is None else argv, no_result)
+    except KeyboardInterrupt:
+        tell("\nstopped")
+        return STOPPED
+
+
+def shown(text: str) -> str:
+    r"""Return a text as a terminal may have it.
+
+    Control characters other than newline and tab, and characters that turn the direction of writing around, become
+    visible escapes such as ``\x1b``.
+    """
+    return text.translate(_ESCAPES)
+
+
+def deliver(name: str, text: str, status: int) -> int:
+    """Print a result on stdout.
+
+    A reader that closes the pipe early has had enough, which is no error of ours.
+
+    Parameters
+    ----------
+    name : str
+        Of the program, for the message.
+    text : str
+        Without its last newline; nothing is printed where it is empty.
+    status : int
+        Exit status of the work.
+
+    Returns
+    -------
+    int
+        The same status; 1 in place of 0 if the result could not be printed, which is told on stderr.
+    """
+    if not text:
+        return status
+    try:
+        if sys.stdout is None:
+            raise OSError("it is closed")
+        _write(sys.stdout, text)
+    except BrokenPipeError:
+        _leave(sys.stdout)
+    except (OSError, ValueError) as error:
+        _leave(sys.stdout)
+        tell(f"{name}: the result could not be printed on stdout ({getattr(error, 'strerror', None) or error})")
+        return status or NOT_DELIVERED
+    return status
+
+
+def tell(text: str) -> None:
+    """Write a line or more to stderr; where that is impossible, the work goes on all the same."""
+    if sys.stderr is None:
+        return
+    try:
+        _write(sys.stderr, text)
+    except (OSError, ValueError):
+        _leave(sys.stderr)
+
+
+def complain(name: str, problems: Sequence[str]) -> None:
+    """List problems on stderr."""
+    head = f"{name}: {len(problems)} problem{'s' if len(problems) > 1 else ''}"
+    tell("\n".join([head, *(f"  {problem}" for problem in problems)]))
+
+
+def _plain(program: str) -> str:
+    """Name of a program that may be a module to be run."""
+    return program.removeprefix("python -m ")
+
+
+def _run(
+    parser: argparse.ArgumentParser,
+    work: Callable[[argparse.Namespace], tuple[str, int]],
+    argv: Sequence[str],
+    no_result: type[EhdmapsError] | tuple[type[EhdmapsError], ...],
+) -> int:
+    """Run a program that may be interrupted."""
+    _occupy_standard_files()
+    name = _plain(parser.prog)
+    problems = _foreign_arguments(argv)
+    if problems:
+        complain(name, problems)
+        return BAD_INPUT
+    arguments = parser.parse_args(argv)
+    name = f"{name} {getattr(arguments, 'command', '')}".rstrip()
+    _prepare_libraries()
+    try:
+        text, status = work(arguments)
+    except EhdmapsError as error:
+        complain(name, error.problems if isinstance(error, InputError) else str(error).splitlines())
+        return NO_RESULT if isinstance(error, no_result) else BAD_INPUT
+    return deliver(name, text, int(status))
+
+
+def _occupy_standard_files() -> None:
+    """Open what the caller has closed of stdin, stdout and stderr.
+
+    A file that is written must not get their place, where libraries in C print.
+    """
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)
+
+
+def _foreign_arguments(argv: Sequence[str]) -> list[str]:
+    """Tell which arguments are no text: names of files in another encoding than that of the system."""
+    return [
+        f"argument {place}: got {text!r:.300}, which is not UTF-8; allowed: text in UTF-8; rename the file or folder"
+        for place, text in enumerate(argv, 1)
+        if any(0xD800 <= ord(character) <= 0xDFFF for character in text)
+    ]
+
+
+def _prepare_libraries() -> None:
+    """Set, before they are loaded, what numpy and matplotlib take from the environment."""
+    # The matrices are small, and more threads than processes only get in each other's way.
+    for name in _THREADS:
+        os.environ.setdefault(name, "1")
+    # Figures are only written to files. A notebook names a backend that need not be installed here; matplotlib refuses
+    # to be loaded then.
+    os.environ["MPLBACKEND"] = "agg"
+
+
+def _write(stream: TextIO, text: str) -> None:
+    """Write a text and a newline at once."""
+    encoding = stream.encoding or "utf-8"
+    stream.write(f"{shown(text)}\n".encode(encoding, "backslashreplace").decode(encoding))
+    stream.flush()
+
+
+def _leave(stream: TextIO | None) -> None:
+    """Give a stream that takes nothing another place to write to: the interpreter flushes it again at its end."""
+    with contextlib.suppress(OSError, ValueError, AttributeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())  # type: ignore[union-attr]

@@ -1,0 +1,234 @@
+"""What both programs do alike: arguments, streams that take nothing, foreign characters, versions, Ctrl-C."""
+
+import errno
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import mbs.cli
+import mbs.housings.__main__ as housings
+from ehdmaps import errors, program
+from ehdmaps.jobs import cli
+from mbs.errors import AnalysisError
+from tests.system.interruptible import start
+
+ROOT = str(Path(errors.__file__).parents[1])
+PROGRAMS = {"ehdmaps": "ehdmaps.jobs.cli", "mbs": "mbs", "mbs.housings": "mbs.housings"}
+NOWHERE = {"ehdmaps": ["show", "none.nc"], "mbs": ["modes", "none.toml"], "mbs.housings": ["none"]}
+
+MAP = """
+schema = 1
+[bearing]
+name = "NU308"
+[lubricant]
+name = "FVA3"
+[grid]
+load = { from = "1 N/mm", to = "1000 N/mm", points = 4, spacing = "log" }
+entrainment_speed = { from = "0.1 m/s", to = "10 m/s", points = 4, spacing = "log" }
+temperature = ["40 degC"]
+[solver]
+name = "hertz"
+structural_law = "iso16281"
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", ROOT)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "job.toml").write_text(MAP)
+    return tmp_path
+
+
+def done(name, *arguments, **options):
+    options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | options
+    command = [sys.executable, "-m", PROGRAMS[name], *arguments]
+    return subprocess.run(command, check=False, **options)
+
+
+def full():
+    if not Path("/dev/full").exists():
+        pytest.skip("no /dev/full here")
+    return open("/dev/full", "wb")
+
+
+# --- streams
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+@pytest.mark.parametrize("option", ["--help", "--version"])
+def test_help_that_finds_no_room_is_told(folder, name, option):
+    with full() as stream:
+        found = done(name, option, stdout=stream)
+    said = f"{'python -m ' if '.' in name else ''}{name}: the result could not be printed on stdout"
+    assert (found.returncode, found.stderr.decode()) == (1, f"{said} ({os.strerror(errno.ENOSPC)})\n")
+
+
+def test_a_result_that_finds_no_room_is_told(folder):
+    with full() as stream:
+        found = done("ehdmaps", "check", "job.toml", stdout=stream)
+    assert found.returncode == 1
+    assert found.stderr.decode() == (
+        f"ehdmaps check: the result could not be printed on stdout ({os.strerror(errno.ENOSPC)})\n"
+    )
+
+
+def shell(command):
+    return subprocess.run(["bash", "-c", f"{sys.executable} -m {command}"], capture_output=True, check=False)
+
+
+def test_a_closed_stdout_is_told(folder):
+    found = shell("ehdmaps.jobs.cli check job.toml >&-")
+    assert (found.returncode, found.stderr.decode()) == (
+        1,
+        "ehdmaps check: the result could not be printed on stdout (it is closed)\n",
+    )
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+@pytest.mark.parametrize("stderr", ["2>&-", "2>/dev/full"])
+def test_problems_that_nobody_can_read_keep_their_exit_status(folder, name, stderr):
+    if stderr.endswith("full"):
+        full().close()
+    assert shell(f"{PROGRAMS[name]} {' '.join(NOWHERE[name])} {stderr}").returncode == 2
+
+
+@pytest.mark.parametrize("streams", ["2>&-", "2>/dev/full", ">&- 2>&- <&-"])
+def test_a_map_is_made_whole_where_nobody_listens(folder, streams):
+    if "full" in streams:
+        full().close()
+    status = shell(f"ehdmaps.jobs.cli generate job.toml --workers 1 {streams}").returncode
+    assert status == (1 if ">&- 2" in streams else 0)
+    assert done("ehdmaps", "compare", "job.nc", "job.nc").returncode == 0
+
+
+# --- arguments and characters
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_arguments_that_are_no_text_are_refused_at_once(folder, name):
+    found = done(name, "--plot", b"a\xe9\x1b[31m.png", "none")
+    assert (found.returncode, found.stdout) == (2, b"")
+    assert found.stderr.decode("ascii") == (
+        f"{name}: 1 problem\n  argument 2: got 'a\\udce9\\x1b[31m.png', which is not UTF-8; allowed: text in UTF-8; "
+        "rename the file or folder\n"
+    )
+
+
+@pytest.mark.parametrize("name", ["ehdmaps", "mbs"])
+def test_foreign_characters_reach_a_terminal_as_escapes(folder, name):
+    foreign = "\x1b]0;title\x07\x9b31m\u202egnp\u2066\x7f"
+    found = done(name, NOWHERE[name][0], f"{foreign}.toml")
+    assert found.returncode == 2
+    assert "\\x1b]0;title\\x07\\x9b31m\\u202egnp\\u2066\\u007f.toml" in found.stderr.decode()
+    usage = done(name, foreign)
+    assert usage.returncode == 2
+    assert not set(foreign) - set("]0;title31mgnp") & set(found.stderr.decode() + usage.stderr.decode())
+
+
+@pytest.mark.parametrize("name", ["ehdmaps", "mbs"])
+def test_a_stream_that_lacks_a_character_gets_an_escape(folder, monkeypatch, name):
+    monkeypatch.setenv("PYTHONIOENCODING", "ascii")
+    found = done(name, NOWHERE[name][0], "größe.nc")
+    assert found.returncode == 2
+    assert b"gr\\xf6\\xdfe.nc" in found.stderr
+
+
+def test_a_result_in_an_encoding_that_lacks_a_character(folder, monkeypatch):
+    (folder / "größe.toml").write_text(MAP)
+    monkeypatch.setenv("PYTHONIOENCODING", "ascii")
+    found = done("ehdmaps", "check", "größe.toml")
+    assert (found.returncode, found.stderr) == (0, b"")
+    assert found.stdout.startswith(b"gr\\xf6\\xdfe.toml: no problems\n")
+
+
+def test_newline_and_tab_stay():
+    assert program.shown("a\tb\nc\r\x00") == "a\tb\nc\\x0d\\x00"
+
+
+# --- libraries
+
+
+def test_the_backend_of_a_notebook_is_no_matter_of_the_programs(folder, monkeypatch):
+    assert done("ehdmaps", "generate", "job.toml", "--workers", "1").returncode == 0
+    monkeypatch.setenv("MPLBACKEND", "module://no.such.backend")
+    found = done("ehdmaps", "plot", "job.nc")
+    assert (found.returncode, found.stderr) == (0, b"")
+    assert (folder / "job.png").stat().st_size > 0
+    assert done("mbs", "modes", "nu308_rigid").returncode == 0
+
+
+# --- versions and exit status
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_programs_know_their_version(name, capsys):
+    main = {"ehdmaps": cli.main, "mbs": mbs.cli.main, "mbs.housings": housings.main}[name]
+    with pytest.raises(SystemExit) as end:
+        main(["--version"])
+    out = capsys.readouterr().out
+    assert end.value.code == 0
+    assert out.startswith(f"{name} ") and out.split()[1][0].isdigit()
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "said"),
+    [
+        (errors.InputError(["a", "b"]), 2, "p work: 2 problems\n  a\n  b\n"),
+        (errors.StoreError("a"), 2, "p work: 1 problem\n  a\n"),
+        (AnalysisError("no\nbalance"), 1, "p work: 2 problems\n  no\n  balance\n"),
+        (KeyboardInterrupt(), 130, "\nstopped\n"),
+    ],
+)
+def test_errors_end_in_words_and_a_status(capsys, error, status, said):
+    def work(arguments):
+        raise error
+
+    parser = program.Parser(prog="p")
+    parser.add_argument("command")
+    assert program.run(parser, work, ["work"], no_result=AnalysisError) == status
+    assert capsys.readouterr() == ("", said)
+
+
+# --- Ctrl-C
+
+
+@pytest.mark.parametrize(
+    "command",
+    [["ehdmaps", "tradeoff", "nu308", "--lines", "60"], ["mbs", "campbell", "gearbox", "--law", "hertz"]],
+    ids=["ehdmaps", "mbs"],
+)
+@pytest.mark.parametrize("seed", [1, 2])
+def test_ctrl_c_ends_a_program_in_peace(folder, command, seed):
+    name, *arguments = command
+    ready = (
+        f"import runpy; print(flush=True); runpy.run_module({PROGRAMS[name]!r}, run_name='__main__', alter_sys=True)"
+    )
+    job = start([sys.executable, "-c", ready, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    job.stdout.readline()
+    time.sleep(0.3 + random.Random(seed).uniform(0.0, 1.5))
+    job.send_signal(signal.SIGINT)
+    out, err = job.communicate(timeout=60)
+    assert (job.returncode, out) == (130, "")
+    assert err.endswith("\nstopped\n") and "Traceback" not in err
+
+
+def test_a_program_in_the_background_ignores_ctrl_c(folder):
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        job = subprocess.Popen(
+            [sys.executable, "-m", "ehdmaps.jobs.cli", "tradeoff", "nu308", "--lines", "1"], stdout=subprocess.PIPE
+        )
+    finally:
+        signal.signal(signal.SIGINT, before)
+    time.sleep(0.5)
+    job.send_signal(signal.SIGINT)
+    out, _ = job.communicate(timeout=120)
+    assert job.returncode == 0
+    assert b"errors relative to" in out
