@@ -271,7 +271,9 @@ def _axis(ends: tuple[float, float], display: Display, rule: AxisRule, per_decad
 
 
 def _toml(value: object) -> str:
-    """A string or number in TOML."""
+    """A string, number or table of them in TOML."""
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{key} = {_toml(entry)}' for key, entry in value.items())} }}"
     if isinstance(value, str):
         # JSON escapes all that TOML wants escaped, but for this one.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
