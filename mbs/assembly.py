@@ -313,10 +313,10 @@ def _words(chosen: str, scene: Scene, emap: EHDMap | None) -> str:
     """The law, for people."""
     if chosen == "map" and emap is not None:
         solver = emap.dataset.attrs.get("solver", "")
-        made_for = emap.bearing.name if emap.bearing else ""
-        return f"map of {made_for}, {emap.lubricant.name}, solver {solver}"
+        made_for = emap.bearing.title if emap.bearing else ""
+        return f"map of {made_for}, {emap.lubricant.title}, solver {solver}"
     if chosen == "formula":
-        return f"film formula moes, {_lubricant(scene).name}"
+        return f"film formula moes, {_lubricant(scene).title}"
     name = constant_name(chosen)
     if name is None:
         return "dry Hertz, ISO 16281"

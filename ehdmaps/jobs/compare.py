@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from typing import Any
 
@@ -42,7 +43,7 @@ def _lines(first: xr.Dataset, second: xr.Dataset, names: tuple[str, str]) -> Ite
     here, there = _common(first, second, names)
     yield f"A  {names[0]}: {first.attrs['title']}"
     yield f"B  {names[1]}: {second.attrs['title']}"
-    differing = [name for name in _PROVENANCE if first.attrs.get(name) != second.attrs.get(name)]
+    differing = [name for name in _PROVENANCE if _without_label(first, name) != _without_label(second, name)]
     yield f"   differ in {', '.join(differing)}" if differing else "   made from the same settings"
     usable = _usable(here) & _usable(there)
     yield (
@@ -54,6 +55,15 @@ def _lines(first: xr.Dataset, second: xr.Dataset, names: tuple[str, str]) -> Ite
     yield "relative difference |B - A|/|A|    median       95 %    largest  largest at"
     for name in COMPARED:
         yield _difference(name, here, there, usable)
+
+
+def _without_label(dataset: xr.Dataset, name: str) -> object:
+    """An attribute; of a record all that is more than shown."""
+    text = dataset.attrs.get(name)
+    if name not in ("lubricant", "geometry"):
+        return text
+    record = json.loads(text or "null")
+    return {key: value for key, value in record.items() if key != "label"} if isinstance(record, dict) else record
 
 
 def _difference(name: str, here: xr.Dataset, there: xr.Dataset, usable: npt.NDArray[np.bool_]) -> str:

@@ -11,6 +11,7 @@ from ehdmaps.jobs.table import Table
 from ehdmaps.physics._labels import label_problem
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
+from ehdmaps.physics.catalogue import designations, estimate, estimate_from_dimensions
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.correlations import CORRELATIONS
 from ehdmaps.physics.lubricant import DENSITY_LAWS, LUBRICANTS, Lubricant
@@ -21,6 +22,9 @@ Built = TypeVar("Built")
 
 _BEARING_LENGTHS = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
 _BEARING_KEYS = (*_BEARING_LENGTHS, "rollers", "diametral_clearance")
+
+_CATALOGUE_LENGTHS = ("bore", "outside_diameter", "width")
+_CATALOGUE_FORM = '{ bore = "30 mm", outside_diameter = "62 mm", width = "16 mm" } with basic_static_rating'
 
 _VISCOSITY = Display("mPa s", 1e3)
 _KINEMATIC = Display("mm^2/s", 1e6)
@@ -98,14 +102,16 @@ def _material(section: Table) -> Material | None:
 def _bearing(section: Table) -> BearingGeometry | None:
     """Read [bearing]: a name, or dimensions."""
     label = _label(section)
+    if "estimate" in section:
+        return _estimate(section, label)
     if "name" in section:
-        name = section.choice("name", tuple(BEARINGS))
+        name = _bearing_name(section)
         clearance = _clearance(section)
         for key in (*_BEARING_LENGTHS, "rollers"):
             if key in section:
                 section.get(key)
                 section.note(key, "stands beside name; allowed: a name, or dimensions without a name; delete one")
-        section.close(others=_BEARING_KEYS)
+        section.close(others=("estimate", *_BEARING_KEYS))
         if name is None:
             return None
         named = replace(BEARINGS[name], label=label)
@@ -113,21 +119,71 @@ def _bearing(section: Table) -> BearingGeometry | None:
             return named
         return _built(section, lambda: replace(named, diametral_clearance=clearance))
     if not any(key in section for key in _BEARING_KEYS):
-        section.note("name", f"missing; allowed: {', '.join(BEARINGS)}; or give {', '.join(_BEARING_KEYS)}")
-        section.close(others=("name", *_BEARING_KEYS))
+        section.note(
+            "name", f"missing; allowed: {', '.join(BEARINGS)}; or give {', '.join(_BEARING_KEYS)}, or estimate"
+        )
+        section.close(others=("name", "estimate", "basic_static_rating", *_BEARING_KEYS))
         return None
     lengths = [section.quantity(key, "m", 1e-5, 100.0, LENGTH, required=True) for key in _BEARING_LENGTHS]
     rollers = section.integer("rollers", 1, 10000, required=True)
     play = _clearance(section)
     if "diametral_clearance" not in section:
         section.note("diametral_clearance", 'missing; allowed: a length; "0 mm" if unknown')
-    section.close(others=("name",))
+    section.close(others=("name", "estimate", "basic_static_rating"))
     inner, outer, diameter, length = lengths
     if inner is None or outer is None or diameter is None or length is None or rollers is None or play is None:
         return None
     roller = f"{diameter * 1e3:g} x {length * 1e3:g} mm"
     name = f"bearing {inner * 1e3:g}/{outer * 1e3:g} mm, {rollers} rollers {roller}"
     return _built(section, lambda: BearingGeometry(name, inner, outer, diameter, length, rollers, play, label))
+
+
+def _bearing_name(section: Table) -> str | None:
+    """Read the name of a bearing whose inner geometry is known."""
+    name = section.get("name")
+    if name in designations() and name not in BEARINGS:
+        section.note(
+            "name",
+            f"got {name!r}, whose inner geometry is not known here; allowed: {', '.join(BEARINGS)}; or estimate = "
+            f'"{name}"',
+        )
+        return None
+    return section.choice("name", tuple(BEARINGS))
+
+
+def _estimate(section: Table, label: str | None) -> BearingGeometry | None:
+    """Read a bearing that is estimated: by its designation, or a table of its catalogue dimensions."""
+    value = section.get("estimate")
+    rating = section.quantity("basic_static_rating", "N", 1e2, 1e9, Display("kN", 1e-3))
+    clearance = _clearance(section)
+    for key in ("name", *_BEARING_LENGTHS, "rollers"):
+        if key in section:
+            section.get(key)
+            section.note(key, "stands beside estimate; allowed: one of the two; delete one")
+    section.close(others=("name", *_BEARING_KEYS))
+    if isinstance(value, dict):
+        table = Table(value, f"{section.where} estimate", section.problems)
+        sizes = [table.quantity(key, "m", 1e-3, 10.0, LENGTH, required=True) for key in _CATALOGUE_LENGTHS]
+        table.close()
+        if rating is None and "basic_static_rating" not in section:
+            section.note(
+                "basic_static_rating", 'missing; allowed: C0 of the catalogue beside a table of dimensions, "78 kN"'
+            )
+        bore, outside, width = sizes
+        if bore is None or outside is None or width is None or rating is None:
+            return None
+        made = _built(section, lambda: estimate_from_dimensions(bore, outside, width, rating))
+    elif isinstance(value, str):
+        if rating is None and "basic_static_rating" in section:
+            return None
+        made = _built(section, lambda: estimate(value, rating))
+    else:
+        section.note("estimate", f'got {short(value)}; allowed: a designation such as "NU206", or {_CATALOGUE_FORM}')
+        return None
+    if made is None or (clearance is None and "diametral_clearance" in section):
+        return None
+    estimated = replace(made, label=label)
+    return _built(section, lambda: replace(estimated, diametral_clearance=clearance or 0.0))
 
 
 def _label(section: Table) -> str | None:
@@ -203,8 +259,8 @@ def _pressure_viscosity(section: Table) -> float | str | None:
     text = section.get("pressure_viscosity")
     if "pressure_viscosity" not in section:
         return None
-    if text in CORRELATIONS:
-        return str(text)
+    if isinstance(text, str) and text in CORRELATIONS:
+        return text
     if text in _ISOVISCOUS:
         return 0.0
     if isinstance(text, str) and text[:1].isalpha():

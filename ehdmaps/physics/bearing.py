@@ -30,6 +30,8 @@ class BearingGeometry:
         P_d [m], < 0 for a preloaded bearing. It is an input of its own and not checked against the raceways.
     label : str or None
         Free text shown instead of the name; no part of what makes bearings equal.
+    estimated : str or None
+        How its inner geometry was estimated and how well, see `ehdmaps.physics.catalogue`; None where it is known.
 
     Raises
     ------
@@ -51,6 +53,7 @@ class BearingGeometry:
     rollers: int
     diametral_clearance: float
     label: str | None = field(default=None, compare=False)
+    estimated: str | None = None
 
     def __post_init__(self) -> None:
         problems = _problems(self)
@@ -75,8 +78,9 @@ class BearingGeometry:
 
     @property
     def title(self) -> str:
-        """What the bearing is called in titles: its label, else its name."""
-        return self.label or self.name
+        """What the bearing is called in titles: its label, else its name; said where it is estimated."""
+        title = self.label or self.name
+        return f"{title} ({self.estimated.partition(',')[0]})" if self.estimated else title
 
     def record(self) -> dict[str, float | str]:
         """Everything that defines the bearing, for provenance; SI units; what is not given is left out."""

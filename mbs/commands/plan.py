@@ -67,8 +67,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if emap is not None:
         if scene.lubricant is not None and scene.lubricant != emap.lubricant:
             lines.append(
-                f"  the oil of the map counts ({emap.lubricant.name}); that of the scene is another "
-                f"({scene.lubricant.name})"
+                f"  the oil of the map counts ({emap.lubricant.title}); that of the scene is another "
+                f"({scene.lubricant.title})"
             )
         return _covered(lines, needed, emap, arguments.map)
     planned = _plan(scene, needed, arguments)
@@ -266,7 +266,9 @@ def _axis(ends: tuple[float, float], display: Display, rule: AxisRule, per_decad
 
 
 def _toml(value: object) -> str:
-    """A string or number in TOML."""
+    """A string, number or table of them in TOML."""
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{key} = {_toml(entry)}' for key, entry in value.items())} }}"
     if isinstance(value, str):
         # JSON escapes all that TOML wants escaped, but for this one.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
@@ -295,7 +297,7 @@ def _described(planned: _Planned) -> list[str]:
     lines.append(f"  points             {points}, {points - job.points} of them for the contact laws")
     solver = solvers.build(job.solver, job.solver_options)
     lines.append(f"  time               {estimated_time(job, solver, points)}")
-    shipped = job.title.lower()
+    shipped = (job.bearing.name if job.bearing else job.title).lower()
     if shipped in shipped_jobs():
         whole = _points(read_job(shipped))
         lines.append(f"  the shipped job {shipped} has {whole} points, {whole / points:.3g} times as many")
@@ -305,7 +307,7 @@ def _described(planned: _Planned) -> list[str]:
 def _head(needed: Needed) -> list[str]:
     """Lines on the bearings, and on where their loads come from."""
     return [
-        f"{needed.geometry.name}: {', '.join(needed.bearings)}",
+        f"{needed.geometry.title}: {', '.join(needed.bearings)}",
         f"  largest load of a slice at rest {LOAD.text(needed.static_load)}; films take up to "
         f"{MICROMETRE.text(needed.film_room)} of the clearance",
     ]

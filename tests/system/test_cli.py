@@ -186,7 +186,8 @@ def test_check_estimates(here, capsys):
 def test_solve_prints_a_table(capsys):
     status, out, _ = run(capsys, "solve", "n1014", *POINT, "--solver", "formula")
     assert status == 0
-    assert out.splitlines()[1] == "88.89 N/mm, 3.297 m/s, 40 degC, slice of 0.45 mm (40 N)"
+    speed = "3.297 m/s (inner ring 1397.58 rpm, outer ring fixed)"
+    assert out.splitlines()[1] == f"88.89 N/mm, {speed}, 40 degC, slice of 0.45 mm (40 N)"
     assert "k x length" in out
 
 

@@ -176,8 +176,12 @@ BROKEN = {
         r"\[bearing\] name: missing; allowed: N1014, NU308; or give inner",
     ),
     "unknown bearing": (
+        changed("NU308", "NU3008"),
+        r"name: got 'NU3008' \(did you mean 'NU308'\?\); allowed: 'N1014', 'NU308'",
+    ),
+    "bearing of a catalogue": (
         changed("NU308", "NU309"),
-        r"name: got 'NU309' \(did you mean 'NU308'\?\); allowed: 'N1014', 'NU308'",
+        r"name: got 'NU309', whose inner geometry is not known here; allowed: N1014, NU308; or estimate = \"NU309\"",
     ),
     "name and dimensions": (
         changed('"NU308"', '"NU308"\nrollers = 12'),

@@ -70,6 +70,8 @@ def test_a_changed_label_takes_over_every_point(tmp_path, capsys):
     assert new.dataset.attrs["title"] == "EHD map of B, oil B, by the solver formula"
     assert json.loads(new.dataset.attrs["geometry"])["label"] == "B" == new.bearing.label
     assert json.loads(new.dataset.attrs["lubricant"])["label"] == "oil B" == new.lubricant.label
+    assert main(["compare", str(first), str(second)]) == 0
+    assert "made from the same settings" in capsys.readouterr().out
     for name, values in old.dataset.data_vars.items():
         np.testing.assert_array_equal(values, new.dataset[name])
 

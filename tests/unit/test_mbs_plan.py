@@ -214,6 +214,19 @@ def test_job_reads_back_and_covers_what_is_needed():
     assert parse_job(job_text(given, exact), "planned", "planned.toml").entrainment_speeds == (0.5,)
 
 
+def test_a_job_keeps_an_estimated_bearing_and_its_label():
+    sizes = '{ bore = "40 mm", outside_diameter = "90 mm", width = "23 mm" }'
+    geometry = f'{{ estimate = {sizes}, basic_static_rating = "78 kN", label = "A \\"1\\"" }}'
+    given = scene((NAMED, geometry))
+    bearings = assemble(given).bearings
+    needed = next(
+        entry for entry in needed_ranges(bearings, (1e4, 2e4), (0.0, 0.0), (10.0, 100.0)) if entry.geometry.estimated
+    )
+    job = parse_job(job_text(given, needed), "planned", "planned.toml")
+    assert job.bearing == dataclasses.replace(needed.geometry, diametral_clearance=0.0)
+    assert job.bearing.label == 'A "1"'
+
+
 def test_command_writes_a_job_for_each_geometry(here, capsys):
     text = scene((NAMED, BY_HAND % "16 mm")).text
     (here / "two.toml").write_text(text)

@@ -2,9 +2,11 @@
 
 import pytest
 
+import ehdmaps
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.jobs.cli import main
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.correlations import CORRELATIONS
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.sensitivity import film_change
 from ehdmaps.physics.solids import STEEL
@@ -76,3 +78,15 @@ def test_check_of_an_isoviscous_oil_says_nothing_of_alpha(tmp_path, capsys):
     path.write_text(JOB.format(alpha="0 1/GPa"))
     assert main(["check", str(path)]) == 0
     assert "pressure-viscosity" not in capsys.readouterr().out
+
+
+def test_a_map_of_an_estimated_oil_says_so(tmp_path, capsys):
+    path, made = tmp_path / "job.toml", tmp_path / "map.nc"
+    path.write_text(JOB.format(alpha="gold-mineral"))
+    assert main(["generate", str(path), "-o", str(made), "--workers", "1"]) == 0
+    sentence = CORRELATIONS["gold-mineral"].sentence
+    assert f"lubricant: {sentence}" in capsys.readouterr().out
+    assert ehdmaps.open_map(made).dataset.attrs["lubricant_verified"] == 0
+    assert main(["show", str(made)]) == 0
+    assert "NOT VERIFIED: correlation gold-mineral, density_15 870, " in (out := capsys.readouterr().out)
+    assert sentence in out

@@ -44,6 +44,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines = [
         f"{arguments.job}: no problems",
         f"  {job.title}, {job.lubricant.title}, solver {job.solver}, structural law {job.contacts[0].structural_law}",
+        *([f"  bearing: {job.bearing.estimated}"] if job.bearing and job.bearing.estimated else []),
         *oil_lines(job),
         f"  {'contact':20s} {len(job.contacts):6d}  {names}",
         *axes,

@@ -1,0 +1,163 @@
+"""Estimated inner geometry: against known bearings, its stated errors, and that it is never taken for known."""
+
+import json
+import re
+
+import pytest
+
+import ehdmaps
+from ehdmaps.errors import InputError
+from ehdmaps.jobs.cli import main
+from ehdmaps.jobs.reader import parse_job
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.catalogue import designations, estimate, estimate_from_dimensions
+from mbs import Bearing
+
+from .test_job_reader import GOOD, NAMED
+
+# C0 of the catalogue from which the raceways of series 2 and 3 are, N
+RATINGS = {"NU308": 82.7e3, "NU206": 39.0e3, "NU204": 26.5e3, "NU209": 68.9e3, "NU2206": 51.5e3}
+
+
+def stated(geometry):
+    """Errors that a geometry states: raceways, roller diameter, roller length (relative), number of rollers."""
+    found = re.search(r"about (\d+) %, roller diameter (\d+) %, roller length (\d+) %, .* (\d+)$", geometry.estimated)
+    raceways, diameter, length, number = map(int, found.groups())
+    return raceways / 100, diameter / 100, length / 100, number
+
+
+def errors(found, known):
+    """The same errors, as they are."""
+    relative = [
+        abs(getattr(found, key) / getattr(known, key) - 1.0)
+        for key in ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
+    ]
+    return max(relative[:2]), relative[2], relative[3], abs(found.rollers - known.rollers)
+
+
+@pytest.mark.parametrize(("name", "rating"), [("NU308", None), ("N1014", None), ("NU308", RATINGS["NU308"])], ids=str)
+def test_known_bearings_are_within_the_stated_errors(name, rating):
+    found = estimate(name, rating)
+    for error, bound in zip(errors(found, BearingGeometry.named(name)), stated(found), strict=True):
+        assert error <= bound
+
+
+@pytest.mark.parametrize(
+    ("name", "rollers", "roller_diameter", "pitch_diameter"),
+    [
+        ("N204", 11, 7.5e-3, 34e-3),
+        ("NU205", 13, 7.5e-3, 38.5e-3),
+        ("NU206", 13, 9.0e-3, 46.5e-3),
+        ("NU2205", 13, 7.5e-3, 39e-3),
+    ],
+)
+def test_published_rollers(name, rollers, roller_diameter, pitch_diameter):
+    """From papers and reports on bearing data sets, most by their fault frequencies; the pitch to 2 % (NU205)."""
+    found = estimate(name)
+    assert found.rollers == rollers
+    assert found.roller_diameter == pytest.approx(roller_diameter, rel=1e-9)
+    assert found.pitch_diameter == pytest.approx(pitch_diameter, rel=0.02)
+
+
+@pytest.mark.parametrize("name", RATINGS)
+def test_the_static_rating_of_iso_76_comes_back(name):
+    found = estimate(name, RATINGS[name])
+    diameter, length = 1e3 * found.roller_diameter, 1e3 * found.roller_length
+    rating = 44.0 * (1.0 - found.gamma) * found.rollers * length * diameter
+    assert rating == pytest.approx(RATINGS[name], rel=1e-12)  # round-off
+
+
+@pytest.mark.parametrize("name", RATINGS)
+def test_the_share_of_the_width_is_within_its_error_of_the_rating(name):
+    by_width, by_rating = estimate(name), estimate(name, RATINGS[name])
+    assert by_width.roller_length == pytest.approx(by_rating.roller_length, rel=stated(by_width)[2])
+
+
+def test_dimensions_alone_are_within_the_stated_errors_of_every_designation():
+    from ehdmaps.physics.catalogue import _entries
+
+    for (series, code), entry in _entries().items():
+        known = estimate(f"NU{series}{code}")
+        rating = 44e6 * (1.0 - known.gamma) * known.rollers * known.roller_length * known.roller_diameter
+        found = estimate_from_dimensions(entry.bore, entry.outside_diameter, entry.width, rating)
+        for error, bound in zip(errors(found, known), stated(found), strict=True):
+            assert error <= bound
+
+
+def test_the_table_has_the_boundary_dimensions_of_iso_15():
+    """Bearings of all five series, and those of the project."""
+    from ehdmaps.physics.catalogue import _entries
+
+    sizes = {key: tuple(round(1e3 * v, 6) for v in entry[1:4]) for key, entry in _entries().items()}
+    assert sizes["3", "08"] == (40, 90, 23) and sizes["10", "14"] == (70, 110, 20)
+    assert sizes["2", "06"] == (30, 62, 16) and sizes["22", "05"] == (25, 52, 18) and sizes["23", "09"] == (45, 100, 36)
+    assert len(designations()) == len(sizes) == 16 + 2 * 17 + 2 * 17
+
+
+@pytest.mark.parametrize("name", ["6206", "NU406", "NU219X", "NU1004", "NU221", "NU206 ", ""])
+def test_other_designations_are_refused(name):
+    with pytest.raises(InputError, match=rf"bearing estimate: got {name!r}; allowed: N, NU, NJ or NUP of series 10"):
+        estimate(name)
+    assert estimate("NJ 206E").rollers == estimate("NUP206").rollers
+
+
+def test_impossible_estimates_are_refused():
+    with pytest.raises(
+        InputError, match=r"basic_static_rating 39.0 N, which takes rollers of 0.009394 mm in a width of 16"
+    ):
+        estimate("NU206", 39.0)
+    with pytest.raises(InputError, match=r"got bore 0.09, outside_diameter 0.04, .* 0 < bore < outside_diameter"):
+        estimate_from_dimensions(0.09, 0.04, 0.023, 78e3)
+
+
+def parse(bearing):
+    return parse_job(GOOD.replace(NAMED, f"[bearing]\n{bearing}\n"), name="job", where="job.toml")
+
+
+def test_a_job_with_an_estimated_bearing():
+    job = parse('estimate = "NU206"\nbasic_static_rating = "39 kN"\ndiametral_clearance = "30 um"\nlabel = "A"')
+    assert job.bearing.roller_length == estimate("NU206", 39e3).roller_length
+    assert job.bearing.diametral_clearance == 30e-6
+    words = "(inner geometry estimated from catalogue dimensions and static rating (ISO 76): raceways to about 3 %)"
+    assert job.title == f"A {words}"
+    by_hand = parse(
+        'estimate = { bore = "30 mm", outside_diameter = "62 mm", width = "16 mm" }\nbasic_static_rating = "39 kN"'
+    )
+    assert by_hand.bearing == estimate_from_dimensions(0.03, 0.062, 0.016, 39e3)
+
+
+@pytest.mark.parametrize(
+    ("bearing", "text"),
+    [
+        ('name = "NU206"', r"name: got 'NU206', whose inner geometry is not known here; .*; or estimate = \"NU206\""),
+        ('estimate = "NU206"\nrollers = 13', r"\[bearing\] rollers: stands beside estimate; allowed: one of the two"),
+        ('estimate = "NU206"\nname = "NU308"', r"\[bearing\] name: stands beside estimate; allowed: one of the two"),
+        ("estimate = 206", r"estimate: got 206; allowed: a designation such as \"NU206\", or \{ bore = "),
+        ('estimate = "NU999"', r"\[bearing\]: bearing estimate: got 'NU999'; allowed: N, NU, NJ or NUP of series 10"),
+        ('estimate = { bore = "30 mm" }', r"\[bearing\] basic_static_rating: missing; allowed: C0 of the catalogue"),
+        ('estimate = { bore = "30 mm" }', r"\[bearing\] estimate width: missing"),
+        ('estimate = "NU206"\nbasic_static_rating = "39 mm"', r"basic_static_rating: got the unit 'mm'"),
+        ('name = "NU308"\nbasic_static_rating = "78 kN"', r"\[bearing\] basic_static_rating: unknown key"),
+    ],
+)
+def test_wrong_estimates(bearing, text):
+    with pytest.raises(InputError, match=text):
+        parse(bearing)
+
+
+def test_a_map_and_check_say_what_is_estimated(tmp_path, capsys):
+    path, made = tmp_path / "job.toml", tmp_path / "map.nc"
+    path.write_text(GOOD.replace(NAMED, '[bearing]\nestimate = "NU206"\n'))
+    assert main(["check", str(path)]) == 0
+    assert f"  bearing: {estimate('NU206').estimated}" in capsys.readouterr().out
+    assert main(["generate", str(path), "-o", str(made), "--workers", "1"]) == 0
+    emap = ehdmaps.open_map(made)
+    assert "NU206 (inner geometry estimated from catalogue" in emap.dataset.attrs["title"]
+    assert json.loads(emap.dataset.attrs["geometry"])["estimated"] == estimate("NU206").estimated
+    assert emap.bearing == estimate("NU206")
+
+
+def test_an_estimate_is_no_known_bearing_and_serves_mbs():
+    assert estimate("NU308").estimated and BearingGeometry.named("NU308").estimated is None
+    assert estimate("NU308") != BearingGeometry.named("NU308")
+    assert Bearing(estimate("NU206")).geometry.rollers == 13
