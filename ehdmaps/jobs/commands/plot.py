@@ -14,9 +14,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Draw the page and write it; by default beside the map, as PNG."""
     path = Path(arguments.map)
     output = Path(arguments.output) if arguments.output else path.with_suffix(".png")
-    dataset = open_map(path).dataset
+    emap = open_map(path)
     try:
-        plot_map(dataset, output)
+        plot_map(emap, output)
     except (OSError, ValueError) as error:
         raise InputError(
             f"-o: {output} cannot be written ({error}); allowed: a .png, .pdf or .svg file in a folder "
