@@ -87,7 +87,7 @@ class _Sheet:
     @cached_property
     def extrapolated_from(self) -> dict[tuple[int, int], float]:
         """Lowest load with an extrapolated viscosity [N/m], of the contacts and temperatures that have one."""
-        beyond = self.dataset["viscosity_extrapolated"].values.astype(bool).any(axis=2)
+        beyond = np.asarray(self.dataset["viscosity_extrapolated"].values.max(axis=2) > 0)
         loads = self.dataset["load"].values
         return {(i, k): float(loads[beyond[i, :, k]][0]) for i, k in zip(*np.nonzero(beyond.any(axis=1)), strict=True)}
 

@@ -90,8 +90,9 @@ def fitted_pressure(dataset: xr.Dataset) -> str:
     """Say up to which pressure the viscosity of the map's oil was fitted."""
     oil = record_from_json(dataset.attrs["lubricant"], "lubricant")
     value = oil.get("fitted_pressure")
-    known = isinstance(value, float) and np.isfinite(value)
-    return f"{PRESSURE.text(value)}, to which {oil.get('name')} was fitted" if known else "those of its data"
+    if not isinstance(value, (int, float)):
+        return "those of its data"
+    return f"{PRESSURE.text(value)}, to which {oil.get('name')} was fitted"
 
 
 def plain(text: object) -> str:

@@ -210,7 +210,7 @@ DAMAGES = {
     "group: contact no JSON": (set_attribute("reference_contact", "{", "backbone"), "does not read"),
     "group: film NaN": (
         set_value("backbone/film_offset", (30, 0, 0), np.nan),
-        "backbone of the map: has 1 solved points without a number or .* at reference speed .* m/s and 40 degC; generate",
+        "backbone of the map: has 1 solved points without a number or .* reference speed .* m/s and 40 degC; generate",
     ),
     "group: film negative": (set_value("backbone/film_offset", (30, 0, 0), -1.0), "1 solved points without a number"),
     "group: not needed": (
