@@ -118,7 +118,7 @@ def _bearing_lines(bearing: BearingGeometry) -> Iterator[str]:
 def _oil_lines(oil: Lubricant) -> Iterator[str]:
     """Yield the oil: what a data sheet has, and by which laws it goes on."""
     record = oil.record()
-    yield f"oil {plain(oil.name)}" + ("" if oil.verified else ": NOT VERIFIED, its data have no source")
+    yield f"oil {plain(oil.name)}" + ("" if oil.verified else ": NOT VERIFIED")
     over_temperature, over_pressure = record["viscosity_over_temperature"], record["viscosity_law"]
     yield f"  {'viscosity':20s} {_at_temperatures(oil, 'viscosity', _VISCOSITY)} (law {over_temperature})"
     coefficient = _at_temperatures(oil, "pressure_viscosity", _PER_PRESSURE)

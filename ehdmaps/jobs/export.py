@@ -111,7 +111,7 @@ def _between(
 ) -> npt.NDArray[np.float64]:
     """Linear interpolation at one place along one axis."""
     if axis.size == 1:
-        return np.take(values, 0, along)
+        return np.asarray(np.take(values, 0, along))
     i = min(max(int(np.searchsorted(axis, at)) - 1, 0), axis.size - 2)
     share = (at - axis[i]) / (axis[i + 1] - axis[i])
     return np.asarray((1.0 - share) * np.take(values, i, along) + share * np.take(values, i + 1, along))

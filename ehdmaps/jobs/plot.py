@@ -157,7 +157,12 @@ def _page(sheet: _Sheet) -> Figure:
         _small_multiples(figure, sheet, temperatures, middle)
     scale = figure.add_axes((0.936, middle + 0.055, 0.011, 0.875 - middle - 0.055))
     bar = figure.colorbar(ScalarMappable(sheet.colours, "viridis"), cax=scale)
-    bar.set_label(f"entrainment speed, {SPEED.unit}", labelpad=2)
+    shown_speeds = [sheet.speeds[index] for index in _spread(sheet.speeds.size, MOST_CURVES)]
+    bar.set_ticks([speed for speed in shown_speeds if speed > 0.0], minor=False)
+    bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.2g}"))
+    bar.ax.yaxis.set_minor_locator(NullLocator())
+    bar.ax.tick_params(length=2.0, pad=1.5)
+    bar.set_label(f"entrainment speed, {SPEED.unit}", labelpad=1)
     _legend(figure, sheet)
     return figure
 
@@ -213,7 +218,9 @@ def _curves(axes: Axes, sheet: _Sheet, name: str, display: Display, place: tuple
         colour = _colour(sheet, index)
         dense = _dense(sheet, name, contact, temperature, index)
         if dense is None:
-            axes.plot(loads, values[:, index], color=colour, lw=width, marker="." if loads.size == 1 else None)
+            axes.plot(loads, values[:, index], color=colour, lw=width)
+            if loads.size == 1 or sheet.field is not None:
+                axes.plot(loads, values[:, index], ls="", marker=".", ms=1.6 * width, color=colour)
         else:
             axes.plot(LOAD.factor * dense[0], display.factor * dense[1], color=colour, lw=width)
             axes.plot(loads, values[:, index], ls="", marker=".", ms=1.6 * width, color=colour)
@@ -332,7 +339,8 @@ def _heading(figure: Figure, emap: EHDMap, shown: int) -> None:
     at = _drawn(TEMPERATURE.text(float(dataset["temperature"].values[shown])))
     what = emap.bearing.name if emap.bearing else f"line contact, R = {emap.contacts[0].radius * 1e3:.4g} mm"
     unverified = "" if emap.lubricant.verified else " (data not verified)"
-    _write(figure, 0.963, f"EHD contact map: {what}, oil {emap.lubricant.name}{unverified}", 13, "bold")
+    oil = emap.lubricant.name if emap.lubricant.name.endswith("oil") else f"oil {emap.lubricant.name}"
+    _write(figure, 0.963, f"EHD contact map: {what}, {oil}{unverified}", 13, "bold")
     _write(
         figure,
         0.928,
@@ -375,7 +383,7 @@ def _entries(sheet: _Sheet) -> list[Line2D | Patch]:
         Line2D([], [], color="black", lw=0.8, ls=(0, (4, 2)), label="dry (structural law alone)")
     ]
     if sheet.field is not None:
-        curve = "between the points (dots): films of the contact laws"
+        curve = "k, c, approach between the points (dots): films of the contact laws"
         entries.append(Line2D([], [], color="0.3", lw=1.0, marker=".", ms=3, label=curve))
     if sheet.extrapolated_from:
         where = f"viscosity extrapolated at some speed: above {fitted_pressure(dataset)}"
