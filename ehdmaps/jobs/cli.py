@@ -69,6 +69,16 @@ def parser() -> argparse.ArgumentParser:
         "--plot", metavar="FIG.png", help="openfoam: pressure, film and velocity profiles; also .pdf, .svg"
     )
 
+    export = commands.add_parser("export", help="curves over load as a table (csv)")
+    export.add_argument("map", metavar="MAP.nc")
+    export.add_argument("-o", "--output", metavar="CURVES.csv", help="default: the map's name with .csv")
+    export.add_argument("--speed", help='entrainment speed, such as "1.7 m/s"; default: all of the map')
+    export.add_argument("--temperature", help='of the oil, such as "40 degC"; default: all of the map')
+    export.add_argument(
+        "--contact", metavar="NAME", help="series | inner | outer | line; default: series, of a bare contact line"
+    )
+    export.add_argument("--points", metavar="N", type=_workers, default=200, help="loads of a curve; default: 200")
+
     compare = commands.add_parser("compare", help="differences between two maps")
     compare.add_argument("first", metavar="A.nc")
     compare.add_argument("second", metavar="B.nc")

@@ -1,35 +1,66 @@
-"""What a map file holds, in words."""
+"""What a map file holds, in words and in the units that engineers use."""
 
 from __future__ import annotations
 
-import json
+import re
 from collections.abc import Iterator
+from typing import Any
 
 import xarray as xr
 
-from ehdmaps.jobs.report import AXES, error_lines, law_lines, span, status_lines, value_lines
+from ehdmaps.errors import InputError
+from ehdmaps.jobs.report import (
+    AXES,
+    error_lines,
+    extrapolated_lines,
+    law_lines,
+    plain,
+    span,
+    status_lines,
+    value_lines,
+)
+from ehdmaps.maps import schema
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.records import record_from_json
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.units import FILM, LENGTH, PRESSURE, TEMPERATURE, Display
+
+SHOWN_TEMPERATURES = (313.15, 373.15)
+"""Where the oil's viscosity is shown [K]: those of its data sheet."""
+
+_VISCOSITY = Display("mPa s", 1e3)
+_PER_PRESSURE = Display("1/GPa", 1e9)
+_CALL = re.compile(r"\w+\((.*)\)")
 
 
-def describe(dataset: xr.Dataset, backbone: xr.Dataset | None, name: str) -> str:
+def describe(emap: EHDMap, name: str) -> str:
     """Return what `show` prints.
 
     Parameters
     ----------
-    dataset : xarray.Dataset
+    emap : EHDMap
         The map.
-    backbone : xarray.Dataset or None
-        Its group of refinement lines, if it has one.
     name : str
         Of the file.
+
+    Raises
+    ------
+    MapError
+        If its contacts, its bearing or its oil do not read.
     """
-    return "\n".join(_lines(dataset, backbone, name))
+    return "\n".join(_lines(emap, name))
 
 
-def _lines(dataset: xr.Dataset, backbone: xr.Dataset | None, name: str) -> Iterator[str]:
-    attributes = dataset.attrs
-    yield attributes.get("title", "EHD map")
-    created = attributes.get("created", "at an unknown time")
-    yield f"  file {name}, schema {attributes['schema_version']}, made {created}"
+def _lines(emap: EHDMap, name: str) -> Iterator[str]:
+    dataset, attributes = emap.dataset, emap.dataset.attrs
+    yield plain(attributes.get("title", "EHD map"))
+    created = plain(attributes.get("created", "at an unknown time"))
+    yield f"  file {plain(name)}, schema {attributes['schema_version']}, made {created}"
+    yield ""
+    yield from _geometry_lines(emap)
+    yield ""
+    yield from _oil_lines(emap.lubricant)
     yield ""
     yield f"axes ({dataset['status'].size} points)"
     yield f"  {'contact':20s} {dataset.sizes['contact']:5d}  {', '.join(map(str, dataset['contact'].values))}"
@@ -41,6 +72,7 @@ def _lines(dataset: xr.Dataset, backbone: xr.Dataset | None, name: str) -> Itera
     yield ""
     yield "statuses"
     yield from status_lines(dataset)
+    yield from extrapolated_lines(dataset)
     yield ""
     yield "accuracy of the points"
     yield from error_lines(dataset)
@@ -48,34 +80,99 @@ def _lines(dataset: xr.Dataset, backbone: xr.Dataset | None, name: str) -> Itera
     if law:
         yield ""
         yield from law
-    if backbone is not None:
+    if emap.backbone is not None:
         yield ""
-        yield "refinement lines of the contact law (group backbone)"
-        for dim, size in backbone.sizes.items():
-            yield f"  {dim!s:20s} {size:5d}"
-        yield f"  variables: {', '.join(str(variable) for variable in backbone.data_vars)}"
+        yield from _backbone_lines(emap.backbone)
     yield ""
-    yield "provenance (records in SI units)"
-    yield f"  job             {attributes.get('job_name', '')} (sha256 {attributes['job_sha256'][:12]}...)"
-    yield f"  solver          {attributes['solver']} {_record(attributes['solver_settings'])}"
-    if "openfoam_build" in attributes:
-        yield f"  OpenFOAM        {attributes['openfoam_version']}; ehlFoam built with {attributes['openfoam_build']}"
-    scaling = float(attributes.get("structural_scaling", 1.0))
+    yield from _provenance_lines(attributes)
+
+
+def _geometry_lines(emap: EHDMap) -> Iterator[str]:
+    """Yield bearing and contacts."""
+    if emap.bearing is None:
+        yield "geometry: a bare line contact"
+    else:
+        yield from _bearing_lines(emap.bearing)
+    for contact in emap.contacts:
+        depth = f", depth d* {LENGTH.text(contact.reference_depth)}" if contact.reference_depth else ""
+        shown = depth if contact.structural_law == "half_space" else ""
+        yield f"  {contact.name + ' contact':20s} reduced radius {LENGTH.text(contact.radius, 5)}{shown}"
+    material = emap.contacts[0].material
+    modulus = PRESSURE.text(material.youngs_modulus)
+    yield f"  {'material':20s} Young's modulus {modulus}, Poisson's ratio {material.poisson_ratio:g}"
+    scaling = float(emap.dataset.attrs.get("structural_scaling", 1.0))
     scaled = f", times {scaling:.6g} for the material" if scaling != 1.0 else ""
-    yield f"  structural law  {attributes['structural_law']}{scaled}"
-    yield f"  geometry        {_record(attributes['geometry']) or 'a bare contact'}"
-    for contact in json.loads(attributes["contacts"]):
-        yield f"  contact         {contact['name']}: reduced radius {contact['radius'] * 1e3:.5g} mm"
-    unverified = "" if int(attributes.get("lubricant_verified", 1)) else "NOT VERIFIED: "
-    yield f"  lubricant       {unverified}{_record(attributes['lubricant'])}"
-    yield f"  versions        {_record(attributes['package_versions'])}"
+    yield f"  {'structural law':20s} {plain(emap.dataset.attrs['structural_law'])}{scaled}"
 
 
-def _record(text: str) -> str:
-    """Return a JSON record as 'name value, name value'."""
-    record = json.loads(text)
-    if not record:
-        return ""
-    return ", ".join(
-        f"{key} {value:g}" if isinstance(value, float) else f"{key} {value}" for key, value in record.items()
+def _bearing_lines(bearing: BearingGeometry) -> Iterator[str]:
+    """Yield the dimensions of a bearing."""
+    yield f"bearing {plain(bearing.name)}"
+    inner, outer = LENGTH.text(bearing.inner_raceway_diameter, 5), LENGTH.text(bearing.outer_raceway_diameter, 5)
+    yield f"  {'raceway diameters':20s} {inner} inner, {outer} outer"
+    size = f"{LENGTH.text(bearing.roller_diameter, 5)} diameter, {LENGTH.text(bearing.roller_length, 5)} long"
+    yield f"  {'rollers':20s} {bearing.rollers}, {size}"
+    yield f"  {'diametral clearance':20s} {FILM.text(bearing.diametral_clearance)}"
+
+
+def _oil_lines(oil: Lubricant) -> Iterator[str]:
+    """Yield the oil: what a data sheet has, and by which laws it goes on."""
+    record = oil.record()
+    yield f"oil {plain(oil.name)}" + ("" if oil.verified else ": NOT VERIFIED")
+    over_temperature, over_pressure = record["viscosity_over_temperature"], record["viscosity_law"]
+    yield f"  {'viscosity':20s} {_at_temperatures(oil, 'viscosity', _VISCOSITY)} (law {over_temperature})"
+    coefficient = _at_temperatures(oil, "pressure_viscosity", _PER_PRESSURE)
+    limit = f", fitted up to {PRESSURE.text(oil.fitted_pressure)}" if oil.fitted_pressure < float("inf") else ""
+    yield f"  {'pressure-viscosity':20s} {coefficient} (law {over_pressure}{limit})"
+    slope = f", {oil.density_slope:+g} kg/m3 a K" if oil.density_slope else ""
+    yield f"  {'density':20s} {oil.density_15:.5g} kg/m3 at 15 degC{slope} (over pressure: {oil.density_law})"
+
+
+def _at_temperatures(oil: Lubricant, name: str, display: Display) -> str:
+    """Return a property of the oil at the temperatures of a data sheet; not where its laws break down."""
+    texts = []
+    for temperature in SHOWN_TEMPERATURES:
+        try:
+            state = oil.at(temperature)
+        except InputError:
+            continue
+        value = state.viscosity if name == "viscosity" else state.pressure_viscosity.pressure_viscosity
+        texts.append(f"{display.text(value)} at {TEMPERATURE.text(temperature)}")
+    return ", ".join(texts) or "not known at 40 and 100 degC"
+
+
+def _backbone_lines(backbone: xr.Dataset) -> Iterator[str]:
+    """Yield the size of the group of refinement lines."""
+    sizes = [backbone.sizes[name] for name in schema.BACKBONE_DIMS]
+    yield "refinement lines of the contact law (group backbone)"
+    solved = int((backbone["status"].values != schema.NOT_NEEDED).sum())
+    yield f"  {solved} points: {sizes[0]} loads about the damping valley, {sizes[1]} speeds, {sizes[2]} temperatures"
+
+
+def _provenance_lines(attributes: dict[str, Any]) -> Iterator[str]:
+    """Yield how the map came about."""
+    yield "provenance"
+    job = f"{plain(attributes.get('job_name', ''))} (sha256 {plain(attributes['job_sha256'])[:12]}...)"
+    yield f"  {'job':20s} {job.strip()}"
+    yield f"  {'solver':20s} {plain(attributes['solver'])}"
+    for key, value in record_from_json(attributes["solver_settings"], "solver_settings").items():
+        yield f"  {'':20s} {key.replace('_', ' ')} {_setting(value)}"
+    if "openfoam_build" in attributes:
+        version = plain(attributes.get("openfoam_version", "of an unknown version"))
+        yield f"  {'OpenFOAM':20s} {version}; ehlFoam built with {plain(attributes['openfoam_build'])}"
+    versions = record_from_json(attributes["package_versions"], "package_versions")
+    yield f"  {'versions':20s} {', '.join(f'{package} {version}' for package, version in versions.items())}"
+    sealed = (
+        f"as made (sha256 {attributes[schema.CHECKSUM][:12]}...)"
+        if schema.CHECKSUM in attributes
+        else ("may have been changed since: the map has no checksum")
     )
+    yield f"  {'content':20s} {sealed}"
+
+
+def _setting(value: object) -> str:
+    """Return a setting of a solver: numbers short, records as 'name value, name value'."""
+    if isinstance(value, float):
+        return f"{value:g}"
+    call = _CALL.fullmatch(str(value))
+    return plain(call[1].replace("=", " ").replace("_", " ") if call else value)

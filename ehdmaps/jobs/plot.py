@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import json
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +15,15 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocator
 
-from ehdmaps.jobs.report import span
+from ehdmaps.jobs.curves import curves, law_field
+from ehdmaps.jobs.report import fitted_pressure, plain, span
 from ehdmaps.maps import schema
-from ehdmaps.maps.records import contacts_from_json
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.records import record_from_json
 from ehdmaps.outputs import write_figure
 from ehdmaps.physics.solution import Status
 from ehdmaps.units import DAMPING, FILM, LOAD, SPEED, STIFFNESS, TEMPERATURE, Display
@@ -33,20 +38,67 @@ SHOWN_TEMPERATURE = 313.15
 _PANELS: tuple[tuple[str, str, Display], ...] = (
     ("stiffness", "stiffness k", STIFFNESS),
     ("damping", "damping c", DAMPING),
+    ("approach", "approach", FILM),
     ("central_film", "central film", FILM),
     ("minimum_film", "minimum film", FILM),
 )
 _SMALL = _PANELS[:2]
+_OF_LAWS = ("stiffness", "damping", "approach")
+"""Variables that are drawn from the films of contact laws, where a map has them between its points."""
+
+CURVE_POINTS = 400
+"""Loads of such a curve: the damping valley is a few per cent wide."""
+
+LINEAR_APPROACH = 1.0
+"""Approach [um] below which its axis is linear: it is negative where films are thicker than the bodies give way."""
+
 _FONT: Any = {"font.size": 7.5, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6}
 _BAD = "#c8102e"
+_LOGARITHMIC = ("stiffness", "damping", "central_film", "minimum_film")
+_ASYMPTOTE: Any = {"marker": "^", "ms": 2.8, "mfc": "white", "mew": 0.6}
+_BELOW: Any = {"marker": "v", "ms": 3.5}
+_FILLED: Any = {"marker": "o", "ms": 4, "mfc": "none", "mec": _BAD, "mew": 0.9}
+_LOST: Any = {"marker": "x", "ms": 4, "color": _BAD}
+_HATCH: Any = {"facecolor": "none", "edgecolor": "0.8", "hatch": "////", "lw": 0.0, "zorder": 0}
 
 
-def plot_map(dataset: xr.Dataset, output: Path) -> None:
+@dataclass(frozen=True)
+class _Sheet:
+    """The map and what its panels share."""
+
+    emap: EHDMap
+    field: FilmField | None
+
+    @property
+    def dataset(self) -> xr.Dataset:
+        """What the map holds."""
+        return self.emap.dataset
+
+    @property
+    def speeds(self) -> npt.NDArray[np.float64]:
+        """Entrainment speeds [m/s]."""
+        return np.asarray(self.dataset["entrainment_speed"].values, dtype=np.float64)
+
+    @cached_property
+    def colours(self) -> Normalize:
+        """The scale of the speed's colours; a standstill takes the colour of the lowest speed."""
+        low, high = _lowest(self.speeds), float(max(self.speeds.max(), 1e-6))
+        return LogNorm(low, high if high > low else 2 * low)
+
+    @cached_property
+    def extrapolated_from(self) -> dict[tuple[int, int], float]:
+        """Lowest load with an extrapolated viscosity [N/m], of the contacts and temperatures that have one."""
+        beyond = np.asarray(self.dataset["viscosity_extrapolated"].values.max(axis=2) > 0)
+        loads = self.dataset["load"].values
+        return {(i, k): float(loads[beyond[i, :, k]][0]) for i, k in zip(*np.nonzero(beyond.any(axis=1)), strict=True)}
+
+
+def plot_map(emap: EHDMap, output: Path) -> None:
     """Draw the page and write it.
 
     Parameters
     ----------
-    dataset : xarray.Dataset
+    emap : EHDMap
         The map.
     output : Path
         The picture; its ending decides the format (png, pdf, svg).
@@ -55,39 +107,40 @@ def plot_map(dataset: xr.Dataset, output: Path) -> None:
     ------
     InputError
         If it cannot be written, or the ending is not known.
+    MapError
+        If its contacts, its bearing or its oil do not read.
     """
     import matplotlib as mpl
 
     with mpl.rc_context(_FONT):
-        write_figure(_page(dataset), output, RESOLUTION)
+        write_figure(_page(_Sheet(emap, law_field(emap))), output, RESOLUTION)
 
 
-def _page(dataset: xr.Dataset) -> Figure:
+def _page(sheet: _Sheet) -> Figure:
     """Draw the page: a row of panels a contact, then small ones a temperature."""
-    figure = Figure(figsize=A4_LANDSCAPE)
+    figure, dataset = Figure(figsize=A4_LANDSCAPE), sheet.dataset
     temperatures = _spread(dataset.sizes["temperature"], MOST_TEMPERATURES)
     shown = int(np.argmin(np.abs(dataset["temperature"].values - SHOWN_TEMPERATURE)))
     contacts = dataset.sizes["contact"]
     small = len(temperatures) > 1
-    colours = _colours(dataset)
-    _heading(figure, dataset, shown)
+    _heading(figure, sheet.emap, shown)
 
     middle = 0.385 if small else 0.10
     grid = figure.add_gridspec(
         contacts,
         len(_PANELS),
-        left=0.06,
-        right=0.91,
+        left=0.057,
+        right=0.92,
         top=0.875,
         bottom=middle + 0.055,
-        wspace=0.27,
+        wspace=0.30,
         hspace=0.16,
     )
     for row in range(contacts):
         for column, (name, label, display) in enumerate(_PANELS):
             axes = figure.add_subplot(grid[row, column])
-            _curves(axes, dataset, name, display, (row, shown), colours)
-            axes.set_ylabel(f"{label}, {_drawn(display.unit)}", labelpad=2)
+            _curves(axes, sheet, name, display, (row, shown))
+            axes.set_ylabel(f"{label}, {_drawn(display.unit)}", labelpad=1)
             if row == 0:
                 axes.set_title(label, fontsize=8.5, fontweight="bold", pad=4)
             if row == contacts - 1:
@@ -102,31 +155,35 @@ def _page(dataset: xr.Dataset) -> Figure:
                     ha="right",
                 )
     if small:
-        _small_multiples(figure, dataset, temperatures, colours, middle)
-    scale = figure.add_axes((0.93, middle + 0.055, 0.011, 0.875 - middle - 0.055))
-    bar = figure.colorbar(ScalarMappable(colours, "viridis"), cax=scale)
-    bar.set_label(f"entrainment speed, {SPEED.unit}", labelpad=2)
-    _legend(figure, dataset)
+        _small_multiples(figure, sheet, temperatures, middle)
+    scale = figure.add_axes((0.936, middle + 0.055, 0.011, 0.875 - middle - 0.055))
+    bar = figure.colorbar(ScalarMappable(sheet.colours, "viridis"), cax=scale)
+    shown_speeds = [sheet.speeds[index] for index in _spread(sheet.speeds.size, MOST_CURVES)]
+    bar.set_ticks([speed for speed in shown_speeds if speed > 0.0], minor=False)
+    bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.2g}"))
+    bar.ax.yaxis.set_minor_locator(NullLocator())
+    bar.ax.tick_params(length=2.0, pad=1.5)
+    bar.set_label(f"entrainment speed, {SPEED.unit}", labelpad=1)
+    _legend(figure, sheet)
     return figure
 
 
-def _small_multiples(
-    figure: Figure, dataset: xr.Dataset, temperatures: list[int], colours: Normalize, top: float
-) -> None:
+def _small_multiples(figure: Figure, sheet: _Sheet, temperatures: list[int], top: float) -> None:
     """Draw stiffness and damping of the first contact at each temperature, on common axes."""
+    dataset = sheet.dataset
     grid = figure.add_gridspec(
         len(_SMALL),
         len(temperatures),
-        left=0.06,
-        right=0.91,
+        left=0.057,
+        right=0.92,
         top=top - 0.05,
-        bottom=0.095,
+        bottom=0.112,
         wspace=0.06,
         hspace=0.08,
     )
     first = str(dataset["contact"].values[0])
     figure.text(
-        0.06,
+        0.057,
         top - 0.012,
         f"{_contact_words(first)}, over temperature of the oil",
         fontsize=8.5,
@@ -137,7 +194,7 @@ def _small_multiples(
         for column, temperature in enumerate(temperatures):
             axes = figure.add_subplot(grid[row, column], sharey=left, sharex=left)
             left = left or axes
-            _curves(axes, dataset, name, display, (0, temperature), colours, width=0.7)
+            _curves(axes, sheet, name, display, (0, temperature), width=0.7)
             axes.tick_params(which="both", labelleft=column == 0, labelbottom=row == len(_SMALL) - 1)
             if row == 0:
                 heading = _drawn(TEMPERATURE.text(float(dataset["temperature"].values[temperature])))
@@ -149,85 +206,124 @@ def _small_multiples(
                 axes.set_xlabel(f"load, {LOAD.unit}", labelpad=1)
 
 
-def _curves(
-    axes: Axes,
-    dataset: xr.Dataset,
-    name: str,
-    display: Display,
-    place: tuple[int, int],
-    colours: Normalize,
-    width: float = 1.0,
-) -> None:
+def _curves(axes: Axes, sheet: _Sheet, name: str, display: Display, place: tuple[int, int], width: float = 1.0) -> None:
     """Draw one variable over load, one curve a speed, with marks on the points that are not converged."""
-    import matplotlib as mpl
-
     contact, temperature = place
+    dataset = sheet.dataset
     loads = LOAD.factor * dataset["load"].values
-    speeds = dataset["entrainment_speed"].values
     here = dataset.isel(contact=contact, temperature=temperature)
     values = display.factor * here[name].values
-    status, filled = here["status"].values, here["filled"].values.astype(bool)
-    for index in _spread(speeds.size, MOST_CURVES):
-        curve = np.where(values[:, index] > 0, values[:, index], np.nan)
-        colour = mpl.colormaps["viridis"](colours(max(speeds[index], _lowest(speeds))))
-        axes.plot(loads, curve, color=colour, lw=width, marker="." if loads.size == 1 else None)
-        asymptote = status[:, index] == int(Status.ASYMPTOTE)
-        below = values[:, index] <= 0
-        if below.any() and (values > 0).any():
-            low = np.full(np.count_nonzero(below), 0.03)
-            axes.plot(loads[below], low, ls="", marker="v", ms=3.5, color=colour, transform=axes.get_xaxis_transform())
-        axes.plot(loads[asymptote], curve[asymptote], ls="", marker="^", ms=2.8, mfc="white", mec=colour, mew=0.6)
-        axes.plot(
-            loads[filled[:, index]],
-            curve[filled[:, index]],
-            ls="",
-            marker="o",
-            ms=4,
-            mfc="none",
-            mec=_BAD,
-            mew=0.9,
-        )
+    if name != "approach":
+        values = np.where(values > 0, values, np.nan)
+    for index in _spread(sheet.speeds.size, MOST_CURVES):
+        colour = _colour(sheet, index)
+        dense = _dense(sheet, name, contact, temperature, index)
+        if dense is None:
+            axes.plot(loads, values[:, index], color=colour, lw=width)
+            if loads.size == 1 or sheet.field is not None:
+                axes.plot(loads, values[:, index], ls="", marker=".", ms=1.6 * width, color=colour)
+        else:
+            axes.plot(LOAD.factor * dense[0], display.factor * dense[1], color=colour, lw=width)
+            axes.plot(loads, values[:, index], ls="", marker=".", ms=1.6 * width, color=colour)
+        _marks(axes, here, name, index, loads, values[:, index], colour)
     if name == "stiffness":
-        dry = contacts_from_json(dataset.attrs["contacts"])[contact].structural_compliance(dataset["load"].values)
+        dry = sheet.emap.contacts[contact].structural_compliance(dataset["load"].values)
         axes.plot(loads, display.factor / dry, color="black", lw=0.8, ls=(0, (4, 2)), zorder=1)
-    holes = ~np.isin(status, [int(known) for known in Status if known.usable]) & ~filled
-    lost = loads[holes.any(axis=1)]
-    axes.plot(
-        lost,
-        np.full(lost.size, 0.03),
-        ls="",
-        marker="x",
-        ms=4,
-        color=_BAD,
-        transform=axes.get_xaxis_transform(),
-    )
-    _scales(axes, loads, values, name)
+    _scales(axes, loads, display.factor * here[name].values, name)
+    if place in sheet.extrapolated_from:
+        start = LOAD.factor * sheet.extrapolated_from[place]
+        axes.axvspan(start, max(loads[-1], start), **_HATCH)
+
+
+def _dense(
+    sheet: _Sheet, name: str, contact: int, temperature: int, speed: int
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]] | None:
+    """Loads [N/m] and values [SI] between the solved points; None where nothing is known there."""
+    u, axis = float(sheet.speeds[speed]), sheet.dataset["load"].values
+    if sheet.field is None or name not in _OF_LAWS or u == 0.0 or axis.size == 1:
+        return None
+    loads = np.geomspace(axis[0], axis[-1], CURVE_POINTS)
+    celsius = float(sheet.dataset["temperature"].values[temperature])
+    found = curves(sheet.field, (sheet.emap.contacts[contact],), loads, u, celsius)
+    return loads, getattr(found, name)
+
+
+def _marks(
+    axes: Axes,
+    here: xr.Dataset,
+    name: str,
+    index: int,
+    loads: npt.NDArray[np.float64],
+    curve: npt.NDArray[np.float64],
+    colour: Any,
+) -> None:
+    """Mark the points of one curve that are no plain solutions."""
+    status, filled = here["status"].values[:, index], here["filled"].values[:, index].astype(bool)
+    below = here[name].values[:, index] <= 0
+    if name != "approach" and below.any() and (here[name].values > 0).any():
+        low = np.full(np.count_nonzero(below), 0.03)
+        axes.plot(loads[below], low, ls="", **_BELOW, color=colour, transform=axes.get_xaxis_transform())
+    asymptote = status == int(Status.ASYMPTOTE)
+    axes.plot(loads[asymptote], curve[asymptote], ls="", mec=colour, **_ASYMPTOTE)
+    axes.plot(loads[filled], curve[filled], ls="", **_FILLED)
+    lost = ~np.isin(status, [int(known) for known in Status if known.usable]) & ~filled
+    low = np.full(np.count_nonzero(lost), 0.03)
+    axes.plot(loads[lost], low, ls="", **_LOST, transform=axes.get_xaxis_transform())
+
+
+def _colour(sheet: _Sheet, index: int) -> Any:
+    """Return the colour of a speed."""
+    import matplotlib as mpl
+
+    return mpl.colormaps["viridis"](sheet.colours(max(sheet.speeds[index], _lowest(sheet.speeds))))
 
 
 def _scales(axes: Axes, loads: npt.NDArray[np.float64], values: npt.NDArray[np.float64], name: str) -> None:
-    """Set log scales where there is something positive to show, and a quiet grid."""
+    """Set log scales where there is something to show, and a quiet grid."""
     axes.set_xscale("log")
     if loads.size > 1:
         axes.set_xlim(loads[0], loads[-1])
-    positive = values[values > 0]
-    if positive.size:
-        axes.set_yscale("log")
-        if name == "stiffness":
-            # The film's tail at light load runs over many decades in which nobody reads a stiffness.
-            axes.set_ylim(max(positive.min() * 0.7, positive.max() * 1e-3), positive.max() * 2.0)
-        axes.yaxis.set_major_locator(LogLocator(numticks=7))
-        if np.ptp(np.log10(positive)) > 2:
-            axes.yaxis.set_minor_locator(NullLocator())
-        else:
-            axes.yaxis.set_minor_locator(LogLocator(subs=(2, 5)))
-            axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axes.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    known = values[np.isfinite(values)]
+    positive = known[known > 0]
+    if name == "approach" and known.size:
+        _approach_scale(axes, known)
+    elif positive.size:
+        _positive_scale(axes, positive, name)
     else:
-        axes.annotate("zero", (0.5, 0.5), xycoords="axes fraction", ha="center", color="0.4")
+        axes.annotate("zero" if known.size else "no solution", (0.5, 0.5), xycoords="axes fraction", ha="center")
         axes.set_yticks([])
     axes.xaxis.set_major_locator(LogLocator(numticks=7))
     axes.grid(color="0.88", lw=0.4)
     axes.tick_params(length=2.5, pad=1.5)
+
+
+def _approach_scale(axes: Axes, known: npt.NDArray[np.float64]) -> None:
+    """Logarithmic both ways from zero, linear about it."""
+    axes.set_yscale("symlog", linthresh=LINEAR_APPROACH, linscale=0.6)
+    axes.set_ylim(
+        *(1.5 * limit if abs(limit) > LINEAR_APPROACH else 1.1 * limit for limit in (known.min(), known.max()))
+    )
+    decades = 10.0 ** np.arange(0, 8)
+    axes.yaxis.set_major_locator(FixedLocator([*(-decades[::-1]), 0.0, *decades]))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.axhline(0.0, color="0.6", lw=0.5, zorder=0)
+
+
+def _positive_scale(axes: Axes, positive: npt.NDArray[np.float64], name: str) -> None:
+    """Logarithmic, with more numbers where there is less than two decades."""
+    axes.set_yscale("log")
+    # The film's tail at light load, and the law's floor in the valley, run over decades in which nobody reads.
+    low, high = float(positive.min()), float(positive.max())
+    floor = {"stiffness": 1e-3 * high, "damping": 1e-5 * high}.get(name, low)
+    axes.set_ylim(max(low * 0.7, floor), high * 2.0)
+    axes.yaxis.set_major_locator(LogLocator(numticks=7))
+    if np.ptp(np.log10(positive)) > 2:
+        axes.yaxis.set_minor_locator(NullLocator())
+    else:
+        axes.yaxis.set_minor_locator(LogLocator(subs=(2, 5)))
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axes.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 
 
 def _keep_corners_free(axes: Axes) -> None:
@@ -238,54 +334,77 @@ def _keep_corners_free(axes: Axes) -> None:
     axes.xaxis.set_major_locator(FixedLocator((inside if inside.size else decades).tolist()))
 
 
-def _heading(figure: Figure, dataset: xr.Dataset, shown: int) -> None:
+def _heading(figure: Figure, emap: EHDMap, shown: int) -> None:
     """Write the title and, below it, what the page shows."""
-    attributes = dataset.attrs
-    lubricant, geometry = json.loads(attributes["lubricant"]), json.loads(attributes["geometry"])
-    contacts = contacts_from_json(dataset.attrs["contacts"])
+    dataset, attributes = emap.dataset, emap.dataset.attrs
     at = _drawn(TEMPERATURE.text(float(dataset["temperature"].values[shown])))
-    what = geometry["name"] if geometry else f"line contact, R = {contacts[0].radius * 1e3:.4g} mm"
-    unverified = "" if int(attributes.get("lubricant_verified", 1)) else " (data not verified)"
-    figure.text(
-        0.06,
-        0.963,
-        f"EHD contact map: {what}, oil {lubricant['name']}{unverified}",
-        fontsize=13,
-        fontweight="bold",
-        va="center",
-    )
-    figure.text(
-        0.06,
+    what = emap.bearing.name if emap.bearing else f"line contact, R = {emap.contacts[0].radius * 1e3:.4g} mm"
+    unverified = "" if emap.lubricant.verified else " (data not verified)"
+    oil = emap.lubricant.name if emap.lubricant.name.endswith("oil") else f"oil {emap.lubricant.name}"
+    _write(figure, 0.963, f"EHD contact map: {what}, {oil}{unverified}", 13, "bold")
+    _write(
+        figure,
         0.928,
         f"Per unit length of contact, at {at} over load and entrainment speed.  "
-        f"Solver {attributes['solver']}, structural law {attributes['structural_law']}.  "
+        f"Solver {plain(attributes['solver'])}, structural law {plain(attributes['structural_law'])}.  "
         f"Mapped: {span(dataset['load'].values, LOAD)}, {span(dataset['entrainment_speed'].values, SPEED)}, "
         f"{_drawn(span(dataset['temperature'].values, TEMPERATURE))}.",
-        fontsize=8,
-        va="center",
+        8,
     )
 
 
-def _legend(figure: Figure, dataset: xr.Dataset) -> None:
-    """Explain the marks, and write how the map was made."""
-    entries = [
-        Line2D([], [], color="black", lw=0.8, ls=(0, (4, 2)), label="dry (structural law alone)"),
-        Line2D([], [], ls="", marker="^", ms=4, mfc="white", mec="0.3", label="asymptote: a stated limit"),
-        Line2D([], [], ls="", marker="v", ms=4, color="0.3", label="zero or negative"),
-        Line2D(
-            [],
-            [],
-            ls="",
-            marker="o",
-            ms=4.5,
-            mfc="none",
-            mec=_BAD,
-            label="no solution, filled from neighbours",
-        ),
-        Line2D([], [], ls="", marker="x", ms=4, color=_BAD, label="no solution at some speed"),
+def _write(
+    figure: Figure, height: float, text: str, size: float, weight: str = "normal", colour: str = "black"
+) -> None:
+    """Write a line of the page; texts of a map are no formulas."""
+    figure.text(0.057, height, text, fontsize=size, fontweight=weight, color=colour, va="center", parse_math=False)
+
+
+def _legend(figure: Figure, sheet: _Sheet) -> None:
+    """Explain what is drawn, and only that, and write how the map was made."""
+    entries = _entries(sheet)
+    figure.legend(
+        handles=entries,
+        loc="lower left",
+        bbox_to_anchor=(0.047, 0.022),
+        ncols=3,
+        frameon=False,
+        fontsize=7.5,
+        columnspacing=2.5,
+    )
+    _write(figure, 0.014, _facts(sheet.dataset), 6.5, colour="0.35")
+
+
+def _entries(sheet: _Sheet) -> list[Line2D | Patch]:
+    """Entries of the legend."""
+    dataset = sheet.dataset
+    status, filled = dataset["status"].values, dataset["filled"].values.astype(bool)
+    lost = ~np.isin(status, [int(known) for known in Status if known.usable])
+    entries: list[Line2D | Patch] = [
+        Line2D([], [], color="black", lw=0.8, ls=(0, (4, 2)), label="dry (structural law alone)")
     ]
-    figure.legend(handles=entries, loc="lower left", bbox_to_anchor=(0.05, 0.024), ncols=5, frameon=False, fontsize=7.5)
-    figure.text(0.06, 0.016, _facts(dataset), fontsize=6.5, color="0.35", va="center")
+    if sheet.field is not None:
+        curve = "k, c, approach between the points (dots): films of the contact laws"
+        entries.append(Line2D([], [], color="0.3", lw=1.0, marker=".", ms=3, label=curve))
+    if sheet.extrapolated_from:
+        where = f"viscosity extrapolated at some speed: above {fitted_pressure(dataset)}"
+        entries.append(Patch(label=where, **_HATCH))
+    if (status == int(Status.ASYMPTOTE)).any():
+        entries.append(Line2D([], [], ls="", mec="0.3", label=f"asymptote: {_limits(dataset)}", **_ASYMPTOTE))
+    if any((dataset[name].values <= 0).any() and (dataset[name].values > 0).any() for name in _LOGARITHMIC):
+        entries.append(Line2D([], [], ls="", color="0.3", label="zero or negative", **_BELOW))
+    if (lost & filled).any():
+        entries.append(Line2D([], [], ls="", label="no solution, filled from neighbours", **_FILLED))
+    if (lost & ~filled).any():
+        entries.append(Line2D([], [], ls="", label="no solution", **_LOST))
+    return entries
+
+
+def _limits(dataset: xr.Dataset) -> str:
+    """Say which limit the points stand for that are one; their first words, where there are several."""
+    reasons = dataset["reason"].values[dataset["status"].values == int(Status.ASYMPTOTE)]
+    causes = sorted({plain(reason).split(":")[0] for reason in reasons if reason})
+    return _drawn("; ".join(causes[:2])) if causes else "a stated limit"
 
 
 def _facts(dataset: xr.Dataset) -> str:
@@ -296,18 +415,20 @@ def _facts(dataset: xr.Dataset) -> str:
         f"{np.count_nonzero(status == int(known))} {known.word}" for known in Status if (status == int(known)).any()
     ]
     filled = int(np.count_nonzero(dataset["filled"].values))
+    if filled:
+        counts.append(f"{filled} filled")
     errors = []
     for name in ("film_compliance_error", "damping_error"):
         known = dataset[name].values[np.isfinite(dataset[name].values)]
         if known.size:
             label = name.removesuffix("_error").replace("_", " ")
             errors.append(f"{label} {float(np.quantile(known, 0.95)):.1g}")
-    versions = json.loads(attributes["package_versions"])
+    versions = record_from_json(attributes["package_versions"], "package_versions")
+    estimates = f"Estimated relative error (95 % of points): {', '.join(errors)}.  " if errors else ""
     return (
-        f"{status.size} points: {', '.join(counts)}; {filled} filled.  "
-        f"Estimated relative error (95 % of points): {', '.join(errors) or 'none'}.  "
-        f"ehdmaps {versions.get('ehdmaps', '')}, {attributes.get('created', '')[:10]}, "
-        f"job {attributes.get('job_name', '')} {attributes['job_sha256'][:12]}"
+        f"{status.size} points: {', '.join(counts)}.  {estimates}"
+        f"ehdmaps {versions.get('ehdmaps', '')}, {plain(attributes.get('created', ''))[:10]}, "
+        f"job {plain(attributes.get('job_name', ''))} {plain(attributes['job_sha256'])[:12]}"
     )
 
 
@@ -319,13 +440,6 @@ def _contact_words(name: str) -> str:
 def _drawn(text: str) -> str:
     """Return a unit with the letters that a terminal may lack."""
     return text.replace("um", "µm").replace("degC", "°C")
-
-
-def _colours(dataset: xr.Dataset) -> Normalize:
-    """Return the scale of the speed's colours; a standstill takes the colour of the lowest speed."""
-    speeds = dataset["entrainment_speed"].values
-    low, high = _lowest(speeds), float(max(speeds.max(), 1e-6))
-    return LogNorm(low, high if high > low else 2 * low)
 
 
 def _lowest(speeds: npt.NDArray[np.float64]) -> float:

@@ -15,6 +15,7 @@ from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import BackbonePlan, plan_backbone
 from ehdmaps.physics.solution import ContactSolver, Status
 
+
 @dataclass(frozen=True)
 class Refinement:
     """Plan of a backbone and its tasks, one a line and in the plan's order."""

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from ehdmaps.maps.records import record_from_json
 from ehdmaps.physics.solution import Status
 from ehdmaps.units import DAMPING, FILM, LOAD, PRESSURE, SPEED, STIFFNESS, TEMPERATURE, Display
 
@@ -42,7 +43,7 @@ def status_lines(dataset: xr.Dataset) -> Iterator[str]:
     Reasons that differ in their numbers only count as one cause; the first is shown.
     """
     status = dataset["status"].values.ravel()
-    reasons = np.array([str(reason) for reason in dataset["reason"].values.ravel()], dtype=object)
+    reasons = np.array([plain(reason) for reason in dataset["reason"].values.ravel()], dtype=object)
     causes = np.array([_NUMBER.sub("#", reason) for reason in reasons], dtype=object)
     for known in Status:
         here = status == int(known)
@@ -74,6 +75,29 @@ def span(values: npt.NDArray[np.float64], display: Display) -> str:
     """Return the range of an axis in words."""
     low, high = display.value(float(np.min(values))), display.value(float(np.max(values)))
     return f"{low:.4g} {display.unit}" if low == high else f"{low:.4g} to {high:.4g} {display.unit}"
+
+
+def extrapolated_lines(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield how many points lie beyond the pressures to which the viscosity was fitted, and where; or nothing."""
+    beyond = dataset["viscosity_extrapolated"].values.astype(bool)
+    if beyond.any():
+        share = f"{np.count_nonzero(beyond)} points, {100.0 * beyond.mean():.2f} %"
+        yield f"  viscosity extrapolated: {share}, with pressures above {fitted_pressure(dataset)}"
+        yield f"              {_corner(dataset, beyond.ravel())}"
+
+
+def fitted_pressure(dataset: xr.Dataset) -> str:
+    """Say up to which pressure the viscosity of the map's oil was fitted."""
+    oil = record_from_json(dataset.attrs["lubricant"], "lubricant")
+    value = oil.get("fitted_pressure")
+    if not isinstance(value, (int, float)):
+        return "those of its data"
+    return f"{PRESSURE.text(value)}, to which {oil.get('name')} was fitted"
+
+
+def plain(text: object) -> str:
+    """Return a text without control characters, which a terminal would obey."""
+    return "".join(character if character.isprintable() else "?" for character in str(text))
 
 
 def error_lines(dataset: xr.Dataset) -> Iterator[str]:
@@ -118,5 +142,5 @@ def law_lines(dataset: xr.Dataset) -> Iterator[str]:
     if law:
         yield "accuracy of the contact laws, at random points against fresh solves"
         for key, value in law.items():
-            text = f"{value:.2%}" if key.endswith("_within_bar") else value
+            text = f"{value:.2%}" if key.endswith("_within_bar") else plain(value)
             yield f"  {key.removeprefix(_LAW_PREFIX).replace('_', ' '):36s} {text}"

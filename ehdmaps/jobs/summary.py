@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.jobs.generate import Generated
-from ehdmaps.jobs.report import error_lines, holes, law_lines, status_lines
+from ehdmaps.jobs.report import error_lines, extrapolated_lines, holes, law_lines, status_lines
 
 
 def summary(generated: Generated, output: Path) -> str:
@@ -33,6 +33,7 @@ def _lines(generated: Generated, output: Path) -> Iterator[str]:
     if sweep.damaged:
         yield f"store: {sweep.damaged} damaged entries were solved again"
     yield from status_lines(dataset)
+    yield from extrapolated_lines(dataset)
     yield "accuracy"
     yield from error_lines(dataset)
     yield from law_lines(dataset)

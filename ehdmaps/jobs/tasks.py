@@ -65,7 +65,7 @@ class LineTask:
 
     @cached_property
     def key(self) -> str:
-        """Hash of everything that changes the numbers, and of their names; the structural law does not change a film."""
+        """Hash of what changes the numbers, and of their names; the structural law does not change a film."""
         record = {
             "kind": "line",
             "radius": self.contact.radius,

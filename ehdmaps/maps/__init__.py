@@ -25,6 +25,7 @@ elementary     exp and log for compiled code
 lines          splines and states in compiled code
 kernel         the law at run time, one point at a time, for compiled code
 bulk           the law at run time, many points
+excursions     calls outside the map
 law            `ContactLaw`, `LawAtPoint`
 =============  =======================================================================================
 

@@ -19,6 +19,7 @@ from ehdmaps.maps.compilation import (
     structural_parameters,
 )
 from ehdmaps.maps.dry import DryField
+from ehdmaps.maps.excursions import Axis, Excursion, Range
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE, ApproachTable, CountArray, LawTable, Point
 from ehdmaps.physics._values import FloatArray
@@ -95,6 +96,7 @@ class ContactLaw:
         self.speed_range = field.speed_range
         self.temperature_range = field.temperature_range
         self.counts: CountArray = np.zeros(4, dtype=np.int64)
+        self._excursions: dict[tuple[str, str], Excursion] = {}
         self._lubricant = lubricant
         self._dry = field.dry
         self._field = DryField(field) if field.dry else field
@@ -123,9 +125,42 @@ class ContactLaw:
         """How many points were outside the map so far, by cause."""
         return {cause: int(self.counts[index]) for cause, index in _CAUSES.items()}
 
+    @property
+    def excursions(self) -> tuple[Excursion, ...]:
+        """Where points were outside the map so far: axis, side, number, the farthest one, and where the map ends.
+
+        Of calls of the law and of `LawAtPoint`, and of what compiled callers report by `note_outside`.
+        """
+        return tuple(self._excursions[key] for key in sorted(self._excursions))
+
+    def note_outside(self, axis: Axis, values: npt.ArrayLike) -> None:
+        """Take part in `excursions` with values that a caller of the compiled functions met.
+
+        Parameters
+        ----------
+        axis : {"load", "entrainment_speed", "temperature"}
+            Which axis of the map.
+        values : float or array
+            [N/m], [m/s] or [K]; those within the map are passed over.
+        """
+        for found in self._ranges[axis].excursions(np.atleast_1d(np.asarray(values, dtype=np.float64))):
+            key = found.axis, found.side
+            self._excursions[key] = self._excursions[key] + found if key in self._excursions else found
+
+    @property
+    def _ranges(self) -> dict[str, Range]:
+        """What is mapped, by axis."""
+        (cold, hot), lowest = self.temperature_range, -np.inf
+        return {
+            "load": Range("load", lowest, self.load_range[1]),
+            "entrainment_speed": Range("entrainment_speed", lowest, self.speed_range[1]),
+            "temperature": Range("temperature", cold, hot),
+        }
+
     def reset_counts(self) -> None:
         """Start counting again from zero."""
         self.counts[:] = 0
+        self._excursions.clear()
 
     def __call__(
         self,
@@ -252,37 +287,44 @@ class ContactLaw:
         if counts[NOT_FINITE]:
             _check_finite(named)
         self.counts += counts
-        if self.outside != "error" or not np.any(counts[[LOAD, SPEED, TEMPERATURE]]):
+        if not np.any(counts[[LOAD, SPEED, TEMPERATURE]]):
             return
+        problems = self._noted(counts, named, flat)
+        if self.outside == "error":
+            raise OutsideMapError(
+                "\n".join(f"contact law {self.kind!r}, {problem}" for problem in problems)
+                + "\nmake a map that reaches there, or take a law with outside='clamp' or outside='asymptote'"
+            )
+
+    def _noted(self, counts: CountArray, named: Mapping[str, FloatArray], flat: Sequence[FloatArray]) -> list[str]:
+        """Note what was outside, and say it; nothing but the extremes is worked out here, the counts are known."""
         problems = []
         if counts[LOAD]:
             problems.append(self._load_problem(int(counts[LOAD]), flat))
-        if counts[SPEED]:
-            fastest = float(np.max(np.abs(named["entrainment_speed"])))
-            problems.append(f"entrainment_speed: got {fastest:.6g} m/s; mapped: up to {self.speed_range[1]:.6g} m/s")
-        if counts[TEMPERATURE]:
-            low, high = self.temperature_range
-            values = named["temperature"]
-            farthest = values.flat[int(np.argmax(np.maximum(low - values, values - high)))]
-            problems.append(f"temperature: got {farthest:.6g} K; mapped: {low:.6g} to {high:.6g} K")
-        raise OutsideMapError(
-            "\n".join(f"contact law {self.kind!r}, {problem}" for problem in problems)
-            + "\nmake a map that reaches there, or take a law with outside='clamp' or outside='asymptote'"
-        )
+        for axis, cause in (("entrainment_speed", SPEED), ("temperature", TEMPERATURE)):
+            if not counts[cause]:
+                continue
+            full = flat[2 if axis == "entrainment_speed" else 3] if len(flat) == 5 else named[axis].reshape(-1)
+            self.note_outside(axis, full)  # type: ignore[arg-type]
+            found = self._ranges[axis].excursions(full)
+            problems += [f"{axis}: got {one.text.removeprefix(axis).strip()}" for one in found]
+        return problems
 
     def _load_problem(self, count: int, flat: Sequence[FloatArray]) -> str:
-        """Say which load is too high."""
-        highest = f"mapped: up to {self.load_range[1]:.6g} N/m"
+        """Note the loads that are too high, and say which."""
+        highest = self.load_range[1]
         if len(flat) < 5:
-            return f"load: got more than that in the outer contact; {highest}"
+            return f"load: got more than is mapped in the outer contact, above the map, which ends at {highest:.6g} N/m"
         forces, counts = np.empty((3, flat[0].size)), np.zeros(4, dtype=np.int64)
         table = self.table if np.any(flat[4]) else self._plain
         at_rest = np.zeros_like(flat[0])
         _evaluate_many(table, (flat[0], at_rest, *flat[2:]), forces, counts)
+        self.note_outside("load", forces[0] + flat[4])
         worst = int(np.argmax(forces[0]))
         return (
-            f"load: got about {forces[0, worst]:.6g} N/m at the approach {flat[0][worst]:.6g} m, "
-            f"{flat[2][worst]:.6g} m/s, {flat[3][worst]:.6g} K ({count} of {flat[0].size} points above); {highest}"
+            f"load: got about {forces[0, worst]:.6g} N/m above the map, which ends at {highest:.6g} N/m, "
+            f"at the approach {flat[0][worst]:.6g} m, {flat[2][worst]:.6g} m/s, {flat[3][worst]:.6g} K "
+            f"({count} of {flat[0].size} points above)"
         )
 
 

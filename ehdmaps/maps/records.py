@@ -15,7 +15,6 @@ from ehdmaps.physics.pressure_viscosity import Barus, Fva3, PressureViscosityLaw
 from ehdmaps.physics.solids import Material
 from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw, VogelViscosity
 
-
 _UNREADABLE = (ValueError, KeyError, TypeError, AttributeError, ArithmeticError, RecursionError, InputError)
 """What a record that is none stumbles over."""
 
@@ -207,6 +206,6 @@ def _check_named(name: object) -> None:
 def _broken(attribute: str, error: Exception) -> MapError:
     """Say that an attribute does not read."""
     return MapError(
-        f"map, attribute {attribute}: does not read ({type(error).__name__}: {str(error):.300}); "
+        f"map, attribute {attribute}: does not read ({type(error).__name__}: {error!s:.300}); "
         "expected the record that `ehdmaps generate` writes; generate the map again"
     )

@@ -126,9 +126,7 @@ BACKBONE_COORDINATES = (
 )
 
 BACKBONE_VARIABLES = (
-    Variable(
-        "film_offset", "m", "dry minus lubricated approach at equal load, reference contact", dims=BACKBONE_DIMS
-    ),
+    Variable("film_offset", "m", "dry minus lubricated approach at equal load, reference contact", dims=BACKBONE_DIMS),
     Variable(
         "film_compliance",
         "m2 N-1",

@@ -84,7 +84,7 @@ def check_backbone(group: xr.Dataset) -> None:
     problems = []
     if np.any(usable & ~solved):
         problems.append(
-            f"{np.count_nonzero(usable & ~solved)} solved points without a number, or with a film that is not positive, "
+            f"{np.count_nonzero(usable & ~solved)} solved points without a number or with no positive film, "
             f"{_lines(group, usable & ~solved)}"
         )
     between = np.logical_or.accumulate(solved, 0) & np.logical_or.accumulate(solved[::-1], 0)[::-1]
@@ -96,9 +96,7 @@ def check_backbone(group: xr.Dataset) -> None:
             f"{np.count_nonzero(clusters)} unsolved points beside one another within a line, {_lines(group, clusters)}"
         )
     if problems:
-        raise MapError(
-            "\n".join(f"backbone of the map: has {problem}; generate the map again" for problem in problems)
-        )
+        raise MapError("\n".join(f"backbone of the map: has {problem}; generate the map again" for problem in problems))
 
 
 def _lines(group: xr.Dataset, where: Mask) -> str:

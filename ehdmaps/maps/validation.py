@@ -114,7 +114,7 @@ def _grid_problems(dataset: xr.Dataset) -> Iterator[str]:
     if "contact" in dataset.coords:
         names = tuple(str(name) for name in np.atleast_1d(dataset["contact"].values))
         if names not in schema.CONTACT_NAMES:
-            yield f"contact holds {', '.join(names)!r:.60}; expected inner, outer or line"
+            yield f"contact holds {', '.join(names):.60}; expected inner, outer or line"
 
 
 def _backbone_problems(group: xr.Dataset) -> Iterator[str]:

@@ -19,6 +19,7 @@ moes                dimensionless groups and back: M and L; U, W and G
 sensitivity         what an error of alpha makes of the film
 films               published film formulas: rigid, Dowson-Higginson, Pan-Hamrock, Moes
 damping             published damping formulas: rolling film, squeeze film, Dietl
+peak                what the largest of sampled pressures lacks to the peak
 thermal             reduction of the film by inlet shear heating
 solution            `FilmSolution`, `ContactSolution`, `Status`, and the Protocol `ContactSolver`
 closed_form         the solvers `hertz` and `formula`

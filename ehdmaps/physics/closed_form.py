@@ -146,9 +146,9 @@ class FormulaSolver:
             film_offset_error=0.0,
             film_compliance_error=0.0,
             loss_compliance_error=0.0,
-        central_film_error=0.0,
-        minimum_film_error=0.0,
-        max_pressure_error=0.0,
+            central_film_error=0.0,
+            minimum_film_error=0.0,
+            max_pressure_error=0.0,
             viscosity_extrapolated=peak > state.fitted_pressure,
         )
 

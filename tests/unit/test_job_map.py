@@ -11,15 +11,18 @@ from ehdmaps.errors import MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.assemble import assemble
 from ehdmaps.jobs.compare import compare
+from ehdmaps.jobs.curves import curves, law_field
 from ehdmaps.jobs.describe import describe
+from ehdmaps.jobs.generate import generate
 from ehdmaps.jobs.plot import plot_map
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.report import holes
+from ehdmaps.jobs.summary import summary
 from ehdmaps.jobs.tasks import LONGEST_LINE, line_tasks, solver_version
 from ehdmaps.jobs.tradeoff import Contestant, contestants, measure, table
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
-from ehdmaps.maps.emap import open_map
+from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.validation import validate
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
 from ehdmaps.physics.operating_point import OperatingPoint
@@ -204,12 +207,107 @@ def test_a_map_file_comes_back_whole(tmp_path):
     assert open_map(path).backbone is None
 
 
-def test_a_group_is_written_with_the_map(tmp_path):
-    backbone = xr.Dataset({"loss": ("node", [1.0, 2.0])})
-    write_map(made(job_of()), tmp_path / "a.nc", {schema.BACKBONE_GROUP: backbone})
-    xr.testing.assert_identical(open_map(tmp_path / "a.nc").backbone, backbone)
-    text = describe(open_map(tmp_path / "a.nc").dataset, open_map(tmp_path / "a.nc").backbone, "a.nc")
-    assert "refinement lines of the contact law (group backbone)" in text
+class WithBackbone(FormulaSolver):
+    """Closed formulas that ask for a backbone."""
+
+    wants_backbone = True
+
+
+@pytest.fixture(scope="module")
+def with_backbone(tmp_path_factory):
+    """A whole map with its group, without a solve; pressures on both sides of 0.6 GPa."""
+    path = tmp_path_factory.mktemp("map") / "a.nc"
+    return generate(job_of(), path, workers=1, solver=WithBackbone()), path
+
+
+def test_a_group_is_written_with_the_map(with_backbone):
+    emap = open_map(with_backbone[1])
+    assert set(emap.backbone.variables) == {
+        entry.name for entry in schema.BACKBONE_COORDINATES + schema.BACKBONE_VARIABLES
+    }
+    assert "refinement lines of the contact law (group backbone)" in describe(emap, "a.nc")
+
+
+def test_extrapolated_viscosity_is_said_everywhere(with_backbone, tmp_path, monkeypatch):
+    """FVA 3 was fitted up to 0.6 GPa, which the formulas' Hertz pressure passes between 31 and 100 N/mm."""
+    generated, path = with_backbone
+    emap = open_map(path)
+    beyond = emap.dataset["max_pressure"].values > 0.6e9
+    assert np.array_equal(emap.dataset["viscosity_extrapolated"].values.astype(bool), beyond)
+    assert 0 < beyond.sum() < beyond.size
+    share = (
+        f"viscosity extrapolated: {beyond.sum()} points, {100.0 * beyond.mean():.2f} %, with pressures above 0.6 GPa"
+    )
+    for text in (describe(emap, "a.nc"), summary(generated, path)):
+        assert share in text
+        assert "inner and outer, 100 to 1000 N/mm, 0.5 to 2 m/s, 20 to 40 degC" in text
+    assert "viscosity extrapolated at some speed: above 0.6 GPa" in drawn(emap, tmp_path, monkeypatch)
+    light = EHDMap(made(job_of(TEXT.replace("1000 N/mm", "10 N/mm"))))
+    assert "extrapolated" not in describe(light, "a.nc") + drawn(light, tmp_path, monkeypatch)
+
+
+def test_curves_between_the_points_are_those_of_the_laws(with_backbone):
+    emap = open_map(with_backbone[1])
+    loads = np.geomspace(2e3, 9e5, 30)
+    by_name = {contact.name: contact for contact in emap.contacts}
+    for kind, names in (("inner", ["inner"]), ("series", ["inner", "outer"])):
+        found = curves(law_field(emap), tuple(by_name[name] for name in names), loads, 0.7, 305.0)
+        w, k, c = emap.law(kind)(found.approach, 0.0, 0.7, 305.0)
+        # 1e-4, 1e-3, 1e-2: tabulation of the law, largest next to the lowest loads
+        np.testing.assert_allclose(w, loads, rtol=1e-4)
+        np.testing.assert_allclose(k, found.stiffness, rtol=1e-3)
+        np.testing.assert_allclose(c, found.damping, rtol=1e-2)
+
+
+def drawn(emap, folder, monkeypatch):
+    """Texts of the page."""
+    import matplotlib as mpl
+
+    monkeypatch.setitem(mpl.rcParams, "svg.fonttype", "none")
+    plot_map(emap, folder / "page.svg")
+    return (folder / "page.svg").read_text()
+
+
+def test_the_page_explains_only_what_it_shows(with_backbone, tmp_path, monkeypatch):
+    text = drawn(open_map(with_backbone[1]), tmp_path, monkeypatch)
+    for part in ("approach, µm", "between the points (dots): films of the contact laws", "dry (structural law alone)"):
+        assert part in text
+    for part in ("asymptote", "zero or negative", "no solution", "filled"):
+        assert part not in text
+    assert "between the points" not in drawn(EHDMap(made(job_of())), tmp_path, monkeypatch)
+
+
+def test_describe_has_the_units_of_engineers(with_backbone):
+    text = describe(open_map(with_backbone[1]), "a.nc")
+    for part in (
+        "raceway diameters    52 mm inner, 80 mm outer",
+        "rollers              12, 14 mm diameter, 15 mm long",
+        "inner contact        reduced radius 5.5152 mm",
+        "Young's modulus 210 GPa, Poisson's ratio 0.3",
+        "84.54 mPa s at 40 degC, 9.861 mPa s at 100 degC",
+        "22.36 1/GPa at 40 degC",
+        "fitted up to 0.6 GPa",
+        "film formula moes",
+        "content              as made (sha256 ",
+    ):
+        assert part in text
+    assert "{" not in text
+    assert "GridShape" not in text
+    settings = json.dumps({"grid_shape": "GridShape(inlet=1.0, exit_width=0.45)", "density": 6.5})
+    text = describe(EHDMap(made(job_of()).assign_attrs(solver_settings=settings)), "a.nc")
+    assert "grid shape inlet 1.0, exit width 0.45" in text
+    assert "content              may have been changed since: the map has no checksum" in text
+
+
+def test_error_estimates_of_films_and_pressure_are_in_the_map():
+    names = ("central_film_error", "minimum_film_error", "max_pressure_error")
+    dry = made(job_of(), HertzSolver())
+    assert all((dry[name] == 0.0).all() and dry[name].attrs["units"] == "1" for name in names)
+    holey = made(job_of(), Holey((job_of().loads[3],)))
+    assert all(int(np.isnan(holey[name]).sum()) == 4 for name in names)
+    assert "\n  max pressure                        0" in describe(EHDMap(dry), "a.nc")
+    older = EHDMap(dry.drop_vars(list(names)))
+    assert "\n  max pressure " not in describe(older, "a.nc").split("accuracy")[1]
 
 
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), RuntimeError("NetCDF: HDF error")])
@@ -279,7 +377,7 @@ def test_validate_refuses_broken_axes(change, message):
 
 def test_describe_says_what_is_in_the_map():
     job = job_of()
-    text = describe(made(job, Holey((job.loads[3], job.loads[0]))), None, "a.nc")
+    text = describe(EHDMap(made(job, Holey((job.loads[3], job.loads[0])))), "a.nc")
     for part in (
         "axes (84 points)",
         "load                     7  1 to 1000 N/mm",
@@ -289,15 +387,14 @@ def test_describe_says_what_is_in_the_map():
         "inner and outer, 1 to 31.62 N/mm, 1 m/s, 20 to 40 degC",
         "8 are isolated and filled from their neighbours",
         "estimated relative error       median       95 %    largest",
-        "solver          holey",
-        "inner: reduced radius 5.5152 mm",
-        "vogel_factor 6.2e-05",
+        "solver               holey",
+        "(law vogel)",
     ):
         assert part in text
 
 
 def test_describe_warns_of_an_oil_without_a_source():
-    assert "NOT VERIFIED" in describe(made(job_of(TEXT.replace("FVA3", "Spirax MA 80W"))), None, "a.nc")
+    assert "NOT VERIFIED" in describe(EHDMap(made(job_of(TEXT.replace("FVA3", "Spirax MA 80W")))), "a.nc")
 
 
 def test_compare_finds_the_difference_and_its_place():
@@ -340,7 +437,7 @@ def test_compare_refuses_maps_without_common_points():
 @pytest.mark.parametrize("text", [TEXT, LINE, TEXT.replace("points = 7", "points = 2")])
 @pytest.mark.parametrize("solver", [None, HertzSolver(), Holey((1e3, 1e4, 31622.776601683792), version="1")])
 def test_every_kind_of_map_can_be_drawn(tmp_path, text, solver):
-    plot_map(made(job_of(text), solver), tmp_path / "a.png")
+    plot_map(EHDMap(made(job_of(text), solver)), tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
 
 
@@ -348,7 +445,7 @@ def test_the_page_names_what_it_shows(tmp_path, monkeypatch):
     import matplotlib as mpl
 
     monkeypatch.setitem(mpl.rcParams, "svg.fonttype", "none")
-    plot_map(made(job_of(), Holey((1e6,))), tmp_path / "a.svg")
+    plot_map(EHDMap(made(job_of(), Holey((1e6,)))), tmp_path / "a.svg")
     text = (tmp_path / "a.svg").read_text()
     for part in (
         "EHD contact map: NU308, oil FVA3",
@@ -360,8 +457,7 @@ def test_the_page_names_what_it_shows(tmp_path, monkeypatch):
         "load, N/mm",
         "20 °C",
         "no solution, filled from neighbours",
-        "80 converged, 4 stagnated; 4 filled",
-        "zero or negative",
+        "80 converged, 4 stagnated, 4 filled",
     ):
         assert part in text
 

@@ -302,9 +302,15 @@ def test_kernel_counts_what_is_outside():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((1e-3, 0.0, 1.0, 330.0), r"'series', load: got about .* N/m at the approach 0\.001 m.*up to 1e\+06 N/m"),
-        ((1e-6, 0.0, [1.0, -5.0], 330.0), r"entrainment_speed: got 5 m/s; mapped: up to 3 m/s\n.*outside='clamp'"),
-        ((1e-6, 0.0, 1.0, 290.0), r"temperature: got 290 K; mapped: 313\.15 to 343\.15 K"),
+        (
+            (1e-3, 0.0, 1.0, 330.0),
+            r"'series', load: got about .* above the map, which ends at 1e\+06 N/m, at .* 0\.001 m",
+        ),
+        (
+            (1e-6, 0.0, [1.0, -5.0], 330.0),
+            r"entrainment_speed: got 5 m/s above the map, .* at 3 m/s\n.*outside='clamp'",
+        ),
+        ((1e-6, 0.0, 1.0, 290.0), r"temperature: got 290 K below the map, which begins at 313\.15 K"),
         ((1e-3, 0.0, 9.0, 400.0), r"load.*\n.*entrainment_speed.*\n.*temperature: got 400 K"),
         ((1e-3, 0.0, 1.0, 330.0, 50.0), "load: got about"),
     ],
@@ -317,6 +323,48 @@ def test_outside_the_map_is_an_error_by_default(arguments, message):
     assert sum(series.outside_counts.values()) >= 1
     series.reset_counts()
     assert series.outside_counts == {"load": 0, "entrainment_speed": 0, "temperature": 0}
+
+
+def test_what_was_outside_is_told_by_axis_and_side_with_the_farthest_value():
+    clamped = law(outside="clamp")
+    clamped.reset_counts()
+    clamped(1e-6, 0.0, [1.0, 3.0, 0.0], [330.0, 313.15, 343.15])
+    assert clamped.excursions == ()
+    clamped(1e-6, 0.0, [[5.0], [-9.0]], [290.0, 330.0, 400.0])
+    clamped(1e-6, 0.0, -4.0, 300.0)
+    told = [(one.axis, one.side, one.calls, one.extreme, one.limit) for one in clamped.excursions]
+    assert told == [
+        ("entrainment_speed", "above", 7, 9.0, 3.0),
+        ("temperature", "above", 2, 400.0, 343.15),
+        ("temperature", "below", 3, 290.0, 313.15),
+    ]
+    counts = clamped.outside_counts
+    assert (counts["entrainment_speed"], counts["temperature"]) == (7, 5)
+    assert clamped.excursions[2].text == "temperature 290 K below the map, which begins at 313.15 K"
+    point = clamped.at(1.0, 330.0)
+    deltas = [approach_of(point, load) for load in (9e5, 1.2e6, 1.5e6)]
+    clamped.reset_counts()
+    point(deltas, 1e-3)
+    clamped(deltas[1], 0.0, 1.0, 330.0)
+    (load,) = clamped.excursions
+    assert (load.axis, load.side, load.calls, load.limit) == ("load", "above", 3, 1e6)
+    assert load.extreme == pytest.approx(1.5e6, rel=1e-6)  # solution of the approach
+    clamped.note_outside("load", [2e6, 5e5])
+    assert clamped.excursions[0].text == "load 2e+06 N/m above the map, which ends at 1e+06 N/m"
+    assert clamped.excursions[0].calls == 4
+    clamped.reset_counts()
+    assert clamped.excursions == ()
+
+
+def test_a_centrifugal_load_counts_for_the_outer_contact():
+    clamped = law(outside="clamp")
+    clamped.reset_counts()
+    point = clamped.at(1.0, 330.0, 400.0)
+    point(approach_of(point, 1e6 + 5e3), 0.0)
+    (load,) = clamped.excursions
+    assert clamped.outside_counts["load"] == load.calls == 1
+    assert load.extreme == pytest.approx(1e6 + 5e3 + 400.0, rel=1e-4)
+    clamped.reset_counts()
 
 
 def test_outside_is_an_error_at_a_point_too():
@@ -454,10 +502,10 @@ def test_maps_of_one_speed_or_temperature_work(single):
     assert one(3e-6, 1e-5, 1.0, 330.0) == pytest.approx(law()(3e-6, 1e-5, 1.0, 330.0), rel=2e-4)
     assert one(3e-6, 0.0, 0.0, 330.0)[0] == pytest.approx(law()(3e-6, 0.0, 0.0, 330.0)[0], rel=1e-10)
     if single != "temperature":
-        with pytest.raises(OutsideMapError, match="mapped: up to 1 m/s"):
+        with pytest.raises(OutsideMapError, match=r"1\.1 m/s above the map, which ends at 1 m/s"):
             one(3e-6, 0.0, 1.1, 330.0)
     if single != "speed":
-        with pytest.raises(OutsideMapError, match="mapped: 330 to 330 K"):
+        with pytest.raises(OutsideMapError, match="331 K above the map, which ends at 330 K"):
             one(3e-6, 0.0, 1.0, 331.0)
 
 

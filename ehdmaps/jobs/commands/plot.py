@@ -15,5 +15,5 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     path = Path(arguments.map)
     output = Path(arguments.output) if arguments.output else path.with_suffix(".png")
     check_outputs([Output("-o", output, FIGURE)], [path])
-    plot_map(open_map(path).dataset, output)
+    plot_map(open_map(path), output)
     return f"{output}: written", 0

@@ -12,5 +12,4 @@ from ehdmaps.maps.emap import open_map
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Describe the map."""
     path = Path(arguments.map)
-    emap = open_map(path)
-    return describe(emap.dataset, emap.backbone, path.name), 0
+    return describe(open_map(path), path.name), 0

@@ -206,6 +206,7 @@ def _table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, lengt
         shown = "".join(f"{_shown(value):>14s}" for value in values)
         lines.append(f"  {label:22s} {unit:12s} {shown}")
     lines.extend(f"  {record['contact']}: {record['reason']}" for record in records if record["reason"])
+    lines.extend(f"  {record['contact']}: {note}" for record in records if (note := _extrapolated(job, record)))
     return "\n".join(lines)
 
 
@@ -215,6 +216,14 @@ def _speed(job: Job, point: OperatingPoint) -> str:
     if job.bearing is None:
         return speed
     return f"{speed} (inner ring {RPM.text(job.bearing.inner_speed(point.entrainment_speed), 6)}, outer ring fixed)"
+
+
+def _extrapolated(job: Job, record: dict[str, Any]) -> str:
+    """Say that the pressure of a contact lies beyond the viscosity's fit; empty where it does not."""
+    if not record["viscosity_extrapolated"]:
+        return ""
+    limit = PRESSURE.text(job.lubricant.fitted_pressure)
+    return f"viscosity extrapolated: pressure above {limit}, to which it was fitted"
 
 
 def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple[str, str, list[Any]]]:

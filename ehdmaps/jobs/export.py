@@ -1,0 +1,117 @@
+"""Curves of a map as a table for spreadsheets and other programs: SI, units in the header, a comment line first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.jobs.curves import curves
+from ehdmaps.jobs.report import plain
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.usable import check_backbone, check_usable
+from ehdmaps.outputs import MARK
+
+COLUMNS = (
+    "entrainment_speed [m/s]",
+    "temperature [K]",
+    "load [N/m]",
+    "approach [m]",
+    "film_offset [m]",
+    "stiffness [N/m2]",
+    "damping [N s/m2]",
+)
+FILMS = ("central_film", "minimum_film")
+"""Films of one contact, which the map has at its points only: between them they are interpolated."""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """What is written.
+
+    Attributes
+    ----------
+    contact : str
+        "series", both contacts of a roller, or a contact of the map.
+    speeds, temperatures : tuple of float
+        [m/s], [K]; every pair is a curve.
+    points : int
+        Loads of a curve, evenly over their logarithm from the lowest to the highest of the map.
+    """
+
+    contact: str
+    speeds: tuple[float, ...]
+    temperatures: tuple[float, ...]
+    points: int
+
+
+def table(emap: EHDMap, chosen: Chosen, name: str) -> str:
+    """Return the table: one line a load, curve after curve.
+
+    Parameters
+    ----------
+    emap : EHDMap
+        The map.
+    chosen : Chosen
+        Curves within its ranges.
+    name : str
+        Of the map file, for the comment.
+
+    Raises
+    ------
+    MapError
+        If no contact law can be made from the map.
+    """
+    return "\n".join(_lines(emap, chosen, name)) + "\n"
+
+
+def _lines(emap: EHDMap, chosen: Chosen, name: str) -> Iterator[str]:
+    """Yield comment, header and rows."""
+    names = ("inner", "outer") if chosen.contact == "series" else (chosen.contact,)
+    contacts = tuple(contact for contact in emap.contacts if contact.name in names)
+    check_usable(emap.dataset, names)
+    if emap.backbone is not None:
+        check_backbone(emap.backbone)
+    field = emap.film_field(names)
+    axis = emap.dataset["load"].values
+    loads = np.geomspace(axis[0], axis[-1], chosen.points if axis.size > 1 else 1)
+    title = plain(emap.dataset.attrs.get("title", "EHD map")).replace('"', "'")
+    of = "inner and outer contact in series" if chosen.contact == "series" else f"{chosen.contact} contact"
+    yield f"# {MARK}: {plain(name)}, {title}; {of}, per unit length of contact; films of the contact laws"
+    films = FILMS if len(contacts) == 1 else ()
+    yield ",".join([*COLUMNS, *(f"{film} [m]" for film in films)])
+    for temperature in chosen.temperatures:
+        for speed in chosen.speeds:
+            found = curves(field, contacts, loads, speed, temperature)
+            columns = [loads, found.approach, found.film_offset, found.stiffness, found.damping]
+            columns += [_film(emap, film, contacts[0].name, loads, speed, temperature) for film in films]
+            for row in zip(*columns, strict=True):
+                yield ",".join(f"{value:.10g}" for value in (speed, temperature, *row))
+
+
+def _film(
+    emap: EHDMap, film: str, contact: str, loads: npt.NDArray[np.float64], speed: float, temperature: float
+) -> npt.NDArray[np.float64]:
+    """Film over load: between the map's points linear in the logarithms of film, load and speed, and in temperature."""
+    dataset = emap.dataset.sel(contact=contact)
+    moving = dataset["entrainment_speed"].values > 0.0
+    values = dataset[film].transpose("load", "entrainment_speed", "temperature").values[:, moving]
+    if speed == 0.0 or not np.any(values):
+        return np.zeros(loads.size)
+    speeds, temperatures = dataset["entrainment_speed"].values[moving], dataset["temperature"].values
+    at_speed = _between(np.log(values), np.log(speeds), float(np.log(speed)), 1)
+    at_point = _between(at_speed, temperatures, temperature, 1)
+    return np.asarray(np.exp(np.interp(np.log(loads), np.log(dataset["load"].values), at_point)))
+
+
+def _between(
+    values: npt.NDArray[np.float64], axis: npt.NDArray[np.float64], at: float, along: int
+) -> npt.NDArray[np.float64]:
+    """Linear interpolation at one place along one axis."""
+    if axis.size == 1:
+        return np.asarray(np.take(values, 0, along))
+    i = min(max(int(np.searchsorted(axis, at)) - 1, 0), axis.size - 2)
+    share = (at - axis[i]) / (axis[i + 1] - axis[i])
+    return np.asarray((1.0 - share) * np.take(values, i, along) + share * np.take(values, i + 1, along))
