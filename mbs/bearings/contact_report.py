@@ -134,6 +134,17 @@ def outside_map(law: Law, load: float, entrainment_speed: float, temperature: fl
     ]
 
 
+def fading(law: Law, entrainment_speed: float) -> str:
+    """A sentence where the speed is below the map, so that the film fades to the dry contact; empty otherwise."""
+    if not isinstance(law, ContactLaw) or not 0.0 < abs(entrainment_speed) < law.speed_range[0] * (1.0 - 1e-9):
+        return ""
+    return (
+        f"entrainment speed of {SPEED.text(abs(entrainment_speed))} is below the lowest mapped one, "
+        f"{SPEED.text(law.speed_range[0])}: stiffness and damping fade to those of dry contacts from there on, and "
+        "films are continued by Moes' formula"
+    )
+
+
 def _near(value: float) -> float:
     """Round-off of a number from a file."""
     return 1e-9 * abs(value)

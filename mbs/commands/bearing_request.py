@@ -36,6 +36,9 @@ OIL, CELSIUS_40, ROUGHNESS = "FVA3", 313.15, 0.3e-6
 """Assumed where nothing is given: the oil, its temperature [K], the combined rms roughness [m]."""
 
 MOST_POINTS, MOST_SLICES = 500, 1000
+MOST_SLICES_IN_ALL = 5_000_000
+"""Of all rollers at all points: half a gigabyte."""
+
 _LOADS, _SPEEDS = (1e-3, 1e7), (0.0, 1e5 * math.pi / 30.0)
 _TEMPERATURES, _ROUGHNESSES = (213.15, 573.15), (1e-9, 1e-4)
 
@@ -111,6 +114,11 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     speeds = _values("--speed", arguments.speed, "rad/s", _SPEEDS, RPM, problems)
     if len(loads) * len(speeds) > MOST_POINTS:
         problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
+    if _all_slices(given, arguments.slices) * len(loads) * len(speeds) > MOST_SLICES_IN_ALL:
+        problems.append(
+            f"--slices: got {short(arguments.slices)} for all rollers at {len(loads) * len(speeds)} points; allowed: "
+            f"{MOST_SLICES_IN_ALL} slices in all; take fewer slices or points"
+        )
     temperature = _one("--temperature", arguments.temperature, "K", _TEMPERATURES, TEMPERATURE, CELSIUS_40, problems)
     roughness = _one("--roughness", arguments.roughness, "m", _ROUGHNESSES, MICROMETRE, ROUGHNESS, problems)
     direction = _direction(arguments.direction, problems)
@@ -149,6 +157,11 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
             assumed=_assumed(arguments, given, emap),
         ),
     )
+
+
+def _all_slices(given: _Given | None, slices: str) -> int:
+    """Slices of all rollers of a bearing; 0 where either is wrong."""
+    return given.geometry.rollers * int(slices) if given is not None and slices.isdecimal() and len(slices) < 10 else 0
 
 
 def _assumed(arguments: argparse.Namespace, given: _Given, emap: EHDMap | None) -> tuple[str, ...]:

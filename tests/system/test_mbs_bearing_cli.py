@@ -181,6 +181,11 @@ BAD = (
     ("N1014", ["--clearance", "9.5 mm"], "--clearance: bearing 'N1014', diametral_clearance: got 0.0095 m"),
     ("NU308", ["--profile", "izo"], "--profile: got 'izo' (did you mean 'iso'?); allowed: iso, straight"),
     ("NU308", ["--slices", "0"], "--slices: got '0'; allowed: a whole number from 1 to 1000"),
+    (
+        "N1014",
+        ["--slices", "1000", "--load", "1 N", "9 N", "300"],
+        "--slices: got '1000' for all rollers at 300 points; allowed: 5000000 slices in all",
+    ),
     ("NU308", ["--law", "hurtz"], "--law: got 'hurtz' (did you mean 'hertz'?); allowed: hertz, formula, map"),
     ("NU308", ["--law", "map"], "--law: got 'map' without a map"),
     ("NU308", ["--map", "no.nc"], "--map: no.nc: cannot be read"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import doctest
 import math
 
 import numpy as np
@@ -16,9 +17,10 @@ from mbs.bearing_point import bearing_point, bearing_points
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.contact_report import outside_map
+from mbs.bearings.contact_report import fading, outside_map
 from mbs.bearings.films import FormulaFilms
 from mbs.errors import AnalysisError
+from mbs.output import bearing_text
 from mbs.scene_reader import read_scene
 from mbs.statics import equilibrium
 from tests.unit.mbs_cases import map_law
@@ -129,6 +131,15 @@ def test_outside_the_map_is_said_by_axis_and_value():
     assert outside_map(laws.hertz(Bearing.named("NU308")), 1e9, 1e3, 1e3) == []
 
 
+def test_a_film_that_fades_is_said():
+    law = map_law()
+    slow = law.speed_range[0]
+    assert fading(law, slow) == fading(law, 0.0) == fading(laws.hertz(Bearing.named("NU308")), 1e-3) == ""
+    assert fading(law, 0.5 * slow).startswith(
+        f"entrainment speed of {0.5 * slow:.4g} m/s is below the lowest mapped one, {slow:.4g} m/s: stiffness"
+    )
+
+
 @pytest.mark.parametrize("load", [(0.0, 0.0), (math.nan, 1.0), (1.0,), (math.inf, 0.0)])
 def test_loads_that_are_none_are_refused(load):
     with pytest.raises(InputError, match=r"bearing point, load: got .* N; allowed: two finite numbers, y and z"):
@@ -154,3 +165,8 @@ def test_the_point_is_that_of_a_scene():
 def test_a_point_cannot_be_changed():
     with pytest.raises(dataclasses.FrozenInstanceError):
         dry_point("NU308", (1e3, 0.0)).speed = 0.0
+
+
+def test_examples_in_the_docstrings():
+    failed, tried = doctest.testmod(bearing_text)
+    assert (failed, tried > 0) == (0, True)
