@@ -154,7 +154,8 @@ class MapFilms:
 
     The ratios of central and minimum film to Moes' central film, and of the largest pressure to that of Hertz, are read
     on the lines of the map, linearly in ln(load) at the same Moes number M, and taken linearly in ln(entrainment speed)
-    and temperature between the lines. Outside the map they are those of its edge.
+    and temperature between the lines. Outside the map they are those of its edge; the temperature is held there,
+    as a law with the policy `clamp` holds it.
 
     Attributes
     ----------
@@ -187,6 +188,8 @@ class MapFilms:
 
     def state(self, side: int, load: FloatArray, entrainment_speed: float, temperature: float) -> ContactState:
         """Pressure and films from the map; see `FilmSource`."""
+        kelvins = self.emap.dataset["temperature"].values
+        temperature = float(np.clip(temperature, kelvins[0], kelvins[-1]))
         plain = self._formula.state(side, load, entrainment_speed, temperature)
         loaded = load > 0.0
         if entrainment_speed == 0.0 or not np.any(loaded):

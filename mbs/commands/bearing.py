@@ -56,5 +56,5 @@ def _law(request: BearingRequest) -> Law:
     return laws.hertz(request.bearing)
 
 
-FORMULA_LOADS = (100.0, 1e7)
-"""Loads for which the law of the formula is made [N/m]; beyond 4 GPa in any bearing of steel."""
+FORMULA_LOADS = (100.0, 1e8)
+"""Loads for which the law of the formula is made [N/m]; far beyond 4 GPa in any bearing of steel."""

@@ -9,9 +9,11 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
+from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import FILM, PRESSURE
 from mbs.assembly import Model
 from mbs.bearings.contact_report import BearingContacts, bearing_contacts, overload
+from mbs.bearings.films import DryContacts
 from mbs.bearings.roller_element import ring_matrices
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_limits, heading, outside_at, ring_motions, write
@@ -76,13 +78,16 @@ def _contacts(model: Model, balance: Equilibrium, index: int) -> BearingContacts
     """Pressures and films of a bearing."""
     bearing, motion = ring_motions(model, balance.displacement)[index]
     operation = balance.operation
-    return bearing_contacts(
-        model.films[bearing.name],
+    point = (
         bearing.rollers(motion, operation),
         bearing.entrainment_speed(operation),
         bearing.temperature,
         bearing.centrifugal_load(operation),
     )
+    try:
+        return bearing_contacts(model.films[bearing.name], *point)
+    except InputError:  # the oil has no viscosity at this temperature, where a law is held at its edge
+        return bearing_contacts(DryContacts(bearing.bearing.geometry.contacts(STEEL, "iso16281")), *point)
 
 
 def _contact_words(contacts: BearingContacts) -> str:

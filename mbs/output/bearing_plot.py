@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
+from matplotlib.ticker import MaxNLocator
 
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import PRESSURE
@@ -80,6 +81,7 @@ def _rollers(polar: PolarAxes, point: BearingPoint) -> None:
         arrowprops={"arrowstyle": "-|>", "color": _COLOURS[1], "lw": 1.6},
     )
     polar.set_ylim(0.0, 1.25 * highest)
+    polar.yaxis.set_major_locator(MaxNLocator(4))
     polar.set_rlabel_position(math.degrees(angle) + 180.0)
     polar.set_thetagrids(
         [0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0], ["y", "45°", "z", "135°", "180°", "225°", "270°", "315°"]
@@ -88,7 +90,7 @@ def _rollers(polar: PolarAxes, point: BearingPoint) -> None:
     polar.grid(color="0.85", lw=0.5)
     polar.set_axisbelow(True)
     polar.set_title(
-        f"load of the rollers, N (highest {highest:.4g} N, {point.loaded} of {rollers.load.size} above 1 % of it)\n"
+        f"load of the rollers, N\nhighest {highest:.5g} N, {point.loaded} of {rollers.load.size} above 1 % of it\n"
         "red: direction of the load on the inner ring",
         fontsize=9,
     )
@@ -116,7 +118,7 @@ def _slices(panels: Sequence[Axes], point: BearingPoint) -> None:
     panels[2].set_xlabel("place along the roller, mm")
     _static_limit(panels[1], point.contacts.hertz_pressure)
     for panel in panels:
-        panel.set_ylim(bottom=0.0)
+        panel.set_ylim(0.0, 1.1 * panel.get_ylim()[1])
         _grid(panel)
     if films and point.entrainment_speed > 0.0:
         # The thick films at the unloaded ends would hide the others.
@@ -223,7 +225,9 @@ def _title(figure: Figure, description: BearingDescription, words: str, problems
     heading = "\n".join(line.strip() for line in bearing_heading(description))
     lines = _micro(heading).replace(" degC", " °C").replace(" deg ", "° ").splitlines()
     lines += [words] if words else []
-    figure.suptitle("\n".join(part for line in lines for part in textwrap.wrap(line, _WIDE)), fontsize=9.5)
+    figure.suptitle(
+        "\n".join(part for line in lines for part in textwrap.wrap(line, _WIDE, break_on_hyphens=False)), fontsize=9.5
+    )
     if problems:
         # One of a kind: the numbers differ from point to point.
         kinds = {without_numbers(problem): problem for problem in problems}

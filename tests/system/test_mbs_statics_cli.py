@@ -78,6 +78,17 @@ def test_films_where_the_law_knows_them(here, capsys, formula_map, law):
         np.testing.assert_allclose(data["central_film"].values[0, 0], films[0], rtol=1e-4)
 
 
+@pytest.mark.parametrize("law", ["map", "formula"])
+def test_temperatures_without_a_viscosity_have_no_films(here, capsys, formula_map, law):
+    name = scene(here, ('temperature = "40 degC"', 'temperature = "-30 degC"'))
+    options = ("--map", formula_map) if law == "map" else ("--law", "formula")
+    status, out, _ = run(capsys, "statics", name, *options)
+    assert status == 1
+    assert "warning: bearing_left: lies outside the map" in out
+    # The map's films are those of its edge, as its law is.
+    assert ("film down to" in out) == (law == "map")
+
+
 def test_overload_is_no_silent_equilibrium(here, capsys):
     name = scene(here, ('"0 N", "100 N", "100 N"', '"0 N", "1e6 N", "0 N"'))
     status, out, _ = run(capsys, "statics", name, "-o", "a.nc", "--plot", "a.png")

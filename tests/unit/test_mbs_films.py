@@ -66,10 +66,13 @@ def test_films_by_formula_are_those_of_the_solver_formula(side, speed):
 def test_a_map_of_the_formula_gives_the_formula_everywhere(tmp_path):
     films = MapFilms(a_map(tmp_path, "formula"))
     loads = np.array([0.0, 1e3, 50e3, 77e3, 500e3])  # the second and the last outside the map
-    for speed, kelvin in ((1.0, 313.15), (2.0, 320.0), (9.0, 350.0)):
+    for speed, kelvin in ((1.0, 313.15), (2.0, 320.0), (9.0, 333.15)):
         got, wanted = (source.state(1, loads, speed, kelvin) for source in (films, FormulaFilms(CONTACTS, OIL)))
         np.testing.assert_allclose(got.central_film, wanted.central_film, rtol=1e-9)  # digits of the file's contacts
         np.testing.assert_allclose(got.max_pressure, wanted.max_pressure, rtol=1e-9)
+    # Colder than the map: its edge.
+    got, wanted = films.state(0, loads, 2.0, 250.0), FormulaFilms(CONTACTS, OIL).state(0, loads, 2.0, 313.15)
+    np.testing.assert_allclose(got.central_film, wanted.central_film, rtol=1e-9)
     at_rest = films.state(0, loads, 0.0, 313.15)
     np.testing.assert_array_equal(at_rest.central_film[1:], 0.0)
 
