@@ -19,6 +19,7 @@ from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.bearings.roller_element import RollerElement, roller_body
@@ -49,6 +50,8 @@ class Model:
         In the order of the scene; where rollers are bodies, the same with massless rollers, to look at.
     gears : tuple of GearMesh
         In the order of the scene.
+    films : mapping of str to FilmSource
+        What knows pressures and films of the contacts, by bearing.
     """
 
     scene: Scene
@@ -56,6 +59,7 @@ class Model:
     law: str
     bearings: tuple[BearingElement, ...]
     gears: tuple[GearMesh, ...]
+    films: Mapping[str, FilmSource]
 
     @property
     def operation(self) -> Operation:
@@ -134,7 +138,8 @@ def assemble(scene: Scene, law: str | None = None, emap: EHDMap | None = None, c
             elements.append(plain)
     gears = tuple(_meshing(pair, scene.bodies) for pair in scene.gears)
     system = System((*scene.bodies, *rollers), scene.springs, scene.loads, (*elements, *gears))
-    return Model(scene, system, _words(chosen, scene, emap), tuple(bearings), gears)
+    films = {entry.name: _films(chosen, entry.bearing, scene, emap) for entry in bearings}
+    return Model(scene, system, _words(chosen, scene, emap), tuple(bearings), gears, films)
 
 
 def find_problems(
@@ -147,7 +152,7 @@ def find_problems(
         if clearance is not None:
             _with_clearance(entry, clearance, problems)
         if emap is not None and chosen == "map":
-            problems += _geometry_problems(entry, emap)
+            problems += geometry_problems(f"bearing {entry.name!r}", entry.geometry, emap)
     try:
         plain = System(scene.bodies, scene.springs, scene.loads)
     except InputError as error:
@@ -229,22 +234,30 @@ def _with_clearance(entry: SceneBearing, clearance: float, problems: list[str]) 
     return dataclasses.replace(entry, geometry=geometry)
 
 
-def _geometry_problems(entry: SceneBearing, emap: EHDMap) -> list[str]:
-    """In what the map was made for something else than the bearing."""
+def geometry_problems(where: str, geometry: BearingGeometry, emap: EHDMap) -> list[str]:
+    """In what a map was made for something else than a bearing, which messages call `where`."""
     made_for = emap.bearing
     if made_for is None:
-        return [f"--map: is made for a bare contact; bearing {entry.name!r} needs a map of {entry.geometry.name}"]
+        return [f"--map: is made for a bare contact; {where} needs a map of {geometry.name}"]
     differing = [
-        f"{key} {getattr(made_for, key) * 1e3:.6g} mm and not {getattr(entry.geometry, key) * 1e3:.6g} mm"
+        f"{key} {getattr(made_for, key) * 1e3:.6g} mm and not {getattr(geometry, key) * 1e3:.6g} mm"
         for key in _COMPARED
-        if abs(getattr(made_for, key) - getattr(entry.geometry, key)) > _SAME
+        if abs(getattr(made_for, key) - getattr(geometry, key)) > _SAME
     ]
     if not differing:
         return []
     return [
-        f"--map: is made for {made_for.name}: {', '.join(differing)} as the {entry.geometry.name} of bearing "
-        f"{entry.name!r}; generate a map of that bearing"
+        f"--map: is made for {made_for.name}: {', '.join(differing)} as the {geometry.name} of {where}; generate a map "
+        "of that bearing"
     ]
+
+
+def _films(chosen: str, bearing: Bearing, scene: Scene, emap: EHDMap | None) -> FilmSource:
+    """What knows the films of a bearing by the law in force."""
+    if chosen == "map" and emap is not None:
+        return MapFilms(emap)
+    contacts = bearing.geometry.contacts(bearing.material, "iso16281")
+    return FormulaFilms(contacts, _lubricant(scene)) if chosen == "formula" else DryContacts(contacts)
 
 
 def _gear_place_problem(system: System, place: str) -> str:

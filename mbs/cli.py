@@ -39,6 +39,7 @@ def parser() -> argparse.ArgumentParser:
     _campbell(_scene_command(commands, "campbell", "run-up in time as levels over speed and frequency", compares=True))
     _hammer(_scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=False))
     _modal_fit(commands)
+    _bearing(commands)
     _plan(commands)
     _reduce(commands)
     return top
@@ -86,6 +87,43 @@ def _load_factor(command: argparse.ArgumentParser) -> None:
         action="append",
         help="multiplies all loads of the scene; more than once to compare",
     )
+
+
+def _bearing(commands: Any) -> None:
+    """Add the command on one bearing, without a scene."""
+    words = "one bearing without a scene: stiffness, damping, roller loads, pressures, films"
+    command: argparse.ArgumentParser = commands.add_parser("bearing", help=words, description=words)
+    command.add_argument("bearing", metavar="BEARING", help="N1014, NU308, or a TOML file with [bearing] (a job)")
+    for option, example, what in (
+        ("--load", '"5 kN"', "on the inner ring"),
+        ("--speed", '"1500 rpm"', "of the inner ring; 0 rpm for dry contacts at rest"),
+    ):
+        command.add_argument(
+            option,
+            nargs="+",
+            action="append",
+            required=True,
+            metavar="VALUE",
+            help=f"{what}, such as {example}, or FROM TO POINTS; more than once for a list",
+        )
+    command.add_argument(
+        "--direction",
+        nargs="+",
+        metavar="ANGLE",
+        help='of the load from y, where a roller is, towards z, such as "15 deg"; or its parts along y and z (0 deg)',
+    )
+    command.add_argument("--temperature", metavar="TEMPERATURE", help='of the oil, such as "60 degC" (40 degC)')
+    command.add_argument("--map", metavar="MAP.nc", help="made by `ehdmaps generate` for this bearing")
+    command.add_argument("--law", metavar="LAW", help="hertz | formula | map; default: map with --map, else hertz")
+    command.add_argument(
+        "--oil", metavar="NAME", help="oil without a map: FVA3, Spirax MA 80W; default: the file's, else FVA3"
+    )
+    command.add_argument("--clearance", metavar="LENGTH", help='diametral, such as "20 um"; default: the file\'s, none')
+    command.add_argument("--profile", metavar="PROFILE", default="iso", help="iso | straight, of the rollers (iso)")
+    command.add_argument("--slices", metavar="N", default="41", help="of a roller (41)")
+    command.add_argument("--roughness", metavar="LENGTH", help='combined rms roughness, for Lambda ("0.3 um")')
+    command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF, or a row a point as .csv")
+    command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
 
 
 def _plan(commands: Any) -> None:

@@ -9,10 +9,15 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.units import FILM, PRESSURE
 from mbs.assembly import Model
+from mbs.bearings.contact_report import BearingContacts, bearing_contacts, overload
+from mbs.bearings.films import DryContacts
 from mbs.bearings.roller_element import ring_matrices
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_limits, heading, outside_at, ring_motions, write
+from mbs.free_motion import free_lines, free_motions
 from mbs.output.plot import statics_figure
 from mbs.output.results import statics_dataset
 from mbs.statics import Equilibrium, equilibrium
@@ -28,7 +33,14 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if arguments.plot and not model.bearings:
         raise InputError(f"--plot: {model.scene.name} has no bearing whose rollers could be drawn; leave it out")
     balance = equilibrium(model.system, model.operation)
-    figure = statics_figure(model, balance) if arguments.plot else None
+    free = free_lines(free_motions(balance))
+    contacts = [_contacts(model, balance, index) for index in range(len(model.bearings))]
+    overloads = [
+        f"{bearing.name}: {sentence}"
+        for bearing, state in zip(model.bearings, contacts, strict=True)
+        if (sentence := overload(state))
+    ]
+    figure = statics_figure(model, balance, contacts, overloads) if arguments.plot else None
     lines = [
         *heading(model, model.scene.speed),
         f"equilibrium in {balance.steps} Newton steps, residual {balance.residual:.1e} of the largest force",
@@ -46,6 +58,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             f"  entrainment speed {bearing.entrainment_speed(balance.operation):.4g} m/s; "
             f"{np.count_nonzero(rollers.load > 0.0)} of {rollers.load.size} rollers loaded, the most with "
             f"{float(rollers.load.max()):.5g} N",
+            f"  {_contact_words(contacts[index])}",
             *_matrix("K [N/m, N/rad; N m/m, N m/rad]", stiffness),
             *_matrix("C [the same times s]", damping),
         ]
@@ -55,8 +68,39 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         if 0.0 < limit.frequency < math.inf
     ]
     outside = outside_at(model, balance)
-    lines += outside + write(arguments, model, statics_dataset(balance), figure)
-    return "\n".join(lines), 1 if outside else 0
+    dataset = statics_dataset(balance, contacts, (*overloads, *free))
+    lines += [f"warning: {line}" for line in (*overloads, *free)] + outside
+    lines += write(arguments, model, dataset, figure)
+    return "\n".join(lines), 1 if outside or overloads else 0
+
+
+def _contacts(model: Model, balance: Equilibrium, index: int) -> BearingContacts:
+    """Pressures and films of a bearing."""
+    bearing, motion = ring_motions(model, balance.displacement)[index]
+    operation = balance.operation
+    point = (
+        bearing.rollers(motion, operation),
+        bearing.entrainment_speed(operation),
+        bearing.temperature,
+        bearing.centrifugal_load(operation),
+    )
+    try:
+        return bearing_contacts(model.films[bearing.name], *point)
+    except InputError:  # the oil has no viscosity at this temperature, where a law is held at its edge
+        return bearing_contacts(DryContacts(bearing.bearing.geometry.contacts(STEEL, "iso16281")), *point)
+
+
+def _contact_words(contacts: BearingContacts) -> str:
+    """Largest pressure and smallest films of a bearing, inner and outer."""
+    inner, outer = contacts.hertz_pressure
+    words = f"Hertz pressure up to {PRESSURE.value(inner):.4g} inner, {PRESSURE.value(outer):.4g} GPa outer"
+    if not np.all(np.isfinite(contacts.minimum_film)):
+        return words
+    central, smallest = (
+        " inner, ".join(f"{FILM.value(film):.4g}" for film in films)
+        for films in (contacts.central_film, contacts.minimum_film)
+    )
+    return f"{words}; film down to {smallest} um outer (central {central} um outer)"
 
 
 def _coordinates(model: Model, balance: Equilibrium) -> list[str]:

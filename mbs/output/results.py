@@ -13,6 +13,8 @@ import xarray as xr
 from ehdmaps.outputs import MADE_AS, dataset_kind, written_aside
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.version import version
+from mbs.bearings.contact_report import BearingContacts
+from mbs.bearings.films import SIDES
 from mbs.bearings.roller_element import ring_matrices
 from mbs.body import FREEDOMS
 from mbs.elements import Input, Sensor
@@ -33,13 +35,26 @@ _UNITS = {"m": "m", "rad": "rad", "1": "1"}
 _ORDERS = {"displacement": "", "velocity": "/s", "acceleration": "/s2"}
 
 
-def statics_dataset(balance: Equilibrium) -> xr.Dataset:
-    """Equilibrium: displacements, bearing forces, K and C of the bearings.
+_CONTACTS = (
+    ("hertz_pressure", "Pa", "largest Hertz pressure of the rollers on the raceway"),
+    ("central_film", "m", "smallest central film of the rollers on the raceway; none without an oil"),
+    ("minimum_film", "m", "smallest film of the rollers on the raceway; none without an oil"),
+)
+
+
+def statics_dataset(
+    balance: Equilibrium, contacts: Sequence[BearingContacts] = (), warnings: Sequence[str] = ()
+) -> xr.Dataset:
+    """Equilibrium: displacements, bearing forces, K and C of the bearings, pressures and films of their contacts.
 
     Parameters
     ----------
     balance : Equilibrium
         What is described.
+    contacts : sequence of BearingContacts
+        Pressures and films, one a bearing; left out if there are none.
+    warnings : sequence of str
+        Why the result may not hold; becomes the attribute `warnings`.
     """
     variables = {
         **_by_kind(balance.system, balance.displacement, (), "displacement"),
@@ -62,7 +77,13 @@ def statics_dataset(balance: Equilibrium) -> xr.Dataset:
         "freedom": list(FREEDOMS),
         "with_respect_to": list(FREEDOMS),
     }
-    return xr.Dataset(variables, coords={**_coordinates(balance.system), **coordinates}, attrs=_operation(balance))
+    if contacts:
+        coordinates["contact"] = list(SIDES)
+        for name, unit, words in _CONTACTS:
+            values = np.stack([getattr(state, name) for state in contacts])
+            variables[name] = (("bearing", "contact"), values, {"units": unit, "long_name": words})
+    attributes = {**_operation(balance), "warnings": "\n".join(warnings)}
+    return xr.Dataset(variables, coords={**_coordinates(balance.system), **coordinates}, attrs=attributes)
 
 
 def modes_dataset(found: Modes, balance: Equilibrium) -> xr.Dataset:

@@ -1,0 +1,195 @@
+"""One bearing at an operating point: where its inner ring comes to rest, and what its contacts feel there.
+
+The outer ring is held, the inner one moves in the radial plane without tilting and turns at the given speed. Its
+equilibrium is that of `mbs.statics`, with the ring as the only body: the potential of the contacts is convex, so that
+it is found from any load and clearance. The rollers' centrifugal load is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import FloatArray
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.contact_report import BearingContacts, bearing_contacts, extrapolated, fading, outside_map, overload
+from mbs.bearings.films import FilmSource
+from mbs.bearings.laws import Law
+from mbs.bearings.roller_loads import RollerLoads
+from mbs.body import Inertia, rigid_body
+from mbs.elements import Load, Operation
+from mbs.errors import AnalysisError
+from mbs.statics import equilibrium
+from mbs.system import System
+
+SHARE = 0.01
+"""A roller counts as loaded if it carries more than this part of the highest roller load: films load all a little."""
+
+_RING = "inner ring"
+_FREE = 1e-9
+"""Stiffness across the load over that along it, below which there is none."""
+
+
+@dataclass(frozen=True, eq=False)
+class BearingPoint:
+    """A bearing in equilibrium.
+
+    Attributes
+    ----------
+    bearing : Bearing
+        Geometry, clearance, profile, slices.
+    load : array, shape (2,)
+        On the inner ring, y and z [N].
+    speed : float
+        Of the inner ring [rad/s].
+    entrainment_speed, temperature : float
+        u [m/s], T [K].
+    displacement : array, shape (2,)
+        Of the inner ring against the outer one, y and z [m].
+    stiffness, damping : array, shape (2, 2)
+        Of the bearing in y and z [N/m], [N s/m].
+    rollers : RollerLoads
+        Loads of rollers and slices.
+    contacts : BearingContacts
+        Pressures and films of all slices.
+    problems : tuple of str
+        Where the point is outside of what the laws hold for.
+    notes : tuple of str
+        What else should be known about it.
+    """
+
+    bearing: Bearing
+    load: FloatArray
+    speed: float
+    entrainment_speed: float
+    temperature: float
+    displacement: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    rollers: RollerLoads
+    contacts: BearingContacts
+    problems: tuple[str, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def size(self) -> float:
+        """Size of the load [N]."""
+        return float(np.hypot(*self.load))
+
+    @property
+    def axes(self) -> FloatArray:
+        """Unit vectors along and across the load, in rows (2, 2)."""
+        along = self.load / self.size
+        return np.array([along, [-along[1], along[0]]])
+
+    def along_across(self, matrix: FloatArray) -> FloatArray:
+        """Diagonal of a matrix (2, 2) in the directions along and across the load, shape (2,)."""
+        return np.asarray(np.diag(self.axes @ matrix @ self.axes.T))
+
+    @property
+    def loaded(self) -> int:
+        """Number of rollers that carry more than `SHARE` of the highest roller load."""
+        return int(self.rollers.load_zone(SHARE).size)
+
+    @property
+    def most_loaded(self) -> int:
+        """Index of the roller with the highest load."""
+        return int(np.argmax(self.rollers.load))
+
+    def film_parameter(self, roughness: float) -> float:
+        """Lambda: smallest film of all contacts over the combined rms roughness [m]; NaN where no film is known."""
+        return float(np.min(self.contacts.minimum_film)) / roughness
+
+
+def bearing_points(
+    bearing: Bearing,
+    law: Law,
+    films: FilmSource,
+    loads: Iterable[Sequence[float]],
+    speeds: Sequence[float],
+    temperature: float,
+) -> list[list[BearingPoint]]:
+    """Points of a bearing at every load and every speed.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        Geometry, clearance, profile, slices.
+    law : Law
+        Of a roller between both raceways, see `mbs.bearings.laws`.
+    films : FilmSource
+        Pressures and films, see `mbs.bearings.films`.
+    loads : iterable of (float, float)
+        On the inner ring, y and z [N].
+    speeds : sequence of float
+        Of the inner ring [rad/s].
+    temperature : float
+        Of the oil [K].
+
+    Returns
+    -------
+    list of list of BearingPoint
+        By load, then by speed.
+
+    Raises
+    ------
+    InputError
+        For a load of zero, and for a law that does not belong to the bearing.
+    AnalysisError
+        Where no equilibrium is found.
+    """
+    force = BearingForce(bearing, law)
+    return [[bearing_point(force, films, load, speed, temperature) for speed in speeds] for load in loads]
+
+
+def bearing_point(
+    force: BearingForce, films: FilmSource, load: Sequence[float], speed: float, temperature: float
+) -> BearingPoint:
+    """One point; arguments and errors as of `bearing_points`."""
+    given = np.array(load, dtype=np.float64)
+    if given.shape != (2,) or not np.all(np.isfinite(given)) or not np.any(given):
+        raise InputError(f"bearing point, load: got {load!r} N; allowed: two finite numbers, y and z, not both zero")
+    element = BearingElement("bearing", _RING, "ground", force.bearing, force, temperature)
+    ring = rigid_body(_RING, [Inertia(1.0, 1.0, 1.0)], ["y", "z"])
+    system = System([ring], loads=[Load("load", _RING, np.array([0.0, *given, 0.0, 0.0, 0.0]))], elements=[element])
+    operation = Operation(speed)
+    try:
+        balance = equilibrium(system, operation)
+    except InputError as error:  # the ring went further than small displacements allow
+        raise AnalysisError(
+            f"no equilibrium of {force.bearing.geometry.name} under {np.hypot(*given):.4g} N: {error}; the load is "
+            "beyond what the bearing can carry"
+        ) from error
+    pose = np.array([0.0, *balance.displacement, 0.0, 0.0, 0.0])
+    rollers, u = element.rollers(pose, operation), element.entrainment_speed(operation)
+    contacts = bearing_contacts(films, rollers, u, temperature)
+    stiffness = balance.element_stiffness[0][1:3, 1:3]
+    problems = [overload(contacts), *outside_map(force.law, float(rollers.load_per_length.max()), u, temperature)]
+    notes = [extrapolated(contacts, films.lubricant), fading(force.law, u), _loose(stiffness, given)]
+    return BearingPoint(
+        bearing=force.bearing,
+        load=given,
+        speed=speed,
+        entrainment_speed=u,
+        temperature=temperature,
+        displacement=balance.displacement,
+        stiffness=stiffness,
+        damping=balance.element_damping[0][1:3, 1:3],
+        rollers=rollers,
+        contacts=contacts,
+        problems=tuple(filter(None, problems)),
+        notes=tuple(filter(None, notes)),
+    )
+
+
+def _loose(stiffness: FloatArray, load: FloatArray) -> str:
+    """A sentence where nothing holds the ring across the load."""
+    across = np.array([-load[1], load[0]]) / np.hypot(*load)
+    if across @ stiffness @ across > _FREE * float(np.trace(stiffness)):
+        return ""
+    return "one roller carries all: nothing holds the ring across the load, where its position is arbitrary"

@@ -1,0 +1,156 @@
+"""What the contacts of a bearing feel at the loads of its rollers, and where that leaves what the laws hold for."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.maps.law import ContactLaw
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.units import LOAD, PRESSURE, SPEED, TEMPERATURE
+from mbs.bearings.films import SIDES, ContactState, FilmSource
+from mbs.bearings.laws import Law
+from mbs.bearings.roller_loads import RollerLoads
+
+FloatArray = npt.NDArray[np.float64]
+
+STATIC_LIMIT = 4e9
+"""Hertz pressure of the static load rating of roller bearings after ISO 76 [Pa]; permanent deformation above it."""
+
+
+@dataclass(frozen=True, eq=False)
+class BearingContacts:
+    """Both contacts of all slices of all rollers.
+
+    Attributes
+    ----------
+    inner, outer : ContactState
+        Arrays (Z, n): rollers, slices.
+    """
+
+    inner: ContactState
+    outer: ContactState
+
+    @property
+    def sides(self) -> tuple[ContactState, ContactState]:
+        """Inner and outer, as in `SIDES`."""
+        return self.inner, self.outer
+
+    @property
+    def hertz_pressure(self) -> FloatArray:
+        """Largest Hertz pressure of each side, (2,) [Pa]."""
+        return np.array([float(np.max(side.hertz_pressure)) for side in self.sides])
+
+    @property
+    def max_pressure(self) -> FloatArray:
+        """Largest pressure of each side, (2,) [Pa]."""
+        return np.array([float(np.max(side.max_pressure)) for side in self.sides])
+
+    @property
+    def central_film(self) -> FloatArray:
+        """Smallest central film of each side, (2,) [m]; NaN where no film is known."""
+        return np.array([_smallest(side.central_film) for side in self.sides])
+
+    @property
+    def minimum_film(self) -> FloatArray:
+        """Smallest film of each side, (2,) [m]; NaN where no film is known."""
+        return np.array([_smallest(side.minimum_film) for side in self.sides])
+
+
+def bearing_contacts(
+    films: FilmSource,
+    rollers: RollerLoads,
+    entrainment_speed: float,
+    temperature: float,
+    centrifugal_load: float = 0.0,
+) -> BearingContacts:
+    """Pressures and films at the loads of all slices.
+
+    Parameters
+    ----------
+    films : FilmSource
+        What knows them.
+    rollers : RollerLoads
+        Loads on the inner raceway.
+    entrainment_speed, temperature, centrifugal_load : float
+        u [m/s], T [K], q [N/m]; the outer raceway carries q besides.
+    """
+    inner = rollers.load_per_length
+    outer = np.maximum(inner + centrifugal_load, 0.0)
+    return BearingContacts(
+        films.state(0, inner, entrainment_speed, temperature), films.state(1, outer, entrainment_speed, temperature)
+    )
+
+
+def overload(contacts: BearingContacts) -> str:
+    """A sentence where a pressure is beyond the static limit; empty otherwise."""
+    found = contacts.hertz_pressure
+    worst = int(np.argmax(found))
+    if found[worst] <= STATIC_LIMIT:
+        return ""
+    return (
+        f"Hertz pressure of {PRESSURE.text(found[worst])} ({SIDES[worst]} raceway) is above "
+        f"{PRESSURE.text(STATIC_LIMIT)}, the static limit of ISO 76: permanent deformation; elastic contacts and films "
+        "no longer hold"
+    )
+
+
+def extrapolated(contacts: BearingContacts, oil: Lubricant | None) -> str:
+    """A sentence where the viscosity is used above the pressures that it was fitted for; empty otherwise."""
+    highest = float(np.max(contacts.max_pressure))
+    if oil is None or not math.isfinite(_smallest(contacts.central_film)) or highest <= oil.fitted_pressure:
+        return ""
+    return (
+        f"the viscosity of {oil.name} is extrapolated above {PRESSURE.text(oil.fitted_pressure)} "
+        f"(largest pressure {PRESSURE.text(highest)})"
+    )
+
+
+def outside_map(law: Law, load: float, entrainment_speed: float, temperature: float) -> list[str]:
+    """Which axis of a law's map a point leaves, with its value; a film that fades to rest is inside.
+
+    Parameters
+    ----------
+    law : Law
+        Of a map or formula; a dry law has no map.
+    load, entrainment_speed, temperature : float
+        Largest load of a slice [N/m], u [m/s], T [K].
+    """
+    if not isinstance(law, ContactLaw):
+        return []
+    axes = (
+        ("load per length", load, (0.0, law.load_range[1]), law.load_range, LOAD),
+        ("entrainment speed", abs(entrainment_speed), (0.0, law.speed_range[1]), law.speed_range, SPEED),
+        ("temperature", temperature, law.temperature_range, law.temperature_range, TEMPERATURE),
+    )
+    return [
+        f"{name} of {display.text(value)} is outside the map ({display.value(mapped[0]):.4g} to "
+        f"{display.text(mapped[1])}), where the law is held at its edge; make a map that reaches there"
+        for name, value, (low, high), mapped, display in axes
+        if not low - _near(low) <= value <= high + _near(high)
+    ]
+
+
+def fading(law: Law, entrainment_speed: float) -> str:
+    """A sentence where the speed is below the map, so that the film fades to the dry contact; empty otherwise."""
+    if not isinstance(law, ContactLaw) or not 0.0 < abs(entrainment_speed) < law.speed_range[0] * (1.0 - 1e-9):
+        return ""
+    return (
+        f"entrainment speed of {SPEED.text(abs(entrainment_speed))} is below the lowest mapped one, "
+        f"{SPEED.text(law.speed_range[0])}: stiffness and damping fade to those of dry contacts from there on, and "
+        "films are continued by Moes' formula"
+    )
+
+
+def _near(value: float) -> float:
+    """Round-off of a number from a file."""
+    return 1e-9 * abs(value)
+
+
+def _smallest(values: FloatArray) -> float:
+    """Smallest number; NaN if there is none."""
+    known = values[np.isfinite(values)]
+    return float(known.min()) if known.size else math.nan

@@ -1,0 +1,260 @@
+"""Largest pressure and films of the two contacts of a roller, at loads per length: dry, by formula, or from a map.
+
+Three sources answer the same question, `state(side, load, entrainment_speed, temperature)`, for arrays of loads:
+
+- `DryContacts`: Hertz' pressure, no film;
+- `FormulaFilms`: Hertz' pressure, Moes' central film, and the larger of the minimum films of Dowson-Higginson and of
+  Martin, as the solver `formula` has them;
+- `MapFilms`: pressures and films of a map, read between its points as ratios to Hertz and to Moes. The ratios are near
+  one and change little, so that straight lines between the points are enough for them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.errors import MapError
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.films import dowson_higginson_minimum, martin_minimum, moes_central
+from ehdmaps.physics.hertz import max_pressure
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
+
+FloatArray = npt.NDArray[np.float64]
+
+SIDES = ("inner", "outer")
+"""The contacts of a roller, in the order of all arrays."""
+
+_VARIABLES = ("max_pressure", "central_film", "minimum_film")
+
+
+@dataclass(frozen=True, eq=False)
+class ContactState:
+    """Contacts at given loads; all arrays have the shape of the loads.
+
+    Attributes
+    ----------
+    hertz_pressure : array
+        Largest pressure of the dry contact after Hertz [Pa]; zero without load.
+    max_pressure : array
+        Largest pressure of the film, its spike included, where a map knows it; else that of Hertz [Pa].
+    central_film, minimum_film : array
+        Film at the centre and smallest film [m]; NaN without load, and where no film is known.
+    """
+
+    hertz_pressure: FloatArray
+    max_pressure: FloatArray
+    central_film: FloatArray
+    minimum_film: FloatArray
+
+
+class FilmSource(Protocol):
+    """What knows pressures and films of both contacts of a roller."""
+
+    @property
+    def words(self) -> str:
+        """Where the films come from, for people."""
+        ...
+
+    @property
+    def lubricant(self) -> Lubricant | None:
+        """The oil; None where none is known."""
+        ...
+
+    def state(self, side: int, load: FloatArray, entrainment_speed: float, temperature: float) -> ContactState:
+        """Pressure and films of the inner (0) or outer (1) contact at loads w [N/m], at u [m/s] and T [K]."""
+        ...
+
+
+@dataclass(frozen=True)
+class DryContacts:
+    """Contacts without a film.
+
+    Attributes
+    ----------
+    contacts : tuple of LineContact
+        Inner and outer.
+    """
+
+    contacts: tuple[LineContact, ...]
+
+    @property
+    def words(self) -> str:
+        """No films."""
+        return "no films: no oil is known"
+
+    @property
+    def lubricant(self) -> Lubricant | None:
+        """No oil."""
+        return None
+
+    def state(self, side: int, load: FloatArray, entrainment_speed: float, temperature: float) -> ContactState:
+        """Hertz' pressure; see `FilmSource`."""
+        contact = self.contacts[side]
+        pressure = np.asarray(max_pressure(load, contact.radius, contact.reduced_modulus))
+        unknown = np.full(load.shape, np.nan)
+        return ContactState(pressure, pressure, unknown, unknown)
+
+
+@dataclass(frozen=True)
+class FormulaFilms:
+    """Films by published formulas; for the limits of these see `ehdmaps.physics.films`.
+
+    Attributes
+    ----------
+    contacts : tuple of LineContact
+        Inner and outer.
+    lubricant : Lubricant
+        The oil.
+    """
+
+    contacts: tuple[LineContact, ...]
+    lubricant: Lubricant
+
+    @property
+    def words(self) -> str:
+        """The formulas."""
+        return f"films: Moes' formula (minimum: Dowson-Higginson, Martin) for {self.lubricant.name}"
+
+    def state(self, side: int, load: FloatArray, entrainment_speed: float, temperature: float) -> ContactState:
+        """Hertz' pressure and films by formula, zero at standstill; see `FilmSource`."""
+        contact = self.contacts[side]
+        pressure = np.asarray(max_pressure(load, contact.radius, contact.reduced_modulus))
+        loaded = load > 0.0
+        central, minimum = np.full(load.shape, np.nan), np.full(load.shape, np.nan)
+        central[loaded], minimum[loaded] = self._films(contact, load[loaded], abs(entrainment_speed), temperature)
+        return ContactState(pressure, pressure, central, minimum)
+
+    def _films(
+        self, contact: LineContact, load: FloatArray, speed: float, temperature: float
+    ) -> tuple[FloatArray, FloatArray]:
+        """Central and minimum film at positive loads."""
+        if speed == 0.0:
+            return np.zeros(load.shape), np.zeros(load.shape)
+        state = self.lubricant.at(temperature)
+        alpha, radius, modulus = state.pressure_viscosity.pressure_viscosity, contact.radius, contact.reduced_modulus
+        arguments = (load, speed, state.viscosity, alpha, radius, modulus)
+        M, L = moes_groups(*arguments)
+        central = film_from_moes(moes_central(M, L), speed, state.viscosity, radius, modulus)
+        rigid = film_from_moes(martin_minimum(M), speed, state.viscosity, radius, modulus)
+        elastic = radius * dowson_higginson_minimum(*dowson_groups(*arguments))
+        return np.asarray(central), np.minimum(np.maximum(rigid, elastic), central)
+
+
+@dataclass(frozen=True, eq=False)
+class MapFilms:
+    """Pressures and films of a map.
+
+    The ratios of central and minimum film to Moes' central film, and of the largest pressure to that of Hertz, are read
+    on the lines of the map, linearly in ln(load) at the same Moes number M, and taken linearly in ln(entrainment speed)
+    and temperature between the lines. Outside the map they are those of its edge; the temperature is held there,
+    as a law with the policy `clamp` holds it.
+
+    Attributes
+    ----------
+    emap : EHDMap
+        Of a bearing.
+
+    Raises
+    ------
+    MapError
+        For a map without the contacts of a roller.
+    """
+
+    emap: EHDMap
+    _formula: FormulaFilms = field(init=False)
+
+    def __post_init__(self) -> None:
+        if tuple(contact.name for contact in self.emap.contacts) != SIDES:
+            raise MapError("films: got the map of a bare contact; allowed: a map of a bearing")
+        object.__setattr__(self, "_formula", FormulaFilms(self.emap.contacts, self.emap.lubricant))
+
+    @property
+    def words(self) -> str:
+        """The map."""
+        return f"films of the map, {self.lubricant.name}"
+
+    @property
+    def lubricant(self) -> Lubricant:
+        """The oil of the map."""
+        return self.emap.lubricant
+
+    def state(self, side: int, load: FloatArray, entrainment_speed: float, temperature: float) -> ContactState:
+        """Pressure and films from the map; see `FilmSource`."""
+        kelvins = self.emap.dataset["temperature"].values
+        temperature = float(np.clip(temperature, kelvins[0], kelvins[-1]))
+        plain = self._formula.state(side, load, entrainment_speed, temperature)
+        loaded = load > 0.0
+        if entrainment_speed == 0.0 or not np.any(loaded):
+            return plain
+        ratios = np.full((*load.shape, len(_VARIABLES)), np.nan)
+        ratios[loaded] = self._ratios(side, load[loaded], abs(entrainment_speed), temperature)
+        pressure = np.where(loaded, ratios[..., 0] * plain.hertz_pressure, 0.0)
+        central, minimum = (ratios[..., part] * plain.central_film for part in (1, 2))
+        return ContactState(plain.hertz_pressure, pressure, central, minimum)
+
+    def _ratios(self, side: int, load: FloatArray, speed: float, temperature: float) -> FloatArray:
+        """Ratios (n, 3) at positive loads, held at the edges of the map."""
+        lines = self._lines[side]
+        speeds, kelvins = lines.nodes
+        place = np.log(load) - self._shift(side, speed, temperature)
+        found = np.zeros((load.size, len(_VARIABLES)))
+        for j, by_speed in _corners(np.log(speeds), float(np.log(speed))):
+            for k, by_temperature in _corners(kelvins, temperature):
+                at = place + self._shift(side, float(speeds[j]), float(kelvins[k]))
+                for part in range(len(_VARIABLES)):
+                    line = np.interp(at, lines.log_load, lines.ratios[:, j, k, part])
+                    found[:, part] += by_speed * by_temperature * line
+        return found
+
+    def _shift(self, side: int, speed: float, temperature: float) -> float:
+        """ln of the load at which Moes' M is 1."""
+        contact, state = self.emap.contacts[side], self.lubricant.at(temperature)
+        number, _ = moes_groups(1.0, speed, state.viscosity, 0.0, contact.radius, contact.reduced_modulus)
+        return -math.log(number)
+
+    @cached_property
+    def _lines(self) -> tuple[_Lines, ...]:
+        """Ratios of each contact at the points of the map."""
+        data = self.emap.dataset.transpose("contact", "load", "entrainment_speed", "temperature", ...)
+        data = data.sel(entrainment_speed=data["entrainment_speed"] > 0.0)
+        loads, speeds, kelvins = (
+            data[name].values.astype(np.float64) for name in ("load", "entrainment_speed", "temperature")
+        )
+        found = []
+        for side, name in enumerate(SIDES):
+            values = np.stack([data[variable].sel(contact=name).values for variable in _VARIABLES], axis=-1)
+            for j, speed in enumerate(speeds):
+                for k, kelvin in enumerate(kelvins):
+                    plain = self._formula.state(side, loads, float(speed), float(kelvin))
+                    values[:, j, k, 0] /= plain.hertz_pressure
+                    values[:, j, k, 1:] /= plain.central_film[:, None]
+            found.append(_Lines(np.log(loads), (speeds, kelvins), values))
+        return tuple(found)
+
+
+@dataclass(frozen=True, eq=False)
+class _Lines:
+    """Ratios (loads, speeds, temperatures, 3) of a contact over ln(load), at speeds and temperatures."""
+
+    log_load: FloatArray
+    nodes: tuple[FloatArray, FloatArray]
+    ratios: FloatArray
+
+
+def _corners(axis: FloatArray, place: float) -> list[tuple[int, float]]:
+    """Nodes beside a place and their weights; one node at the edges and outside."""
+    if place <= axis[0]:
+        return [(0, 1.0)]
+    if place >= axis[-1]:
+        return [(axis.size - 1, 1.0)]
+    upper = int(np.searchsorted(axis, place, side="right"))
+    part = float((place - axis[upper - 1]) / (axis[upper] - axis[upper - 1]))
+    return [(upper - 1, 1.0 - part), (upper, part)] if part > 0.0 else [(upper - 1, 1.0)]

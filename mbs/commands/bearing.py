@@ -1,0 +1,60 @@
+"""`mbs bearing`: one bearing under loads and speeds, without a scene."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from mbs.bearing_point import bearing_points
+from mbs.bearings import laws
+from mbs.bearings.laws import Law
+from mbs.commands.bearing_request import BearingRequest, read_request
+from mbs.output.bearing_data import bearing_dataset, write_csv, write_netcdf
+from mbs.output.bearing_plot import bearing_figure
+from mbs.output.bearing_text import bearing_text
+
+RESOLUTION = 150
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Compute all points, describe and write them; status 1 where one is outside of what the laws hold for."""
+    request = read_request(arguments)
+    points = bearing_points(
+        request.bearing, _law(request), request.films, request.load_vectors, request.speeds, request.temperature
+    )
+    dataset = bearing_dataset(request.description, points, request.roughness)
+    lines = bearing_text(request.description, points, request.roughness)
+    if arguments.output:
+        write = write_csv if Path(arguments.output).suffix.lower() == ".csv" else write_netcdf
+        write(dataset, arguments.output)
+        lines.append(f"{arguments.output}: written")
+    if arguments.plot:
+        # Only here, because a figure needs matplotlib.
+        from ehdmaps.outputs import write_figure
+
+        write_figure(bearing_figure(request.description, points, request.roughness), arguments.plot, RESOLUTION)
+        lines.append(f"{arguments.plot}: written")
+    problems = any(point.problems for row in points for point in row)
+    return "\n".join(lines), 1 if problems else 0
+
+
+def _law(request: BearingRequest) -> Law:
+    """The law of a roller between both raceways, over what is asked of it."""
+    if request.law == "map" and request.emap is not None:
+        return request.emap.law("series", outside="clamp")
+    if request.law == "formula":
+        turning = [speed for speed in request.speeds if speed > 0.0] or [1.0]
+        u = [request.bearing.geometry.entrainment_speed(speed) for speed in (min(turning), max(turning))]
+        return laws.formula(
+            request.bearing,
+            request.oil,
+            load=FORMULA_LOADS,
+            entrainment_speed=(u[0] / 1.1, u[1] * 1.1),
+            temperature=(request.temperature, request.temperature + 2.0),
+            outside="clamp",
+        )
+    return laws.hertz(request.bearing)
+
+
+FORMULA_LOADS = (100.0, 1e8)
+"""Loads for which the law of the formula is made [N/m]; far beyond 4 GPa in any bearing of steel."""

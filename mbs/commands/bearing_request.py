@@ -1,0 +1,415 @@
+"""What `mbs bearing` is asked: its bearing and its options, read at once, with every problem."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.errors import EhdmapsError, InputError
+from ehdmaps.jobs import toml_text
+from ehdmaps.jobs.problem import read_contacts, read_lubricant
+from ehdmaps.jobs.reader import LONGEST_FILE, read_job, shipped_jobs
+from ehdmaps.jobs.table import Table
+from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.outputs import FIGURE, Output, output_problems
+from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
+from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
+from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.units import TEMPERATURE, Display, closest, quantity, short
+from mbs.assembly import geometry_problems
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.films import FilmSource, FormulaFilms, MapFilms
+from mbs.commands.cases import WIDEST, read_clearance
+from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, result_kind
+from mbs.reading.fields import FORCE, MICROMETRE, RPM
+
+LAWS = ("hertz", "formula", "map")
+PROFILES = ("iso", "straight")
+OIL, CELSIUS_40, ROUGHNESS = "FVA3", 313.15, 0.3e-6
+"""Assumed where nothing is given: the oil, its temperature [K], the combined rms roughness [m]."""
+
+MOST_POINTS, MOST_SLICES = 500, 1000
+MOST_SLICES_IN_ALL = 5_000_000
+"""Of all rollers at all points: half a gigabyte."""
+
+_LOADS, _SPEEDS = (1e-3, 1e7), (0.0, 1e5 * math.pi / 30.0)
+_TEMPERATURES, _ROUGHNESSES = (213.15, 573.15), (1e-9, 1e-4)
+
+
+@dataclass(frozen=True, eq=False)
+class BearingRequest:
+    """What is asked.
+
+    Attributes
+    ----------
+    bearing : Bearing
+        Geometry with its clearance, profile, slices.
+    law : {"hertz", "formula", "map"}
+        Law of the contacts.
+    emap : EHDMap or None
+        The map.
+    oil : Lubricant
+        The oil.
+    films : FilmSource
+        Pressures and films.
+    loads : tuple of float
+        Sizes of the load on the inner ring [N].
+    direction : (float, float)
+        Its direction, y and z; a unit vector.
+    speeds : tuple of float
+        Of the inner ring [rad/s].
+    temperature, roughness : float
+        [K], [m].
+    description : BearingDescription
+        The same in words.
+    """
+
+    bearing: Bearing
+    law: str
+    emap: EHDMap | None
+    oil: Lubricant
+    films: FilmSource
+    loads: tuple[float, ...]
+    direction: tuple[float, float]
+    speeds: tuple[float, ...]
+    temperature: float
+    roughness: float
+    description: BearingDescription
+
+    @property
+    def load_vectors(self) -> list[tuple[float, float]]:
+        """Loads on the inner ring, y and z [N]."""
+        return [(load * self.direction[0], load * self.direction[1]) for load in self.loads]
+
+
+@dataclass(frozen=True)
+class _Given:
+    """The bearing argument: geometry, material, and the oil where the file names one."""
+
+    geometry: BearingGeometry
+    material: Material
+    oil: Lubricant | None
+
+
+def read_request(arguments: argparse.Namespace) -> BearingRequest:
+    """Read the bearing, the map and all options.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
+    problems: list[str] = []
+    given = _bearing(arguments.bearing, problems)
+    emap = _map(arguments.map, problems)
+    law = _law(arguments.law, emap is not None or arguments.map is not None, problems)
+    loads = _values("--load", arguments.load, "N", _LOADS, FORCE, problems)
+    speeds = _values("--speed", arguments.speed, "rad/s", _SPEEDS, RPM, problems)
+    if len(loads) * len(speeds) > MOST_POINTS:
+        problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
+    if _all_slices(given, arguments.slices) * len(loads) * len(speeds) > MOST_SLICES_IN_ALL:
+        problems.append(
+            f"--slices: got {short(arguments.slices)} for all rollers at {len(loads) * len(speeds)} points; allowed: "
+            f"{MOST_SLICES_IN_ALL} slices in all; take fewer slices or points"
+        )
+    temperature = _one("--temperature", arguments.temperature, "K", _TEMPERATURES, TEMPERATURE, CELSIUS_40, problems)
+    roughness = _one("--roughness", arguments.roughness, "m", _ROUGHNESSES, MICROMETRE, ROUGHNESS, problems)
+    direction = _direction(arguments.direction, problems)
+    clearance = None if arguments.clearance is None else read_clearance(arguments.clearance, problems)
+    bearing = _sliced(given, clearance, arguments, problems)
+    if bearing is not None and emap is not None:
+        problems += geometry_problems("the bearing", bearing.geometry, emap)
+    oil = _oil(arguments, given, emap, temperature, problems)
+    outputs = (
+        Output("-o", arguments.output, result_kind(arguments.output)),
+        Output("--plot", arguments.plot, FIGURE),
+    )
+    problems += output_problems(outputs, [path for path in (arguments.bearing, arguments.map) if path])
+    if problems or bearing is None or given is None or oil is None:
+        raise InputError(tuple(dict.fromkeys(problems)))
+    contacts = bearing.geometry.contacts(given.material, "iso16281")
+    films = MapFilms(emap) if emap is not None else FormulaFilms(contacts, oil)
+    return BearingRequest(
+        bearing=bearing,
+        law=law,
+        emap=emap,
+        oil=oil,
+        films=films,
+        loads=loads,
+        direction=direction,
+        speeds=speeds,
+        temperature=temperature,
+        roughness=roughness,
+        description=BearingDescription(
+            bearing=bearing,
+            law=_law_words(law, emap, oil),
+            films=films.words + ("" if oil.verified else " (unverified data)"),
+            direction=math.degrees(math.atan2(direction[1], direction[0])),
+            temperature=temperature,
+            roughness=roughness,
+            assumed=_assumed(arguments, given, emap),
+        ),
+    )
+
+
+def _all_slices(given: _Given | None, slices: str) -> int:
+    """Slices of all rollers of a bearing; 0 where either is wrong."""
+    return given.geometry.rollers * int(slices) if given is not None and slices.isdecimal() and len(slices) < 10 else 0
+
+
+def _assumed(arguments: argparse.Namespace, given: _Given, emap: EHDMap | None) -> tuple[str, ...]:
+    """What was not given, in words."""
+    found = []
+    if arguments.temperature is None:
+        found.append(f"temperature {TEMPERATURE.text(CELSIUS_40)}")
+    if arguments.roughness is None:
+        found.append(f"combined rms roughness {MICROMETRE.text(ROUGHNESS)}")
+    if arguments.clearance is None and given.geometry.diametral_clearance == 0.0:
+        found.append("no clearance")
+    if arguments.oil is None and given.oil is None and emap is None:
+        found.append(f"oil {OIL}")
+    return tuple(found)
+
+
+def _law_words(law: str, emap: EHDMap | None, oil: Lubricant) -> str:
+    """The law, for people."""
+    if law == "map" and emap is not None:
+        return f"map of {oil.name}, solver {emap.dataset.attrs.get('solver', '')}"
+    words = f"film formula moes, {oil.name} (its damping is far too low for loaded contacts)"
+    return words if law == "formula" else "dry Hertz, ISO 16281"
+
+
+def _bearing(source: str, problems: list[str]) -> _Given | None:
+    """The bearing of a name, a shipped job or a file."""
+    if source in BEARINGS:
+        return _Given(BEARINGS[source], STEEL, None)
+    allowed = f"{', '.join(BEARINGS)}, or a TOML file with [bearing], such as a job"
+    if source not in shipped_jobs() and not ("\0" not in source and os.path.isfile(source)):
+        problems.append(f"BEARING: got {short(source)}{closest(source, tuple(BEARINGS))}; allowed: {allowed}")
+        return None
+    try:
+        return _from_file(source)
+    except InputError as error:
+        problems += error.problems
+        return None
+
+
+def _from_file(source: str) -> _Given:
+    """The bearing of a job, or of a file that holds no more than the bearing, its material and its oil."""
+    if source not in shipped_jobs():
+        alone = _alone(source)
+        if alone is not None:
+            return alone
+    job = read_job(source)
+    if job.bearing is None:
+        raise InputError(f"{source}: is the job of a bare [contact]; allowed: one with [bearing]")
+    return _Given(job.bearing, job.contacts[0].material, job.lubricant)
+
+
+def _alone(source: str) -> _Given | None:
+    """The bearing of a file without [grid] and [solver]; None for a job or a map, which have a reader of their own."""
+    allowed = "a TOML file with [bearing]"
+    if first_bytes(source, 4, allowed).startswith((b"CDF", b"\x89HDF")):
+        return None
+    values = toml_text.parse(read_text(source, LONGEST_FILE, allowed), source)
+    if "grid" in values or "solver" in values:
+        return None
+    problems: list[str] = []
+    top = Table(values, "bearing file", problems)
+    top.get("schema")
+    geometry, contacts = read_contacts(top, "iso16281")
+    section = top.table("lubricant", "[lubricant]")
+    oil = read_lubricant(section) if section else None
+    top.close(others=("schema", "bearing", "material", "lubricant"))
+    if geometry is None and not problems:
+        problems.append("bearing file: has [contact]; allowed: [bearing] with a name or dimensions")
+    if problems or geometry is None:
+        raise InputError([f"{source}: {problem}" for problem in problems])
+    return _Given(geometry, contacts[0].material, oil)
+
+
+def _sliced(
+    given: _Given | None, clearance: float | None, arguments: argparse.Namespace, problems: list[str]
+) -> Bearing | None:
+    """The bearing with clearance, profile and slices; without the last three where they are wrong."""
+    before = len(problems)
+    if arguments.profile not in PROFILES:
+        problems.append(
+            f"--profile: got {short(arguments.profile)}{closest(arguments.profile, PROFILES)}; allowed: "
+            f"{', '.join(PROFILES)}"
+        )
+    slices = _whole("--slices", arguments.slices, 1, MOST_SLICES, problems)
+    if given is None:
+        return None
+    geometry = given.geometry
+    if clearance is not None and abs(clearance) <= WIDEST:
+        try:
+            geometry = dataclasses.replace(geometry, diametral_clearance=clearance)
+        except InputError as error:
+            problems += [f"--clearance: {problem}" for problem in error.problems]
+    if len(problems) > before:
+        return Bearing(given.geometry, "iso", 41, given.material)
+    return Bearing(geometry, arguments.profile, slices, given.material)
+
+
+def _map(path: str | None, problems: list[str]) -> EHDMap | None:
+    """The map."""
+    if path is None:
+        return None
+    try:
+        return open_map(path)
+    except EhdmapsError as error:
+        problems += [f"--map: {line}" for line in str(error).splitlines()]
+        return None
+
+
+def _law(name: str | None, with_map: bool, problems: list[str]) -> str:
+    """The law that is meant."""
+    if name is None:
+        return "map" if with_map else "hertz"
+    if name not in LAWS:
+        problems.append(f"--law: got {short(name)}{closest(name, LAWS)}; allowed: {', '.join(LAWS)}")
+    elif name == "map" and not with_map:
+        problems.append("--law: got 'map' without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`")
+    elif name == "formula" and with_map:
+        problems.append("--law: got 'formula' with a map; allowed: hertz or map with --map; leave one of the two out")
+    return name
+
+
+def _oil(
+    arguments: argparse.Namespace,
+    given: _Given | None,
+    emap: EHDMap | None,
+    temperature: float,
+    problems: list[str],
+) -> Lubricant | None:
+    """The oil: that of the map, of --oil, of the file, or FVA 3; the temperature must suit it."""
+    name = arguments.oil
+    oil = given.oil if given is not None and given.oil is not None else Lubricant.named(OIL)
+    if name is not None and arguments.map is not None:
+        problems.append(f"--oil: got {short(name)} with a map, which was made for an oil; leave one of the two out")
+    elif name is not None and name not in LUBRICANTS:
+        problems.append(f"--oil: got {short(name)}{closest(name, LUBRICANTS)}; allowed: {', '.join(LUBRICANTS)}")
+        return None
+    elif name is not None:
+        oil = Lubricant.named(name)
+    if emap is not None:
+        oil = emap.lubricant
+    try:
+        oil.at(temperature)
+    except InputError as error:
+        problems += [f"--temperature: {problem}" for problem in error.problems]
+        return None
+    return oil
+
+
+def _direction(given: Sequence[str] | None, problems: list[str]) -> tuple[float, float]:
+    """Unit vector of the load: an angle from y towards z, or two components."""
+    allowed = 'an angle from y towards z, such as "30 deg", or two numbers, the parts along y and z, not both zero'
+    texts = list(given or ["0 deg"])
+    try:
+        if len(texts) == 1:
+            angle = math.radians(float(texts[0])) if _is_number(texts[0]) else quantity(texts[0], "rad")
+            parts = (math.cos(angle), math.sin(angle))
+        else:
+            y, z = (float(text) for text in texts)
+            size = math.hypot(y, z)
+            parts = (y / size, z / size)
+    except (ValueError, ZeroDivisionError, InputError):
+        parts = (math.nan, math.nan)
+    if not np.all(np.isfinite(parts)):
+        problems.append(f"--direction: got {' '.join(texts)!r:.80}; allowed: {allowed}")
+        return 1.0, 0.0
+    # No part of a load along an axis by round-off.
+    clean = [0.0 if abs(part) < 1e-15 else part for part in parts]
+    return clean[0], clean[1]
+
+
+def _is_number(text: str) -> bool:
+    """Whether a text is a bare number."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _values(
+    option: str,
+    given: Sequence[Sequence[str]],
+    unit: str,
+    limits: tuple[float, float],
+    display: Display,
+    problems: list[str],
+) -> tuple[float, ...]:
+    """Rising values of an option: single ones, and ranges FROM TO POINTS, evenly spaced, wide ones in the logarithm."""
+    found: list[float] = []
+    for texts in given:
+        if len(texts) not in (1, 3):
+            problems.append(
+                f"{option}: got {len(texts)} values ({' '.join(texts)!r:.60}); allowed: one, or FROM TO POINTS; give "
+                "the option more than once for a list"
+            )
+            continue
+        before = len(problems)
+        ends = [_quantity(option, text, unit, limits, display, problems) for text in texts[:2]]
+        if len(texts) == 1:
+            found += ends
+            continue
+        points = _whole(f"{option}, POINTS", texts[2], 2, MOST_POINTS, problems)
+        if len(problems) == before and not ends[0] < ends[1]:
+            problems.append(f"{option}: got {texts[0]!r} to {texts[1]!r}; allowed: rising")
+        elif len(problems) == before:
+            wide = 0.0 < WIDE_RANGE * ends[0] < ends[1]
+            space = np.geomspace if wide else np.linspace
+            # Numbers as they were typed, and not one bit beside.
+            found += [float(f"{value:.12g}") for value in space(ends[0], ends[1], points)]
+    return tuple(sorted(set(found)))
+
+
+def _one(
+    option: str,
+    text: str | None,
+    unit: str,
+    limits: tuple[float, float],
+    display: Display,
+    default: float,
+    problems: list[str],
+) -> float:
+    """One value, or its default where none was given, or where a problem was noted."""
+    if text is None:
+        return default
+    value = _quantity(option, text, unit, limits, display, problems)
+    return default if math.isnan(value) else value
+
+
+def _quantity(
+    option: str, text: str, unit: str, limits: tuple[float, float], display: Display, problems: list[str]
+) -> float:
+    """One quantity within its limits; NaN where a problem was noted."""
+    try:
+        value = quantity(text, unit)
+    except InputError as error:
+        problems.append(f"{option}: {error.problems[0]}")
+        return math.nan
+    if not limits[0] <= value <= limits[1]:
+        problems.append(
+            f"{option}: got {short(text)}; allowed: {display.text(limits[0])} to {display.text(limits[1])}; check its "
+            "unit"
+        )
+        return math.nan
+    return value
+
+
+def _whole(option: str, text: str, low: int, high: int, problems: list[str]) -> int:
+    """A whole number; the lowest one where a problem was noted."""
+    if text.isascii() and text.isdigit() and len(text) < 10 and low <= int(text) <= high:
+        return int(text)
+    problems.append(f"{option}: got {short(text)}; allowed: a whole number from {low} to {high}")
+    return low

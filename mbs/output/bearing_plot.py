@@ -1,0 +1,255 @@
+"""Figures of a bearing at one point, and over load or speed."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.projections.polar import PolarAxes
+from matplotlib.ticker import MaxNLocator
+
+from ehdmaps.physics._values import FloatArray
+from ehdmaps.units import PRESSURE
+from mbs.bearing_point import BearingPoint
+from mbs.bearings.contact_report import STATIC_LIMIT
+from mbs.bearings.films import SIDES
+from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, Points, bearing_row
+from mbs.output.bearing_text import bearing_heading, without_numbers
+from mbs.reading.fields import FORCE, MICROMETRE, RPM
+
+_COLOURS = ("#1f5fa8", "#c8102e")
+"""Inner and outer contact; along and across the load."""
+
+_WARNING = "#c8102e"
+_MOST_LINES = 8
+_WIDE = 130
+
+
+def bearing_figure(description: BearingDescription, points: Points, roughness: float) -> Figure:
+    """Roller loads and the most loaded roller of one point; curves over load or speed for more.
+
+    Parameters
+    ----------
+    description : BearingDescription
+        What the points have in common.
+    points : sequence of sequence of BearingPoint
+        By load, then by speed.
+    roughness : float
+        Combined rms roughness for Lambda [m].
+    """
+    if len(points) == 1 and len(points[0]) == 1:
+        return _page(description, points[0][0], roughness)
+    return _curves(description, points, roughness)
+
+
+def _page(description: BearingDescription, point: BearingPoint, roughness: float) -> Figure:
+    """One point: rollers on the left, slices of the most loaded one on the right."""
+    figure = Figure(figsize=(10.5, 6.8), layout="constrained")
+    row = bearing_row(point, roughness)
+    parameter = row["film_parameter"]
+    summary = (
+        f"{FORCE.text(point.size, 6)}, {RPM.text(point.speed)}: K along the load {1e-6 * row['stiffness_along']:.4g} "
+        f"N/µm, across {1e-6 * row['stiffness_across']:.4g} N/µm; c along {1e-3 * row['damping_along']:.3g} N s/mm"
+        + ("" if math.isnan(parameter) else f"; Λ = {parameter:.3g} at {_micro(MICROMETRE.text(roughness))} roughness")
+    )
+    _title(figure, description, summary, point.problems)
+    grid = figure.add_gridspec(3, 2, width_ratios=(1.0, 1.15))
+    polar = figure.add_subplot(grid[:, 0], projection="polar")
+    assert isinstance(polar, PolarAxes)
+    _rollers(polar, point)
+    panels = [figure.add_subplot(grid[0, 1])]
+    panels += [figure.add_subplot(grid[i, 1], sharex=panels[0]) for i in (1, 2)]
+    _slices(panels, point)
+    return figure
+
+
+def _rollers(polar: PolarAxes, point: BearingPoint) -> None:
+    """Load of each roller at its angle, and the direction of the load."""
+    rollers = point.rollers
+    highest = float(rollers.load.max())
+    width = 0.7 * 2.0 * math.pi / rollers.angle.size
+    polar.bar(rollers.angle, rollers.load, width=width, color=_COLOURS[0], alpha=0.85)
+    angle = math.atan2(point.load[1], point.load[0])
+    polar.annotate(
+        "",
+        xy=(angle, 1.22 * highest),
+        xytext=(angle, 0.0),
+        arrowprops={"arrowstyle": "-|>", "color": _COLOURS[1], "lw": 1.6},
+    )
+    polar.set_ylim(0.0, 1.25 * highest)
+    polar.yaxis.set_major_locator(MaxNLocator(4))
+    polar.set_rlabel_position(math.degrees(angle) + 180.0)
+    polar.set_thetagrids(
+        [0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0], ["y", "45°", "z", "135°", "180°", "225°", "270°", "315°"]
+    )
+    polar.tick_params(labelsize=8)
+    polar.grid(color="0.85", lw=0.5)
+    polar.set_axisbelow(True)
+    polar.set_title(
+        f"load of the rollers, N\nhighest {highest:.5g} N, {point.loaded} of {rollers.load.size} above 1 % of it\n"
+        "red: direction of the load on the inner ring",
+        fontsize=9,
+    )
+
+
+def _slices(panels: Sequence[Axes], point: BearingPoint) -> None:
+    """Load, pressures and films along the most loaded roller."""
+    index = point.most_loaded
+    place = 1e3 * point.rollers.position
+    panels[0].plot(place, 1e-3 * point.rollers.load_per_length[index], color="0.2", lw=1.2)
+    panels[0].set_ylabel("load per\nlength, N/mm")
+    angle = math.degrees(point.rollers.angle[index])
+    panels[0].set_title(f"along the most loaded roller, at {angle:.4g}°", fontsize=9)
+    films = False
+    for side, name, colour in zip(point.contacts.sides, SIDES, _COLOURS, strict=True):
+        panels[1].plot(place, 1e-9 * side.hertz_pressure[index], color=colour, lw=1.2, label=name)
+        if np.any(np.isfinite(side.central_film[index])):
+            films = True
+            panels[2].plot(place, 1e6 * side.central_film[index], color=colour, lw=1.2, label=f"{name}, central")
+            panels[2].plot(
+                place, 1e6 * side.minimum_film[index], color=colour, lw=1.2, ls=":", label=f"{name}, smallest"
+            )
+    panels[1].set_ylabel("Hertz\npressure, GPa")
+    panels[2].set_ylabel("film, µm")
+    panels[2].set_xlabel("place along the roller, mm")
+    _static_limit(panels[1], point.contacts.hertz_pressure)
+    for panel in panels:
+        panel.set_ylim(0.0, 1.1 * panel.get_ylim()[1])
+        _grid(panel)
+    if films and point.entrainment_speed > 0.0:
+        # The thick films at the unloaded ends would hide the others.
+        panels[2].set_ylim(0.0, 2.0e6 * float(np.max(point.contacts.central_film)))
+    for panel in panels[1 : 3 if films and point.entrainment_speed > 0.0 else 2]:
+        panel.legend(fontsize=7.5, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    if not films or point.entrainment_speed == 0.0:
+        words = "at rest: no film" if films else "no film is known"
+        panels[2].text(0.5, 0.5, words, transform=panels[2].transAxes, ha="center", color="0.4")
+
+
+def _curves(description: BearingDescription, points: Points, roughness: float) -> Figure:
+    """Curves over load (a line a speed), or over speed if there is one load."""
+    figure = Figure(figsize=(11.0, 6.8), layout="constrained")
+    everything = [point for line in points for point in line]
+    over_load = len(points) > 1
+    lines = [list(column) for column in zip(*points, strict=True)] if over_load else [list(points[0])]
+    fixed = FORCE.text(points[0][0].size, 6) if not over_load else ""
+    fixed = RPM.text(points[0][0].speed) if over_load and len(lines) == 1 else fixed
+    _title(figure, description, fixed, [line for point in everything for line in point.problems])
+    panels = list(figure.subplots(2, 3, sharex=True).ravel())
+    if len(lines) > _MOST_LINES:  # evenly spaced ones, the ends among them
+        lines = [lines[i] for i in np.unique(np.linspace(0, len(lines) - 1, _MOST_LINES).round().astype(int))]
+    for order, line in enumerate(lines):
+        colour = _shade(order, len(lines))
+        _line(panels, line, roughness, colour, over_load, RPM.text(line[0].speed) if len(lines) > 1 else "")
+    _label(panels, over_load, roughness, everything)
+    if len(lines) > 1:
+        handles, labels = panels[0].get_legend_handles_labels()
+        figure.legend(handles, labels, fontsize=8, frameon=False, loc="outside right center", title="speed")
+    return figure
+
+
+def _line(
+    panels: Sequence[Axes], line: list[BearingPoint], roughness: float, colour: str, over_load: bool, label: str
+) -> None:
+    """One line in each panel."""
+    x = np.array([point.size if over_load else RPM.value(point.speed) for point in line])
+    rows = [bearing_row(point, roughness) for point in line]
+
+    def of(name: str, factor: float) -> FloatArray:
+        return factor * np.array([row[name] for row in rows])
+
+    def worst(pick: Callable[[BearingPoint], FloatArray], factor: float) -> FloatArray:
+        return factor * np.array([pick(point) for point in line])
+
+    panels[0].plot(x, of("stiffness_along", 1e-6), color=colour, lw=1.3, label=label)
+    panels[0].plot(x, of("stiffness_across", 1e-6), color=colour, lw=1.0, ls="--")
+    panels[1].plot(x, of("damping_along", 1e-3), color=colour, lw=1.3)
+    panels[1].plot(x, of("damping_across", 1e-3), color=colour, lw=1.0, ls="--")
+    panels[2].plot(x, of("highest_roller_load", 1.0), color=colour, lw=1.3)
+    for side, dashes in ((0, "-"), (1, "--")):
+        panels[3].plot(x, worst(lambda p: p.contacts.hertz_pressure, 1e-9)[:, side], color=colour, lw=1.2, ls=dashes)
+        panels[4].plot(x, worst(lambda p: p.contacts.minimum_film, 1e6)[:, side], color=colour, lw=1.2, ls=dashes)
+    panels[5].plot(x, of("film_parameter", 1.0), color=colour, lw=1.3)
+
+
+def _label(panels: Sequence[Axes], over_load: bool, roughness: float, points: Sequence[BearingPoint]) -> None:
+    """Words on the panels."""
+    texts = (
+        "stiffness, N/µm\nsolid along, dashed across the load",
+        "damping (low-frequency limit), N s/mm\nsolid along, dashed across the load",
+        "highest roller load, N",
+        "largest Hertz pressure, GPa\nsolid inner, dashed outer raceway",
+        "smallest film, µm\nsolid inner, dashed outer raceway",
+        f"Λ, film over {_micro(MICROMETRE.text(roughness))} of roughness\n(mixed below 3, boundary below 1)",
+    )
+    spread = points[-1].size / points[0].size if over_load else 1.0
+    for panel, text in zip(panels, texts, strict=True):
+        panel.set_title(text, fontsize=9)
+        _grid(panel)
+        if spread > WIDE_RANGE:
+            panel.set_xscale("log")
+        if spread > WIDE_RANGE and panel is panels[2]:
+            panel.set_yscale("log")
+        else:  # curves that stand still would lie on the frame
+            panel.set_ylim(0.0, 1.08 * max(panel.get_ylim()[1], 1e-9))
+        panel.margins(x=0.02)
+        if not any(np.any(np.isfinite(line.get_ydata())) for line in panel.get_lines()):
+            panel.text(0.5, 0.5, "no film is known", transform=panel.transAxes, ha="center", color="0.4")
+    if not any(np.any(point.damping) for point in points):
+        panels[1].set_ylim(0.0, 1.0)
+        panels[1].text(0.5, 0.5, "dry contacts: no damping", transform=panels[1].transAxes, ha="center", color="0.4")
+    top = panels[5].get_ylim()[1]
+    for limit in (1.0, 3.0):
+        if limit < top:
+            panels[5].axhline(limit, color="0.5", lw=0.8, ls=":")
+    _static_limit(panels[3], np.array([point.contacts.hertz_pressure.max() for point in points]))
+    for panel in panels[3:]:
+        panel.set_xlabel("load on the inner ring, N" if over_load else "speed of the inner ring, rpm")
+
+
+def _static_limit(panel: Axes, pressures: FloatArray) -> None:
+    """A line at the static limit, where pressures come near it."""
+    if np.max(pressures) > 0.75 * STATIC_LIMIT:
+        panel.axhline(1e-9 * STATIC_LIMIT, color=_WARNING, lw=0.9, ls=":")
+        words = f"static limit {PRESSURE.text(STATIC_LIMIT)}"
+        place = panel.get_yaxis_transform()
+        panel.text(0.02, 1e-9 * STATIC_LIMIT, words, color=_WARNING, fontsize=7.5, va="bottom", transform=place)
+
+
+def _title(figure: Figure, description: BearingDescription, words: str, problems: Sequence[str]) -> None:
+    """What is shown, what was assumed, and why it may not hold."""
+    heading = "\n".join(line.strip() for line in bearing_heading(description))
+    lines = _micro(heading).replace(" degC", " °C").replace(" deg ", "° ").splitlines()
+    lines += [words] if words else []
+    figure.suptitle(
+        "\n".join(part for line in lines for part in textwrap.wrap(line, _WIDE, break_on_hyphens=False)), fontsize=9.5
+    )
+    if problems:
+        # One of a kind: the numbers differ from point to point.
+        kinds = {without_numbers(problem): problem for problem in problems}
+        warnings = [part for problem in kinds.values() for part in textwrap.wrap(f"warning: {problem}", _WIDE)]
+        figure.supxlabel("\n".join(warnings), color=_WARNING, fontsize=8.5)
+
+
+def _shade(order: int, count: int) -> str:
+    """Colour of a line: from blue at the lowest speed to red at the highest."""
+    from matplotlib import colormaps
+    from matplotlib.colors import to_hex
+
+    return _COLOURS[0] if count == 1 else to_hex(colormaps["viridis"](0.9 * order / (count - 1)))
+
+
+def _micro(text: str) -> str:
+    """Micrometres as figures show them."""
+    return text.replace(" um", " µm")
+
+
+def _grid(panel: Axes) -> None:
+    """A quiet grid."""
+    panel.grid(color="0.88", lw=0.5)
+    panel.set_axisbelow(True)
+    panel.tick_params(labelsize=8)

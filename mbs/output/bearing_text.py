@@ -1,0 +1,181 @@
+"""Points of a bearing in words: a page for one point, a table for more."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from ehdmaps.units import FILM, PRESSURE, TEMPERATURE
+from mbs.bearing_point import BearingPoint
+from mbs.bearings.films import SIDES
+from mbs.output.bearing_data import BearingDescription, Points, bearing_row
+from mbs.reading.fields import FORCE, MICROMETRE, RPM
+
+REGIMES = ((1.0, "boundary: the surfaces touch"), (3.0, "mixed: asperities touch"), (math.inf, "full film"))
+"""What is usually said of Lambda below these values."""
+
+
+def bearing_text(description: BearingDescription, points: Points, roughness: float) -> list[str]:
+    """Lines that describe all points, and warn.
+
+    Parameters
+    ----------
+    description : BearingDescription
+        What they have in common.
+    points : sequence of sequence of BearingPoint
+        By load, then by speed.
+    roughness : float
+        Combined rms roughness for Lambda [m].
+    """
+    everything = [point for line in points for point in line]
+    lines = bearing_heading(description)
+    if len(everything) == 1:
+        lines += _page(everything[0], roughness) + _rollers(everything[0])
+    else:
+        lines += _table(everything, roughness)
+    return lines + _warnings(everything)
+
+
+def bearing_heading(description: BearingDescription) -> list[str]:
+    """What was computed, and what of it was assumed."""
+    bearing = description.bearing
+    return [
+        f"{bearing.geometry.name}: law {description.law}; {description.films}",
+        f"  {TEMPERATURE.text(description.temperature)}, clearance "
+        f"{MICROMETRE.text(bearing.geometry.diametral_clearance)}, profile {bearing.profile}, {bearing.slices} slices, "
+        f"load at {description.direction:.4g} deg from y (a roller) towards z",
+        f"  assumed: {', '.join(description.assumed) or 'nothing'}",
+    ]
+
+
+def _page(point: BearingPoint, roughness: float) -> list[str]:
+    """The numbers of one point."""
+    row = bearing_row(point, roughness)
+    contacts = point.contacts
+
+    def pair(label: str, unit: str, along: float, across: float) -> str:
+        return f"  {label:32s} {unit:8s} {_clean(along, across):12.5g} {_clean(across, along):12.5g}"
+
+    return [
+        f"{FORCE.text(point.size, 6)} on the inner ring at {RPM.text(point.speed)}: entrainment speed "
+        f"{point.entrainment_speed:.4g} m/s",
+        f"  {'':32s} {'':8s} {'along':>12s} {'across':>12s} the load",
+        pair("inner ring moves by", "um", 1e6 * row["displacement_along"], 1e6 * row["displacement_across"]),
+        pair("stiffness", "N/um", 1e-6 * row["stiffness_along"], 1e-6 * row["stiffness_across"]),
+        pair("damping, low-frequency limit", "N s/mm", 1e-3 * row["damping_along"], 1e-3 * row["damping_across"]),
+        f"  {'':32s} {'':8s} {'inner':>12s} {'outer':>12s} raceway",
+        _sides("Hertz pressure", PRESSURE.unit, 1e-9 * contacts.hertz_pressure),
+        *(
+            []
+            if np.array_equal(contacts.max_pressure, contacts.hertz_pressure)
+            else [_sides("film pressure with spike, +-25 %", PRESSURE.unit, 1e-9 * contacts.max_pressure)]
+        ),
+        _sides("smallest central film", FILM.unit, 1e6 * contacts.central_film),
+        _sides("smallest film", FILM.unit, 1e6 * contacts.minimum_film),
+        f"  Lambda {row['film_parameter']:.3g} (smallest film over {MICROMETRE.text(roughness)} of roughness; "
+        f"{regime(row['film_parameter'])})",
+    ]
+
+
+def regime(film_parameter: float) -> str:
+    """What is usually said of a film parameter Lambda.
+
+    Examples
+    --------
+    >>> regime(0.5), regime(2.0), regime(5.0)
+    ('boundary: the surfaces touch', 'mixed: asperities touch', 'full film')
+    """
+    if math.isnan(film_parameter):
+        return "no film is known"
+    return next(words for limit, words in REGIMES if film_parameter < limit or limit == math.inf)
+
+
+def _sides(label: str, unit: str, values: Iterable[float]) -> str:
+    """A line of an inner and an outer value."""
+    return f"  {label:32s} {unit:8s} " + " ".join(f"{_shown(value):>12s}" for value in values)
+
+
+def _rollers(point: BearingPoint) -> list[str]:
+    """A line for each loaded roller."""
+    rollers, contacts = point.rollers, point.contacts
+    lines = [
+        f"  {point.loaded} of {rollers.load.size} rollers carry more than 1 % of the highest load"
+        f"{'; the others not shown' if point.loaded < rollers.load.size else ''}",
+        f"  {'roller':>6s} {'angle':>7s} {'load':>9s} {'Hertz pressure, GPa':>21s} {'smallest film, um':>21s}",
+        f"  {'':>6s} {'deg':>7s} {'N':>9s} " + f"{SIDES[0]:>11s}{SIDES[1]:>10s} " * 2,
+    ]
+    for index in np.argsort(rollers.angle):
+        if rollers.load[index] <= 0.01 * rollers.load.max():
+            continue
+        pressures = [1e-9 * float(np.max(side.hertz_pressure[index])) for side in contacts.sides]
+        films = [1e6 * _smallest(side.minimum_film[index]) for side in contacts.sides]
+        lines.append(
+            f"  {index:6d} {math.degrees(rollers.angle[index]):7.1f} {rollers.load[index]:9.5g} "
+            f"{_shown(pressures[0], 3):>11s}{_shown(pressures[1], 3):>10s} "
+            f"{_shown(films[0], 3):>11s}{_shown(films[1], 3):>10s}"
+        )
+    return [line.rstrip() for line in lines]
+
+
+def _table(points: list[BearingPoint], roughness: float) -> list[str]:
+    """A line for each point."""
+    lines = [
+        f"{'load':>10s} {'speed':>8s} {'K along':>9s} {'across':>9s} {'c along':>9s} {'rollers':>7s} {'highest':>9s} "
+        f"{'Hertz':>7s} {'smallest':>9s} {'Lambda':>7s}",
+        f"{'N':>10s} {'rpm':>8s} {'N/um':>9s} {'N/um':>9s} {'N s/mm':>9s} {'loaded':>7s} {'N':>9s} "
+        f"{'GPa':>7s} {'film, um':>9s} {'':>7s}",
+    ]
+    for point in points:
+        row = bearing_row(point, roughness)
+        lines.append(
+            f"{point.size:10.5g} {RPM.value(point.speed):8.5g} {1e-6 * row['stiffness_along']:9.4g} "
+            f"{1e-6 * row['stiffness_across']:9.4g} {1e-3 * row['damping_along']:9.4g} {point.loaded:7d} "
+            f"{row['highest_roller_load']:9.5g} {1e-9 * float(point.contacts.hertz_pressure.max()):7.4g} "
+            f"{_shown(1e6 * float(np.min(point.contacts.minimum_film)), 4):>9s} {_shown(row['film_parameter'], 3):>7s}"
+            f"{' !' if point.problems else ''}"
+        )
+    return lines
+
+
+def _warnings(points: list[BearingPoint]) -> list[str]:
+    """Each warning and note once, with how many points it is about."""
+    lines = []
+    for word, name in (("warning", "problems"), ("note", "notes")):
+        # The number in a sentence differs from point to point; the first one is shown.
+        groups: dict[str, list[str]] = {}
+        for point in points:
+            for sentence in getattr(point, name):
+                groups.setdefault(without_numbers(sentence), []).append(sentence)
+        for sentences in groups.values():
+            more = f" ({len(sentences)} of {len(points)} points, the last of them here)" if len(points) > 1 else ""
+            lines.append(f"{word}: {sentences[-1]}{more}")
+    return lines
+
+
+def without_numbers(sentence: str) -> str:
+    """A sentence without its numbers, by which warnings of one kind are known.
+
+    Examples
+    --------
+    >>> without_numbers("5.1 GPa is too much") == without_numbers("40 GPa is too much")
+    True
+    """
+    return "".join(letter for letter in sentence if not (letter.isdigit() or letter in ".-+"))
+
+
+def _smallest(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> float:
+    """Smallest number; NaN if there is none."""
+    known = values[np.isfinite(values)]
+    return float(known.min()) if known.size else math.nan
+
+
+def _clean(value: float, beside: float) -> float:
+    """Zero in place of what is round-off beside another value."""
+    return 0.0 if abs(value) < 1e-9 * abs(beside) else value
+
+
+def _shown(value: float, digits: int = 5) -> str:
+    """A number; a dash where there is none."""
+    return "-" if math.isnan(value) else f"{value:.{digits}g}"

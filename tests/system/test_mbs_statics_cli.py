@@ -1,0 +1,119 @@
+"""What `mbs statics` says of pressures, films, and of what does not hold."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from ehdmaps.jobs import cli as ehdmaps_cli
+from mbs import Bearing
+from mbs.scene_reader import read_scene
+from tests.system.test_mbs_cli import JOB, check_units, run
+
+STRAIGHT = ('profile = "iso"', 'profile = "straight"')
+FREE_RING = ('freedoms = ["y", "z"]\nposition = ["-70 mm"', 'freedoms = ["x", "y", "z"]\nposition = ["-70 mm"')
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture(scope="module")
+def formula_map(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("map")
+    (folder / "nu308.toml").write_text(JOB.format(bearing="NU308"))
+    path = str(folder / "nu308.nc")
+    assert ehdmaps_cli.main(["generate", str(folder / "nu308.toml"), "-o", path, "--workers", "1"]) in (0, 1)
+    return path
+
+
+def scene(here, *changes):
+    text = read_scene("nu308_rigid").text
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    (here / "changed.toml").write_text(text)
+    return "changed.toml"
+
+
+def test_dry_contacts_have_a_pressure_and_no_film(here, capsys):
+    status, out, _ = run(capsys, "statics", scene(here, STRAIGHT), "-o", "a.nc")
+    assert status == 0
+    assert "  Hertz pressure up to 0.1" in out and "film down to" not in out and "warning" not in out
+    with xr.open_dataset("a.nc") as data:
+        check_units(data)
+        assert data.attrs["warnings"] == ""
+        assert np.all(np.isnan(data["minimum_film"]))
+        geometry = Bearing.named("NU308").geometry
+        text = next(line for line in out.splitlines() if "rollers loaded, the most with" in line)
+        mean = float(text.split("the most with ")[1].split()[0]) / geometry.roller_length
+        modulus = 210e9 / (1.0 - 0.3**2)
+        found = data["hertz_pressure"].isel(bearing=0).values
+        for pressure, radius in zip(found, (geometry.inner_radius, geometry.outer_radius), strict=True):
+            # Closed form; the printed load has five digits.
+            assert pressure == pytest.approx(math.sqrt(mean * modulus / (2.0 * math.pi * radius)), rel=1e-4)
+        assert found[0] / found[1] == pytest.approx(math.sqrt(geometry.outer_radius / geometry.inner_radius))
+
+
+@pytest.mark.parametrize("law", ["map", "formula"])
+def test_films_where_the_law_knows_them(here, capsys, formula_map, law):
+    options = ("--map", formula_map) if law == "map" else ("--law", "formula")
+    status, out, _ = run(capsys, "statics", "nu308_rigid", *options, "-o", "a.nc", "--plot", "a.png")
+    assert status == 0
+    assert "; film down to 0." in out
+    with xr.open_dataset("a.nc") as data:
+        assert np.all(data["minimum_film"] < data["central_film"])
+        assert np.all(data["minimum_film"].sel(contact="inner") < data["minimum_film"].sel(contact="outer"))
+        films = data["central_film"].values
+    # `mbs bearing` at the same load, between two rollers as there, says the same.
+    bearing = ("bearing", "NU308", "--load", "141.421356 N", "--direction", "1", "1", "--speed", "500 rpm")
+    assert run(capsys, *bearing, *options, "-o", "b.nc")[0] == 0
+    with xr.open_dataset("b.nc") as data:
+        # The formula's law is made over other ranges there: its table's error.
+        np.testing.assert_allclose(data["central_film"].values[0, 0], films[0], rtol=1e-4)
+
+
+@pytest.mark.parametrize("law", ["map", "formula"])
+def test_temperatures_without_a_viscosity_have_no_films(here, capsys, formula_map, law):
+    name = scene(here, ('temperature = "40 degC"', 'temperature = "-30 degC"'))
+    options = ("--map", formula_map) if law == "map" else ("--law", "formula")
+    status, out, _ = run(capsys, "statics", name, *options)
+    assert status == 1
+    assert "warning: bearing_left: lies outside the map" in out
+    # The map's films are those of its edge, as its law is.
+    assert ("film down to" in out) == (law == "map")
+
+
+def test_overload_is_no_silent_equilibrium(here, capsys):
+    name = scene(here, ('"0 N", "100 N", "100 N"', '"0 N", "1e6 N", "0 N"'))
+    status, out, _ = run(capsys, "statics", name, "-o", "a.nc", "--plot", "a.png")
+    assert status == 1
+    assert "warning: bearing_left: Hertz pressure of 12." in out
+    assert "above 4 GPa, the static limit of ISO 76: permanent deformation" in out
+    with xr.open_dataset("a.nc") as data:
+        assert "bearing_right: Hertz pressure" in data.attrs["warnings"]
+    assert (here / "a.png").stat().st_size > 10_000
+
+
+def test_what_moves_freely_is_said(here, capsys):
+    name = scene(here, FREE_RING)
+    status, out, _ = run(capsys, "statics", name, "-o", "a.nc")
+    assert status == 0
+    assert "warning: ring_left moves freely along x: its position is arbitrary" in out
+    with xr.open_dataset("a.nc") as data:
+        assert data.attrs["warnings"] == "ring_left moves freely along x: its position is arbitrary"
+
+
+def test_a_load_on_what_is_free_is_no_equilibrium(here, capsys):
+    text = read_scene("nu308_rigid").text.replace(*FREE_RING)
+    push = '\n[[loads]]\nname = "push"\non = "ring_left"\nforce = ["1e-9 N", "0 N", "0 N"]\n'
+    (here / "pushed.toml").write_text(text + push)
+    status, out, err = run(capsys, "statics", "pushed.toml", "-o", "a.nc")
+    assert (status, out) == (1, "")
+    assert "no equilibrium: ring_left moves freely along x, and a load of 1e-09 N acts that way" in err
+    assert not (here / "a.nc").exists()
