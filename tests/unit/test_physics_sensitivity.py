@@ -39,7 +39,7 @@ def oil(alpha):
 
 @pytest.mark.parametrize(("load", "speed"), [(1e4, 0.7), (1e5, 0.7), (1e5, 3.0)])
 def test_the_formula_changes_as_the_reynolds_solution_does(load, speed):
-    """The exponent of alpha that the formula has (0.5 to 0.7) is within 0.1 of that of full solutions: model error."""
+    """The exponent of alpha in the formula is within 0.06 of that of full solutions (0.55 to 0.61): model error."""
     alpha, factor = 2e-8, 1.2
     films = [
         ReynoldsSolver().solve_line(CONTACT, oil(alpha * f), (load,), speed, 313.15)[0].central_film
@@ -48,7 +48,7 @@ def test_the_formula_changes_as_the_reynolds_solution_does(load, speed):
     measured = films[1] / films[0] - 1.0
     found = film_change(CONTACT, oil(alpha).at(313.15), load, speed, factor)
     assert 0.05 < measured < 0.2
-    assert found == pytest.approx(measured, abs=0.02)
+    assert found == pytest.approx(measured, abs=0.012)
 
 
 def test_check_says_how_much_alpha_matters(tmp_path, capsys):
