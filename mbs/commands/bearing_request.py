@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.errors import EhdmapsError, InputError
+from ehdmaps.inputs import first_bytes, read_text
 from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.reader import LONGEST_FILE, read_job, shipped_jobs

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import progress
@@ -275,8 +276,17 @@ def _reach(entry: _Found) -> Reach:
     """Where the films of a law are not valid, over the speeds of the run."""
     speeds = entry.spectra.campbell.speeds
     at = np.linspace(float(speeds.min()), float(speeds.max()), _MODE_SPEEDS)
+    return Reach(at, lowest_limits(entry.case.model, at), float(speeds[_fading(entry)].max(initial=0.0)))
+
+
+def _fading(entry: _Found) -> npt.NDArray[np.bool_]:
+    """Which windows reach below the map, where the film fades to the dry contact, shape (windows,)."""
+    found, record = entry.spectra.campbell, entry.record
     fade = fade_of(entry.case.model)
-    return Reach(at, lowest_limits(entry.case.model, at), 0.0 if fade is None else fade.speed)
+    if fade is None:
+        return np.zeros(found.time.size, dtype=np.bool_)
+    ends = [np.interp(found.time + part * found.window, record.time, np.abs(record.speed)) for part in (-0.5, 0.5)]
+    return fade.below(np.minimum(*ends))
 
 
 def _resolution(spectra: RunUpSpectra, settings: CampbellSettings) -> list[str]:
@@ -299,7 +309,8 @@ def _report(entry: _Found) -> list[str]:
         *heading(entry.case.model)[1:],
         f"  {record.steps} steps, {record.halved} taken back, {1e6 * entry.seconds / max(record.steps, 1):.3g} us a "
         f"step, {entry.seconds:.3g} s",
-        f"  highest sum level {found.sum_level[at]:.1f} dB at {RPM.text(float(found.speeds[at]))}",
+        f"  highest sum level {found.sum_level[at]:.1f} dB at {RPM.text(float(found.speeds[at]))}"
+        f"{_elsewhere(entry, at)}",
     ]
     if entry.spectra.peaks:
         lines.append("  peaks along the orders: order   speed/rpm   frequency/Hz   level/dB   above its valleys/dB")
@@ -321,6 +332,20 @@ def _differences(found: Sequence[_Found]) -> list[str]:
             levels = (beside.spectra.campbell.sum_level, entry.spectra.campbell.sum_level)
             lines.append(f"  {entry.case.label} beside {beside.case.label}: {difference_text(*levels)}")
     return ["sum level at the same speed", *lines] if lines else []
+
+
+def _elsewhere(entry: _Found, at: int) -> str:
+    """What is highest above the fade, where the window `at` of the highest sum level lies in it."""
+    found, fading = entry.spectra.campbell, _fading(entry)
+    if not fading[at]:
+        return ""
+    if fading.all():
+        return ", as all windows with the film fading below the map"
+    best = int(np.argmax(np.where(fading, -np.inf, found.sum_level)))
+    return (
+        f", where the film fades below the map; in windows that do not reach there {found.sum_level[best]:.1f} dB at "
+        f"{RPM.text(float(found.speeds[best]))}"
+    )
 
 
 def _peak(peak: OrderPeak, modes: Sweep | None) -> str:

@@ -24,8 +24,8 @@ HIGHEST = 10e3
 """Highest frequency shown of a scene that asks for no responses [Hz]."""
 
 _LEAST_SHARE = 0.05
-_FREE = 1e-6
-"""Part of the highest frequency below which a motion without strain energy is free."""
+_FREE, _ZERO = 1e-6, 1e-8
+"""Parts of the highest frequency below which a motion without strain energy is free, and below which any is."""
 
 _ROUND_OFF = 1e-12
 
@@ -76,7 +76,8 @@ def _kinds(found: Modes) -> tuple[IntArray, IntArray, IntArray]:
     """Which modes are free, which creep back without oscillating, and which oscillate."""
     still = found.eigenvalues.imag <= 0.0
     strained = found.shares.sum(axis=0) > 0.0
-    free = ~strained & (found.frequency <= _FREE * found.frequency.max(initial=0.0))
+    part = found.frequency / max(float(found.frequency.max(initial=0.0)), 1e-300)
+    free = (part <= _ZERO) | (~strained & (part <= _FREE))
     creeping = still & ~free
     return np.flatnonzero(free), np.flatnonzero(creeping), np.flatnonzero(~free & ~creeping)
 

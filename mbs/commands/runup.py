@@ -76,10 +76,11 @@ def _changes(size: FloatArray, speed: FloatArray, fade: Fade | None) -> str:
     inside = slow[1:] | slow[:-1]
     if fade is None or not inside.any():
         return f"{change.max(initial=0.0):.3g} N"
-    return (
-        f"{change[inside].max():.3g} N below {RPM.text(fade.speed)}, where the film fades, and "
-        f"{change[~inside].max(initial=0.0):.3g} N above"
-    )
+    words = f"{change[inside].max():.3g} N below {RPM.text(fade.speed)}, where the film fades"
+    if inside.all():
+        return words
+    worst = int(np.argmax(np.where(inside, -1.0, change)))
+    return f"{words}, and {change[worst]:.3g} N above, at {RPM.text(float(abs(speed[worst])))}"
 
 
 def _figure(model: Model, result: Trajectory, fade: Fade | None) -> Figure:

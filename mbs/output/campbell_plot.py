@@ -78,7 +78,7 @@ class Reach:
     limit : array, shape (speeds,)
         Frequency at which omega b/u is 0.3 [Hz]; NaN for laws without films.
     below : float
-        Speed below which the film fades to the dry contact [rad/s]; 0 for laws without films.
+        Speed up to which windows reach below the map, where the film fades to the dry contact [rad/s]; 0 for none.
     """
 
     speeds: FloatArray
@@ -167,8 +167,9 @@ def _reach(panel: Axes, reach: Reach, factor: float) -> None:
     """The limit of slow films as a line, and what lies below the map shaded; the axes stay as they are."""
     limits = panel.get_xlim(), panel.get_ylim()
     panel.plot(reach.speeds * RPM, reach.limit * factor, color=_LIMIT_COLOUR, lw=0.9, ls=_LIMIT)
-    if reach.below * RPM > limits[0][0]:
-        panel.axvspan(limits[0][0], reach.below * RPM, color=SHADE, alpha=0.6, lw=0.0)
+    if reach.below * RPM >= limits[0][0]:
+        # A line of its own width also where it is the first window alone.
+        panel.axvspan(limits[0][0], reach.below * RPM, color=SHADE, alpha=0.6, lw=1.5)
     panel.set_xlim(*limits[0])
     panel.set_ylim(*limits[1])
 
@@ -186,8 +187,8 @@ def _handles(
         words = f"omega b/u = {HIGHEST_RATIO}: films not valid above"
         found.append(Line2D([], [], color=_LIMIT_COLOUR, lw=0.9, ls=_LIMIT, label=words))
     slow = max((reach.below for reach in reaches), default=0.0)
-    if slow > begin:
-        found.append(shade_handle(f"below {slow * RPM:.4g} rpm: below the map, film fades to dry"))
+    if slow >= begin:
+        found.append(shade_handle(f"up to {slow * RPM:.4g} rpm: below the map, film fades to dry"))
     return found
 
 

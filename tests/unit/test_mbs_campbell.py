@@ -6,6 +6,7 @@ import argparse
 import dataclasses
 import doctest
 import importlib
+import types
 from importlib import resources
 
 import numpy as np
@@ -14,6 +15,7 @@ import xarray as xr
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
+from mbs.commands.reach import Fade
 from mbs.elements import Sensor
 from mbs.errors import AnalysisError
 from mbs.output.campbell_data import campbell_dataset
@@ -411,7 +413,7 @@ def test_what_is_not_valid_is_drawn_and_named(spectra):
     words = [text.get_text() for part in figure.subfigs for legend in part.legends for text in legend.get_texts()]
     assert words == [
         "omega b/u = 0.3: films not valid above",
-        "below 400 rpm: below the map, film fades to dry",
+        "up to 400 rpm: below the map, film fades to dry",
     ]
 
 
@@ -486,6 +488,29 @@ def test_the_command_compares_laws(scene, tmp_path, capsys):
         assert data["track"].values[0] == pytest.approx(12.0 * 0.3939, rel=1e-3)  # digits of the cage's speed
         assert data.attrs["law"].startswith("dry Hertz: dry Hertz, ISO 16281; constant hertz: constant hertz: ")
     assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize(
+    ("lowest", "words"), [(0.0, ""), (400.0, "in windows that do not reach there"), (2e3, "all windows")]
+)
+def test_a_highest_level_below_the_map_is_said_to_be_one(spectra, monkeypatch, lowest, words):
+    command = importlib.import_module("mbs.commands.campbell")
+    monkeypatch.setattr(command, "fade_of", lambda model: Fade(lowest / RPM, 0.05, "the map") if lowest else None)
+    loud = spectra.campbell.sum_level.copy()
+    loud[0] = 300.0
+    changed = dataclasses.replace(spectra, campbell=dataclasses.replace(spectra.campbell, sum_level=loud))
+    run = ramp()
+    entry = types.SimpleNamespace(spectra=changed, record=run, case=types.SimpleNamespace(model=None))
+    fading = command._fading(entry)
+    speeds, half = changed.campbell.speeds, 0.5 * changed.campbell.window * 300.0 / RPM
+    # The speed rises by 300 rpm a second; windows that begin within a sample of the edge are left open.
+    assert np.all(fading[speeds - half < 0.99 * lowest / RPM])
+    assert not np.any(fading[speeds - half > 1.01 * lowest / RPM])
+    said = command._elsewhere(entry, 0)
+    assert words in said and bool(said) == bool(lowest)
+    if lowest == 400.0:
+        best = int(np.argmax(np.where(fading, -np.inf, loud)))
+        assert f"{loud[best]:.1f} dB at {speeds[best] * RPM:.4g} rpm" in said
 
 
 def test_the_command_lists_every_problem(scene):

@@ -116,7 +116,10 @@ class TestReach:
         size, speed = np.array([1.0, 6.0, 7.0, 9.0]), np.array([0.0, 1.0, 2.0, 3.0])
         assert _changes(size, speed, None) == "5 N"
         assert _changes(size, speed, Fade(0.5, 0.05, "the map")).startswith("5 N below 4.775 rpm")
-        assert _changes(size, speed, Fade(0.5, 0.05, "the map")).endswith(", where the film fades, and 2 N above")
+        assert _changes(size, speed, Fade(0.5, 0.05, "the map")).endswith(
+            ", where the film fades, and 2 N above, at 19.1 rpm"
+        )
+        assert _changes(size, speed, Fade(9.0, 0.05, "the map")) == "5 N below 85.94 rpm, where the film fades"
         # Never in the fade: one number.
         assert _changes(size, speed + 1.0, Fade(0.5, 0.05, "the map")) == "5 N"
 

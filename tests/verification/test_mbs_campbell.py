@@ -55,7 +55,7 @@ def test_the_sum_over_all_lines_is_the_mean_square_in_the_window():
     for index in (0, 7, spectra.time.size - 1):
         middle = round(spectra.time[index] * 8000.0)
         part = run.signal[middle - length // 2 : middle - length // 2 + length]
-        values = (part - part.mean()) * weights
+        values = (part - np.average(part, weights=weights)) * weights
         padded = np.fft.irfft(np.where(low, np.fft.rfft(values, 4 * length), 0.0), 4 * length)
         # Round-off: both are sums of some 1000 squares.
         assert spectra.mean_square()[index] == pytest.approx(np.sum(padded**2) / np.sum(weights**2), rel=1e-10)
