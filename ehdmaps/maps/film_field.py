@@ -15,7 +15,10 @@ LOSS_FLOOR = 1e-4
 def lifted_loss(
     loss: FloatArray, half_width: FloatArray, speed: FloatArray | float, compliance: FloatArray
 ) -> FloatArray:
-    """Loss compliance made positive, smoothly: a contact law is passive, and takes logarithms of it.
+    """The larger one of a loss compliance and its floor, smoothly: a contact law is passive, and takes logarithms.
+
+    Nothing lies below the floor: a logarithm that fell further, where a solved damping is negative, would make the
+    splines of the law ring on both sides of it.
 
     Parameters
     ----------
@@ -25,7 +28,7 @@ def lifted_loss(
         b [m], u [m/s] and 1/k [m2/N].
     """
     floor = LOSS_FLOOR * half_width / speed * compliance
-    lifted: FloatArray = 0.5 * (loss + np.hypot(loss, 2.0 * floor))
+    lifted: FloatArray = 0.5 * (loss + floor + np.hypot(loss - floor, 2.0 * floor))
     return lifted
 
 

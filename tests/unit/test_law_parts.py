@@ -14,6 +14,7 @@ from ehdmaps.maps import elementary
 from ehdmaps.maps.compilation import compile_table, highest_structural_load
 from ehdmaps.maps.contact_curve import ContactCurve
 from ehdmaps.maps.dry import DryField
+from ehdmaps.maps.film_field import LOSS_FLOOR, lifted_loss
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.splines import hermite, spline_coefficients, spline_weights
 from ehdmaps.maps.tail import Tail
@@ -243,6 +244,21 @@ def test_grid_field_compliance_is_the_derivative_of_its_offset():
         low, high = (films_at(grid, "outer", load * (1.0 + e), *place)[0] for e in (-1e-5, 1e-5))
         compliance = films_at(grid, "outer", load, *place)[1]
         assert compliance == pytest.approx((low - high) / (2e-5 * load), rel=1e-4)
+
+
+def test_a_lifted_loss_is_the_larger_one_of_loss_and_floor():
+    """Far below zero as well: its logarithm must not fall on, beside which the splines of a law would ring."""
+    half_width, speed, compliance = 1e-4, 2.0, 4e-11
+    floor = LOSS_FLOOR * half_width / speed * compliance
+    loss = floor * np.array([-1e6, -1e3, -10.0, 0.0, 1.0, 10.0, 1e3, 1e6])
+    lifted = lifted_loss(loss, np.array(half_width), speed, np.array(compliance))
+    assert np.all(np.diff(lifted) > 0.0)
+    assert np.all(lifted >= floor)
+    # Far from the floor the square root differs from a corner by floor^2/|loss - floor|.
+    far = np.abs(loss) >= 1e3 * floor
+    assert lifted[far] == pytest.approx(np.maximum(loss, floor)[far], rel=2e-3)
+    # Where the loss is zero the law is within a tenth of the bar to which its damping is held, twice.
+    assert lifted[3] < 2.0 * floor
 
 
 def test_grid_field_lifts_a_negative_loss():
