@@ -14,10 +14,19 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
+from ehdmaps.physics.solids import reduced_modulus
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.contact_report import BearingContacts, bearing_contacts, extrapolated, fading, outside_map, overload
+from mbs.bearings.contact_report import (
+    BearingContacts,
+    bearing_contacts,
+    extrapolated,
+    fading,
+    heated,
+    outside_map,
+    overload,
+)
 from mbs.bearings.films import FilmSource
 from mbs.bearings.laws import Law
 from mbs.bearings.roller_loads import RollerLoads
@@ -170,7 +179,13 @@ def bearing_point(
     contacts = bearing_contacts(films, rollers, u, temperature)
     stiffness = balance.element_stiffness[0][1:3, 1:3]
     problems = [overload(contacts), *outside_map(force.law, float(rollers.load_per_length.max()), u, temperature)]
-    notes = [extrapolated(contacts, films.lubricant), fading(force.law, u), _loose(stiffness, given)]
+    modulus = reduced_modulus(force.bearing.material, force.bearing.material)
+    notes = [
+        extrapolated(contacts, films.lubricant),
+        fading(force.law, u),
+        heated(contacts, films.lubricant, modulus, u, temperature),
+        _loose(stiffness, given),
+    ]
     return BearingPoint(
         bearing=force.bearing,
         load=given,

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.thermal import inlet_shear_heating_factor, thermal_loading
 from ehdmaps.units import LOAD, PRESSURE, SPEED, TEMPERATURE
 from mbs.bearings.films import SIDES, ContactState, FilmSource
 from mbs.bearings.laws import Law
@@ -143,6 +145,42 @@ def fading(law: Law, entrainment_speed: float) -> str:
         f"{SPEED.text(law.speed_range[0])}: stiffness and damping fade to those of dry contacts from there on, and "
         "films are continued by Moes' formula"
     )
+
+
+def heated(
+    contacts: BearingContacts, oil: Lubricant | None, modulus: float, entrainment_speed: float, temperature: float
+) -> str:
+    """A sentence where inlet heating would thin the isothermal films noticeably; empty otherwise.
+
+    Parameters
+    ----------
+    contacts : BearingContacts
+        With their films.
+    oil : Lubricant or None
+        Its conductivity has to be known.
+    modulus, entrainment_speed, temperature : float
+        E' [Pa], u [m/s], T [K].
+    """
+    conductivity = None if oil is None else oil.thermal_conductivity
+    if oil is None or conductivity is None or not math.isfinite(_smallest(contacts.central_film)):
+        return ""
+    slope = (oil.at(temperature + _KELVIN).viscosity - oil.at(temperature).viscosity) / _KELVIN
+    try:
+        loading = thermal_loading(min(slope, 0.0), entrainment_speed, conductivity)
+        pressure = float(np.max(contacts.hertz_pressure))
+        factor = inlet_shear_heating_factor(pressure, modulus, loading)
+    except InputError:
+        return "films are isothermal and too thick: the inlet heats up by more than the formula of Gupta et al. covers"
+    if factor > _NOTICEABLE:
+        return ""
+    return (
+        f"films are isothermal: inlet heating makes them about {100.0 * (1.0 - factor):.0f} % thinner at the highest "
+        "pressure (Gupta et al. 1992)"
+    )
+
+
+_KELVIN = 0.01
+_NOTICEABLE = 0.95
 
 
 def _near(value: float) -> float:

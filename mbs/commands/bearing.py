@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from ehdmaps.outputs import write_figure
 from mbs.bearing_point import bearing_points
 from mbs.bearings import laws
 from mbs.bearings.laws import Law
@@ -14,6 +15,8 @@ from mbs.output.bearing_plot import bearing_figure
 from mbs.output.bearing_text import bearing_text
 
 RESOLUTION = 150
+FORMULA_LOADS = (100.0, 1e8)
+"""Loads for which the law of the formula is made [N/m]; far beyond 4 GPa in any bearing of steel."""
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -22,17 +25,14 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     points = bearing_points(
         request.bearing, _law(request), request.films, request.load_vectors, request.speeds, request.temperature
     )
-    dataset = bearing_dataset(request.description, points, request.roughness)
-    lines = bearing_text(request.description, points, request.roughness)
+    dataset = bearing_dataset(request.description, points)
+    lines = bearing_text(request.description, points)
     if arguments.output:
         write = write_csv if Path(arguments.output).suffix.lower() == ".csv" else write_netcdf
         write(dataset, arguments.output)
         lines.append(f"{arguments.output}: written")
     if arguments.plot:
-        # Only here, because a figure needs matplotlib.
-        from ehdmaps.outputs import write_figure
-
-        write_figure(bearing_figure(request.description, points, request.roughness), arguments.plot, RESOLUTION)
+        write_figure(bearing_figure(request.description, points), arguments.plot, RESOLUTION)
         lines.append(f"{arguments.plot}: written")
     problems = any(point.problems for row in points for point in row)
     return "\n".join(lines), 1 if problems else 0
@@ -54,7 +54,3 @@ def _law(request: BearingRequest) -> Law:
             outside="clamp",
         )
     return laws.hertz(request.bearing)
-
-
-FORMULA_LOADS = (100.0, 1e8)
-"""Loads for which the law of the formula is made [N/m]; far beyond 4 GPa in any bearing of steel."""

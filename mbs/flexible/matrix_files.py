@@ -15,7 +15,7 @@ from scipy import io, sparse
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from mbs.flexible.finite_elements import MOST_FREEDOMS, FiniteElementModel, IntArray
-from mbs.flexible.number_table import NumberTable, check_file, read_numbers
+from mbs.flexible.number_table import NumberTable, check_file, check_last_line, read_numbers
 
 UNIT_SYSTEMS = ("SI", "mm-t-s")
 """N, m, kg, s; or N, mm, tonne, s, as finite-element models are often made."""
@@ -127,6 +127,7 @@ def read_matrix_market(path: Path, dofs: Path) -> Labelled:
     # An entry takes two characters at least: a header that promises more must not fill the memory.
     if 2 * entries > path.stat().st_size:
         raise InputError(f"{path}: the header promises {entries} entries, which the file does not hold; it was cut off")
+    check_last_line(path)
     try:
         matrix = sparse.csc_array(io.mmread(path, spmatrix=False), dtype=np.float64)
     except (OSError, ValueError, OverflowError, MemoryError) as error:

@@ -66,6 +66,11 @@ def _deck_nodes(path: Path) -> NodePositions:
                     raise InputError(f"{path}, line {number}: got {short(text)}; allowed: rectangular coordinates")
                 continue
             if inside:
+                if not line.endswith("\n"):
+                    raise InputError(
+                        f"{path}, line {number}: got {short(text)}, which has no end; allowed: a deck that is whole; "
+                        "the file was cut off, or add a line break where it was not"
+                    )
                 node, position = _node(path, number, text)
                 found[node] = position
     if not found:

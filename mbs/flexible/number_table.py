@@ -83,6 +83,7 @@ def read_numbers(path: Path, columns: int, comment: str, delimiter: str | None =
             f"{path}: begins with {short(start[:20])}, which is no text in lines; allowed: {columns} numbers a line; "
             "the file is of another kind, or was damaged"
         )
+    check_last_line(path)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -103,6 +104,18 @@ def read_numbers(path: Path, columns: int, comment: str, delimiter: str | None =
 def check_file(path: Path) -> None:
     """Raise InputError if there is no such file of a finite-element body, or it is too long."""
     check_input(path, LONGEST_FILE, "a file of the body", "take a coarser mesh")
+
+
+def check_last_line(path: Path) -> None:
+    """Raise InputError if a table ends without a line break: what is left of a number is a number, too."""
+    size = check_input(path, LONGEST_FILE, "a table of numbers")
+    with path.open("rb") as file:
+        file.seek(max(size - 1, 0))
+        if size and file.read(1) not in (b"\n", b"\r"):
+            raise InputError(
+                f"{path}: its last line has no end; allowed: a table that is whole; the file was cut off, or add a "
+                "line break where it was not"
+            )
 
 
 def _found(path: Path, columns: int, comment: str, delimiter: str | None) -> InputError:

@@ -94,7 +94,7 @@ def bearing_row(point: BearingPoint, roughness: float) -> dict[str, float]:
     return {name: float(value) for (name, _, _), value in zip(_ROW, values, strict=True)}
 
 
-def bearing_dataset(description: BearingDescription, points: Points, roughness: float) -> xr.Dataset:
+def bearing_dataset(description: BearingDescription, points: Points) -> xr.Dataset:
     """Dataset over load and speed, with the loads of all rollers and the slices of the most loaded one.
 
     Parameters
@@ -103,11 +103,9 @@ def bearing_dataset(description: BearingDescription, points: Points, roughness: 
         What they have in common.
     points : sequence of sequence of BearingPoint
         By load, then by speed.
-    roughness : float
-        Combined rms roughness for Lambda [m].
     """
     dims = ("load", "speed")
-    rows = [[bearing_row(point, roughness) for point in line] for line in points]
+    rows = [[bearing_row(point, description.roughness) for point in line] for line in points]
     variables: dict[str, Any] = {
         name: (dims, np.array([[row[name] for row in line] for line in rows]), {"units": unit, "long_name": words})
         for name, unit, words in _ROW

@@ -29,7 +29,7 @@ _MOST_LINES = 8
 _WIDE = 130
 
 
-def bearing_figure(description: BearingDescription, points: Points, roughness: float) -> Figure:
+def bearing_figure(description: BearingDescription, points: Points) -> Figure:
     """Roller loads and the most loaded roller of one point; curves over load or speed for more.
 
     Parameters
@@ -38,12 +38,10 @@ def bearing_figure(description: BearingDescription, points: Points, roughness: f
         What the points have in common.
     points : sequence of sequence of BearingPoint
         By load, then by speed.
-    roughness : float
-        Combined rms roughness for Lambda [m].
     """
     if len(points) == 1 and len(points[0]) == 1:
-        return _page(description, points[0][0], roughness)
-    return _curves(description, points, roughness)
+        return _page(description, points[0][0], description.roughness)
+    return _curves(description, points)
 
 
 def _page(description: BearingDescription, point: BearingPoint, roughness: float) -> Figure:
@@ -130,7 +128,7 @@ def _slices(panels: Sequence[Axes], point: BearingPoint) -> None:
         panels[2].text(0.5, 0.5, words, transform=panels[2].transAxes, ha="center", color="0.4")
 
 
-def _curves(description: BearingDescription, points: Points, roughness: float) -> Figure:
+def _curves(description: BearingDescription, points: Points) -> Figure:
     """Curves over load (a line a speed), or over speed if there is one load."""
     figure = Figure(figsize=(11.0, 6.8), layout="constrained")
     everything = [point for line in points for point in line]
@@ -144,8 +142,8 @@ def _curves(description: BearingDescription, points: Points, roughness: float) -
         lines = [lines[i] for i in np.unique(np.linspace(0, len(lines) - 1, _MOST_LINES).round().astype(int))]
     for order, line in enumerate(lines):
         colour = _shade(order, len(lines))
-        _line(panels, line, roughness, colour, over_load, RPM.text(line[0].speed) if len(lines) > 1 else "")
-    _label(panels, over_load, roughness, everything)
+        _line(panels, line, description.roughness, colour, over_load, RPM.text(line[0].speed) if len(lines) > 1 else "")
+    _label(panels, over_load, description.roughness, everything)
     if len(lines) > 1:
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(handles, labels, fontsize=8, frameon=False, loc="outside right center", title="speed")

@@ -17,7 +17,7 @@ REGIMES = ((1.0, "boundary: the surfaces touch"), (3.0, "mixed: asperities touch
 """What is usually said of Lambda below these values."""
 
 
-def bearing_text(description: BearingDescription, points: Points, roughness: float) -> list[str]:
+def bearing_text(description: BearingDescription, points: Points) -> list[str]:
     """Lines that describe all points, and warn.
 
     Parameters
@@ -26,15 +26,13 @@ def bearing_text(description: BearingDescription, points: Points, roughness: flo
         What they have in common.
     points : sequence of sequence of BearingPoint
         By load, then by speed.
-    roughness : float
-        Combined rms roughness for Lambda [m].
     """
     everything = [point for line in points for point in line]
     lines = bearing_heading(description)
     if len(everything) == 1:
-        lines += _page(everything[0], roughness) + _rollers(everything[0])
+        lines += _page(everything[0], description.roughness) + _rollers(everything[0])
     else:
-        lines += _table(everything, roughness)
+        lines += _table(everything, description.roughness)
     return lines + _warnings(everything)
 
 

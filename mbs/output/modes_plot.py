@@ -48,8 +48,7 @@ def modes_figure(model: Model, found: Modes, shown: IntArray, limit: float = mat
     bottom = np.zeros(places.size)
     styles = itertools.product(_HATCHES, _FILLS)
     for part, share, (hatch, colour) in zip(found.parts, 100.0 * found.shares[:, shown], styles, strict=False):
-        if np.any(share > 0.1):
-            panel.bar(places, share, bottom=bottom, label=part, color=colour, hatch=hatch, edgecolor="w", lw=0.0)
+        panel.bar(places, share, bottom=bottom, label=part, color=colour, hatch=hatch, edgecolor="w", lw=0.0)
         bottom += share
     level = places.size <= _MOST_LEVEL_LABELS
     labels = [_label(found, int(mode), level) for mode in shown]

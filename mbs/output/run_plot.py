@@ -55,6 +55,8 @@ def run_figure(model: Model, run: Trajectory, below: float = 0.0, words: str = "
     axes[0, 0].set_ylabel(f"bearing force, {force_unit}")
     axes[1, 0].set_ylabel(f"inner ring against\nthe outer one, {length_unit}")
     axes[2, 0].set_ylabel("speed, rpm")
+    for panel in axes[:2].ravel():
+        panel.set_visible(bool(model.bearings))
     for panel in axes.ravel():
         _room(panel)
         whole_numbers(panel)

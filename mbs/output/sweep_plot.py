@@ -208,7 +208,8 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits:
         panel.set_xlim(entry.speeds[0] * _RPM, entry.speeds[-1] * _RPM)
         panel.set_yscale(scale)
         panel.plot(entry.speeds * _RPM, limit, color="w", lw=1.2, ls=_LIMIT)
-        panel.set_ylim(found.frequencies[0], found.frequencies[-1])
+        if found.frequencies[0] < found.frequencies[-1]:
+            panel.set_ylim(found.frequencies[0], found.frequencies[-1])
         panel.set_title(label.replace(" um", " µm"), fontsize=8.5)
         panel.tick_params(labelsize=8)
     axes[0].set_ylabel("frequency, Hz", fontsize=9)

@@ -72,7 +72,7 @@ def place(section: Table, key: str) -> str | None:
     value = section.get(key, 'a place such as "shaft" or "shaft:left"')
     if key not in section:
         return None
-    if not isinstance(value, str):
+    if not isinstance(value, str) or not value:
         section.note(key, f'got {short(value)}; allowed: a place such as "shaft" or "shaft:left"')
         return None
     return value

@@ -140,6 +140,9 @@ def test_run_up(here, capsys, maps):
     assert "100 of 100 steps" in err
     assert "from 0 rpm to 2000 rpm in 0.002 s: 100 steps" in out
     assert "0 calls outside the map" in out
+    # The map begins at 0.05 m/s: below, the film fades to the dry contact, which is no call outside.
+    assert "warning: 0 to 30.3 rpm lie below the map (4.8 % of the run; entrainment speed below 0.05 m/s)" in out
+    assert "N below 30.3 rpm, where the film fades, and" in out
     with xr.open_dataset("r.nc") as data:
         check_units(data)
         assert data.sizes["time"] == 21
@@ -216,7 +219,7 @@ def test_runs_in_time_say_how_quick_their_films_are(here, capsys, maps):
     options = ("fast.toml", "--map", maps["NU308"], "--clearance", "20 um")
     status, out, _ = run(capsys, "runup", *options)
     assert status == 0
-    found = re.search(r"low-frequency limit \(omega b/u up to 0\.3\) up to (\S+) Hz at 2000 rpm", out)
+    found = re.search(r"this is valid \(omega b/u up to 0\.3\) up to (\S+) Hz at 2000 rpm", out)
     # the run ends at the speed of the operation
     same = re.search(r"low-frequency limit up to (\S+) Hz", run(capsys, "statics", *options)[1])
     assert found is not None and same is not None

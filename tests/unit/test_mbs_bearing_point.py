@@ -17,7 +17,7 @@ from mbs.bearing_point import bearing_point, bearing_points
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.contact_report import fading, outside_map
+from mbs.bearings.contact_report import fading, heated, outside_map
 from mbs.bearings.films import FormulaFilms
 from mbs.errors import AnalysisError
 from mbs.output import bearing_text
@@ -113,7 +113,7 @@ def test_overload_is_said():
 
 def test_extrapolated_viscosity_is_said():
     assert dry_point("NU308", (100.0, 0.0)).notes == ()
-    (note,) = dry_point("NU308", (1e4, 0.0)).notes
+    (note,) = dry_point("NU308", (1e4, 0.0), 10.0).notes
     assert note.startswith("the viscosity of FVA3 is extrapolated above 0.6 GPa (largest pressure 1.4")
 
 
@@ -138,6 +138,21 @@ def test_a_film_that_fades_is_said():
     assert fading(law, 0.5 * slow).startswith(
         f"entrainment speed of {0.5 * slow:.4g} m/s is below the lowest mapped one, {slow:.4g} m/s: stiffness"
     )
+
+
+def test_films_that_inlet_heating_thins_are_said():
+    (note,) = dry_point("NU308", (200.0, 0.0), speed=300.0).notes
+    # thermal_loading(-4.31e-3, 4.73, 0.134) = 0.719 for FVA 3; 1 - C_T by hand with the printed 0.37 GPa
+    pressure = dry_point("NU308", (200.0, 0.0)).contacts.hertz_pressure[0]
+    u = 4.95 * 300.0 / (100.0 * math.pi)
+    loading = 4.31e-3 * u**2 / 0.134
+    factor = (1.0 - 13.2 * pressure / 230.77e9 * loading**0.42) / (1.0 + 0.213 * loading**0.64)
+    assert note == (
+        f"films are isothermal: inlet heating makes them about {100.0 * (1.0 - factor):.0f} % thinner at the highest "
+        "pressure (Gupta et al. 1992)"
+    )
+    assert "by more than the formula of Gupta et al. covers" in "".join(dry_point("NU308", (1e5, 0.0), 1e4).notes)
+    assert heated(dry_point("NU308", (200.0, 0.0), 300.0).contacts, None, 231e9, 5.0, WARM) == ""
 
 
 @pytest.mark.parametrize("load", [(0.0, 0.0), (math.nan, 1.0), (1.0,), (math.inf, 0.0)])

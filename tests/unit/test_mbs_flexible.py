@@ -602,7 +602,9 @@ class TestReaders:
             ("%%MatrixMarket matrix coordinate complex general\n36 36 1\n1 1 1 0\n", "got complex entries"),
             ("%%MatrixMarket matrix coordinate real general\n5 5 1\n1 1 1\n", "got 5 rows and 5 columns"),
             (text.replace(size, "36 36 999999999"), "promises 999999999 entries"),
-            (text[: len(text) // 2], "cannot be read|promises"),
+            (text[: len(text) // 2], "promises|its last line has no end"),
+            (text[:-5], "its last line has no end"),
+            (text.rstrip().rpartition("\n")[0] + "\n36 36 x\n", "cannot be read"),
         ):
             path.write_text(content)
             with pytest.raises(InputError, match=message):
@@ -936,6 +938,30 @@ class TestFilesOfAnotherKind:
         path.write_text("1 " * 5001)
         with pytest.raises(InputError, match=r"which is no text in lines; allowed: 3 numbers a line"):
             read_triplets(path, np.array([1]), np.array([0]))
+
+    def test_tables_and_decks_that_were_cut_off(self, files):
+        """What is left of a number is a number, too: a mass of 5.8 for 5.8e-2, a node at z = 0."""
+        folder, _ = files
+        for name in ("b.sti", "m_abaqus.mtx", "b.dof", "dofs.txt"):
+            path = folder / name
+            path.write_text(path.read_text()[:-4])
+        for read in (
+            lambda: read_triplets(folder / "b.sti", np.arange(1, 13), np.zeros(12, dtype=int)),
+            lambda: read_abaqus_matrix(folder / "m_abaqus.mtx"),
+            lambda: read_dofs(folder / "b.dof"),
+            lambda: read_dof_table(folder / "dofs.txt"),
+        ):
+            with pytest.raises(InputError, match=r"its last line has no end; allowed: a table that is whole"):
+                read()
+        deck = folder / "m.inp"
+        nodes = deck.read_text().partition("** a comment")[0]
+        deck.write_text(nodes)
+        assert len(read_mesh_nodes(deck).numbers) == 12
+        deck.write_text(nodes.rpartition(",")[0])
+        with pytest.raises(
+            InputError, match=r"m.inp, line 14: got .*, which has no end; allowed: a deck that is whole"
+        ):
+            read_mesh_nodes(deck)
 
     def test_a_large_file_of_nothing(self, tmp_path):
         path = tmp_path / "a.dof"
