@@ -338,9 +338,10 @@ def _heading(figure: Figure, emap: EHDMap, shown: int) -> None:
     """Write the title and, below it, what the page shows."""
     dataset, attributes = emap.dataset, emap.dataset.attrs
     at = _drawn(TEMPERATURE.text(float(dataset["temperature"].values[shown])))
-    what = emap.bearing.name if emap.bearing else f"line contact, R = {emap.contacts[0].radius * 1e3:.4g} mm"
-    unverified = "" if emap.lubricant.verified else " (data not verified)"
-    oil = emap.lubricant.name if emap.lubricant.name.endswith("oil") else f"oil {emap.lubricant.name}"
+    what = emap.bearing.title if emap.bearing else f"line contact, R = {emap.contacts[0].radius * 1e3:.4g} mm"
+    estimated = "pressure-viscosity estimated" if emap.lubricant.estimated else "data not verified"
+    unverified = "" if emap.lubricant.verified else f" ({estimated})"
+    oil = emap.lubricant.title if emap.lubricant.title.endswith("oil") else f"oil {emap.lubricant.title}"
     _write(figure, 0.963, f"EHD contact map: {what}, {oil}{unverified}", 13, "bold")
     _write(
         figure,

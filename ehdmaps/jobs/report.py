@@ -92,7 +92,7 @@ def fitted_pressure(dataset: xr.Dataset) -> str:
     value = oil.get("fitted_pressure")
     if not isinstance(value, (int, float)):
         return "those of its data"
-    return f"{PRESSURE.text(value)}, to which {oil.get('name')} was fitted"
+    return f"{PRESSURE.text(value)}, to which {oil.get('label') or oil.get('name')} was fitted"
 
 
 def plain(text: object) -> str:

@@ -10,9 +10,10 @@ from mbs.bearing_point import bearing_points
 from mbs.bearings import laws
 from mbs.bearings.laws import Law
 from mbs.commands.bearing_request import BearingRequest, read_request
-from mbs.output.bearing_data import bearing_dataset, write_csv, write_netcdf
+from mbs.output.bearing_data import bearing_dataset, write_csv
 from mbs.output.bearing_plot import bearing_figure
 from mbs.output.bearing_text import bearing_text
+from mbs.output.results import write_dataset
 
 RESOLUTION = 150
 FORMULA_LOADS = (100.0, 1e8)
@@ -28,8 +29,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     dataset = bearing_dataset(request.description, points)
     lines = bearing_text(request.description, points)
     if arguments.output:
-        write = write_csv if Path(arguments.output).suffix.lower() == ".csv" else write_netcdf
-        write(dataset, arguments.output)
+        if Path(arguments.output).suffix.lower() == ".csv":
+            write_csv(dataset, arguments.output)
+        else:
+            write_dataset(dataset, Path(arguments.output))
         lines.append(f"{arguments.output}: written")
     if arguments.plot:
         write_figure(bearing_figure(request.description, points), arguments.plot, RESOLUTION)

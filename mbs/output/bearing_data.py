@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,13 +12,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ehdmaps.outputs import MARK, TABLE, Kind, root_attributes, write_text, written_aside
+from ehdmaps.outputs import MARK, TABLE, Kind, write_text
 from mbs.bearing_point import BearingPoint
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import SIDES
-from mbs.output.results import described
-
-RESULT = Kind("a result of mbs bearing", (".nc", ".csv"), lambda path: "bearing_law" in root_attributes(path))
+from mbs.output.results import RESULT, described
 
 WIDE_RANGE = 20.0
 """A range of loads whose end is further above its beginning is spaced, and drawn, in the logarithm."""
@@ -55,7 +54,9 @@ class BearingDescription:
 
 def result_kind(path: str | None) -> Kind:
     """What a result is written as, by the ending of its name."""
-    return TABLE if path is not None and Path(path).suffix.lower() == ".csv" else RESULT
+    if path is not None and Path(path).suffix.lower() == ".csv":
+        return TABLE
+    return dataclasses.replace(RESULT, endings=(".nc", ".csv"))
 
 
 _ROW = (
@@ -157,18 +158,6 @@ def _attributes(description: BearingDescription, points: Points) -> dict[str, An
         "assumed": "; ".join(description.assumed),
         "warnings": "\n".join(dict.fromkeys(line for point in everything for line in (*point.problems, *point.notes))),
     }
-
-
-def write_netcdf(dataset: xr.Dataset, path: str) -> None:
-    """Write a result as netCDF.
-
-    Raises
-    ------
-    InputError
-        If it may not be replaced, or cannot be written.
-    """
-    with written_aside(path, RESULT) as aside:
-        dataset.to_netcdf(aside, engine="netcdf4", mode="w")
 
 
 def write_csv(dataset: xr.Dataset, path: str) -> None:
