@@ -193,8 +193,10 @@ def _occupy_standard_files() -> None:
 
 def _foreign_arguments(argv: Sequence[str]) -> list[str]:
     """Tell which arguments are no text: names of files in another encoding than that of the system."""
+    encoding = sys.getfilesystemencoding()
+    advice = "rename the file or folder" + ("" if encoding == "utf-8" else ", or choose a locale with UTF-8")
     return [
-        f"argument {place}: got {text!r:.300}, which is not UTF-8; allowed: text in UTF-8; rename the file or folder"
+        f"argument {place}: got {text!r:.300}, which is not text in {encoding}; allowed: text in UTF-8; {advice}"
         for place, text in enumerate(argv, 1)
         if any(0xD800 <= ord(character) <= 0xDFFF for character in text)
     ]

@@ -416,5 +416,5 @@ def test_help_loads_no_heavy_library():
     )
     found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert (found.returncode, found.stderr) == (0, "")
-    for command in ("generate", "check", "show", "plot", "solve", "compare", "tradeoff"):
+    for command in ("generate", "check", "show", "plot", "solve", "compare", "tradeoff", "status"):
         assert command in found.stdout

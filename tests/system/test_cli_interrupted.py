@@ -206,3 +206,33 @@ def test_a_killed_worker_is_not_the_end(folder):
     os.kill(int(begun(folder)[0][0]), signal.SIGKILL)
     out, _ = run.communicate(timeout=60)
     assert (run.returncode, counts(out)) == (0, (0, POINTS))
+
+
+def status(folder):
+    looked = [sys.executable, "-m", "ehdmaps.jobs.cli", "status", "job.nc"]
+    found = subprocess.run(looked, cwd=folder, capture_output=True, text=True, check=False)
+    assert found.stderr == ""
+    return found.returncode, found.stdout
+
+
+def test_a_running_job_can_be_looked_at_until_it_is_killed_and_after(folder):
+    first = subprocess.Popen(
+        command("--workers", "1"),
+        cwd=folder,
+        stderr=subprocess.DEVNULL,
+        env={**os.environ, "HOLD": "until the file release is there"},
+    )
+    wait_for(lambda: len(begun(folder)) >= 1)
+    code, out = status(folder)
+    assert code == 0
+    assert f"job.nc: running, process {first.pid} on " in out
+    assert f"points   0 of {POINTS} (0.0 %)" in out
+    first.kill()
+    first.wait()
+    code, out = status(folder)
+    assert code == 1
+    assert f"job.nc: interrupted, process {first.pid} on " in out and "the same command goes on" in out
+    (folder / "release").touch()
+    again = subprocess.run(command("--workers", "1"), cwd=folder, capture_output=True, text=True, check=True)
+    assert counts(again.stdout) == (0, POINTS)
+    assert status(folder) == (0, "job.nc: finished; no process works on it; see `ehdmaps show`\n")

@@ -116,8 +116,18 @@ def test_arguments_that_are_no_text_are_refused_at_once(folder, name):
     found = done(name, "--plot", b"a\xe9\x1b[31m.png", "none")
     assert (found.returncode, found.stdout) == (2, b"")
     assert found.stderr.decode("ascii") == (
-        f"{name}: 1 problem\n  argument 2: got 'a\\udce9\\x1b[31m.png', which is not UTF-8; allowed: text in UTF-8; "
-        "rename the file or folder\n"
+        f"{name}: 1 problem\n  argument 2: got 'a\\udce9\\x1b[31m.png', which is not text in utf-8; allowed: text in "
+        "UTF-8; rename the file or folder\n"
+    )
+
+
+def test_a_locale_without_utf_8_is_named(folder, monkeypatch):
+    for name, value in (("PYTHONUTF8", "0"), ("PYTHONCOERCECLOCALE", "0"), ("LC_ALL", "C")):
+        monkeypatch.setenv(name, value)
+    found = done("ehdmaps", "check", "größe.toml".encode())
+    assert found.returncode == 2
+    assert b"which is not text in ascii; allowed: text in UTF-8; rename the file or folder, or choose a locale" in (
+        found.stderr
     )
 
 
