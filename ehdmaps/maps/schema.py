@@ -169,6 +169,9 @@ NUMBERS = ("lubricant_verified", "structural_scaling")
 CHECKSUM = "content_sha256"
 """Attribute with the checksum of everything that a law or a reader of the map relies on; see `checksum`."""
 
+TEXTS = ("title", "job_name", "created", "fill", "solver_version", "openfoam_version", "openfoam_build", CHECKSUM)
+"""Attributes that are texts, where a map has them; others than those named here are left alone."""
+
 REFERENCE_CONTACT = "reference_contact"
 """Attribute of the backbone, JSON: the contact that it was solved for."""
 

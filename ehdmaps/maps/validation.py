@@ -74,6 +74,8 @@ def attribute_problems(attributes: Mapping[str, Any]) -> Iterator[str]:
         if name not in attributes:
             yield f"attribute {name} is missing; {_AGAIN}"
     for name, value in attributes.items():
+        if name not in (*schema.ATTRIBUTES, *schema.NUMBERS, *schema.TEXTS) and not name.startswith("law_"):
+            continue
         number = isinstance(value, (int, float, np.integer, np.floating)) and math.isfinite(value)
         if name in schema.NUMBERS or name.endswith("_within_bar"):
             if not number:

@@ -59,6 +59,10 @@ def test_a_point_on_two_grids(fake, capfd):
     assert film.film_offset_error == pytest.approx(4 / 400**2 + 1 / 16**2, rel=0.01)
     assert film.film_compliance_error > 0.0
     assert film.loss_compliance_error > 0.0
+    assert film.central_film_error == pytest.approx(4 / 400**2 + 1 / 16**2, rel=0.01)
+    # the fake's smallest film and largest pressure do not depend on the grid: what is left stands between the columns
+    assert film.minimum_film_error == 0.0
+    assert 0.0 < film.max_pressure_error < 1e-3
     assert film.solve_seconds > 0.0
     assert [Path(case).name.split("-")[1] for *_, case in openfoam_fake.starts(fake)] == ["openfoam"] * 2
     assert left(fake, "temporary") == left(fake, "home") == left(fake, "here") == []
