@@ -239,8 +239,8 @@ def _exchanged(result: Sweep) -> list[str]:
         near = int(np.argmin(gap))
         lines.append(
             f"  undamped modes {k + 1} and {other + 1} come within {gap[near]:.2g} Hz at "
-            f"{RPM.text(float(result.speeds[near]))}, turn away and exchange their shapes: the shape of mode {k + 1} "
-            f"at {_first(result)} is that of mode {other + 1} at {_last(result)}"
+            f"{RPM.text(float(result.speeds[near]))}: modes turn away there and exchange their shapes; the shape of "
+            f"mode {k + 1} at {_first(result)} is that of mode {other + 1} at {_last(result)}"
         )
     return lines
 

@@ -178,6 +178,25 @@ class TestVeering:
         # trapezoidal rule over the steps, and the corner between two of them
         np.testing.assert_allclose(found.undamped.summed_shift[-1], found.undamped.shift[-1], rtol=0.02, atol=4e-3)
 
+    def test_a_mode_that_crosses_two_others(self):
+        """Three shapes change their places in a ring: each crossing is with another mode."""
+        bodies = [rigid_body(name, [Inertia(MASS, 0.01, 0.02)], ["y"]) for name in ("a", "b", "c")]
+        springs = [
+            Spring("b_ground", "b", "ground", 8e4 * np.outer(Y, Y)),
+            Spring("c_ground", "c", "ground", 1.4e5 * np.outer(Y, Y)),
+            Spring("a_b", "a", "b", 300.0 * np.outer(Y, Y)),
+            Spring("a_c", "a", "c", 300.0 * np.outer(Y, Y)),
+        ]
+        rising = OverSpeed("bearing", "a", stiffness=lambda speed: 5e4 + 1.5e3 * speed, damping=lambda speed: 60.0)
+        found = sweep(System(bodies, springs, (), [rising]), np.linspace(0.0, 100.0, 41)).undamped
+        assert crossings.exchanged(found) == []
+        expected = np.sqrt(np.array([[5e4 + 600.0, 8e4 + 300.0, 1.4e5 + 300.0], [2e5 + 600.0, 8e4, 1.4e5]]) / MASS)
+        # 0.3 %: the couplings to second order
+        np.testing.assert_allclose(2.0 * np.pi * found.frequency[[0, -1]], expected, rtol=3e-3)
+        assert np.all(found.bearing_share[-1] == pytest.approx([1.0, 0.0, 0.0], abs=0.01))
+        # trapezoidal rule over the steps, and two corners
+        np.testing.assert_allclose(found.summed_shift[-1], found.shift[-1], rtol=0.02, atol=4e-3)
+
     def test_without_damping_they_turn_away_and_it_is_said(self):
         found = sweep(pair(4e2), np.linspace(0.0, 100.0, 10))
         assert crossings.exchanged(found.undamped) == [(0, 1)]
