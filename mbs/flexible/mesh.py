@@ -6,14 +6,16 @@ where node k is the k-th point of the file.
 
 from __future__ import annotations
 
-import contextlib
-import io
 import math
+import subprocess
+import sys
+import tempfile
 from pathlib import Path
 
 import numpy as np
 
 from ehdmaps.errors import InputError
+from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import short
 from mbs.flexible.matrix_files import NodePositions
 from mbs.flexible.number_table import check_file
@@ -24,6 +26,21 @@ _SEVERAL = (".xdmf", ".xmf", ".xml", ".node", ".ele")
 """Formats of meshio that open further files, whatever those are."""
 
 _PACKED = (".gz",)
+
+SHORTEST_READ, BYTES_PER_SECOND = 20.0, 1e6
+"""Seconds that meshio has, and what it reads in one more; it takes half a second to start, and 10 MB a second."""
+
+# meshio prints what went wrong, and leaves the program.
+_READ = """
+import os, sys
+found = os.fdopen(os.dup(1), "wb")
+os.dup2(2, 1)
+try:
+    import meshio, numpy
+    numpy.save(found, numpy.asarray(meshio.read(sys.argv[1]).points, dtype=float))
+except (Exception, SystemExit) as error:
+    sys.stderr.write(f" {error}")
+"""
 
 
 def read_mesh_nodes(path: Path) -> NodePositions:
@@ -95,21 +112,36 @@ def _node(path: Path, number: int, text: str) -> tuple[int, tuple[float, float, 
 
 def _meshio_nodes(path: Path) -> NodePositions:
     """Points of a mesh that meshio reads."""
-    import meshio
-
-    said = io.StringIO()
-    try:
-        # meshio prints what went wrong, and leaves the program.
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            points = np.asarray(meshio.read(path).points, dtype=np.float64)
-    except (Exception, SystemExit) as error:
-        words = " ".join(f"{said.getvalue()} {error}".split())
-        raise InputError(
-            f"{path}: cannot be read as a mesh ({words:.120}); allowed: a format that meshio reads"
-        ) from error
+    points = _meshio_points(path)
     if points.ndim != 2 or points.shape[0] == 0 or points.shape[1] not in (2, 3) or not np.all(np.isfinite(points)):
         raise InputError(
             f"{path}: got points of shape {points.shape}; allowed: finite positions in two or three dimensions"
         )
     flat = np.zeros((points.shape[0], 3 - points.shape[1]))
     return NodePositions(np.arange(1, points.shape[0] + 1), np.hstack([points, flat]))
+
+
+def _meshio_points(path: Path) -> FloatArray:
+    """What meshio finds, in a process of its own: some of its readers never end where a file was cut off."""
+    seconds = SHORTEST_READ + path.stat().st_size / BYTES_PER_SECOND
+    with tempfile.TemporaryFile() as found:
+        try:
+            done = subprocess.run(
+                # -P: nothing is imported from the folder in which we are.
+                [sys.executable, "-P", "-c", _READ, str(path.absolute())],
+                stdin=subprocess.DEVNULL,
+                stdout=found,
+                stderr=subprocess.PIPE,
+                timeout=seconds,
+                check=False,
+            )
+            words = " ".join(done.stderr.decode("utf-8", "replace").split())
+        except subprocess.TimeoutExpired:
+            words = f"it did not end within {seconds:.3g} s"
+        found.seek(0)
+        try:
+            return np.asarray(np.load(found, allow_pickle=False), dtype=np.float64)
+        except (OSError, ValueError, EOFError) as error:
+            raise InputError(
+                f"{path}: cannot be read as a mesh ({words:.120}); allowed: a format that meshio reads; was it cut off?"
+            ) from error

@@ -6,6 +6,7 @@ import hashlib
 import os
 import shutil
 import signal
+import time
 import unicodedata
 from pathlib import Path
 
@@ -89,6 +90,7 @@ def ended(program: str, arguments: tuple[str, ...], capsys) -> tuple[int, str, s
     def stop(*_):
         raise TimeoutError(f"{program} {' '.join(arguments)[:200]}")
 
+    began = time.monotonic()
     before = signal.signal(signal.SIGALRM, stop)
     signal.setitimer(signal.ITIMER_REAL, LONGEST)
     try:
@@ -98,6 +100,8 @@ def ended(program: str, arguments: tuple[str, ...], capsys) -> tuple[int, str, s
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
+    # Whoever catches every error would catch that as well.
+    assert time.monotonic() - began < LONGEST
     captured = capsys.readouterr()
     return status, captured.out, captured.err
 

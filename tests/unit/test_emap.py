@@ -13,8 +13,10 @@ import xarray as xr
 import ehdmaps
 from ehdmaps.errors import InputError, MapError, OutsideMapError
 from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.maps.film_field import LOSS_FLOOR
 from ehdmaps.maps.records import bearing_from_json, contacts_from_json, lubricant_from_json
 from ehdmaps.physics.closed_form import FormulaSolver
+from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import Status
@@ -149,7 +151,10 @@ def test_negative_damping_is_lifted(emap):
     law = EHDMap(changed(emap.dataset, "damping", (0, 9, 1, 2), -5.0)).law("inner")
     values = emap.dataset.isel(contact=0, load=9, entrainment_speed=1, temperature=2)
     _, _, c = law(float(values["approach"]), 0.0, 0.6, float(values["temperature"]))
-    assert 0.0 < c < 0.9 * float(values["damping"])
+    inner = law.contacts[0]
+    half = float(half_width(float(values["load"]), inner.radius, inner.reduced_modulus))
+    # Where the loss is zero the lifted one is 1.6 of its floor; the damping of these maps is not far above it.
+    assert 0.0 < c < 2.0 * LOSS_FLOOR * float(values["stiffness"]) * half / 0.6
 
 
 def test_broken_files_and_attributes_are_refused(emap, tmp_path):

@@ -665,9 +665,14 @@ class TestReaders:
             (tmp_path / name).write_text("nonsense")
             with pytest.raises(InputError, match="cannot be read as a mesh"):
                 read_mesh_nodes(tmp_path / name)
-        monkeypatch.setattr(meshio, "read", lambda path: meshio.Mesh(np.full((2, 3), np.nan), []))
+        meshio.write(path, meshio.Mesh(np.full((2, 3), np.nan), [("line", np.array([[0, 1]]))]))
         with pytest.raises(InputError, match=r"got points of shape \(2, 3\); allowed: finite positions"):
             read_mesh_nodes(path)
+        # A reader of meshio that waits for an end that was cut off.
+        monkeypatch.setattr("mbs.flexible.mesh.SHORTEST_READ", 2.0)
+        (tmp_path / "a.mdpa").write_text("Begin Nodes\n 1 0.0 0.0 0.0\n")
+        with pytest.raises(InputError, match=r"cannot be read as a mesh \(it did not end within 2 s\)"):
+            read_mesh_nodes(tmp_path / "a.mdpa")
 
 
 def table(folder, **changes):
