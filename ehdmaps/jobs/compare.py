@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,6 +11,7 @@ import xarray as xr
 
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.report import AXES, span
+from ehdmaps.maps.records import record_from_json
 from ehdmaps.physics.solution import Status
 
 COMPARED = ("stiffness", "damping", "approach", "film_offset", "central_film", "minimum_film", "max_pressure")
@@ -60,10 +60,9 @@ def _lines(first: xr.Dataset, second: xr.Dataset, names: tuple[str, str]) -> Ite
 def _without_label(dataset: xr.Dataset, name: str) -> object:
     """An attribute; of a record all that is more than shown."""
     text = dataset.attrs.get(name)
-    if name not in ("lubricant", "geometry"):
+    if name not in ("lubricant", "geometry") or text is None:
         return text
-    record = json.loads(text or "null")
-    return {key: value for key, value in record.items() if key != "label"} if isinstance(record, dict) else record
+    return {key: value for key, value in record_from_json(text, name).items() if key != "label"}
 
 
 def _difference(name: str, here: xr.Dataset, there: xr.Dataset, usable: npt.NDArray[np.bool_]) -> str:

@@ -107,7 +107,9 @@ def _geometry_lines(emap: EHDMap) -> Iterator[str]:
 
 def _bearing_lines(bearing: BearingGeometry) -> Iterator[str]:
     """Yield the dimensions of a bearing."""
-    yield f"bearing {plain(bearing.name)}"
+    yield f"bearing {plain(bearing.label or bearing.name)}" + (f" ({plain(bearing.name)})" if bearing.label else "")
+    if bearing.estimated:
+        yield f"  {plain(bearing.estimated)}"
     inner, outer = LENGTH.text(bearing.inner_raceway_diameter, 5), LENGTH.text(bearing.outer_raceway_diameter, 5)
     yield f"  {'raceway diameters':20s} {inner} inner, {outer} outer"
     size = f"{LENGTH.text(bearing.roller_diameter, 5)} diameter, {LENGTH.text(bearing.roller_length, 5)} long"
@@ -118,7 +120,9 @@ def _bearing_lines(bearing: BearingGeometry) -> Iterator[str]:
 def _oil_lines(oil: Lubricant) -> Iterator[str]:
     """Yield the oil: what a data sheet has, and by which laws it goes on."""
     record = oil.record()
-    yield f"oil {plain(oil.name)}" + ("" if oil.verified else ": NOT VERIFIED")
+    yield f"oil {plain(oil.title)}" + ("" if oil.verified else ": NOT VERIFIED")
+    if oil.estimated:
+        yield f"  {oil.estimated}"
     over_temperature, over_pressure = record["viscosity_over_temperature"], record["viscosity_law"]
     yield f"  {'viscosity':20s} {_at_temperatures(oil, 'viscosity', _VISCOSITY)} (law {over_temperature})"
     coefficient = _at_temperatures(oil, "pressure_viscosity", _PER_PRESSURE)

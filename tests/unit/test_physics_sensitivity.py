@@ -88,5 +88,5 @@ def test_a_map_of_an_estimated_oil_says_so(tmp_path, capsys):
     assert f"lubricant: {sentence}" in capsys.readouterr().out
     assert ehdmaps.open_map(made).dataset.attrs["lubricant_verified"] == 0
     assert main(["show", str(made)]) == 0
-    assert "NOT VERIFIED: correlation gold-mineral, density_15 870, " in (out := capsys.readouterr().out)
+    assert "oil own oil: NOT VERIFIED\n  " + sentence in (out := capsys.readouterr().out)
     assert sentence in out
