@@ -112,6 +112,14 @@ def extrapolated(contacts: BearingContacts, oil: Lubricant | None) -> str:
 
 
 def outside_map(law: Law, load: float, entrainment_speed: float, temperature: float) -> list[str]:
+    """Which axis of a law's map a point leaves, with its value, what is done there, and what to do."""
+    return [
+        f"{axis}, where the law is held at its edge; make a map that reaches there"
+        for axis in axes_left(law, load, entrainment_speed, temperature)
+    ]
+
+
+def axes_left(law: Law, load: float, entrainment_speed: float, temperature: float) -> list[str]:
     """Which axis of a law's map a point leaves, with its value; a film that fades to rest is inside.
 
     Parameters
@@ -130,7 +138,7 @@ def outside_map(law: Law, load: float, entrainment_speed: float, temperature: fl
     )
     return [
         f"{name} of {display.text(value)} is outside the map ({display.value(mapped[0]):.4g} to "
-        f"{display.text(mapped[1])}), where the law is held at its edge; make a map that reaches there"
+        f"{display.text(mapped[1])})"
         for name, value, (low, high), mapped, display in axes
         if not low - _near(low) <= value <= high + _near(high)
     ]

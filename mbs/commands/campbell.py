@@ -18,7 +18,7 @@ from ehdmaps.units import TEMPERATURE, closest
 from mbs.assembly import Model
 from mbs.commands.cases import Case, load_cases
 from mbs.commands.common import film_course, heading, lowest_limits, read_option, write
-from mbs.commands.reach import fade_lines, fade_of, outside_lines
+from mbs.commands.reach import axes_outside, fade_lines, fade_of, outside_lines
 from mbs.elements import Operation, Sensor
 from mbs.errors import AnalysisError
 from mbs.linearised.sweep import sweep
@@ -317,7 +317,12 @@ def _report(entry: _Found) -> list[str]:
         lines += [_peak(peak, entry.modes) for peak in entry.spectra.peaks]
     elif entry.spectra.tracks:
         lines.append("  no peak along the orders")
-    lines += outside_lines(record.outside, "{} calls outside the map", entry.case.label)
+    lines += outside_lines(
+        record.outside,
+        "{} calls outside the map",
+        axes_outside(entry.case.model, float(np.abs(record.speed).max())),
+        entry.case.label,
+    )
     ends = (float(found.speeds[0]), float(found.speeds[-1]))
     return [*lines, *fade_lines(entry.case.model, record.speed, "the run"), *film_course(entry.case.model, ends)]
 

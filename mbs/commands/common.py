@@ -20,7 +20,7 @@ from ehdmaps.units import TEMPERATURE, Display, quantity
 from mbs.assembly import Model, law_attributes
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.commands.reach import outside_lines
+from mbs.commands.reach import axes_outside, outside_lines
 from mbs.elements import Operation
 from mbs.linearised.validity import HIGHEST_RATIO, FilmLimit, film_limit
 from mbs.output.results import described, write_dataset
@@ -150,7 +150,14 @@ def outside_at(model: Model, balance: Equilibrium) -> list[str]:
     for connected in model.system.elements:
         connected.evaluate(balance.displacement, 0.0 * balance.displacement, balance.operation)
     calls = {name: count - before[name] for name, count in model.outside_calls.items()}
-    return outside_lines(calls, "lies outside the map")
+    if not any(calls.values()):
+        return []
+    loads = {
+        bearing.name: float(bearing.rollers(motion, balance.operation).load_per_length.max())
+        for bearing, motion in ring_motions(model, balance.displacement)
+        if isinstance(bearing.force, BearingForce)
+    }
+    return outside_lines(calls, "lies outside the map", axes_outside(model, balance.operation.speed, loads))
 
 
 def write(arguments: argparse.Namespace, model: Model, dataset: xr.Dataset, figure: Figure | None) -> list[str]:

@@ -10,8 +10,11 @@ import numpy.typing as npt
 
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics._values import FloatArray
+from ehdmaps.units import LOAD
 from mbs.assembly import Model
 from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.contact_report import axes_left
+from mbs.elements import Operation
 from mbs.reading.fields import RPM
 
 
@@ -73,7 +76,30 @@ def fade_lines(model: Model, speeds: FloatArray, of: str = "the speeds") -> list
     ]
 
 
-def outside_lines(calls: Mapping[str, int], words: str, case: str = "") -> list[str]:
+def axes_outside(model: Model, speed: float, loads: Mapping[str, float] | None = None) -> dict[str, str]:
+    """Where each bearing leaves the map, if it does: the axis with its value, or where its load ends.
+
+    Parameters
+    ----------
+    model : Model
+        With its temperature.
+    speed : float
+        Of the system [rad/s]; the highest one of a run.
+    loads : mapping of str to float, optional
+        Largest load of a slice [N/m] by bearing; of a run it is not recorded.
+    """
+    found = {}
+    for bearing in model.bearings:
+        law = bearing.force.law if isinstance(bearing.force, BearingForce) else None
+        if not isinstance(law, ContactLaw):
+            continue
+        load = (loads or {}).get(bearing.name, 0.0)
+        axes = axes_left(law, load, bearing.entrainment_speed(Operation(speed)), bearing.temperature)
+        found[bearing.name] = "; ".join(axes) or f"a load above {LOAD.text(law.load_range[1])}, where the map ends"
+    return found
+
+
+def outside_lines(calls: Mapping[str, int], words: str, axes: Mapping[str, str], case: str = "") -> list[str]:
     """A line for each bearing whose law was called outside its map: every command says it by this function.
 
     Parameters
@@ -82,13 +108,16 @@ def outside_lines(calls: Mapping[str, int], words: str, case: str = "") -> list[
         How often, by bearing; none where it is 0.
     words : str
         What happened so often, such as "lies outside the map at {} of 40 speeds".
+    axes : mapping of str to str
+        How it is left, as `axes_outside` says it.
     case : str
         Begins the line, where several are compared.
     """
     begin = f"{case}: " if case else ""
     return [
-        f"warning: {begin}{name}: {words.format(count)}, where the law is held at its edge; make a map that reaches "
-        "there"
+        f"warning: {begin}{name}: {words.format(count)}"
+        + (f" ({axes[name]})" if name in axes else "")
+        + ", where the law is held at its edge; make a map that reaches there"
         for name, count in calls.items()
         if count
     ]

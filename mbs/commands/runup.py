@@ -15,7 +15,7 @@ from ehdmaps.physics._values import FloatArray
 from mbs.assembly import Model
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_course, heading, write
-from mbs.commands.reach import Fade, fade_lines, fade_of
+from mbs.commands.reach import Fade, axes_outside, fade_lines, fade_of, outside_lines
 from mbs.elements import Operation
 from mbs.output.results import run_dataset
 from mbs.output.run_plot import run_figure
@@ -63,6 +63,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             f"{outside[bearing.name]} calls outside the map"
         )
     lines += fade_lines(model, result.speed, "the run")
+    fastest = float(np.abs(result.speed).max())
+    lines += outside_lines(outside, "{} calls outside the map", axes_outside(model, fastest))
     # The equilibria of this line are no part of the run, whose calls were counted above.
     lines += film_course(model, (float(result.speed[0]), float(result.speed[-1])))
     lines += write(arguments, model, run_dataset(model.system, result, outside), figure)

@@ -14,7 +14,7 @@ from ehdmaps.units import TEMPERATURE, quantity
 from mbs.assembly import Model
 from mbs.commands.cases import Case, load_cases
 from mbs.commands.common import NO_LONGER_VALID, film_limits, heading, lowest_limits, write
-from mbs.commands.reach import fade_lines, fade_of, outside_lines
+from mbs.commands.reach import axes_outside, fade_lines, fade_of, outside_lines
 from mbs.elements import Operation
 from mbs.errors import AnalysisError
 from mbs.linearised.crossings import exchanged
@@ -275,7 +275,8 @@ def _outside(case: Case, result: Sweep) -> list[str]:
             connected.evaluate(place, rest, Operation(speed))
         for name, calls in case.model.outside_calls.items():
             count[name] += calls > before[name]
-    return outside_lines(count, f"lies outside the map at {{}} of {result.speeds.size} speeds", case.label)
+    words = f"lies outside the map at {{}} of {result.speeds.size} speeds"
+    return outside_lines(count, words, axes_outside(case.model, float(np.abs(result.speeds).max())), case.label)
 
 
 def _too_quick(model: Model, result: Sweep) -> list[str]:

@@ -16,7 +16,7 @@ from mbs.assembly import assemble
 from mbs.bearings.bearing_force import BearingForce
 from mbs.commands import modes as modes_command
 from mbs.commands.common import film_course, film_warnings, lowest_limits
-from mbs.commands.reach import Fade, fade_lines, fade_of, outside_lines, share_below
+from mbs.commands.reach import Fade, axes_outside, fade_lines, fade_of, outside_lines, share_below
 from mbs.commands.runup import _changes
 from mbs.linearised.linear import frequency_response
 from mbs.linearised.modes import Modes, modes
@@ -124,11 +124,28 @@ class TestReach:
         assert _changes(size, speed + 1.0, Fade(0.5, 0.05, "the map")) == "5 N"
 
     def test_calls_outside_are_said_in_one_form(self):
-        lines = outside_lines({"a": 3, "b": 0}, "lies outside the map at {} of 9 speeds", "dry")
+        axes = {"a": "entrainment speed of 5 m/s is outside the map (0.3 to 4 m/s)"}
+        lines = outside_lines({"a": 3, "b": 0}, "lies outside the map at {} of 9 speeds", axes, "dry")
         assert lines == [
-            "warning: dry: a: lies outside the map at 3 of 9 speeds, where the law is held at its edge; make a map "
-            "that reaches there"
+            "warning: dry: a: lies outside the map at 3 of 9 speeds (entrainment speed of 5 m/s is outside the map (0.3 to "
+            "4 m/s)), where the law is held at its edge; make a map that reaches there"
         ]
+
+    def test_the_axis_that_is_left_is_named_with_its_value(self, films):
+        bearing = films.bearings[0]
+        law = bearing.force.law
+        (low, high), load = law.speed_range, law.load_range[1]
+        inside, fast = 0.5 * high / bearing.rates[1], 3.0 * high / bearing.rates[1]
+        assert axes_outside(films, fast)[bearing.name] == (
+            f"entrainment speed of {3.0 * high:.4g} m/s is outside the map ({low:.4g} to {high:.4g} m/s)"
+        )
+        loads = {bearing.name: 2.0 * load}
+        assert axes_outside(films, inside, loads)[bearing.name] == (
+            f"load per length of {2e-3 * load:.4g} N/mm is outside the map ({1e-3 * law.load_range[0]:.4g} to "
+            f"{1e-3 * load:.4g} N/mm)"
+        )
+        # loads of a run are not recorded: what is left over is the load
+        assert axes_outside(films, inside)[bearing.name] == f"a load above {1e-3 * load:.4g} N/mm, where the map ends"
 
 
 class TestWords:
