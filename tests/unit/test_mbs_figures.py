@@ -127,8 +127,8 @@ class TestReach:
         axes = {"a": "entrainment speed of 5 m/s is outside the map (0.3 to 4 m/s)"}
         lines = outside_lines({"a": 3, "b": 0}, "lies outside the map at {} of 9 speeds", axes, "dry")
         assert lines == [
-            "warning: dry: a: lies outside the map at 3 of 9 speeds (entrainment speed of 5 m/s is outside the map (0.3 to "
-            "4 m/s)), where the law is held at its edge; make a map that reaches there"
+            "warning: dry: a: lies outside the map at 3 of 9 speeds (entrainment speed of 5 m/s is outside the map "
+            "(0.3 to 4 m/s)), where the law is held at its edge; make a map that reaches there"
         ]
 
     def test_the_axis_that_is_left_is_named_with_its_value(self, films):
