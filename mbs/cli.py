@@ -56,7 +56,7 @@ def _modes(command: argparse.ArgumentParser) -> None:
 
 def _sweep(command: argparse.ArgumentParser) -> None:
     """Add the options of a sweep."""
-    _load_factor(command)
+    _load_and_angle(command)
     command.add_argument(
         "--speeds",
         nargs=3,
@@ -72,15 +72,21 @@ def _sweep(command: argparse.ArgumentParser) -> None:
 
 def _campbell(command: argparse.ArgumentParser) -> None:
     """Add the options of a Campbell diagram."""
-    _load_factor(command)
+    _load_and_angle(command)
     command.add_argument("--sensor", metavar="NAME", help="a sensor; default: the first of an acceleration")
     command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
     command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
     command.add_argument("--modes", action="store_true", help="draw in the modes of the linear system")
 
 
-def _load_factor(command: argparse.ArgumentParser) -> None:
-    """Add the factor of all loads."""
+def _load_and_angle(command: argparse.ArgumentParser) -> None:
+    """Add the factor of all loads and the angle of all cages."""
+    command.add_argument(
+        "--start-angle",
+        metavar="ANGLE",
+        action="append",
+        help='at which all cages start, such as "7.5 deg", in place of the scene\'s; more than once to compare',
+    )
     command.add_argument(
         "--load-factor",
         metavar="FACTOR",

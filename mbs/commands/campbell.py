@@ -330,9 +330,9 @@ def _report(entry: _Found) -> list[str]:
 def _differences(found: Sequence[_Found]) -> list[str]:
     """Lines on the sum level of each law beside that of the first one with the same clearance and loads."""
     lines = []
-    first: dict[tuple[str, float], _Found] = {}
+    first: dict[tuple[str, float, float | None], _Found] = {}
     for entry in found:
-        beside = first.setdefault((repr(entry.case.clearance), entry.case.load_factor), entry)
+        beside = first.setdefault((repr(entry.case.clearance), entry.case.load_factor, entry.case.start_angle), entry)
         if beside is not entry:
             levels = (beside.spectra.campbell.sum_level, entry.spectra.campbell.sum_level)
             lines.append(f"  {entry.case.label} beside {beside.case.label}: {difference_text(*levels)}")

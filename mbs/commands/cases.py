@@ -1,7 +1,7 @@
 """What a command compares: contact laws and maps, clearances, load factors, in every combination.
 
-Each law of --law and each map of --map counts as one law; so do the clearances of --clearance and the factors of
---load-factor, each of which may be given more than once.
+Each law of --law and each map of --map counts as one law. The clearances of --clearance, the factors of --load-factor
+and the angles of --start-angle may each be given more than once, too.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
 from ehdmaps.units import quantity
 from mbs.assembly import Model, assemble, find_problems
 from mbs.output.results import RESULT
-from mbs.reading.fields import MICROMETRE
+from mbs.reading.fields import DEGREE, MICROMETRE
 from mbs.scene import Scene
 from mbs.scene_reader import read_scene
 
@@ -47,12 +47,15 @@ class Case:
         Diametral clearance [m]; NaN if the bearings have not all the same.
     load_factor : float
         By which all loads of the scene were multiplied.
+    start_angle : float or None
+        At which all cages start instead of the scene's angles [rad].
     """
 
     label: str
     model: Model
     clearance: float
     load_factor: float
+    start_angle: float | None = None
 
 
 @dataclass(frozen=True)
@@ -81,8 +84,8 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
     Parameters
     ----------
     arguments : argparse.Namespace
-        With `scene`, `output`, `plot`, and `law`, `map`, `clearance`, `load_factor`: each a text, a list of texts,
-        None, or left out.
+        With `scene`, `output`, `plot`, and `law`, `map`, `clearance`, `load_factor`, `start_angle`: each a text, a
+        list of texts, None, or left out.
     several : bool
         Whether laws and maps stand side by side; else a law goes before a map.
     kind : Kind
@@ -109,11 +112,13 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
         laws = laws[:1] if _given(arguments, "law") else laws
     clearances = [read_clearance(text, problems) for text in _given(arguments, "clearance")] or [None]
     factors = [_factor(text, problems) for text in _given(arguments, "load_factor")] or [1.0]
+    angles = [_angle(text, problems) for text in _given(arguments, "start_angle")] or [None]
     problems += scene_output_problems(arguments, scene.files if scene else (), kind)
-    count = len(laws) * len(clearances) * len(factors)
+    count = len(laws) * len(clearances) * len(factors) * len(angles)
     if count > MOST_CASES:
         problems.append(
-            f"--law, --map, --clearance, --load-factor: got {count} combinations; allowed: at most {MOST_CASES}"
+            f"--law, --map, --clearance, --load-factor, --start-angle: got {count} combinations; allowed: at most "
+            f"{MOST_CASES}"
         )
     elif scene is not None:
         for law, clearance in itertools.product(laws, clearances):
@@ -122,15 +127,17 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
     if problems or scene is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     cases = []
-    for law, clearance, factor in itertools.product(laws, clearances, factors):
-        model = assemble(_loaded(scene, factor), law.name, law.emap, clearance)
+    for law, clearance, factor, angle in itertools.product(laws, clearances, factors, angles):
+        model = assemble(_turned(_loaded(scene, factor), angle), law.name, law.emap, clearance)
         inside = {entry.geometry.diametral_clearance for entry in model.scene.bearings}
         words = [
             *([law.label] if len(laws) > 1 or count == 1 else []),
             *([MICROMETRE.text(clearance)] if len(clearances) > 1 and clearance is not None else []),
             *([f"{factor:g} x load"] if len(factors) > 1 else []),
+            *([f"cage at {DEGREE.text(angle)}"] if len(angles) > 1 and angle is not None else []),
         ]
-        cases.append(Case(", ".join(words), model, inside.pop() if len(inside) == 1 else math.nan, factor))
+        common = inside.pop() if len(inside) == 1 else math.nan
+        cases.append(Case(", ".join(words), model, common, factor, angle))
     return cases
 
 
@@ -202,6 +209,27 @@ def _factor(text: str, problems: list[str]) -> float:
         problems.append(f"--load-factor: got {text!r:.40}; allowed: above 0 up to {MOST_FACTOR:g}, such as 1.5")
         return 1.0
     return value
+
+
+def _angle(text: str, problems: list[str]) -> float | None:
+    """Read a start angle [rad]; None where a problem was noted."""
+    try:
+        value = quantity(text, "rad")
+    except InputError as error:
+        problems.append(f"--start-angle: {error.problems[0]}")
+        return None
+    if not abs(value) <= 2.0 * math.pi:
+        problems.append(f"--start-angle: got {text!r:.60}; allowed: a turn either way, such as '7.5 deg'")
+    return value
+
+
+def _turned(scene: Scene, angle: float | None) -> Scene:
+    """The scene with all cages at another angle."""
+    if angle is None:
+        return scene
+    return dataclasses.replace(
+        scene, bearings=tuple(dataclasses.replace(entry, start_angle=angle) for entry in scene.bearings)
+    )
 
 
 def _loaded(scene: Scene, factor: float) -> Scene:

@@ -162,6 +162,13 @@ class TestSweep:
         with pytest.raises(InputError, match=message):
             sweep(one_mass(Film()), speeds, 0.0, [Input("E", "a", Y)], [Sensor("S", "a", Y)], frequencies, angles)
 
+    def test_cages_of_all_bearings_start_at_another_angle(self):
+        cases = load_cases(given(start_angle=["0 deg", "7.5 deg"]))
+        assert [case.label for case in cases] == ["cage at 0 deg", "cage at 7.5 deg"]
+        for case, angle in zip(cases, (0.0, math.radians(7.5)), strict=True):
+            assert case.start_angle == pytest.approx(angle)
+            assert [entry.start_angle for entry in case.model.bearings] == [pytest.approx(angle)] * 2
+
     def test_problems_come_all_at_once(self):
         with pytest.raises(InputError) as caught:
             sweep(one_mass(Film()), np.array([math.nan]), frequencies=np.array([-1.0]), cage_angles=-1)
@@ -304,6 +311,8 @@ class TestCases:
             ({"load_factor": ["inf"]}, "--load-factor: got 'inf'"),
             ({"load_factor": ["-1"]}, "--load-factor: got '-1'"),
             ({"load_factor": ["0"]}, "--load-factor: got '0'"),
+            ({"start_angle": ["1 kg"]}, "--start-angle: got the unit 'kg'"),
+            ({"start_angle": ["400 deg"]}, "--start-angle: got '400 deg'; allowed: a turn either way"),
             ({"clearance": [f"{k} um" for k in range(5)], "load_factor": list("12345")}, "got 25 combinations"),
             ({"scene": "nowhere"}, "shipped system"),
             ({"output": "nowhere/at/all.nc"}, "is no folder"),
