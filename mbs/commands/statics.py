@@ -17,6 +17,7 @@ from mbs.bearings.films import DryContacts
 from mbs.bearings.roller_element import ring_matrices
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_limits, heading, outside_at, ring_motions, write
+from mbs.commands.reach import fade_lines
 from mbs.free_motion import free_lines, free_motions
 from mbs.output.plot import statics_figure
 from mbs.output.results import statics_dataset
@@ -67,6 +68,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         for limit in film_limits(model, balance.displacement, balance.operation)
         if 0.0 < limit.frequency < math.inf
     ]
+    lines += fade_lines(model, np.array([model.scene.speed]))
     outside = outside_at(model, balance)
     dataset = statics_dataset(balance, contacts, (*overloads, *free))
     lines += [f"warning: {line}" for line in (*overloads, *free)] + outside

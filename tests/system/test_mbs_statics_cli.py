@@ -89,6 +89,14 @@ def test_temperatures_without_a_viscosity_have_no_films(here, capsys, formula_ma
     assert ("film down to" in out) == (law == "map")
 
 
+def test_a_speed_below_the_map_is_said(here, capsys, formula_map):
+    name = scene(here, ('speed = "500 rpm"', 'speed = "2 rpm"'))
+    status, out, _ = run(capsys, "statics", name, "--map", formula_map)
+    assert status == 0
+    assert "warning: 2 rpm lies below the map (entrainment speed below " in out
+    assert "the film fades to the dry contact there" in out
+
+
 def test_overload_is_no_silent_equilibrium(here, capsys):
     name = scene(here, ('"0 N", "100 N", "100 N"', '"0 N", "1e6 N", "0 N"'))
     status, out, _ = run(capsys, "statics", name, "-o", "a.nc", "--plot", "a.png")
