@@ -99,7 +99,7 @@ def test_a_map_and_the_same_command_again(folder, workers):
     assert dataset.attrs["openfoam_version"] == "v1912"
     assert dataset.attrs["openfoam_build"] == "OpenFOAM v1912 compiler g++ 12.2.0 sources 0123abcd"
     assert np.isfinite(dataset["film_compliance_error"].values).all()
-    assert "OpenFOAM        v1912; ehlFoam built with OpenFOAM v1912" in done(folder, "show", "job.nc").stdout
+    assert "OpenFOAM             v1912; ehlFoam built with OpenFOAM v1912" in done(folder, "show", "job.nc").stdout
     assert counts(done(folder, "generate", "job.toml", "--workers", workers).stdout) == (POINTS, 0, 0)
     # another build solves its own points
     (build_of(folder) / "bin" / "ehlFoam.build").write_text("OpenFOAM v1912 sources 4567\n")
@@ -118,7 +118,7 @@ def test_kill_9_of_a_running_solver_costs_nothing(folder, workers):
     out, _ = job.communicate(timeout=60)
     assert job.returncode == 0
     assert counts(out) == (0, POINTS, 0)
-    assert "1 x solved at the second try, the first ehlFoam was killed by signal 9 (SIGKILL); last lines" in out
+    assert "1 x solved at the second try, the first ehlFoam was killed by signal 9 (SIGKILL)" in out
     assert len(left_cases(folder)) == 1  # that of the killed run, whose log the summary names
     assert str(left_cases(folder)[0]) in out
 
@@ -212,8 +212,8 @@ def test_one_point_that_fails_has_no_files(folder):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--fields", "film.stl"], "--fields: got film.stl; allowed: a .vtu, .xdmf file in a folder that exists"),
-        (["--plot", "none/film.png"], "--plot: got none/film.png; allowed: a .png, .pdf, .svg file in a folder that"),
+        (["--fields", "film.stl"], "--fields: got film-inner.stl; allowed: a file that ends in .vtu, .xdmf"),
+        (["--plot", "none/film.png"], "--plot: got none/film.png, but none is no folder; allowed: a file in a folder that exists"),
         (["--plot", "a.png", "--solver", "hertz"], "--plot: the solver 'hertz' has no fields across the film; allowed"),
         (["--keep-cases", "--solver", "hertz"], "--keep-cases: the solver 'hertz' works without cases; allowed: with"),
         (["--keep-cases", "job.toml"], "--keep-cases: got job.toml, a file; allowed: a folder"),
