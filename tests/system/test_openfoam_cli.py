@@ -119,8 +119,7 @@ def test_kill_9_of_a_running_solver_costs_nothing(folder, workers):
     assert job.returncode == 0
     assert counts(out) == (0, POINTS, 0)
     assert "1 x solved at the second try, the first ehlFoam was killed by signal 9 (SIGKILL)" in out
-    assert len(left_cases(folder)) == 1  # that of the killed run, whose log the summary names
-    assert str(left_cases(folder)[0]) in out
+    assert left_cases(folder) == []  # the second try made it good
 
 
 def test_failed_points_are_summed_up_and_tried_again_by_the_next_run(folder):
