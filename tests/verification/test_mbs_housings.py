@@ -72,7 +72,7 @@ def run(programs, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(output):
         patch.setattr(command, "make", spy)
         more = ["--picture", str(folder / "housing.png"), "--keep", str(folder / "kept")]
-        assert command_line.main([*arguments, *more]) == command_line.DONE
+        assert command_line.main([*arguments, *more]) == 0
     return Coarse(made[0], folder, output.getvalue())
 
 
