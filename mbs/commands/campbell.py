@@ -20,6 +20,7 @@ from mbs.commands.cases import Case, load_cases
 from mbs.commands.common import film_course, heading, lowest_limits, read_option, write
 from mbs.commands.reach import axes_outside, fade_lines, fade_of, outside_lines
 from mbs.elements import Operation, Sensor
+from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
 from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_result import Sweep
@@ -34,7 +35,6 @@ from mbs.spectral.orders import OrderPeak
 from mbs.spectral.run_signal import RunSignal
 from mbs.spectral.settings import CampbellSettings
 from mbs.spectral.spectra import LEAST_OVERSAMPLING
-from mbs.statics import equilibrium
 from mbs.transient.run import Recording
 from mbs.transient.run import run as run_system
 

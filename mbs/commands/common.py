@@ -22,10 +22,10 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.commands.reach import axes_outside, outside_lines
 from mbs.elements import Operation
+from mbs.equilibrium import Equilibrium, equilibrium
 from mbs.linearised.validity import HIGHEST_RATIO, FilmLimit, film_limit
 from mbs.output.results import described, write_dataset
 from mbs.reading.fields import MICROMETRE, RPM
-from mbs.statics import Equilibrium, equilibrium
 
 RESOLUTION = 150
 

@@ -14,13 +14,13 @@ from ehdmaps.units import quantity
 from mbs.assembly import Model
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_limits, film_warnings, heading, outside_at
+from mbs.equilibrium import Equilibrium, equilibrium
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.steady import steady_system
 from mbs.modal.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
 from mbs.modal.records import Hits
 from mbs.modal.uff import UFF, Measurement, write_uff
 from mbs.reading.fields import MILLISECOND
-from mbs.statics import Equilibrium, equilibrium
 
 _HIGHEST = 5000.0
 """Highest frequency of a scene that names none [Hz]."""

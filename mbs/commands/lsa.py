@@ -15,13 +15,13 @@ from mbs.assembly import Model
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_limits, film_warnings, heading, outside_at, write
 from mbs.commands.reach import fade_lines
+from mbs.equilibrium import equilibrium
 from mbs.linearised.linear import ComplexArray, frequency_response, response_unit, state_space, with_peaks
 from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import DynamicLoad, dynamic_loads
 from mbs.output.response_plot import response_figure
 from mbs.output.results import linear_dataset
-from mbs.statics import equilibrium
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:

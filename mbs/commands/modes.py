@@ -12,13 +12,13 @@ from mbs.assembly import Model
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_limits, film_warnings, heading, outside_at, read_option, write
 from mbs.commands.reach import fade_lines
+from mbs.equilibrium import equilibrium
 from mbs.linearised.modes import IntArray, Modes, modes
 from mbs.linearised.steady import steady_system
 from mbs.output.modes_plot import modes_figure
 from mbs.output.results import modes_dataset
 from mbs.reading.campbell import HIGHEST_HIGHEST, LOWEST_HIGHEST
 from mbs.reading.fields import HERTZ, MILLISECOND
-from mbs.statics import equilibrium
 
 HIGHEST = 10e3
 """Highest frequency shown of a scene that asks for no responses [Hz]."""

@@ -17,10 +17,10 @@ from mbs.commands.cases import load_model
 from mbs.commands.common import film_course, heading, write
 from mbs.commands.reach import Fade, axes_outside, fade_lines, fade_of, outside_lines
 from mbs.elements import Operation
+from mbs.equilibrium import equilibrium
 from mbs.output.results import run_dataset
 from mbs.output.run_plot import run_figure
 from mbs.reading.fields import RPM
-from mbs.statics import equilibrium
 from mbs.transient.integration import Trajectory, integrate
 
 

@@ -18,10 +18,10 @@ from mbs.bearings.roller_element import ring_matrices
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_limits, heading, outside_at, ring_motions, write
 from mbs.commands.reach import fade_lines
+from mbs.equilibrium import Equilibrium, equilibrium
 from mbs.free_motion import free_lines, free_motions
 from mbs.output.plot import statics_figure
 from mbs.output.results import statics_dataset
-from mbs.statics import Equilibrium, equilibrium
 
 _SHOWN = (1, 2, 4, 5)
 _ROUND_OFF = 1e-9

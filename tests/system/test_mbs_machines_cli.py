@@ -19,10 +19,10 @@ from ehdmaps.maps.emap import open_map
 from mbs import cli
 from mbs.assembly import assemble
 from mbs.commands import campbell
+from mbs.equilibrium import equilibrium
 from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
 from mbs.scene_reader import parse_scene, read_scene
-from mbs.statics import equilibrium
 
 HEAD = """
 schema = 1
