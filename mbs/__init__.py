@@ -7,6 +7,13 @@
     force = BearingForce(Bearing.named("NU308", clearance=20e-6), law)
     f, K, C = force(pose, velocity, entrainment_speed=1.0, temperature=330.0)
 
+and of a whole scene::
+
+    from mbs import assemble, read_scene, statics
+
+    model = assemble(read_scene("nu308_rigid"), emap="nu308.nc", clearance=20e-6)
+    statics(model).dataset
+
 What is where, in the order of the data:
 
 ==================  ====================================================================================
@@ -14,9 +21,10 @@ scene file          `reading`, `scene_reader` -> `scene` -> `assembly`
 what bodies are     `body`, `flexible` (beams, finite elements, reduction), `housings` (the shipped ones)
 what connects them  `elements`, `bearings` (the bearing force), `gears`; `profiles` (what is prescribed)
 one bearing         `bearing_point` (its equilibrium under a load, pressures and films), without a scene
-the system          `system`; `statics` (its equilibrium), `free_motion`; `planning` (the map that it needs)
+the system          `system`; `equilibrium`, `free_motion`; `planning` (the map that it needs)
 linear              `linearised` (modes, responses, over speed); `modal` (identified from hammer hits)
 in time             `transient` (method, compiled runs); `spectral` (levels over speed and order)
+analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, hammer, as functions
 for people          `output` (datasets, figures), `commands`, `cli`; `systems` (shipped scenes)
 ==================  ====================================================================================
 
@@ -29,12 +37,77 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from mbs.analyses.campbell import campbell
+    from mbs.analyses.case import Case
+    from mbs.analyses.hammer import HammerSettings, hammer
+    from mbs.analyses.lsa import LsaSettings, lsa
+    from mbs.analyses.modes import modes
+    from mbs.analyses.runup import runup
+    from mbs.analyses.statics import statics
+    from mbs.analyses.sweep import SweepSettings, sweep
+    from mbs.assembly import Model, assemble
     from mbs.bearings.bearing import Bearing
     from mbs.bearings.bearing_force import BearingForce
+    from mbs.elements import Operation
+    from mbs.errors import AnalysisError
+    from mbs.linearised.sweep import SweepRange
+    from mbs.scene import RunUp, Scene
+    from mbs.scene_reader import parse_scene, read_scene, shipped_systems
+    from mbs.spectral.settings import CampbellSettings
 
-__all__ = ["Bearing", "BearingForce"]
+__all__ = [
+    "AnalysisError",
+    "Bearing",
+    "BearingForce",
+    "CampbellSettings",
+    "Case",
+    "HammerSettings",
+    "LsaSettings",
+    "Model",
+    "Operation",
+    "RunUp",
+    "Scene",
+    "SweepRange",
+    "SweepSettings",
+    "assemble",
+    "campbell",
+    "hammer",
+    "lsa",
+    "modes",
+    "parse_scene",
+    "read_scene",
+    "runup",
+    "shipped_systems",
+    "statics",
+    "sweep",
+]
 
-_HOMES = {"Bearing": "bearings.bearing", "BearingForce": "bearings.bearing_force"}
+_HOMES = {
+    "AnalysisError": "errors",
+    "Bearing": "bearings.bearing",
+    "BearingForce": "bearings.bearing_force",
+    "CampbellSettings": "spectral.settings",
+    "Case": "analyses.case",
+    "HammerSettings": "analyses.hammer",
+    "LsaSettings": "analyses.lsa",
+    "Model": "assembly",
+    "Operation": "elements",
+    "RunUp": "scene",
+    "Scene": "scene",
+    "SweepRange": "linearised.sweep",
+    "SweepSettings": "analyses.sweep",
+    "assemble": "assembly",
+    "campbell": "analyses.campbell",
+    "hammer": "analyses.hammer",
+    "lsa": "analyses.lsa",
+    "modes": "analyses.modes",
+    "parse_scene": "scene_reader",
+    "read_scene": "scene_reader",
+    "runup": "analyses.runup",
+    "shipped_systems": "scene_reader",
+    "statics": "analyses.statics",
+    "sweep": "analyses.sweep",
+}
 
 
 def __getattr__(name: str) -> object:

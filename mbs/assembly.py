@@ -6,11 +6,12 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
 from ehdmaps.errors import InputError
-from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.law import LawKind
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
@@ -32,6 +33,8 @@ from mbs.system import System
 _SAME = 1e-9
 _COMPARED = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
 _CONSTANT = "constant:"
+_LABELS = {"hertz": "dry Hertz", "formula": "film formula"}
+_MAP_LABELS = {"reynolds": "Reynolds map", "openfoam": "OpenFOAM map", "formula": "formula map", "hertz": "Hertz map"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +55,8 @@ class Model:
         In the order of the scene.
     films : mapping of str to FilmSource
         What knows pressures and films of the contacts, by bearing.
+    label : str
+        The law in two words, as the legend of a figure has it.
     """
 
     scene: Scene
@@ -60,6 +65,7 @@ class Model:
     bearings: tuple[BearingElement, ...]
     gears: tuple[GearMesh, ...]
     films: Mapping[str, FilmSource]
+    label: str
 
     @property
     def operation(self) -> Operation:
@@ -80,7 +86,19 @@ def choose_law(name: str | None, emap: EHDMap | None) -> str:
     return name if name is not None else ("map" if emap is not None else "hertz")
 
 
-def assemble(scene: Scene, law: str | None = None, emap: EHDMap | None = None, clearance: float | None = None) -> Model:
+def law_label(law: str, emap: EHDMap | None = None) -> str:
+    """A law in two words, such as "dry Hertz"; a map by the solver that made it."""
+    if law == "map" and emap is not None:
+        return _MAP_LABELS.get(str(emap.dataset.attrs.get("solver", "")), "map")
+    return _LABELS.get(law, law.replace(":", " "))
+
+
+def assemble(
+    scene: Scene,
+    law: str | None = None,
+    emap: EHDMap | str | Path | None = None,
+    clearance: float | None = None,
+) -> Model:
     """Make a system from a scene.
 
     Parameters
@@ -89,16 +107,32 @@ def assemble(scene: Scene, law: str | None = None, emap: EHDMap | None = None, c
         Bodies, springs, loads, bearings.
     law : str, optional
         hertz, formula, constant:NAME or map; map by default where there is one, else hertz.
-    emap : EHDMap, optional
-        For the law `map`.
+    emap : EHDMap, str or Path, optional
+        For the law `map`: a map, or the path of its file.
     clearance : float, optional
         Diametral clearance of all bearings [m], in place of the scene's.
+
+    Returns
+    -------
+    Model
+        What the analyses take.
 
     Raises
     ------
     InputError
         With everything that does not fit together.
+    EhdmapsError
+        If the file of the map cannot be read.
+
+    Examples
+    --------
+    >>> from mbs import assemble, read_scene
+    >>> model = assemble(read_scene("nu308_rigid"), clearance=20e-6)
+    >>> model.label, model.system.size
+    ('dry Hertz', 5)
     """
+    if isinstance(emap, (str, Path)):
+        emap = open_map(emap)
     chosen = choose_law(law, emap)
     problems = find_problems(scene, law, emap, clearance)
     if problems:
@@ -139,7 +173,8 @@ def assemble(scene: Scene, law: str | None = None, emap: EHDMap | None = None, c
     gears = tuple(_meshing(pair, scene.bodies) for pair in scene.gears)
     system = System((*scene.bodies, *rollers), scene.springs, scene.loads, (*elements, *gears))
     films = {entry.name: _films(chosen, entry.bearing, scene, emap) for entry in bearings}
-    return Model(scene, system, _words(chosen, scene, emap), tuple(bearings), gears, films)
+    words = _words(chosen, scene, emap)
+    return Model(scene, system, words, tuple(bearings), gears, films, law_label(chosen, emap))
 
 
 def find_problems(

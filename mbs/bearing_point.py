@@ -1,8 +1,8 @@
 """One bearing at an operating point: where its inner ring comes to rest, and what its contacts feel there.
 
 The outer ring is held, the inner one moves in the radial plane without tilting and turns at the given speed. Its
-equilibrium is that of `mbs.statics`, with the ring as the only body: the potential of the contacts is convex, so that
-it is found from any load and clearance. The rollers' centrifugal load is left out.
+equilibrium is that of `mbs.equilibrium`, with the ring as the only body: the potential of the contacts is convex, so
+that it is found from any load and clearance. The rollers' centrifugal load is left out.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ from mbs.bearings.laws import Law
 from mbs.bearings.roller_loads import RollerLoads
 from mbs.body import Inertia, rigid_body
 from mbs.elements import Load, Operation
+from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
-from mbs.statics import equilibrium
 from mbs.system import System
 
 SHARE = 0.01

@@ -23,9 +23,9 @@ from ehdmaps.physics.moes import film_from_moes, moes_groups
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.bearing_element import BearingElement
 from mbs.elements import Operation
+from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
 from mbs.profiles import Course, Harmonic, LoadProfile
-from mbs.statics import equilibrium
 from mbs.system import System
 
 ANGLES = 12

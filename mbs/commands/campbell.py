@@ -4,118 +4,56 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
-import math
-import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.figure import Figure
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.progress import progress
-from ehdmaps.units import TEMPERATURE, closest
+from ehdmaps.units import TEMPERATURE
+from mbs.analyses.campbell import MODE_SPEEDS, CampbellResult, LawRun, campbell, campbell_problems
+from mbs.analyses.case import Case
+from mbs.analyses.film_limits import lowest_limits
+from mbs.analyses.reach import axes_outside, fade_of
 from mbs.assembly import Model
-from mbs.commands.cases import Case, load_cases
-from mbs.commands.common import film_course, heading, lowest_limits, read_option, write
-from mbs.commands.reach import axes_outside, fade_lines, fade_of, outside_lines
-from mbs.elements import Operation, Sensor
-from mbs.errors import AnalysisError
-from mbs.linearised.sweep import sweep
+from mbs.commands.cases import load_cases
+from mbs.commands.common import Told, film_course, heading, read_option, write
+from mbs.commands.reach import fade_lines, outside_lines
+from mbs.elements import Sensor
 from mbs.linearised.sweep_result import Sweep
-from mbs.output.campbell_data import campbell_dataset
 from mbs.output.campbell_plot import MOST_LAWS, Overlay, Reach, campbell_figure
 from mbs.reading.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.reading.fields import HERTZ, MICROMETRE, MILLISECOND, RPM
-from mbs.scene import RunUp, Scene
-from mbs.spectral.campbell import RunUpSpectra, run_up_spectra
+from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, difference_text
 from mbs.spectral.orders import OrderPeak
-from mbs.spectral.run_signal import RunSignal
 from mbs.spectral.settings import CampbellSettings
-from mbs.spectral.spectra import LEAST_OVERSAMPLING
-from mbs.statics import equilibrium
-from mbs.transient.run import Recording
-from mbs.transient.run import run as run_system
 
-LEAST_SAMPLES, MOST_SAMPLES = 64, 5_000_000
-"""Steps of a run: the fewest that have a spectrum, and 50 s of 10 us, beyond any run-up that is waited for."""
-
-_MESH_HARMONICS = 5
-_PASS_HARMONICS = 3
-_MODE_SPEEDS = 9
 _LEAST_SHARE = 0.05
 """Of the strain energy in bearings, of a mode that is drawn in."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Found:
-    """What one contact law led to."""
-
-    case: Case
-    record: Recording
-    spectra: RunUpSpectra
-    modes: Sweep | None
-    seconds: float
-
-
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run up with each law, and compare."""
-    cases, settings, sensor, course = _asked(arguments)
-    scene = cases[0].model.scene
-    reference = Reference.of(sensor)
-    orders = _orders(cases[0].model, settings, course)
-    _rehearse(settings, course, orders)
-    bar = progress(len(cases) * round(course.duration / course.settings.sample), "step")
-    bar.begin()
-    found, failed = [], []
-    for case in cases:
-        try:
-            found.append(_one(case, settings, sensor, course, orders, bar.solved, arguments.modes))
-        except AnalysisError as error:
-            # The run-ups with the other laws are worth minutes; keep them.
-            failed.append(f"warning: {case.label}: {error}")
-        except KeyboardInterrupt:
-            if not found:
-                raise
-            failed += [f"warning: {left.label}: stopped, no result" for left in cases[len(found) + len(failed) :]]
-            break
-    if not found:
-        raise AnalysisError("\n".join(failed))
+    cases, settings = _asked(arguments)
+    found = campbell(cases, settings, Told("step"), with_modes=arguments.modes, keep_partial=True)
+    runs, course = found.runs, found.course
     lines = [
-        f"{scene.title}: run-up from {RPM.text(course.speed.at(0.0)[0])} to "
+        f"{runs[0].case.model.scene.title}: run-up from {RPM.text(course.speed.at(0.0)[0])} to "
         f"{RPM.text(course.speed.at(course.duration)[0])} in {course.duration:.4g} s; "
-        f"sensor {sensor.name}, {reference.text}",
-        *_resolution(found[0].spectra, settings),
+        f"sensor {found.sensor.name}, {Reference.of(found.sensor).text}",
+        *_resolution(runs[0].spectra, settings),
     ]
-    for entry in found:
+    for entry in runs:
         lines += _report(entry)
-    lines += [*_differences(found), *failed]
-    names = [entry.case.label for entry in found]
-    spectra = [entry.spectra for entry in found]
-    dataset = campbell_dataset(names, spectra, reference, sensor.name)
-    figure = None
-    if arguments.plot:
-        title = _title(found[0].case.model, sensor)
-        figure = campbell_figure(
-            title,
-            names,
-            spectra,
-            reference,
-            orders,
-            [_overlay(entry) for entry in found],
-            [_reach(entry) for entry in found],
-        )
-    # The file says of each law what it is.
-    several = dataclasses.replace(
-        found[0].case.model, law="; ".join(f"{entry.case.label}: {entry.case.model.law}" for entry in found)
-    )
-    lines += write(arguments, several, dataset, figure)
-    return "\n".join(lines), 1 if failed or any(any(entry.record.outside.values()) for entry in found) else 0
+    lines += [*_differences(runs), *(f"warning: {line}" for line in found.failed)]
+    lines += write(arguments, found.dataset, _figure(found) if arguments.plot else None)
+    return "\n".join(lines), 1 if found.failed or any(any(entry.record.outside.values()) for entry in runs) else 0
 
 
-def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings, Sensor, RunUp]:
-    """Laws, what is looked at, and the run with a sample a step; all problems at once."""
+def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings]:
+    """Laws, and what is looked at; all problems at once."""
     problems: list[str] = []
     highest = read_option("--highest", arguments.highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
     window = read_option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems)
@@ -131,140 +69,30 @@ def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings,
     scene = cases[0].model.scene
     settings = dataclasses.replace(
         scene.campbell,
+        sensor=arguments.sensor or scene.campbell.sensor,
         highest=scene.campbell.highest if highest is None else highest,
         window=scene.campbell.window if window is None else window,
     )
-    sensor = _sensor(arguments.sensor or settings.sensor, scene, problems)
-    course = _course(scene, settings.highest, problems)
-    if problems or sensor is None or course is None:
+    problems += campbell_problems(scene, settings)
+    if problems:
         raise InputError(tuple(dict.fromkeys(problems)))
-    return cases, settings, sensor, course
+    return cases, settings
 
 
-def _course(scene: Scene, highest: float, problems: list[str]) -> RunUp | None:
-    """The run of the scene with a sample a step, so that nothing above the band is folded into it."""
-    course = scene.run_up
-    if course is None:
-        problems.append(f"{scene.name}: [runup] missing; a run-up needs from, to, duration and step")
-        return None
-    longest = 1.0 / (LEAST_OVERSAMPLING * highest)
-    if course.settings.step > longest * (1.0 + 1e-6):
-        problems.append(
-            f"{scene.name}: [runup] step: got {1e6 * course.settings.step:.4g} us; allowed: up to "
-            f"{1e6 * longest:.4g} us for frequencies up to {HERTZ.text(highest)}; take smaller steps, or a "
-            "lower --highest"
-        )
-    samples = course.duration / course.settings.step
-    if not LEAST_SAMPLES <= samples <= MOST_SAMPLES:
-        problems.append(
-            f"{scene.name}: [runup] duration: got {course.duration:.4g} s, which is {samples:.4g} steps; allowed: "
-            f"{LEAST_SAMPLES} to {MOST_SAMPLES}"
-        )
-        return None
-    every_step = dataclasses.replace(course.settings, sample=course.settings.step)
-    return dataclasses.replace(course, settings=every_step)
-
-
-def _sensor(name: str | None, scene: Scene, problems: list[str]) -> Sensor | None:
-    """The sensor of a name, or the first one of an acceleration."""
-    names = tuple(sensor.name for sensor in scene.sensors)
-    if name is not None:
-        for sensor in scene.sensors:
-            if sensor.name == name:
-                return sensor
-        problems.append(
-            f"{scene.name}: sensor {name!r:.60} is not there{closest(name, names)}; allowed: "
-            f"{', '.join(names) or 'none'}"
-        )
-        return None
-    for sensor in scene.sensors:
-        if sensor.quantity == "acceleration":
-            return sensor
-    problems.append(
-        f"{scene.name}: has no sensor of an acceleration; allowed: one of {', '.join(names) or 'none'} with --sensor, "
-        "or a [[sensors]] more"
+def _figure(found: CampbellResult) -> Figure:
+    """The figure, with modes and with what is not valid marked."""
+    return campbell_figure(
+        _title(found.runs[0].case.model, found.sensor),
+        [entry.case.label for entry in found.runs],
+        [entry.spectra for entry in found.runs],
+        Reference.of(found.sensor),
+        found.orders,
+        [_overlay(entry) for entry in found.runs],
+        [_reach(entry) for entry in found.runs],
     )
-    return None
 
 
-def _orders(model: Model, settings: CampbellSettings, course: RunUp) -> list[tuple[float, str]]:
-    """Orders to follow, with their names: those of the settings, else of the gears, else of passing rollers."""
-    if settings.orders:
-        return [(order, f"{order:g}") for order in settings.orders]
-    scene = model.scene
-    spins = {body.name: abs(body.spin) for body in scene.bodies}
-    mesh = [spins.get(pair.on.partition(":")[0], 0.0) * pair.teeth[0] for pair in scene.gears]
-    passing = [
-        entry.bearing.geometry.rollers * abs(entry.bearing.cage_angle(entry.inner_spin, entry.outer_spin))
-        for entry in model.bearings
-    ]
-    count = _MESH_HARMONICS if any(mesh) else _PASS_HARMONICS
-    # Rounded, for bearings that differ in the last bit only.
-    bases = sorted({round(order, 9) for order in (mesh if any(mesh) else passing) if order > 0.0})
-    found = {harmonic * base: f"{harmonic * base:.4g}" for base in bases for harmonic in range(1, count + 1)}
-    # None that lies above the band at every speed.
-    slowest = min(course.speed.at(0.0)[0], course.speed.at(course.duration)[0])
-    highest = 2.0 * math.pi * settings.highest / slowest if slowest > 0.0 else math.inf
-    return sorted((order, name) for order, name in found.items() if order < highest)
-
-
-def _rehearse(settings: CampbellSettings, course: RunUp, orders: list[tuple[float, str]]) -> None:
-    """Look at a silent run of the same course: what does not fit it is said before minutes are spent, not after."""
-    samples = math.ceil(course.duration / course.settings.sample - 1e-9)
-    times = np.asarray(np.arange(samples + 1) * course.settings.sample, dtype=np.float64)
-    speed, angle = np.array([course.speed.at(at) for at in times.tolist()]).T
-    silence = RunSignal(times, speed, angle, np.zeros_like(times))
-    run_up_spectra(silence, 1.0, settings.highest, settings.window, [order for order, _ in orders])
-
-
-def _one(
-    case: Case,
-    settings: CampbellSettings,
-    sensor: Sensor,
-    course: RunUp,
-    orders: list[tuple[float, str]],
-    solved: Callable[[int], None],
-    with_modes: bool,
-) -> _Found:
-    """Run up with one law."""
-    model = case.model
-    start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
-    done = 0
-
-    def told(samples: int) -> None:
-        nonlocal done
-        solved(samples - done)
-        done = samples
-
-    begin = time.perf_counter()
-    record = run_system(
-        model.system,
-        course.speed,
-        course.duration,
-        course.settings,
-        sensors=(sensor,),
-        displacement=start.displacement,
-        progress=told,
-    )
-    seconds = time.perf_counter() - begin
-    signal = RunSignal(record.time, record.speed, record.angle, record.signals[:, 0])
-    spectra = run_up_spectra(
-        signal,
-        Reference.of(sensor).value,
-        settings.highest,
-        settings.window,
-        [order for order, _ in orders],
-    )
-    return _Found(case, record, spectra, _modes(model, spectra) if with_modes else None, seconds)
-
-
-def _modes(model: Model, spectra: RunUpSpectra) -> Sweep:
-    """Modes of the linear system at some speeds of the run, rising."""
-    speeds = spectra.campbell.speeds
-    return sweep(model.system, np.linspace(speeds.min(), speeds.max(), _MODE_SPEEDS))
-
-
-def _overlay(entry: _Found) -> Overlay | None:
+def _overlay(entry: LawRun) -> Overlay | None:
     """Natural frequencies to draw: of modes with strain energy in the bearings."""
     if entry.modes is None:
         return None
@@ -272,14 +100,14 @@ def _overlay(entry: _Found) -> Overlay | None:
     return Overlay(entry.modes.speeds, entry.modes.undamped.frequency[:, shown])
 
 
-def _reach(entry: _Found) -> Reach:
+def _reach(entry: LawRun) -> Reach:
     """Where the films of a law are not valid, over the speeds of the run."""
     speeds = entry.spectra.campbell.speeds
-    at = np.linspace(float(speeds.min()), float(speeds.max()), _MODE_SPEEDS)
+    at = np.linspace(float(speeds.min()), float(speeds.max()), MODE_SPEEDS)
     return Reach(at, lowest_limits(entry.case.model, at), float(speeds[_fading(entry)].max(initial=0.0)))
 
 
-def _fading(entry: _Found) -> npt.NDArray[np.bool_]:
+def _fading(entry: LawRun) -> npt.NDArray[np.bool_]:
     """Which windows reach below the map, where the film fades to the dry contact, shape (windows,)."""
     found, record = entry.spectra.campbell, entry.record
     fade = fade_of(entry.case.model)
@@ -300,7 +128,7 @@ def _resolution(spectra: RunUpSpectra, settings: CampbellSettings) -> list[str]:
     ]
 
 
-def _report(entry: _Found) -> list[str]:
+def _report(entry: LawRun) -> list[str]:
     """Lines of one law: cost, highest sum level, peaks along the orders."""
     found, record = entry.spectra.campbell, entry.record
     at = int(np.argmax(found.sum_level))
@@ -327,10 +155,10 @@ def _report(entry: _Found) -> list[str]:
     return [*lines, *fade_lines(entry.case.model, record.speed, "the run"), *film_course(entry.case.model, ends)]
 
 
-def _differences(found: Sequence[_Found]) -> list[str]:
+def _differences(found: Sequence[LawRun]) -> list[str]:
     """Lines on the sum level of each law beside that of the first one with the same clearance and loads."""
     lines = []
-    first: dict[tuple[str, float, float | None], _Found] = {}
+    first: dict[tuple[str, float, float | None], LawRun] = {}
     for entry in found:
         beside = first.setdefault((repr(entry.case.clearance), entry.case.load_factor, entry.case.start_angle), entry)
         if beside is not entry:
@@ -339,7 +167,7 @@ def _differences(found: Sequence[_Found]) -> list[str]:
     return ["sum level at the same speed", *lines] if lines else []
 
 
-def _elsewhere(entry: _Found, at: int) -> str:
+def _elsewhere(entry: LawRun, at: int) -> str:
     """What is highest above the fade, where the window `at` of the highest sum level lies in it."""
     found, fading = entry.spectra.campbell, _fading(entry)
     if not fading[at]:

@@ -18,7 +18,8 @@ from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
 from ehdmaps.units import quantity
-from mbs.assembly import Model, assemble, find_problems
+from mbs.analyses.case import Case, common_clearance
+from mbs.assembly import Model, assemble, find_problems, law_label
 from mbs.output.results import RESULT
 from mbs.reading.fields import DEGREE, MICROMETRE
 from mbs.scene import Scene
@@ -27,35 +28,8 @@ from mbs.scene_reader import read_scene
 WIDEST = 1e-2
 """Largest clearance of --clearance, either way [m]."""
 
-_MAP_WORDS = {"reynolds": "Reynolds map", "openfoam": "OpenFOAM map", "formula": "formula map", "hertz": "Hertz map"}
-_WORDS = {"hertz": "dry Hertz", "formula": "film formula"}
 MOST_FACTOR = 1e3
 MOST_CASES = 24
-
-
-@dataclass(frozen=True, eq=False)
-class Case:
-    """One of the models that a command compares.
-
-    Attributes
-    ----------
-    label : str
-        In what it differs from the others; its law if nothing does.
-    model : Model
-        Scene with its law, clearance and loads.
-    clearance : float
-        Diametral clearance [m]; NaN if the bearings have not all the same.
-    load_factor : float
-        By which all loads of the scene were multiplied.
-    start_angle : float or None
-        At which all cages start instead of the scene's angles [rad].
-    """
-
-    label: str
-    model: Model
-    clearance: float
-    load_factor: float
-    start_angle: float | None = None
 
 
 @dataclass(frozen=True)
@@ -129,15 +103,13 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
     cases = []
     for law, clearance, factor, angle in itertools.product(laws, clearances, factors, angles):
         model = assemble(_turned(_loaded(scene, factor), angle), law.name, law.emap, clearance)
-        inside = {entry.geometry.diametral_clearance for entry in model.scene.bearings}
         words = [
             *([law.label] if len(laws) > 1 or count == 1 else []),
             *([MICROMETRE.text(clearance)] if len(clearances) > 1 and clearance is not None else []),
             *([f"{factor:g} x load"] if len(factors) > 1 else []),
             *([f"cage at {DEGREE.text(angle)}"] if len(angles) > 1 and angle is not None else []),
         ]
-        common = inside.pop() if len(inside) == 1 else math.nan
-        cases.append(Case(", ".join(words), model, common, factor, angle))
+        cases.append(Case(", ".join(words), model, common_clearance(model), factor, angle))
     return cases
 
 
@@ -173,7 +145,7 @@ def _laws(names: list[str], paths: list[str], problems: list[str]) -> list[_Law]
             for text in sorted(set(texts))
             if texts.count(text) > 1
         ]
-    laws = [_Law(_WORDS.get(name, name.replace(":", " ")), name) for name in names if name != "map" or not paths]
+    laws = [_Law(law_label(name), name) for name in names if name != "map" or not paths]
     maps: list[tuple[str, EHDMap]] = []
     for path in paths:
         try:
@@ -182,9 +154,9 @@ def _laws(names: list[str], paths: list[str], problems: list[str]) -> list[_Law]
             problems += [f"--map: {line}" for line in str(error).splitlines()]
     solvers = [str(emap.dataset.attrs.get("solver", "")) for _, emap in maps]
     for (path, emap), solver in zip(maps, solvers, strict=True):
-        name = _MAP_WORDS.get(solver, "map")
+        name = law_label("map", emap)
         laws.append(_Law(name if solvers.count(solver) == 1 else f"{name} {Path(path).stem}", "map", emap))
-    return laws if names or paths else [_Law(_WORDS["hertz"], None)]
+    return laws if names or paths else [_Law(law_label("hertz"), None)]
 
 
 def read_clearance(text: str, problems: list[str]) -> float | None:

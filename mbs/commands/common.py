@@ -4,28 +4,27 @@ from __future__ import annotations
 
 import argparse
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from ehdmaps.errors import InputError
-from ehdmaps.maps.law import ContactLaw
+from ehdmaps.jobs.progress import Bar, Lines, progress
 from ehdmaps.outputs import write_figure
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import TEMPERATURE, Display, quantity
-from mbs.assembly import Model, law_attributes
-from mbs.bearings.bearing_element import BearingElement
+from mbs.analyses.film_limits import film_limits, ring_motions
+from mbs.analyses.reach import axes_outside
+from mbs.assembly import Model
 from mbs.bearings.bearing_force import BearingForce
-from mbs.commands.reach import axes_outside, outside_lines
+from mbs.commands.reach import outside_lines
 from mbs.elements import Operation
-from mbs.linearised.validity import HIGHEST_RATIO, FilmLimit, film_limit
-from mbs.output.results import described, write_dataset
+from mbs.equilibrium import Equilibrium, equilibrium
+from mbs.linearised.validity import HIGHEST_RATIO, FilmLimit
+from mbs.output.results import write_dataset
 from mbs.reading.fields import MICROMETRE, RPM
-from mbs.statics import Equilibrium, equilibrium
 
 RESOLUTION = 150
 
@@ -33,6 +32,30 @@ MORE_DAMPING = "films as a rule are stiffer and damp less than computed here"
 """What is known of quicker motion."""
 
 NO_LONGER_VALID = f"above it stiffness and damping of slow motion are no longer valid, {MORE_DAMPING}"
+
+
+class Told:
+    """Progress of an analysis on stderr: a callable that is told how much is done, and of how much.
+
+    Parameters
+    ----------
+    unit : str
+        What is counted, in the singular: step, hit.
+    """
+
+    def __init__(self, unit: str) -> None:
+        self._unit = unit
+        self._bar: Bar | Lines | None = None
+        self._done = 0
+
+    def __call__(self, done: int, total: int) -> None:
+        """Begin with the first call; advance by what is new."""
+        if self._bar is None:
+            self._bar = progress(total, self._unit)
+            self._bar.begin()
+        if done > self._done:
+            self._bar.solved(done - self._done)
+            self._done = done
 
 
 def heading(model: Model, speed: float | None = None) -> list[str]:
@@ -45,23 +68,6 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
         f"  {at}{TEMPERATURE.text(model.scene.temperature)}, clearance {shown}; assumed: "
         + (f"{len(model.scene.assumed)} keys of the scene, marked there" if model.scene.assumed else "nothing"),
     ]
-
-
-def film_limits(model: Model, displacement: FloatArray, operation: Operation) -> list[FilmLimit]:
-    """Up to which frequency the films of each bearing follow; empty for dry laws and constant ones."""
-    limits = []
-    for bearing, motion in ring_motions(model, displacement):
-        if not isinstance(bearing.force, BearingForce) or not isinstance(bearing.force.law, ContactLaw):
-            continue
-        load = float(bearing.rollers(motion, operation).load_per_length.max())
-        speed = bearing.entrainment_speed(operation)
-        limits.append(film_limit(bearing.name, bearing.bearing, load, speed))
-    return limits
-
-
-def ring_motions(model: Model, displacement: FloatArray) -> list[tuple[BearingElement, FloatArray]]:
-    """Each bearing with the displacement (6,) of its inner ring against the outer one."""
-    return [(bearing, model.system.relative(bearing.inner, bearing.outer) @ displacement) for bearing in model.bearings]
 
 
 def film_warnings(limits: Sequence[FilmLimit], frequencies: Iterable[float]) -> list[str]:
@@ -99,34 +105,6 @@ def film_course(model: Model, speeds: Iterable[float]) -> list[str]:
     ]
 
 
-def lowest_limits(model: Model, speeds: FloatArray, displacements: FloatArray | None = None) -> FloatArray:
-    """Frequency [Hz] above which omega b/u exceeds 0.3 in one of the bearings, at each speed, shape (speeds,).
-
-    Parameters
-    ----------
-    model : Model
-        With its law.
-    speeds : array, shape (speeds,)
-        [rad/s].
-    displacements : array, shape (speeds, n), optional
-        Equilibria; they are found if left out.
-
-    Returns
-    -------
-    array, shape (speeds,)
-        NaN for laws without films; 0 at rest.
-    """
-    found = np.full(speeds.size, np.nan)
-    for index, speed in enumerate(speeds.tolist()):
-        operation = Operation(speed)
-        place = equilibrium(model.system, operation).displacement if displacements is None else displacements[index]
-        limits = film_limits(model, place, operation)
-        if not limits:
-            break
-        found[index] = min(limit.frequency for limit in limits)
-    return found
-
-
 def read_option(
     option: str, text: str | None, unit: str, limits: tuple[float, float], display: Display, problems: list[str]
 ) -> float | None:
@@ -144,12 +122,8 @@ def read_option(
     return value
 
 
-def outside_at(model: Model, balance: Equilibrium) -> list[str]:
-    """Lines on bearings whose equilibrium lies outside the map."""
-    before = model.outside_calls
-    for connected in model.system.elements:
-        connected.evaluate(balance.displacement, 0.0 * balance.displacement, balance.operation)
-    calls = {name: count - before[name] for name, count in model.outside_calls.items()}
+def outside_at(model: Model, balance: Equilibrium, calls: Mapping[str, int]) -> list[str]:
+    """Lines on bearings whose equilibrium lies outside the map, with the calls outside by bearing."""
     if not any(calls.values()):
         return []
     loads = {
@@ -160,12 +134,12 @@ def outside_at(model: Model, balance: Equilibrium) -> list[str]:
     return outside_lines(calls, "lies outside the map", axes_outside(model, balance.operation.speed, loads))
 
 
-def write(arguments: argparse.Namespace, model: Model, dataset: xr.Dataset, figure: Figure | None) -> list[str]:
+def write(arguments: argparse.Namespace, dataset: xr.Dataset, figure: Figure | None) -> list[str]:
     """Write what -o and --plot ask for; a line for each file."""
     lines = []
     if arguments.output:
         path = Path(arguments.output)
-        write_dataset(described(dataset, **law_attributes(model)), path)
+        write_dataset(dataset, path)
         lines.append(f"{path}: written")
     if arguments.plot and figure is not None:
         # Names of a scene are no formulas.

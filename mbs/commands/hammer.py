@@ -8,50 +8,27 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.progress import progress
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.units import quantity
-from mbs.assembly import Model
+from mbs.analyses.hammer import HammerSettings, hammer
 from mbs.commands.cases import load_model
-from mbs.commands.common import film_limits, film_warnings, heading, outside_at
-from mbs.linearised.modes import Modes, modes
-from mbs.linearised.steady import steady_system
-from mbs.modal.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
-from mbs.modal.records import Hits
+from mbs.commands.common import Told, film_warnings, heading, outside_at
+from mbs.linearised.modes import Modes
+from mbs.modal.hammer import HammerTest
 from mbs.modal.uff import UFF, Measurement, write_uff
 from mbs.reading.fields import MILLISECOND
-from mbs.statics import Equilibrium, equilibrium
-
-_HIGHEST = 5000.0
-"""Highest frequency of a scene that names none [Hz]."""
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Hit, and write the records."""
     highest, duration = _options(arguments)
     model = load_model(arguments, UFF)
-    scene = model.scene
-    missing = [
-        f"{scene.name}: [[{key}]] missing; a hammer test needs {words}"
-        for key, there, words in (
-            ("inputs", scene.inputs, "places to hit"),
-            ("sensors", scene.sensors, "at least one sensor"),
-        )
-        if not there
-    ]
-    if missing:
-        raise InputError(missing)
-    balance = equilibrium(steady_system(model.system), model.operation)
-    found = modes(balance)
-    highest = highest or (scene.frequencies[-1] if scene.frequencies else _HIGHEST)
-    duration = duration or suggested_duration(found, highest)
-    test = HammerTest(highest, duration, arguments.hits, arguments.noise, arguments.seed)
-    before = model.outside_calls
-    hits = _hit(model, balance, test, arguments.nonlinear)
-    called = {name: count - before[name] for name, count in model.outside_calls.items() if count > before[name]}
+    settings = HammerSettings(highest, duration, arguments.hits, arguments.noise, arguments.seed, arguments.nonlinear)
+    found = hammer(model, settings, Told("hit"))
+    scene, test, hits = model.scene, found.test, found.hits
     outside = [
-        *outside_at(model, balance),
-        *(f"warning: {name}: {n} calls outside the map" for name, n in called.items()),
+        *outside_at(model, found.balance, found.outside),
+        *(f"warning: {name}: {n} calls outside the map" for name, n in found.outside_hits.items() if n),
     ]
     path = Path(arguments.output)
     law = (arguments.law or ["map" if arguments.map else "hertz"])[0]
@@ -64,8 +41,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"  records of {test.samples * test.step:.4g} s, {test.samples} samples at {1.0 / test.step:.6g} Hz; "
         f"half-sines of {MILLISECOND.text(test.pulse)}, up to {test.highest:.6g} Hz; seed {test.seed}",
         f"  noise: standard deviation {100.0 * test.noise:.3g} % of the peak of each channel",
-        *_expected(found, test),
-        *film_warnings(film_limits(model, balance.displacement, balance.operation), [test.highest]),
+        *_expected(found.modes, test),
+        *film_warnings(found.limits, [test.highest]),
         *outside,
         f"{path}: written",
     ]
@@ -94,16 +71,6 @@ def _options(arguments: argparse.Namespace) -> tuple[float | None, float | None]
     if problems:
         raise InputError(problems)
     return found[0], found[1]
-
-
-def _hit(model: Model, balance: Equilibrium, test: HammerTest, nonlinear: bool) -> tuple[Hits, ...]:
-    """Make the hits."""
-    inputs, sensors = model.scene.inputs, model.scene.sensors
-    if not nonlinear:
-        return linear_hits(balance, inputs, sensors, test)
-    bar = progress(test.hits * len(inputs), "hit")
-    bar.begin()
-    return nonlinear_hits(balance, inputs, sensors, test, lambda: bar.solved(1))
 
 
 def _expected(found: Modes, test: HammerTest) -> list[str]:

@@ -9,67 +9,45 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.signal import find_peaks
 
-from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
+from mbs.analyses.lsa import lsa
 from mbs.assembly import Model
 from mbs.commands.cases import load_model
-from mbs.commands.common import film_limits, film_warnings, heading, outside_at, write
+from mbs.commands.common import film_warnings, heading, outside_at, write
 from mbs.commands.reach import fade_lines
-from mbs.linearised.linear import ComplexArray, frequency_response, response_unit, state_space, with_peaks
-from mbs.linearised.modes import modes
-from mbs.linearised.steady import steady_system
-from mbs.linearised.validity import DynamicLoad, dynamic_loads
+from mbs.linearised.linear import ComplexArray, response_unit
+from mbs.linearised.validity import DynamicLoad
 from mbs.output.response_plot import response_figure
-from mbs.output.results import linear_dataset
-from mbs.statics import equilibrium
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Linearise, and compute the responses over the frequencies of the scene."""
-    model = load_model(arguments)
-    scene = model.scene
-    missing = [
-        f"{scene.name}: {key} missing; a linear analysis needs {words}"
-        for key, there, words in (
-            ("[[inputs]]", scene.inputs, "at least one input"),
-            ("[[sensors]]", scene.sensors, "at least one sensor"),
-            ("[linear] frequencies", scene.frequencies, "frequencies"),
-        )
-        if not there
-    ]
-    if missing:
-        raise InputError(missing)
-    balance = equilibrium(steady_system(model.system), model.operation)
-    frequencies = with_peaks(np.array(scene.frequencies), modes(balance).eigenvalues)
-    responses = frequency_response(balance, scene.inputs, scene.sensors, frequencies)
-    space = state_space(balance, scene.inputs, scene.sensors)
-    limits = film_limits(model, balance.displacement, balance.operation)
-    lifting = [load for load in dynamic_loads(balance, scene.inputs, frequencies) if load.exceeds]
+    found = lsa(load_model(arguments))
+    model, scene, frequencies = found.model, found.model.scene, found.frequencies
     figure = None
     if arguments.plot:
-        limit = min((entry.frequency for entry in limits), default=math.inf)
-        figure = response_figure(model, frequencies, responses, limit, _lifting_notes(lifting))
-    outside = outside_at(model, balance)
-    dataset = linear_dataset(balance, space, responses, frequencies, scene.inputs, scene.sensors)
+        limit = min((entry.frequency for entry in found.limits), default=math.inf)
+        figure = response_figure(model, frequencies, found.responses, limit, _lifting_notes(found.lifting))
+    outside = outside_at(model, found.balance, found.outside)
     amplitudes = {
         entry.name: f"{entry.amplitude:.4g} {'N m' if np.any(entry.direction[3:]) else 'N'}" for entry in scene.inputs
     }
     lines = [
         *heading(model, scene.speed),
-        f"state space: {space.A.shape[0]} states, {len(scene.inputs)} inputs, {len(scene.sensors)} outputs; "
-        f"{len(scene.frequencies)} frequencies, and {frequencies.size - len(scene.frequencies)} more around lightly "
+        f"state space: {found.space.A.shape[0]} states, {len(scene.inputs)} inputs, {len(scene.sensors)} outputs; "
+        f"{found.asked} frequencies, and {frequencies.size - found.asked} more around lightly "
         "damped modes",
-        *_peaks(model, frequencies, responses),
-        *film_warnings(limits, frequencies),
+        *_peaks(model, frequencies, found.responses),
+        *film_warnings(found.limits, frequencies),
         *(
             f"warning: {load.element}: {load.dynamic:.3g} N of dynamic load at {load.frequency:.4g} Hz exceed the "
             f"static {load.static:.4g} N (input {load.input} at its amplitude of {amplitudes[load.input]}): contacts "
             "lift off, a linear analysis is not valid there"
-            for load in lifting
+            for load in found.lifting
         ),
         *(fade_lines(model, np.array([scene.speed])) if scene.speed else []),
         *outside,
-        *write(arguments, model, dataset, figure),
+        *write(arguments, found.dataset, figure),
     ]
     return "\n".join(lines), 1 if outside else 0
 

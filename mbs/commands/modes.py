@@ -8,17 +8,15 @@ import math
 import numpy as np
 
 from ehdmaps.errors import InputError
+from mbs.analyses.modes import modes
 from mbs.assembly import Model
 from mbs.commands.cases import load_model
-from mbs.commands.common import film_limits, film_warnings, heading, outside_at, read_option, write
+from mbs.commands.common import film_warnings, heading, outside_at, read_option, write
 from mbs.commands.reach import fade_lines
-from mbs.linearised.modes import IntArray, Modes, modes
-from mbs.linearised.steady import steady_system
+from mbs.linearised.modes import IntArray, Modes
 from mbs.output.modes_plot import modes_figure
-from mbs.output.results import modes_dataset
 from mbs.reading.campbell import HIGHEST_HIGHEST, LOWEST_HIGHEST
 from mbs.reading.fields import HERTZ, MILLISECOND
-from mbs.statics import equilibrium
 
 HIGHEST = 10e3
 """Highest frequency shown of a scene that asks for no responses [Hz]."""
@@ -33,18 +31,17 @@ _ROUND_OFF = 1e-12
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Find the modes."""
     model, highest = _asked(arguments)
-    balance = equilibrium(steady_system(model.system), model.operation)
-    found = modes(balance)
+    result = modes(model)
+    found, limits = result.modes, result.limits
     free, overdamped, swinging = _kinds(found)
     shown = swinging[found.frequency[swinging] <= highest]
     above = swinging[found.frequency[swinging] > highest]
-    limits = film_limits(model, balance.displacement, balance.operation)
     notes = [*_free(free), *_above(found, above, highest)]
     figure = None
     if arguments.plot:
         limit = min((entry.frequency for entry in limits), default=math.inf)
         figure = modes_figure(model, found, shown, limit, "; ".join([*notes, *_overdamped_count(overdamped)]))
-    outside = outside_at(model, balance)
+    outside = outside_at(model, result.balance, result.outside)
     lines = [
         *heading(model, model.scene.speed),
         *_table(found, shown),
@@ -53,7 +50,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *film_warnings(limits, found.frequency[shown]),
         *(fade_lines(model, np.array([model.scene.speed])) if model.scene.speed else []),
         *outside,
-        *write(arguments, model, modes_dataset(found, balance), figure),
+        *write(arguments, result.dataset, figure),
     ]
     return "\n".join(lines), 1 if outside else 0
 

@@ -3,57 +3,34 @@
 from __future__ import annotations
 
 import argparse
-import math
-import time
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from ehdmaps.errors import InputError
-from ehdmaps.jobs.progress import progress
 from ehdmaps.physics._values import FloatArray
+from mbs.analyses.reach import Fade, axes_outside, fade_of
+from mbs.analyses.runup import runup
 from mbs.assembly import Model
 from mbs.commands.cases import load_model
-from mbs.commands.common import film_course, heading, write
-from mbs.commands.reach import Fade, axes_outside, fade_lines, fade_of, outside_lines
-from mbs.elements import Operation
-from mbs.output.results import run_dataset
+from mbs.commands.common import Told, film_course, heading, write
+from mbs.commands.reach import fade_lines, outside_lines
 from mbs.output.run_plot import run_figure
 from mbs.reading.fields import RPM
-from mbs.statics import equilibrium
-from mbs.transient.integration import Trajectory, integrate
+from mbs.transient.integration import Trajectory
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run, and say what was found."""
-    model = load_model(arguments)
-    course = model.scene.run_up
-    if course is None:
-        raise InputError(f"{model.scene.name}: [runup] missing; a run needs from, to, duration and step")
-    start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
-    before = model.outside_calls
-    steps = course.settings.steps_per_sample
-    bar = progress(math.ceil(course.duration / course.settings.sample - 1e-9) * steps, "step")
-    bar.begin()
-    begin = time.perf_counter()
-    result = integrate(
-        model.system,
-        course.speed,
-        course.duration,
-        course.settings,
-        displacement=start.displacement,
-        progress=lambda done: bar.solved(steps),
-    )
-    seconds = time.perf_counter() - begin
-    outside = {name: count - before[name] for name, count in model.outside_calls.items()}
+    found = runup(load_model(arguments), progress=Told("step"))
+    model, result, outside = found.model, found.trajectory, found.outside
     fade = fade_of(model)
     figure = _figure(model, result, fade) if arguments.plot else None
     first, last = (RPM.text(float(speed)) for speed in (result.speed[0], result.speed[-1]))
     lines = [
         *heading(model),
-        f"from {first} to {last} in {course.duration:.4g} s: {result.steps} steps, {result.halved} taken back, "
+        f"from {first} to {last} in {found.course.duration:.4g} s: {result.steps} steps, {result.halved} taken back, "
         f"{result.iterations / max(result.steps, 1):.3g} Newton iterations a step, "
-        f"{1e6 * seconds / max(result.steps, 1):.0f} us a step",
+        f"{1e6 * found.seconds / max(result.steps, 1):.0f} us a step",
     ]
     for bearing, force in zip(model.bearings, result.forces, strict=False):
         size = np.hypot(force[:, 1], force[:, 2])
@@ -67,7 +44,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines += outside_lines(outside, "{} calls outside the map", axes_outside(model, fastest))
     # The equilibria of this line are no part of the run, whose calls were counted above.
     lines += film_course(model, (float(result.speed[0]), float(result.speed[-1])))
-    lines += write(arguments, model, run_dataset(model.system, result, outside), figure)
+    lines += write(arguments, found.dataset, figure)
     return "\n".join(lines), 1 if any(outside.values()) else 0
 
 

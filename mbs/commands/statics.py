@@ -9,19 +9,17 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
-from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import FILM, PRESSURE
+from mbs.analyses.film_limits import film_limits, ring_motions
+from mbs.analyses.statics import statics
 from mbs.assembly import Model
-from mbs.bearings.contact_report import BearingContacts, bearing_contacts, overload
-from mbs.bearings.films import DryContacts
+from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.roller_element import ring_matrices
 from mbs.commands.cases import load_model
-from mbs.commands.common import film_limits, heading, outside_at, ring_motions, write
+from mbs.commands.common import heading, outside_at, write
 from mbs.commands.reach import fade_lines
-from mbs.free_motion import free_lines, free_motions
+from mbs.equilibrium import Equilibrium
 from mbs.output.plot import statics_figure
-from mbs.output.results import statics_dataset
-from mbs.statics import Equilibrium, equilibrium
 
 _SHOWN = (1, 2, 4, 5)
 _ROUND_OFF = 1e-9
@@ -33,15 +31,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     model = load_model(arguments)
     if arguments.plot and not model.bearings:
         raise InputError(f"--plot: {model.scene.name} has no bearing whose rollers could be drawn; leave it out")
-    balance = equilibrium(model.system, model.operation)
-    free = free_lines(free_motions(balance))
-    contacts = [_contacts(model, balance, index) for index in range(len(model.bearings))]
-    overloads = [
-        f"{bearing.name}: {sentence}"
-        for bearing, state in zip(model.bearings, contacts, strict=True)
-        if (sentence := overload(state))
-    ]
-    figure = statics_figure(model, balance, contacts, overloads) if arguments.plot else None
+    found = statics(model)
+    balance, contacts = found.balance, found.contacts
+    figure = statics_figure(model, balance, contacts, found.overloads) if arguments.plot else None
     lines = [
         *heading(model, model.scene.speed),
         f"equilibrium in {balance.steps} Newton steps, residual {balance.residual:.1e} of the largest force",
@@ -69,27 +61,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         if 0.0 < limit.frequency < math.inf
     ]
     lines += fade_lines(model, np.array([model.scene.speed]))
-    outside = outside_at(model, balance)
-    dataset = statics_dataset(balance, contacts, (*overloads, *free))
-    lines += [f"warning: {line}" for line in (*overloads, *free)] + outside
-    lines += write(arguments, model, dataset, figure)
-    return "\n".join(lines), 1 if outside or overloads else 0
-
-
-def _contacts(model: Model, balance: Equilibrium, index: int) -> BearingContacts:
-    """Pressures and films of a bearing."""
-    bearing, motion = ring_motions(model, balance.displacement)[index]
-    operation = balance.operation
-    point = (
-        bearing.rollers(motion, operation),
-        bearing.entrainment_speed(operation),
-        bearing.temperature,
-        bearing.centrifugal_load(operation),
-    )
-    try:
-        return bearing_contacts(model.films[bearing.name], *point)
-    except InputError:  # the oil has no viscosity at this temperature, where a law is held at its edge
-        return bearing_contacts(DryContacts(bearing.bearing.geometry.contacts(STEEL, "iso16281")), *point)
+    outside = outside_at(model, balance, found.outside)
+    lines += [f"warning: {line}" for line in (*found.overloads, *found.free)] + outside
+    lines += write(arguments, found.dataset, figure)
+    return "\n".join(lines), 1 if outside or found.overloads else 0
 
 
 def _contact_words(contacts: BearingContacts) -> str:

@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import argparse
-import dataclasses
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from ehdmaps.errors import InputError
 from ehdmaps.units import TEMPERATURE, quantity
+from mbs.analyses.case import Case
+from mbs.analyses.film_limits import film_limits, lowest_limits
+from mbs.analyses.reach import axes_outside, fade_of
+from mbs.analyses.sweep import SweepSettings, sweep
 from mbs.assembly import Model
-from mbs.commands.cases import Case, load_cases
-from mbs.commands.common import NO_LONGER_VALID, film_limits, heading, lowest_limits, write
-from mbs.commands.reach import axes_outside, fade_lines, fade_of, outside_lines
+from mbs.commands.cases import load_cases
+from mbs.commands.common import NO_LONGER_VALID, heading, write
+from mbs.commands.reach import fade_lines, outside_lines
 from mbs.elements import Operation
-from mbs.errors import AnalysisError
 from mbs.linearised.crossings import exchanged
-from mbs.linearised.sweep import MOST_ANGLES, MOST_SPEEDS, SweepRange, sweep
+from mbs.linearised.sweep import MOST_ANGLES, MOST_SPEEDS, SweepRange
 from mbs.linearised.sweep_result import Sweep
 from mbs.linearised.validity import HIGHEST_RATIO
-from mbs.output.sweep_data import sweep_dataset
 from mbs.output.sweep_plot import sweep_figure
 from mbs.reading.fields import MICROMETRE, RPM
 
@@ -32,53 +33,27 @@ _ROUND_OFF = 1e-12
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Sweep over speed."""
-    speeds, angles, cases = _read(arguments)
-    found = []
-    for case in cases:
-        scene = case.model.scene
-        try:
-            found.append(
-                sweep(
-                    case.model.system,
-                    speeds.speeds,
-                    0.0,
-                    scene.inputs,
-                    scene.sensors,
-                    np.array(scene.frequencies),
-                    angles,
-                )
-            )
-        except AnalysisError as error:
-            raise AnalysisError(f"{case.label}: {error}") from error
+    settings, cases = _read(arguments)
+    result = sweep(cases, settings)
+    found = result.sweeps
     lines: list[str] = []
     outside: list[str] = []
-    for case, result in zip(cases, found, strict=True):
-        outside += _outside(case, result)
+    for case, entry, calls in zip(cases, found, result.outside, strict=True):
+        outside += _outside(case, entry, calls)
         lines += [
             *heading(case.model),
             *([f"  case: {case.label}"] if len(cases) > 1 else []),
-            *_course(result),
-            *_bearings(result),
-            *_undamped(result),
-            *_complex(result),
-            *_exchanged(result),
-            *_unsure(result),
-            *_too_quick(case.model, result),
-            *fade_lines(case.model, result.speeds),
+            *_course(entry),
+            *_bearings(entry),
+            *_undamped(entry),
+            *_complex(entry),
+            *_exchanged(entry),
+            *_unsure(entry),
+            *_too_quick(case.model, entry),
+            *fade_lines(case.model, entry.speeds),
         ]
-    model = cases[0].model
-    labels = [case.label for case in cases]
-    dataset = sweep_dataset(
-        found,
-        labels,
-        [case.model.law for case in cases],
-        [case.clearance for case in cases],
-        [case.load_factor for case in cases],
-    )
     figure = _figure(cases, found) if arguments.plot else None
-    # The file says of each case what its law is.
-    named = [f"{case.label}: {case.model.law}" for case in cases] if len(cases) > 1 else [model.law]
-    lines += outside + write(arguments, dataclasses.replace(model, law="; ".join(named)), dataset, figure)
+    lines += outside + write(arguments, result.dataset, figure)
     return "\n".join(lines), 1 if outside else 0
 
 
@@ -105,7 +80,7 @@ def _figure(cases: Sequence[Case], found: Sequence[Sweep]) -> Figure:
     )
 
 
-def _read(arguments: argparse.Namespace) -> tuple[SweepRange, int, list[Case]]:
+def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
     """Read speeds, number of cage angles, and cases; all problems at once."""
     problems: list[str] = []
     speeds: SweepRange | None = None
@@ -125,13 +100,7 @@ def _read(arguments: argparse.Namespace) -> tuple[SweepRange, int, list[Case]]:
         problems += error.problems
     if problems:
         raise InputError(problems)
-    speeds = speeds or cases[0].model.scene.sweep
-    if speeds is None:
-        raise InputError(
-            f'{cases[0].model.scene.name}: no speeds; allowed: --speeds "500 rpm" "2500 rpm" 40, or a table [sweep] in '
-            "the scene with from, to and points"
-        )
-    return speeds, angles, cases
+    return SweepSettings(speeds, angles), cases
 
 
 def _speeds(texts: Sequence[str]) -> SweepRange:
@@ -265,18 +234,10 @@ def _unsure(result: Sweep) -> list[str]:
     ]
 
 
-def _outside(case: Case, result: Sweep) -> list[str]:
+def _outside(case: Case, result: Sweep, calls: Mapping[str, int]) -> list[str]:
     """Lines on bearings whose equilibria lie outside the map."""
-    count = dict.fromkeys(case.model.outside_calls, 0)
-    rest = np.zeros(case.model.system.size)
-    for speed, place in zip(result.speeds.tolist(), result.displacement, strict=True):
-        before = case.model.outside_calls
-        for connected in case.model.system.elements:
-            connected.evaluate(place, rest, Operation(speed))
-        for name, calls in case.model.outside_calls.items():
-            count[name] += calls > before[name]
     words = f"lies outside the map at {{}} of {result.speeds.size} speeds"
-    return outside_lines(count, words, axes_outside(case.model, float(np.abs(result.speeds).max())), case.label)
+    return outside_lines(calls, words, axes_outside(case.model, float(np.abs(result.speeds).max())), case.label)
 
 
 def _too_quick(model: Model, result: Sweep) -> list[str]:

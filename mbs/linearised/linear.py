@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from ehdmaps.physics._values import FloatArray
 from mbs.elements import Input, Quantity, Sensor
-from mbs.statics import Equilibrium
+from mbs.equilibrium import Equilibrium
 
 ComplexArray = npt.NDArray[np.complex128]
 

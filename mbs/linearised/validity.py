@@ -13,8 +13,8 @@ from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.solids import reduced_modulus
 from mbs.bearings.bearing import Bearing
 from mbs.elements import Input
+from mbs.equilibrium import Equilibrium
 from mbs.linearised.linear import responses
-from mbs.statics import Equilibrium
 
 HIGHEST_RATIO = 0.3
 """omega b/u above which stiffness and damping of the low-frequency limit are no longer valid."""

@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 
 from mbs.assembly import Model
 from mbs.bearings.contact_report import BearingContacts
+from mbs.equilibrium import Equilibrium
 from mbs.output.page import COLOURS as _COLOURS
 from mbs.output.page import grid as _grid
 from mbs.output.page import page as _page
-from mbs.statics import Equilibrium
 
 _RPM = 30.0 / np.pi
 

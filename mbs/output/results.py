@@ -18,9 +18,9 @@ from mbs.bearings.films import SIDES
 from mbs.bearings.roller_element import ring_matrices
 from mbs.body import FREEDOMS
 from mbs.elements import Input, Sensor
+from mbs.equilibrium import Equilibrium
 from mbs.linearised.linear import ComplexArray, StateSpace
 from mbs.linearised.modes import Modes
-from mbs.statics import Equilibrium
 from mbs.system import System
 from mbs.transient.integration import Trajectory
 

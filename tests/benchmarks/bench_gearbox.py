@@ -39,6 +39,7 @@ from ehdmaps.maps.emap import EHDMap
 from mbs.assembly import Model, assemble
 from mbs.body import Body, Frame
 from mbs.elements import Operation, Sensor
+from mbs.equilibrium import equilibrium
 from mbs.linearised.modes import undamped_modes
 from mbs.profiles import Course, SpeedProfile
 from mbs.scene import RunUp, Scene
@@ -46,7 +47,6 @@ from mbs.scene_reader import parse_scene, read_scene
 from mbs.spectral.levels import Reference, level
 from mbs.spectral.run_signal import RunSignal
 from mbs.spectral.spectra import short_time_spectra
-from mbs.statics import equilibrium
 from mbs.system import System
 from mbs.transient.run import Recording, run
 from mbs.transient.stepping import Settings

@@ -27,6 +27,7 @@ from ehdmaps.maps.emap import EHDMap
 from mbs.assembly import assemble
 from mbs.bearings.bearing import Bearing
 from mbs.elements import Operation
+from mbs.equilibrium import equilibrium
 from mbs.linearised.linear import frequency_response, state_space
 from mbs.linearised.modes import state_modes, undamped_modes
 from mbs.linearised.steady import steady_system
@@ -34,7 +35,6 @@ from mbs.linearised.sweep import Sweep, sweep
 from mbs.linearised.sweep_point import along_load
 from mbs.scene import Scene
 from mbs.scene_reader import read_scene
-from mbs.statics import equilibrium
 from mbs.system import System
 
 RPM = math.pi / 30.0

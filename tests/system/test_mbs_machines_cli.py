@@ -17,12 +17,12 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs import cli as ehdmaps_cli
 from ehdmaps.maps.emap import open_map
 from mbs import cli
+from mbs.analyses import campbell
 from mbs.assembly import assemble
-from mbs.commands import campbell
+from mbs.equilibrium import equilibrium
 from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
 from mbs.scene_reader import parse_scene, read_scene
-from mbs.statics import equilibrium
 
 HEAD = """
 schema = 1
@@ -156,7 +156,7 @@ class TestFiles:
         (here / "sub").mkdir()
         os.mkfifo(here / "pipe")
         before = (here / "own.toml").read_bytes()
-        monkeypatch.setattr("mbs.commands.runup.integrate", None)  # a call of it fails
+        monkeypatch.setattr("mbs.analyses.runup.integrate", None)  # a call of it fails
         for command in ("statics", "modes", "lsa", "runup"):
             status, out, err = run(capsys, command, "own.toml", *arguments)
             assert (status, out) == (2, "")

@@ -62,7 +62,7 @@ ALLOWED = {
 }
 """What each layer may import besides itself and other distributions. `ehdmaps` itself is the shop window of all."""
 
-SCENES = ("__main__", "assembly", "cli", "commands", "output", "reading", "scene", "scene_reader")
+SCENES = ("__main__", "analyses", "assembly", "cli", "commands", "output", "reading", "scene", "scene_reader")
 """Modules of mbs that plan a scene or are its command line: they may call ehdmaps.jobs; no other module of mbs may
 call them."""
 
@@ -94,11 +94,18 @@ FILES = sorted([*ROOT.glob("ehdmaps/*/**/*.py"), *ROOT.glob("ehdmaps/*.py"), *RO
 def test_imports_point_one_way(path: Path) -> None:
     module = ".".join(path.relative_to(ROOT).with_suffix("").parts)
     own = _layer(module)
-    if module in ("ehdmaps.__init__", "ehdmaps.__main__"):
+    if module in ("ehdmaps.__init__", "ehdmaps.__main__", "mbs.__init__"):
         return
     assert own is not None
     foreign = {layer for name in _imported(path) if (layer := _layer(name)) not in (None, own)}
     assert foreign <= ALLOWED[own], f"{path}: imports {sorted(foreign - ALLOWED[own])}"
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "mbs" / "analyses").glob("*.py")), ids=lambda p: p.stem)
+def test_analyses_know_no_command_line(path: Path) -> None:
+    names = _imported(path)
+    assert "argparse" not in names
+    assert not [name for name in names if name.startswith(("mbs.commands", "mbs.cli", "matplotlib"))]
 
 
 def test_pyfoam_has_one_door() -> None:

@@ -19,10 +19,10 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import fading, heated, outside_map
 from mbs.bearings.films import FormulaFilms
+from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
 from mbs.output import bearing_text
 from mbs.scene_reader import read_scene
-from mbs.statics import equilibrium
 from tests.unit.mbs_cases import map_law
 
 OIL = Lubricant.named("FVA3")

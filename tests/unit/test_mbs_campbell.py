@@ -15,7 +15,7 @@ import xarray as xr
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
-from mbs.commands.reach import Fade
+from mbs.analyses.reach import Fade
 from mbs.elements import Sensor
 from mbs.errors import AnalysisError
 from mbs.output.campbell_data import campbell_dataset
@@ -653,13 +653,13 @@ def test_the_command_refuses_a_constant_speed(scene, tmp_path):
 
 
 def test_the_command_looks_at_the_window_before_it_runs(scene, monkeypatch):
-    command = importlib.import_module("mbs.commands.campbell")
+    command = importlib.import_module("mbs.analyses.campbell")
     monkeypatch.setattr(command, "run_system", lambda *_, **__: pytest.fail("ran"))
     refused(lambda: run_command(scene, window="1 s"), "spectra, window: got 1.0 s")
 
 
 def test_a_law_without_a_result_leaves_the_others(scene, monkeypatch):
-    command = importlib.import_module("mbs.commands.campbell")
+    command = importlib.import_module("mbs.analyses.campbell")
     first = []
 
     def fails_once(*values, **more):

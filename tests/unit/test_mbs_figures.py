@@ -12,12 +12,15 @@ import pytest
 from matplotlib.colors import to_hex
 
 from ehdmaps.errors import InputError
+from mbs.analyses.film_limits import lowest_limits
+from mbs.analyses.reach import Fade, axes_outside, fade_of, share_below
 from mbs.assembly import assemble
 from mbs.bearings.bearing_force import BearingForce
 from mbs.commands import modes as modes_command
-from mbs.commands.common import film_course, film_warnings, lowest_limits
-from mbs.commands.reach import Fade, axes_outside, fade_lines, fade_of, outside_lines, share_below
+from mbs.commands.common import film_course, film_warnings
+from mbs.commands.reach import fade_lines, outside_lines
 from mbs.commands.runup import _changes
+from mbs.equilibrium import equilibrium
 from mbs.linearised.linear import frequency_response
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.sweep import sweep
@@ -29,7 +32,6 @@ from mbs.output.response_plot import response_figure
 from mbs.output.run_plot import run_figure
 from mbs.output.sweep_plot import sweep_figure
 from mbs.scene_reader import read_scene
-from mbs.statics import equilibrium
 from mbs.transient.integration import Trajectory
 from tests.unit.mbs_cases import map_law
 

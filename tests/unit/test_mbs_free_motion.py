@@ -8,10 +8,10 @@ import pytest
 from mbs.assembly import assemble
 from mbs.body import rigid_body
 from mbs.elements import Load, Spring
+from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
 from mbs.free_motion import free_lines, free_motions
 from mbs.scene_reader import read_scene, shipped_systems
-from mbs.statics import equilibrium
 from mbs.system import System
 from tests.unit.test_mbs_system import MASS, OneSided, force, stiff
 

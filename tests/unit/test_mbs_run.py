@@ -15,9 +15,9 @@ from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
 from mbs.body import Inertia, rigid_body
 from mbs.elements import Load, Operation, Port, Sensor, Spring
+from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
 from mbs.profiles import SpeedProfile
-from mbs.statics import equilibrium
 from mbs.system import System
 from mbs.transient.integration import integrate
 from mbs.transient.linear_part import LinearPart

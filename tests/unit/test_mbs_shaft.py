@@ -13,6 +13,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from mbs.body import FREEDOMS, Inertia, lever_arm, rigid_body
 from mbs.elements import Operation, Spring
+from mbs.equilibrium import equilibrium
 from mbs.flexible import beam
 from mbs.flexible.beam import (
     CrossSection,
@@ -28,7 +29,6 @@ from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_parts import Disc, Section
 from mbs.linearised.modes import modes
 from mbs.reading.shaft import read_shaft
-from mbs.statics import equilibrium
 from mbs.system import System
 
 BENDING = ("y", "z", "theta_y", "theta_z")

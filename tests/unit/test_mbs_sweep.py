@@ -16,6 +16,7 @@ from mbs.body import Inertia, rigid_body
 from mbs.commands import sweep as command
 from mbs.commands.cases import load_cases
 from mbs.elements import Input, Operation, Port, Sensor, Spring
+from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
 from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep import SweepRange, sweep
@@ -25,7 +26,6 @@ from mbs.output.sweep_data import sweep_dataset
 from mbs.output.sweep_plot import sweep_figure
 from mbs.reading.sweep import read_sweep
 from mbs.scene_reader import read_scene
-from mbs.statics import equilibrium
 from mbs.system import System
 
 RPM = math.pi / 30.0

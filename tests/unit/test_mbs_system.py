@@ -10,11 +10,11 @@ import pytest
 from ehdmaps.errors import InputError
 from mbs.body import Inertia, lever_arm, rigid_body
 from mbs.elements import Input, Load, Operation, Port, Sensor, Spring
+from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
 from mbs.linearised.linear import frequency_response, state_space, with_peaks
 from mbs.linearised.modes import modes, undamped_modes
 from mbs.profiles import Constant, Course, HalfSine, Harmonic, SpeedProfile
-from mbs.statics import equilibrium
 from mbs.system import System
 
 ROUND_OFF = 1e-12

@@ -14,10 +14,10 @@ import pytest
 
 from mbs.assembly import assemble
 from mbs.elements import Load, Operation
+from mbs.equilibrium import equilibrium
 from mbs.linearised.modes import undamped_modes
 from mbs.profiles import Course, SpeedProfile
 from mbs.scene_reader import read_scene
-from mbs.statics import equilibrium
 from mbs.system import System
 from mbs.transient.integration import Settings, integrate
 

@@ -27,6 +27,7 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.body import FREEDOMS
 from mbs.elements import Load, Operation, Spring
+from mbs.equilibrium import equilibrium
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.reduced_body import to_body
 from mbs.flexible.reduction import reduce
@@ -35,7 +36,6 @@ from mbs.flexible.shaft_parts import Section
 from mbs.flexible.spiders import Interface
 from mbs.linearised.modes import modes, undamped_modes
 from mbs.profiles import Course, SpeedProfile
-from mbs.statics import equilibrium
 from mbs.system import System
 from mbs.transient.integration import Settings, integrate
 

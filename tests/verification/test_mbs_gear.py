@@ -11,10 +11,10 @@ from scipy.integrate import solve_ivp
 
 from mbs.body import Inertia, rigid_body
 from mbs.elements import Load, Operation, Spring
+from mbs.equilibrium import equilibrium
 from mbs.gears.gear import GearPair, contact_ratio, gear_mesh, pair_harmonics
 from mbs.gears.gear_kernel import TOUCH
 from mbs.profiles import SpeedProfile
-from mbs.statics import equilibrium
 from mbs.system import System
 from mbs.transient.integration import Settings, integrate
 

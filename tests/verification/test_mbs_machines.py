@@ -17,6 +17,7 @@ from ehdmaps.jobs import cli as ehdmaps_cli
 from ehdmaps.maps.emap import open_map
 from mbs.assembly import assemble
 from mbs.elements import Operation
+from mbs.equilibrium import equilibrium
 from mbs.linearised.linear import frequency_response, with_peaks
 from mbs.linearised.modes import modes, undamped_modes
 from mbs.linearised.steady import steady_system
@@ -28,7 +29,6 @@ from mbs.profiles import SpeedProfile
 from mbs.scene_reader import read_scene
 from mbs.spectral.campbell import run_up_spectra
 from mbs.spectral.run_signal import RunSignal
-from mbs.statics import equilibrium
 from mbs.transient.integration import Settings
 from mbs.transient.run import run
 

@@ -9,6 +9,7 @@ import pytest
 from scipy.signal import csd
 
 from mbs.assembly import assemble
+from mbs.equilibrium import equilibrium
 from mbs.linearised.linear import frequency_response, state_space
 from mbs.linearised.modes import modes
 from mbs.modal.estimation import estimate, transfer
@@ -18,7 +19,6 @@ from mbs.modal.rational import rational_poles
 from mbs.modal.residues import laplace
 from mbs.modal.windows import needed_decay
 from mbs.scene_reader import read_scene
-from mbs.statics import equilibrium
 from tests.unit.modal_cases import (
     DAMPING,
     OMEGA,

@@ -15,9 +15,9 @@ from mbs.bearings.bearing_kernel import bearing_force
 from mbs.bearings.laws import hertz
 from mbs.body import Inertia, rigid_body
 from mbs.elements import Load, Operation, Sensor, Spring
+from mbs.equilibrium import equilibrium
 from mbs.gears.gear import GearPair, gear_mesh
 from mbs.profiles import Course, Harmonic, SpeedProfile
-from mbs.statics import equilibrium
 from mbs.system import System
 from mbs.transient import speed_tables
 from mbs.transient.integration import integrate

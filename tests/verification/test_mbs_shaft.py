@@ -19,6 +19,7 @@ from scipy.optimize import brentq
 
 from mbs.body import Inertia, lever_arm
 from mbs.elements import Operation, Spring
+from mbs.equilibrium import equilibrium
 from mbs.flexible.beam import (
     CrossSection,
     element_gyroscopic,
@@ -31,7 +32,6 @@ from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_model import WAVE_ERROR
 from mbs.flexible.shaft_parts import Disc, Section
 from mbs.linearised.modes import modes
-from mbs.statics import equilibrium
 from mbs.system import System
 
 E, NU, RHO = 210e9, 0.3, 7850.0

@@ -15,13 +15,13 @@ import pytest
 from mbs.assembly import assemble
 from mbs.body import Inertia, rigid_body
 from mbs.elements import Input, Operation, Port, Sensor, Spring
+from mbs.equilibrium import equilibrium
 from mbs.linearised import crossings
 from mbs.linearised.linear import frequency_response, state_space
 from mbs.linearised.modal_response import TOLERANCE, checked_response, modal_response
 from mbs.linearised.modes import state_modes, undamped_modes
 from mbs.linearised.sweep import sweep
 from mbs.scene_reader import read_scene
-from mbs.statics import equilibrium
 from mbs.system import System
 
 RPM = math.pi / 30.0

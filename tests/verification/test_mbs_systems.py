@@ -19,12 +19,12 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.roller_element import ring_matrices
 from mbs.elements import Input, Load, Operation, Sensor
+from mbs.equilibrium import equilibrium
 from mbs.linearised.linear import frequency_response, responses
 from mbs.linearised.modes import modes, undamped_modes
 from mbs.linearised.sweep import sweep
 from mbs.profiles import Harmonic, SpeedProfile
 from mbs.scene_reader import read_scene
-from mbs.statics import equilibrium
 from mbs.system import System
 from mbs.transient.integration import Settings, integrate
 

@@ -1,0 +1,319 @@
+"""The nonlinear run-up with one or more contact laws, as levels over speed, frequency and order."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from ehdmaps.errors import InputError
+from ehdmaps.units import closest
+from mbs.analyses.case import Case, as_cases
+from mbs.analyses.progress import Progress, silent
+from mbs.assembly import Model, law_attributes
+from mbs.elements import Operation, Sensor
+from mbs.equilibrium import equilibrium
+from mbs.errors import AnalysisError
+from mbs.linearised.sweep import sweep
+from mbs.linearised.sweep_result import Sweep
+from mbs.output.campbell_data import campbell_dataset
+from mbs.output.results import described
+from mbs.reading.fields import HERTZ
+from mbs.scene import RunUp, Scene
+from mbs.spectral.campbell import RunUpSpectra, run_up_spectra
+from mbs.spectral.levels import Reference
+from mbs.spectral.run_signal import RunSignal
+from mbs.spectral.settings import CampbellSettings
+from mbs.spectral.spectra import LEAST_OVERSAMPLING
+from mbs.transient.run import Recording
+from mbs.transient.run import run as run_system
+
+LEAST_SAMPLES, MOST_SAMPLES = 64, 5_000_000
+"""Steps of a run: the fewest that have a spectrum, and 50 s of 10 us, beyond any run-up that is waited for."""
+
+MODE_SPEEDS = 9
+"""Speeds of the run at which modes are computed."""
+
+_MESH_HARMONICS = 5
+_PASS_HARMONICS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class LawRun:
+    """What one contact law led to.
+
+    Attributes
+    ----------
+    case : Case
+        The model, with its label.
+    record : Recording
+        The run in time.
+    spectra : RunUpSpectra
+        Its levels over speed, frequency and order.
+    modes : Sweep or None
+        Modes of the linear system at some speeds of the run, if they were asked for.
+    seconds : float
+        How long the run took [s].
+    """
+
+    case: Case
+    record: Recording
+    spectra: RunUpSpectra
+    modes: Sweep | None
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class CampbellResult:
+    """Run-ups with one or more contact laws, as levels.
+
+    Attributes
+    ----------
+    settings : CampbellSettings
+        What was looked at.
+    sensor : Sensor
+        Whose signal it is.
+    course : RunUp
+        The run, with a sample a step.
+    orders : tuple of (float, str)
+        Orders that were followed, with their names.
+    runs : tuple of LawRun
+        Of each law that came to the end.
+    failed : tuple of str
+        Why the others did not, each with its label.
+    dataset : xarray.Dataset
+        What `mbs campbell -o` writes.
+    """
+
+    settings: CampbellSettings
+    sensor: Sensor
+    course: RunUp
+    orders: tuple[tuple[float, str], ...]
+    runs: tuple[LawRun, ...]
+    failed: tuple[str, ...]
+    dataset: xr.Dataset
+
+
+def campbell(
+    models: Model | Case | Sequence[Model | Case],
+    settings: CampbellSettings | None = None,
+    progress: Progress | None = None,
+    *,
+    with_modes: bool = False,
+    keep_partial: bool = False,
+) -> CampbellResult:
+    """Run up with each contact law, and compute levels over speed, frequency and order.
+
+    Parameters
+    ----------
+    models : Model, Case, or a sequence of them
+        One scene with one or more laws; its [runup] says how the speed goes.
+    settings : CampbellSettings, optional
+        What is looked at; [campbell] of the scene if left out.
+    progress : callable, optional
+        Told how many steps are done, and of how many, over all laws.
+    with_modes : bool
+        Whether modes of the linear system are computed at `MODE_SPEEDS` speeds of the run.
+    keep_partial : bool
+        Whether Ctrl-C returns the laws that have come to the end, if there are any; else it is raised.
+
+    Raises
+    ------
+    InputError
+        With everything about run, sensor and settings that is not possible; before anything runs.
+    AnalysisError
+        If no law came to the end. If some did, `CampbellResult.failed` says why the others did not.
+
+    Examples
+    --------
+    The shipped scene takes some seconds; with a coarser look at it::
+
+        model = assemble(read_scene("nu308_rigid"))
+        found = campbell(model, CampbellSettings(sensor="S1", highest=2000.0))
+        found.dataset["sum_level"]
+    """
+    cases = as_cases(models)
+    scene = cases[0].model.scene
+    settings = settings or scene.campbell
+    problems: list[str] = []
+    sensor = _sensor(settings.sensor, scene, problems)
+    course = _course(scene, settings.highest, problems)
+    if problems or sensor is None or course is None:
+        raise InputError(tuple(dict.fromkeys(problems)))
+    orders = _orders(cases[0].model, settings, course)
+    _rehearse(settings, course, orders)
+    runs, failed = _runs(cases, settings, sensor, course, orders, progress or silent, with_modes, keep_partial)
+    if not runs:
+        raise AnalysisError("\n".join(f"warning: {line}" for line in failed))
+    dataset = campbell_dataset(
+        [entry.case.label for entry in runs], [entry.spectra for entry in runs], Reference.of(sensor), sensor.name
+    )
+    # The dataset says of each law what it is.
+    laws = "; ".join(f"{entry.case.label}: {entry.case.model.law}" for entry in runs)
+    dataset = described(dataset, **{**law_attributes(runs[0].case.model), "law": laws})
+    return CampbellResult(settings, sensor, course, tuple(orders), tuple(runs), tuple(failed), dataset)
+
+
+def campbell_problems(scene: Scene, settings: CampbellSettings) -> list[str]:
+    """Everything about the run and the sensor of a scene that is not possible with some settings."""
+    problems: list[str] = []
+    _sensor(settings.sensor, scene, problems)
+    _course(scene, settings.highest, problems)
+    return problems
+
+
+def _runs(
+    cases: Sequence[Case],
+    settings: CampbellSettings,
+    sensor: Sensor,
+    course: RunUp,
+    orders: list[tuple[float, str]],
+    tell: Progress,
+    with_modes: bool,
+    keep_partial: bool,
+) -> tuple[list[LawRun], list[str]]:
+    """The run of each case, and why some have none."""
+    each = round(course.duration / course.settings.sample)
+    total = len(cases) * each
+    done = 0
+
+    def told(samples: int) -> None:
+        tell(done + samples, total)
+
+    tell(0, total)
+    runs: list[LawRun] = []
+    failed: list[str] = []
+    for case in cases:
+        try:
+            runs.append(_one(case, settings, sensor, course, orders, told, with_modes))
+        except AnalysisError as error:
+            # The run-ups with the other laws are worth minutes; keep them.
+            failed.append(f"{case.label}: {error}")
+        except KeyboardInterrupt:
+            if not (runs and keep_partial):
+                raise
+            failed += [f"{left.label}: stopped, no result" for left in cases[len(runs) + len(failed) :]]
+            break
+        done += each
+    return runs, failed
+
+
+def _course(scene: Scene, highest: float, problems: list[str]) -> RunUp | None:
+    """The run of the scene with a sample a step, so that nothing above the band is folded into it."""
+    course = scene.run_up
+    if course is None:
+        problems.append(f"{scene.name}: [runup] missing; a run-up needs from, to, duration and step")
+        return None
+    longest = 1.0 / (LEAST_OVERSAMPLING * highest)
+    if course.settings.step > longest * (1.0 + 1e-6):
+        problems.append(
+            f"{scene.name}: [runup] step: got {1e6 * course.settings.step:.4g} us; allowed: up to "
+            f"{1e6 * longest:.4g} us for frequencies up to {HERTZ.text(highest)}; take smaller steps, or a "
+            "lower --highest"
+        )
+    samples = course.duration / course.settings.step
+    if not LEAST_SAMPLES <= samples <= MOST_SAMPLES:
+        problems.append(
+            f"{scene.name}: [runup] duration: got {course.duration:.4g} s, which is {samples:.4g} steps; allowed: "
+            f"{LEAST_SAMPLES} to {MOST_SAMPLES}"
+        )
+        return None
+    every_step = dataclasses.replace(course.settings, sample=course.settings.step)
+    return dataclasses.replace(course, settings=every_step)
+
+
+def _sensor(name: str | None, scene: Scene, problems: list[str]) -> Sensor | None:
+    """The sensor of a name, or the first one of an acceleration."""
+    names = tuple(sensor.name for sensor in scene.sensors)
+    if name is not None:
+        for sensor in scene.sensors:
+            if sensor.name == name:
+                return sensor
+        problems.append(
+            f"{scene.name}: sensor {name!r:.60} is not there{closest(name, names)}; allowed: "
+            f"{', '.join(names) or 'none'}"
+        )
+        return None
+    for sensor in scene.sensors:
+        if sensor.quantity == "acceleration":
+            return sensor
+    problems.append(
+        f"{scene.name}: has no sensor of an acceleration; allowed: one of {', '.join(names) or 'none'} with --sensor, "
+        "or a [[sensors]] more"
+    )
+    return None
+
+
+def _orders(model: Model, settings: CampbellSettings, course: RunUp) -> list[tuple[float, str]]:
+    """Orders to follow, with their names: those of the settings, else of the gears, else of passing rollers."""
+    if settings.orders:
+        return [(order, f"{order:g}") for order in settings.orders]
+    scene = model.scene
+    spins = {body.name: abs(body.spin) for body in scene.bodies}
+    mesh = [spins.get(pair.on.partition(":")[0], 0.0) * pair.teeth[0] for pair in scene.gears]
+    passing = [
+        entry.bearing.geometry.rollers * abs(entry.bearing.cage_angle(entry.inner_spin, entry.outer_spin))
+        for entry in model.bearings
+    ]
+    count = _MESH_HARMONICS if any(mesh) else _PASS_HARMONICS
+    # Rounded, for bearings that differ in the last bit only.
+    bases = sorted({round(order, 9) for order in (mesh if any(mesh) else passing) if order > 0.0})
+    found = {harmonic * base: f"{harmonic * base:.4g}" for base in bases for harmonic in range(1, count + 1)}
+    # None that lies above the band at every speed.
+    slowest = min(course.speed.at(0.0)[0], course.speed.at(course.duration)[0])
+    highest = 2.0 * math.pi * settings.highest / slowest if slowest > 0.0 else math.inf
+    return sorted((order, name) for order, name in found.items() if order < highest)
+
+
+def _rehearse(settings: CampbellSettings, course: RunUp, orders: list[tuple[float, str]]) -> None:
+    """Look at a silent run of the same course: what does not fit it is said before minutes are spent, not after."""
+    samples = math.ceil(course.duration / course.settings.sample - 1e-9)
+    times = np.asarray(np.arange(samples + 1) * course.settings.sample, dtype=np.float64)
+    speed, angle = np.array([course.speed.at(at) for at in times.tolist()]).T
+    silence = RunSignal(times, speed, angle, np.zeros_like(times))
+    run_up_spectra(silence, 1.0, settings.highest, settings.window, [order for order, _ in orders])
+
+
+def _one(
+    case: Case,
+    settings: CampbellSettings,
+    sensor: Sensor,
+    course: RunUp,
+    orders: list[tuple[float, str]],
+    told: Callable[[int], None],
+    with_modes: bool,
+) -> LawRun:
+    """Run up with one law."""
+    model = case.model
+    start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
+    begin = time.perf_counter()
+    record = run_system(
+        model.system,
+        course.speed,
+        course.duration,
+        course.settings,
+        sensors=(sensor,),
+        displacement=start.displacement,
+        progress=told,
+    )
+    seconds = time.perf_counter() - begin
+    signal = RunSignal(record.time, record.speed, record.angle, record.signals[:, 0])
+    spectra = run_up_spectra(
+        signal,
+        Reference.of(sensor).value,
+        settings.highest,
+        settings.window,
+        [order for order, _ in orders],
+    )
+    return LawRun(case, record, spectra, _modes(model, spectra) if with_modes else None, seconds)
+
+
+def _modes(model: Model, spectra: RunUpSpectra) -> Sweep:
+    """Modes of the linear system at some speeds of the run, rising."""
+    speeds = spectra.campbell.speeds
+    return sweep(model.system, np.linspace(speeds.min(), speeds.max(), MODE_SPEEDS))

@@ -1,0 +1,69 @@
+"""What an analysis compares: models with their labels."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ehdmaps.errors import InputError
+from mbs.assembly import Model
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """One of the models that are compared.
+
+    Attributes
+    ----------
+    label : str
+        In what it differs from the others; its law if nothing does.
+    model : Model
+        Scene with its law, clearance and loads.
+    clearance : float
+        Diametral clearance [m]; NaN if the bearings have not all the same.
+    load_factor : float
+        By which all loads of the scene were multiplied.
+    start_angle : float or None
+        At which all cages start instead of the scene's angles [rad].
+    """
+
+    label: str
+    model: Model
+    clearance: float
+    load_factor: float = 1.0
+    start_angle: float | None = None
+
+
+def common_clearance(model: Model) -> float:
+    """Diametral clearance of all bearings [m]; NaN if they have not all the same."""
+    found = {entry.geometry.diametral_clearance for entry in model.scene.bearings}
+    return found.pop() if len(found) == 1 else math.nan
+
+
+def as_cases(models: Model | Case | Sequence[Model | Case]) -> tuple[Case, ...]:
+    """One or more models as cases; a model is called by its law.
+
+    Parameters
+    ----------
+    models : Model, Case, or a sequence of them
+        At least one. Models of one law that differ in something else have to be cases, each with a label.
+
+    Raises
+    ------
+    InputError
+        If there is none, or two of the same law are given without labels.
+    """
+    given = [models] if isinstance(models, (Model, Case)) else list(models)
+    cases = tuple(
+        entry if isinstance(entry, Case) else Case(entry.label, entry, common_clearance(entry)) for entry in given
+    )
+    labels = [case.label for case in cases]
+    # Who gives cases has chosen their labels.
+    chosen = bool(given) and all(isinstance(entry, Case) for entry in given)
+    if not chosen and len(set(labels)) < max(len(labels), 1):
+        raise InputError(
+            f"models: got {len(labels)} with the labels {', '.join(labels) or 'none'}; allowed: at least one, and each "
+            "label once; give a Case with a label of its own for each model"
+        )
+    return cases

@@ -1,0 +1,59 @@
+"""Up to which frequency the films of a model follow as in the low-frequency limit."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ehdmaps.maps.law import ContactLaw
+from ehdmaps.physics._values import FloatArray
+from mbs.assembly import Model
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_force import BearingForce
+from mbs.elements import Operation
+from mbs.equilibrium import equilibrium
+from mbs.linearised.validity import FilmLimit, film_limit
+
+
+def film_limits(model: Model, displacement: FloatArray, operation: Operation) -> list[FilmLimit]:
+    """Up to which frequency the films of each bearing follow; empty for dry laws and constant ones."""
+    limits = []
+    for bearing, motion in ring_motions(model, displacement):
+        if not isinstance(bearing.force, BearingForce) or not isinstance(bearing.force.law, ContactLaw):
+            continue
+        load = float(bearing.rollers(motion, operation).load_per_length.max())
+        speed = bearing.entrainment_speed(operation)
+        limits.append(film_limit(bearing.name, bearing.bearing, load, speed))
+    return limits
+
+
+def ring_motions(model: Model, displacement: FloatArray) -> list[tuple[BearingElement, FloatArray]]:
+    """Each bearing with the displacement (6,) of its inner ring against the outer one."""
+    return [(bearing, model.system.relative(bearing.inner, bearing.outer) @ displacement) for bearing in model.bearings]
+
+
+def lowest_limits(model: Model, speeds: FloatArray, displacements: FloatArray | None = None) -> FloatArray:
+    """Frequency [Hz] above which omega b/u exceeds 0.3 in one of the bearings, at each speed, shape (speeds,).
+
+    Parameters
+    ----------
+    model : Model
+        With its law.
+    speeds : array, shape (speeds,)
+        [rad/s].
+    displacements : array, shape (speeds, n), optional
+        Equilibria; they are found if left out.
+
+    Returns
+    -------
+    array, shape (speeds,)
+        NaN for laws without films; 0 at rest.
+    """
+    found = np.full(speeds.size, np.nan)
+    for index, speed in enumerate(speeds.tolist()):
+        operation = Operation(speed)
+        place = equilibrium(model.system, operation).displacement if displacements is None else displacements[index]
+        limits = film_limits(model, place, operation)
+        if not limits:
+            break
+        found[index] = min(limit.frequency for limit in limits)
+    return found

@@ -1,0 +1,158 @@
+"""A simulated hammer test of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ehdmaps.errors import InputError
+from mbs.analyses.film_limits import film_limits
+from mbs.analyses.progress import Progress, silent
+from mbs.analyses.reach import calls_at, calls_since
+from mbs.assembly import Model
+from mbs.equilibrium import Equilibrium, equilibrium
+from mbs.linearised.modes import Modes, modes
+from mbs.linearised.steady import steady_system
+from mbs.linearised.validity import FilmLimit
+from mbs.modal.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
+from mbs.modal.records import Hits
+
+HIGHEST = 5000.0
+"""Highest frequency of a scene that names none [Hz]."""
+
+
+@dataclass(frozen=True)
+class HammerSettings:
+    """How a scene is hit.
+
+    Attributes
+    ----------
+    highest : float or None
+        Highest frequency of interest [Hz]; None for that of [linear] in the scene, else `HIGHEST`.
+    duration : float or None
+        Of a record [s]; None for as long as the slowest mode needs to decay.
+    hits : int
+        At each input of the scene.
+    noise : float
+        Standard deviation over the peak of a channel.
+    seed : int
+        Of heights and noise.
+    nonlinear : bool
+        Whether the nonlinear system is integrated for each hit, instead of the one linearised at the equilibrium.
+    """
+
+    highest: float | None = None
+    duration: float | None = None
+    hits: int = 8
+    noise: float = 0.01
+    seed: int = 0
+    nonlinear: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class HammerResult:
+    """Records of a simulated test.
+
+    Attributes
+    ----------
+    model : Model
+        Scene with its law.
+    balance : Equilibrium
+        Where the system is hit, gear meshes with their mean stiffness.
+    modes : Modes
+        Of the same system linearised there: what a test should find.
+    test : HammerTest
+        How the test was made.
+    hits : tuple of Hits
+        Records of force and responses, one an input; `mbs.modal.fit` takes them.
+    limits : tuple of FilmLimit
+        Up to which frequency the films of each bearing follow; empty for laws without films.
+    outside : mapping of str to int
+        Calls outside the map at the equilibrium, by bearing.
+    outside_hits : mapping of str to int
+        The same during the hits.
+    """
+
+    model: Model
+    balance: Equilibrium
+    modes: Modes
+    test: HammerTest
+    hits: tuple[Hits, ...]
+    limits: tuple[FilmLimit, ...]
+    outside: Mapping[str, int]
+    outside_hits: Mapping[str, int]
+
+
+def hammer(model: Model, settings: HammerSettings | None = None, progress: Progress | None = None) -> HammerResult:
+    """Hit a scene at its inputs, and record its sensors.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law, with inputs and sensors.
+    settings : HammerSettings, optional
+        How it is hit.
+    progress : callable, optional
+        Told how many hits of a nonlinear test are done, and of how many.
+
+    Raises
+    ------
+    InputError
+        With everything that is missing or not possible.
+    AnalysisError
+        If there is no equilibrium, or a time step finds no solution.
+
+    Examples
+    --------
+    >>> from mbs import HammerSettings, assemble, hammer, read_scene
+    >>> model = assemble(read_scene("nu308_rigid"))
+    >>> found = hammer(model, HammerSettings(hits=2, duration=0.05))
+    >>> len(found.hits), found.test.samples
+    (1, 640)
+    """
+    settings = settings or HammerSettings()
+    scene = model.scene
+    missing = [
+        f"{scene.name}: [[{key}]] missing; a hammer test needs {words}"
+        for key, there, words in (
+            ("inputs", scene.inputs, "places to hit"),
+            ("sensors", scene.sensors, "at least one sensor"),
+        )
+        if not there
+    ]
+    if missing:
+        raise InputError(missing)
+    balance = equilibrium(steady_system(model.system), model.operation)
+    found = modes(balance)
+    highest = settings.highest or (scene.frequencies[-1] if scene.frequencies else HIGHEST)
+    duration = settings.duration or suggested_duration(found, highest)
+    test = HammerTest(highest, duration, settings.hits, settings.noise, settings.seed)
+    before = model.outside_calls
+    hits = _hit(model, balance, test, settings.nonlinear, progress or silent)
+    called = calls_since(model, before)
+    return HammerResult(
+        model=model,
+        balance=balance,
+        modes=found,
+        test=test,
+        hits=hits,
+        limits=tuple(film_limits(model, balance.displacement, balance.operation)),
+        outside=calls_at(model, balance.displacement, balance.operation),
+        outside_hits=called,
+    )
+
+
+def _hit(model: Model, balance: Equilibrium, test: HammerTest, nonlinear: bool, tell: Progress) -> tuple[Hits, ...]:
+    """Make the hits."""
+    inputs, sensors = model.scene.inputs, model.scene.sensors
+    if not nonlinear:
+        return linear_hits(balance, inputs, sensors, test)
+    done, total = 0, test.hits * len(inputs)
+
+    def told() -> None:
+        nonlocal done
+        done += 1
+        tell(done, total)
+
+    tell(0, total)
+    return nonlinear_hits(balance, inputs, sensors, test, told)

@@ -1,0 +1,138 @@
+"""State space and frequency responses of the system linearised at its equilibrium."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics._values import FloatArray
+from mbs.analyses.film_limits import film_limits
+from mbs.analyses.reach import calls_at
+from mbs.assembly import Model, law_attributes
+from mbs.elements import Operation
+from mbs.equilibrium import Equilibrium, equilibrium
+from mbs.linearised.linear import ComplexArray, StateSpace, frequency_response, state_space, with_peaks
+from mbs.linearised.modes import modes
+from mbs.linearised.steady import steady_system
+from mbs.linearised.validity import DynamicLoad, FilmLimit, dynamic_loads
+from mbs.output.results import described, linear_dataset
+
+
+@dataclass(frozen=True)
+class LsaSettings:
+    """What of a linear system is computed.
+
+    Attributes
+    ----------
+    frequencies : tuple of float or None
+        Of the responses [Hz]; None for those of [linear] in the scene. More are added around lightly damped modes.
+    operation : Operation or None
+        Speed, angle and time of the loads; None for the operating speed of the scene.
+    """
+
+    frequencies: tuple[float, ...] | None = None
+    operation: Operation | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class LsaResult:
+    """A linear system, and its responses.
+
+    Attributes
+    ----------
+    model : Model
+        Scene with its law.
+    balance : Equilibrium
+        Where the system was linearised, gear meshes with their mean stiffness.
+    space : StateSpace
+        From the inputs of the scene to its sensors.
+    asked : int
+        How many frequencies were asked for; the others are around lightly damped modes.
+    frequencies : array, shape (frequencies,)
+        [Hz].
+    responses : array of complex, shape (frequencies, sensors, inputs)
+        In the unit of the sensor's quantity, per N or N m.
+    limits : tuple of FilmLimit
+        Up to which frequency the films of each bearing follow; empty for laws without films.
+    lifting : tuple of DynamicLoad
+        Loads that exceed the static ones, so that contacts lift off.
+    outside : mapping of str to int
+        Calls outside the map at the equilibrium, by bearing.
+    dataset : xarray.Dataset
+        What `mbs lsa -o` writes.
+    """
+
+    model: Model
+    balance: Equilibrium
+    space: StateSpace
+    asked: int
+    frequencies: FloatArray
+    responses: ComplexArray
+    limits: tuple[FilmLimit, ...]
+    lifting: tuple[DynamicLoad, ...]
+    outside: Mapping[str, int]
+    dataset: xr.Dataset
+
+
+def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
+    """Linearise, and compute the responses over frequency.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law, with inputs and sensors.
+    settings : LsaSettings, optional
+        Frequencies and operation; those of the scene if left out.
+
+    Raises
+    ------
+    InputError
+        With everything that is missing.
+    AnalysisError
+        If there is no equilibrium, or its matrices are not finite.
+
+    Examples
+    --------
+    >>> from mbs import LsaSettings, assemble, lsa, read_scene
+    >>> found = lsa(assemble(read_scene("nu308_rigid")), LsaSettings(frequencies=(100.0, 200.0)))
+    >>> found.dataset["response_real"].dims
+    ('frequency', 'sensor', 'input')
+    """
+    settings = settings or LsaSettings()
+    scene = model.scene
+    asked = scene.frequencies if settings.frequencies is None else settings.frequencies
+    missing = [
+        f"{scene.name}: {key} missing; a linear analysis needs {words}"
+        for key, there, words in (
+            ("[[inputs]]", scene.inputs, "at least one input"),
+            ("[[sensors]]", scene.sensors, "at least one sensor"),
+            ("[linear] frequencies", asked, "frequencies"),
+        )
+        if not there
+    ]
+    if missing:
+        raise InputError(missing)
+    balance = equilibrium(steady_system(model.system), settings.operation or model.operation)
+    frequencies = with_peaks(np.array(asked), modes(balance).eigenvalues)
+    responses = frequency_response(balance, scene.inputs, scene.sensors, frequencies)
+    space = state_space(balance, scene.inputs, scene.sensors)
+    limits = tuple(film_limits(model, balance.displacement, balance.operation))
+    lifting = tuple(load for load in dynamic_loads(balance, scene.inputs, frequencies) if load.exceeds)
+    outside = calls_at(model, balance.displacement, balance.operation)
+    dataset = linear_dataset(balance, space, responses, frequencies, scene.inputs, scene.sensors)
+    return LsaResult(
+        model=model,
+        balance=balance,
+        space=space,
+        asked=len(asked),
+        frequencies=frequencies,
+        responses=responses,
+        limits=limits,
+        lifting=lifting,
+        outside=outside,
+        dataset=described(dataset, **law_attributes(model)),
+    )

@@ -1,0 +1,77 @@
+"""Complex modes of the system linearised at its equilibrium."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import xarray as xr
+
+from mbs.analyses.film_limits import film_limits
+from mbs.analyses.reach import calls_at
+from mbs.assembly import Model, law_attributes
+from mbs.elements import Operation
+from mbs.equilibrium import Equilibrium, equilibrium
+from mbs.linearised.modes import Modes
+from mbs.linearised.modes import modes as modes_at
+from mbs.linearised.steady import steady_system
+from mbs.linearised.validity import FilmLimit
+from mbs.output.results import described, modes_dataset
+
+
+@dataclass(frozen=True, eq=False)
+class ModesResult:
+    """Modes, and the equilibrium that they belong to.
+
+    Attributes
+    ----------
+    model : Model
+        Scene with its law.
+    balance : Equilibrium
+        Where the system was linearised, gear meshes with their mean stiffness.
+    modes : Modes
+        Eigenvalues, shapes and strain-energy shares.
+    limits : tuple of FilmLimit
+        Up to which frequency the films of each bearing follow; empty for laws without films.
+    outside : mapping of str to int
+        Calls outside the map at the equilibrium, by bearing.
+    dataset : xarray.Dataset
+        What `mbs modes -o` writes.
+    """
+
+    model: Model
+    balance: Equilibrium
+    modes: Modes
+    limits: tuple[FilmLimit, ...]
+    outside: Mapping[str, int]
+    dataset: xr.Dataset
+
+
+def modes(model: Model, operation: Operation | None = None) -> ModesResult:
+    """Find the complex modes.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    operation : Operation, optional
+        Speed, angle and time of the loads; the operating speed of the scene if left out.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no equilibrium, or its matrices are not finite.
+
+    Examples
+    --------
+    >>> from mbs import assemble, modes, read_scene
+    >>> found = modes(assemble(read_scene("nu308_rigid")))
+    >>> found.dataset["frequency"].attrs["units"]
+    'Hz'
+    """
+    balance = equilibrium(steady_system(model.system), operation or model.operation)
+    found = modes_at(balance)
+    limits = tuple(film_limits(model, balance.displacement, balance.operation))
+    outside = calls_at(model, balance.displacement, balance.operation)
+    dataset = described(modes_dataset(found, balance), **law_attributes(model))
+    return ModesResult(model, balance, found, limits, outside, dataset)

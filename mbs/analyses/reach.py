@@ -1,0 +1,105 @@
+"""How far a law reaches: speeds below its films, where it fades to the dry contact, and what lies outside its map."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.maps.law import ContactLaw
+from ehdmaps.physics._values import FloatArray
+from ehdmaps.units import LOAD
+from mbs.assembly import Model
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.contact_report import axes_left
+from mbs.elements import Operation
+
+
+@dataclass(frozen=True)
+class Fade:
+    """Where the films of a law begin; between rest and there they are blended with the dry contact.
+
+    Attributes
+    ----------
+    speed : float
+        Speed of the system below which a bearing lies below the lowest speed of its law [rad/s].
+    entrainment_speed : float
+        That lowest speed [m/s].
+    source : str
+        What begins there: "the map", or "the table of the film formula".
+    """
+
+    speed: float
+    entrainment_speed: float
+    source: str
+
+    def below(self, speeds: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+        """Which speeds of the system [rad/s] lie in the fade; of the shape of `speeds`."""
+        return np.asarray(np.abs(np.asarray(speeds, dtype=np.float64)) < self.speed)
+
+
+def fade_of(model: Model) -> Fade | None:
+    """Where the films of the model begin; None for laws without films, and for bearings that do not turn."""
+    found: list[Fade] = []
+    for bearing in model.bearings:
+        law = bearing.force.law if isinstance(bearing.force, BearingForce) else None
+        if not isinstance(law, ContactLaw) or not bearing.rates[1] > 0.0 or not law.speed_range[0] > 0.0:
+            continue
+        lowest = law.speed_range[0]
+        source = "the map" if model.law.startswith("map ") else "the table of the film formula"
+        found.append(Fade(lowest / bearing.rates[1], lowest, source))
+    return max(found, key=lambda fade: fade.speed, default=None)
+
+
+def share_below(model: Model, speeds: FloatArray) -> float:
+    """Part of some speeds [rad/s] that lies below the law's films, from 0 to 1; 0 for laws without films."""
+    fade = fade_of(model)
+    return float(np.mean(fade.below(speeds))) if fade is not None and speeds.size else 0.0
+
+
+def axes_outside(model: Model, speed: float, loads: Mapping[str, float] | None = None) -> dict[str, str]:
+    """Where each bearing leaves the map, if it does: the axis with its value, or where its load ends.
+
+    Parameters
+    ----------
+    model : Model
+        With its temperature.
+    speed : float
+        Of the system [rad/s]; the highest one of a run.
+    loads : mapping of str to float, optional
+        Largest load of a slice [N/m] by bearing; of a run it is not recorded.
+    """
+    found = {}
+    for bearing in model.bearings:
+        law = bearing.force.law if isinstance(bearing.force, BearingForce) else None
+        if not isinstance(law, ContactLaw):
+            continue
+        load = (loads or {}).get(bearing.name, 0.0)
+        axes = axes_left(law, load, bearing.entrainment_speed(Operation(speed)), bearing.temperature)
+        found[bearing.name] = "; ".join(axes) or f"a load above {LOAD.text(law.load_range[1])}, where the map ends"
+    return found
+
+
+def calls_at(model: Model, displacement: FloatArray, operation: Operation) -> dict[str, int]:
+    """Calls outside the map, by bearing, when all forces are evaluated once at rest in a place.
+
+    Parameters
+    ----------
+    model : Model
+        With its law.
+    displacement : array, shape (n,)
+        Of the coordinates [m or rad].
+    operation : Operation
+        Speed and angle.
+    """
+    before = model.outside_calls
+    for connected in model.system.elements:
+        connected.evaluate(displacement, 0.0 * displacement, operation)
+    return calls_since(model, before)
+
+
+def calls_since(model: Model, before: Mapping[str, int]) -> dict[str, int]:
+    """Calls outside the map since the counters of `Model.outside_calls` stood at `before`, by bearing."""
+    return {name: count - before[name] for name, count in model.outside_calls.items()}

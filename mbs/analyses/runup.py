@@ -1,0 +1,100 @@
+"""The nonlinear system in time over its speed profile, from its equilibrium."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import xarray as xr
+
+from ehdmaps.errors import InputError
+from mbs.analyses.progress import Progress, silent
+from mbs.analyses.reach import calls_since
+from mbs.assembly import Model, law_attributes
+from mbs.elements import Operation
+from mbs.equilibrium import equilibrium
+from mbs.output.results import described, run_dataset
+from mbs.scene import RunUp
+from mbs.transient.integration import Trajectory, integrate
+
+
+@dataclass(frozen=True, eq=False)
+class RunUpResult:
+    """A run, and what it was a run of.
+
+    Attributes
+    ----------
+    model : Model
+        Scene with its law.
+    course : RunUp
+        Speed, duration, and how it was integrated.
+    trajectory : Trajectory
+        Recorded states and forces.
+    outside : mapping of str to int
+        Calls outside the map during the run, by bearing.
+    seconds : float
+        How long the integration took [s].
+    dataset : xarray.Dataset
+        What `mbs runup -o` writes.
+    """
+
+    model: Model
+    course: RunUp
+    trajectory: Trajectory
+    outside: Mapping[str, int]
+    seconds: float
+    dataset: xr.Dataset
+
+
+def runup(model: Model, settings: RunUp | None = None, progress: Progress | None = None) -> RunUpResult:
+    """Integrate the nonlinear system in time over a speed profile, from its equilibrium.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    settings : RunUp, optional
+        Speed over time, duration and steps; [runup] of the scene if left out.
+    progress : callable, optional
+        Told how many steps are done, and of how many.
+
+    Raises
+    ------
+    InputError
+        If neither says how the speed goes, or for more samples than can be recorded.
+    AnalysisError
+        If there is no equilibrium at the first speed, or a step finds no solution.
+
+    Examples
+    --------
+    >>> import dataclasses
+    >>> from mbs import assemble, read_scene, runup
+    >>> model = assemble(read_scene("nu308_rigid"))
+    >>> short = dataclasses.replace(model.scene.run_up, duration=1e-3)
+    >>> runup(model, short).dataset.sizes["time"]
+    11
+    """
+    course = settings or model.scene.run_up
+    if course is None:
+        raise InputError(f"{model.scene.name}: [runup] missing; a run needs from, to, duration and step")
+    tell = progress or silent
+    start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
+    before = model.outside_calls
+    steps = course.settings.steps_per_sample
+    total = math.ceil(course.duration / course.settings.sample - 1e-9) * steps
+    tell(0, total)
+    begin = time.perf_counter()
+    result = integrate(
+        model.system,
+        course.speed,
+        course.duration,
+        course.settings,
+        displacement=start.displacement,
+        progress=lambda done: tell(done * steps, total),
+    )
+    seconds = time.perf_counter() - begin
+    outside = calls_since(model, before)
+    dataset = described(run_dataset(model.system, result, outside), **law_attributes(model))
+    return RunUpResult(model, course, result, outside, seconds, dataset)

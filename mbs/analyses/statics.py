@@ -1,0 +1,102 @@
+"""The equilibrium of a scene, pressures and films of its contacts, stiffness and damping of its bearings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import xarray as xr
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics.solids import STEEL
+from mbs.analyses.film_limits import ring_motions
+from mbs.analyses.reach import calls_at
+from mbs.assembly import Model, law_attributes
+from mbs.bearings.contact_report import BearingContacts, bearing_contacts, overload
+from mbs.bearings.films import DryContacts
+from mbs.elements import Operation
+from mbs.equilibrium import Equilibrium, equilibrium
+from mbs.free_motion import free_lines, free_motions
+from mbs.output.results import described, statics_dataset
+
+
+@dataclass(frozen=True, eq=False)
+class StaticsResult:
+    """An equilibrium, and what it means for the bearings.
+
+    Attributes
+    ----------
+    model : Model
+        Scene with its law.
+    balance : Equilibrium
+        Displacements, forces, stiffness and damping.
+    contacts : tuple of BearingContacts
+        Pressures and films, one a bearing.
+    overloads : tuple of str
+        Bearings whose pressures are above the static limit.
+    free : tuple of str
+        Motions that nothing holds.
+    outside : mapping of str to int
+        Calls outside the map at the equilibrium, by bearing.
+    dataset : xarray.Dataset
+        What `mbs statics -o` writes.
+    """
+
+    model: Model
+    balance: Equilibrium
+    contacts: tuple[BearingContacts, ...]
+    overloads: tuple[str, ...]
+    free: tuple[str, ...]
+    outside: Mapping[str, int]
+    dataset: xr.Dataset
+
+
+def statics(model: Model, operation: Operation | None = None) -> StaticsResult:
+    """Find the equilibrium, and what the contacts feel there.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    operation : Operation, optional
+        Speed, angle and time of the loads; the operating speed of the scene if left out.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no equilibrium.
+
+    Examples
+    --------
+    >>> from mbs import assemble, read_scene, statics
+    >>> found = statics(assemble(read_scene("nu308_rigid")))
+    >>> float(found.dataset["bearing_force"].sel(bearing="bearing_left")[1].round(1))
+    -2500.0
+    """
+    balance = equilibrium(model.system, operation or model.operation)
+    free = tuple(free_lines(free_motions(balance)))
+    contacts = tuple(_contacts(model, balance, index) for index in range(len(model.bearings)))
+    overloads = tuple(
+        f"{bearing.name}: {sentence}"
+        for bearing, state in zip(model.bearings, contacts, strict=True)
+        if (sentence := overload(state))
+    )
+    outside = calls_at(model, balance.displacement, balance.operation)
+    dataset = described(statics_dataset(balance, contacts, (*overloads, *free)), **law_attributes(model))
+    return StaticsResult(model, balance, contacts, overloads, free, outside, dataset)
+
+
+def _contacts(model: Model, balance: Equilibrium, index: int) -> BearingContacts:
+    """Pressures and films of a bearing."""
+    bearing, motion = ring_motions(model, balance.displacement)[index]
+    operation = balance.operation
+    point = (
+        bearing.rollers(motion, operation),
+        bearing.entrainment_speed(operation),
+        bearing.temperature,
+        bearing.centrifugal_load(operation),
+    )
+    try:
+        return bearing_contacts(model.films[bearing.name], *point)
+    except InputError:  # the oil has no viscosity at this temperature, where a law is held at its edge
+        return bearing_contacts(DryContacts(bearing.bearing.geometry.contacts(STEEL, "iso16281")), *point)

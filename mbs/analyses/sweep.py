@@ -1,0 +1,143 @@
+"""Modes, bearings and frequency responses over speed, of one or more models."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from ehdmaps.errors import InputError
+from mbs.analyses.case import Case, as_cases
+from mbs.analyses.progress import Progress, silent
+from mbs.analyses.reach import calls_at
+from mbs.assembly import Model, law_attributes
+from mbs.elements import Operation
+from mbs.errors import AnalysisError
+from mbs.linearised.sweep import SweepRange
+from mbs.linearised.sweep import sweep as sweep_system
+from mbs.linearised.sweep_result import Sweep
+from mbs.output.results import described
+from mbs.output.sweep_data import sweep_dataset
+
+
+@dataclass(frozen=True)
+class SweepSettings:
+    """Over what is swept.
+
+    Attributes
+    ----------
+    speeds : SweepRange or None
+        None for [sweep] of the scene.
+    cage_angles : int
+        Angles within one pitch of the rollers over which stiffness and damping of the bearings are averaged; modes
+        and responses are those of the first.
+    """
+
+    speeds: SweepRange | None = None
+    cage_angles: int = 1
+
+
+@dataclass(frozen=True, eq=False)
+class SweepResult:
+    """Sweeps of one or more models over the same speeds.
+
+    Attributes
+    ----------
+    cases : tuple of Case
+        The models with their labels.
+    sweeps : tuple of Sweep
+        One a case.
+    outside : tuple of mapping of str to int
+        At how many speeds each bearing lies outside the map, one a case.
+    dataset : xarray.Dataset
+        What `mbs sweep -o` writes.
+    """
+
+    cases: tuple[Case, ...]
+    sweeps: tuple[Sweep, ...]
+    outside: tuple[Mapping[str, int], ...]
+    dataset: xr.Dataset
+
+
+def sweep(
+    models: Model | Case | Sequence[Model | Case],
+    settings: SweepSettings | None = None,
+    progress: Progress | None = None,
+) -> SweepResult:
+    """Sweep over speed.
+
+    Parameters
+    ----------
+    models : Model, Case, or a sequence of them
+        One scene with one or more laws, clearances or loads.
+    settings : SweepSettings, optional
+        Speeds and cage angles; the speeds of the scene at one angle if left out.
+    progress : callable, optional
+        Told how many models are done, and of how many.
+
+    Raises
+    ------
+    InputError
+        If there are no speeds, or what is asked for is more than memory should hold.
+    AnalysisError
+        If there is no equilibrium at a speed.
+
+    Examples
+    --------
+    >>> from mbs import SweepRange, SweepSettings, assemble, read_scene, sweep
+    >>> model = assemble(read_scene("nu308_rigid"))
+    >>> found = sweep(model, SweepSettings(SweepRange(100.0, 200.0, 3)))
+    >>> dict(found.dataset.sizes)["speed"]
+    3
+    """
+    cases = as_cases(models)
+    settings = settings or SweepSettings()
+    speeds = settings.speeds or cases[0].model.scene.sweep
+    if speeds is None:
+        raise InputError(
+            f'{cases[0].model.scene.name}: no speeds; allowed: --speeds "500 rpm" "2500 rpm" 40, or a table [sweep] in '
+            "the scene with from, to and points"
+        )
+    tell = progress or silent
+    tell(0, len(cases))
+    found = []
+    for case in cases:
+        found.append(_one(case, speeds, settings.cage_angles))
+        tell(len(found), len(cases))
+    outside = tuple(_outside(case.model, entry) for case, entry in zip(cases, found, strict=True))
+    return SweepResult(cases, tuple(found), outside, _dataset(cases, found))
+
+
+def _one(case: Case, speeds: SweepRange, cage_angles: int) -> Sweep:
+    """Sweep one model."""
+    scene = case.model.scene
+    try:
+        return sweep_system(
+            case.model.system, speeds.speeds, 0.0, scene.inputs, scene.sensors, np.array(scene.frequencies), cage_angles
+        )
+    except AnalysisError as error:
+        raise AnalysisError(f"{case.label}: {error}") from error
+
+
+def _outside(model: Model, result: Sweep) -> dict[str, int]:
+    """At how many speeds each bearing lies outside the map."""
+    count = dict.fromkeys(model.outside_calls, 0)
+    for speed, place in zip(result.speeds.tolist(), result.displacement, strict=True):
+        for name, calls in calls_at(model, place, Operation(speed)).items():
+            count[name] += calls > 0
+    return count
+
+
+def _dataset(cases: Sequence[Case], found: Sequence[Sweep]) -> xr.Dataset:
+    """All sweeps, with what the law of each is."""
+    dataset = sweep_dataset(
+        found,
+        [case.label for case in cases],
+        [case.model.law for case in cases],
+        [case.clearance for case in cases],
+        [case.load_factor for case in cases],
+    )
+    named = [f"{case.label}: {case.model.law}" for case in cases] if len(cases) > 1 else [cases[0].model.law]
+    return described(dataset, **{**law_attributes(cases[0].model), "law": "; ".join(named)})
