@@ -10,7 +10,10 @@
 
 =================  =================================================================================
 open_map           a map file, as `EHDMap`
+generate           make a map: of a job file, a shipped job, or a `Job`; `read_job`, `Job.build`
+compare            two maps, as a `Comparison`
 solve              one contact at one operating point, without a map
+solve_points       contacts at many operating points: dataset in, dataset out
 physics types      `BearingGeometry`, `LineContact`, `Material`, `STEEL`, `Lubricant`, `OperatingPoint`,
                    `ContactSolution`, `Status`
 law                `EHDMap`, `ContactLaw`, `LawAtPoint`
@@ -25,6 +28,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ehdmaps.jobs.calls import compare, generate, solve, solve_points
+    from ehdmaps.jobs.compare import Comparison
+    from ehdmaps.jobs.job import Job
+    from ehdmaps.jobs.reader import read_job
     from ehdmaps.maps.emap import EHDMap, open_map
     from ehdmaps.maps.law import ContactLaw, LawAtPoint
     from ehdmaps.physics.bearing import BearingGeometry
@@ -32,25 +39,38 @@ if TYPE_CHECKING:
     from ehdmaps.physics.lubricant import Lubricant
     from ehdmaps.physics.operating_point import OperatingPoint
     from ehdmaps.physics.solids import STEEL, Material
-    from ehdmaps.physics.solution import ContactSolution, ContactSolver, Status
+    from ehdmaps.physics.solution import ContactSolution, Status
 
 __all__ = [
     "STEEL",
     "BearingGeometry",
+    "Comparison",
     "ContactLaw",
     "ContactSolution",
     "EHDMap",
+    "Job",
     "LawAtPoint",
     "LineContact",
     "Lubricant",
     "Material",
     "OperatingPoint",
     "Status",
+    "compare",
+    "generate",
     "open_map",
+    "read_job",
     "solve",
+    "solve_points",
 ]
 
 _HOMES = {
+    "compare": "jobs.calls",
+    "generate": "jobs.calls",
+    "solve": "jobs.calls",
+    "solve_points": "jobs.calls",
+    "Comparison": "jobs.compare",
+    "Job": "jobs.job",
+    "read_job": "jobs.reader",
     "EHDMap": "maps.emap",
     "open_map": "maps.emap",
     "ContactLaw": "maps.law",
@@ -64,48 +84,6 @@ _HOMES = {
     "ContactSolution": "physics.solution",
     "Status": "physics.solution",
 }
-
-
-def solve(
-    contact: LineContact,
-    lubricant: Lubricant,
-    point: OperatingPoint,
-    solver: str | ContactSolver = "reynolds",
-) -> ContactSolution:
-    """Solve one contact at one operating point.
-
-    Parameters
-    ----------
-    contact : LineContact
-        The contact.
-    lubricant : Lubricant
-        The oil.
-    point : OperatingPoint
-        Load, entrainment speed and temperature.
-    solver : str or ContactSolver
-        Name of a solver with its default settings ("hertz", "formula", "reynolds", "openfoam"), or a solver.
-
-    Returns
-    -------
-    ContactSolution
-        With a status: numbers are NaN where it is not usable.
-
-    Raises
-    ------
-    InputError
-        For a solver that does not exist.
-    """
-    from ehdmaps.errors import InputError
-    from ehdmaps.physics.solution import contact_solution
-
-    if isinstance(solver, str):
-        from ehdmaps.jobs.solvers import SOLVER_NAMES, build
-
-        if solver not in SOLVER_NAMES:
-            raise InputError(f"solver: got {solver!r}; allowed: {', '.join(SOLVER_NAMES)}")
-        solver = build(solver, {})
-    (film,) = solver.solve_line(contact, lubricant, (point.load,), point.entrainment_speed, point.temperature)
-    return contact_solution(film, contact, point)
 
 
 def __getattr__(name: str) -> object:

@@ -8,6 +8,7 @@ table        one table of a TOML file, read key by key with all its problems
 axes         the axes of the grid
 problem      bearing or contact, material, lubricant
 reader       job file, shipped job or map file -> `Job`
+job_text     values in SI -> the text of a job file, for `Job.build`
 solvers      names and settings of the solvers
 tasks        `Job` -> `LineTask`, the units of work, each with the key of everything that shapes it
 store        results by key in a file beside the map; survives kill -9
@@ -17,7 +18,9 @@ law_check    the contact laws against fresh solves at random points
 holes        isolated holes filled from their neighbours
 assemble     results -> dataset of the map
 write        dataset -> map file, aside and renamed
-generate     the whole story: job -> map file
+generate     the whole story: job -> map file, or a map in memory
+points       many operating points: dataset in, dataset out
+calls        the functions of Python: generate, compare, solve, solve_points
 progress     a bar on a terminal, lines elsewhere
 status       how far a map is, for others to look at while it is made
 report       statuses by cause and error estimates, for the next two

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
@@ -83,6 +83,11 @@ def _films(job: Job, tasks: Sequence[LineTask], results: Mapping[str, Arrays]) -
             if name not in films:
                 films[name] = np.empty(job.shape, dtype=object if line.dtype.kind == "U" else line.dtype)
             films[name][contact, start : start + task.points, speed, temperature] = line
+    return only_usable(films)
+
+
+def only_usable(films: Mapping[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
+    """Films with NaN for the numbers of points that are not usable."""
     usable = _usable(films["status"])
     return {name: array if name in _ALWAYS else np.where(usable, array, np.nan) for name, array in films.items()}
 
@@ -105,16 +110,42 @@ def _fill(job: Job, films: dict[str, npt.NDArray[Any]]) -> tuple[dict[str, npt.N
 
 
 def _with_structure(job: Job, films: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
-    """Add the structural part, point by point, by the one function that defines it."""
+    """Add the structural part to the films of a job."""
+
+    def at(index: tuple[int, ...]) -> tuple[LineContact, OperatingPoint]:
+        contact, load, speed, temperature = index
+        point = OperatingPoint(job.loads[load], job.entrainment_speeds[speed], job.temperatures[temperature])
+        return job.contacts[contact], point
+
+    return with_structure(films, at)
+
+
+def with_structure(
+    films: Mapping[str, npt.NDArray[Any]], at: Callable[[tuple[int, ...]], tuple[LineContact, OperatingPoint]]
+) -> dict[str, npt.NDArray[Any]]:
+    """Add the structural part, point by point, by the one function that defines it.
+
+    Parameters
+    ----------
+    films : mapping
+        Arrays of one shape by the names of `FilmSolution`.
+    at : callable
+        Gives the contact and the operating point of an index.
+
+    Returns
+    -------
+    dict
+        Arrays of that shape by the names of the map's variables.
+    """
+    shape = films["status"].shape
     values: dict[str, npt.NDArray[Any]] = {
-        name: np.empty(job.shape, dtype=films[name].dtype if name in films else np.float64) for name in _CONTACT_FIELDS
+        name: np.empty(shape, dtype=films[name].dtype if name in films else np.float64) for name in _CONTACT_FIELDS
     }
     names = tuple(films)
-    for index in np.ndindex(job.shape):
+    for index in np.ndindex(shape):
         film: dict[str, Any] = {name: films[name][index] for name in names}
         film["status"] = Status(int(film["status"]))
-        point = OperatingPoint(job.loads[index[1]], job.entrainment_speeds[index[2]], job.temperatures[index[3]])
-        solution = contact_solution(FilmSolution(**film), job.contacts[index[0]], point)
+        solution = contact_solution(FilmSolution(**film), *at(index))
         for name, array in values.items():
             array[index] = getattr(solution, name)
     return values

@@ -12,12 +12,12 @@ import xarray as xr
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.assemble import assemble
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.law_check import checked_laws, plan_check
-from ehdmaps.jobs.refinement import backbone_group, refinement
+from ehdmaps.jobs.law_check import LawCheck, checked_laws, plan_check
+from ehdmaps.jobs.refinement import Refinement, backbone_group, refinement
 from ehdmaps.jobs.status import StatusFile
-from ehdmaps.jobs.store import Store, store_path
+from ehdmaps.jobs.store import NoStore, Store, store_path
 from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
-from ehdmaps.jobs.tasks import line_tasks
+from ehdmaps.jobs.tasks import LineTask, line_tasks
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
 from ehdmaps.maps.checksum import content_sha256
@@ -34,12 +34,20 @@ class Generated:
     ----------
     dataset : xarray.Dataset
         As written.
+    backbone : xarray.Dataset or None
+        The group of refinement lines, where there are some.
     sweep : SweepResult
         Counts and times.
     """
 
     dataset: xr.Dataset
+    backbone: xr.Dataset | None
     sweep: SweepResult
+
+    @property
+    def map(self) -> EHDMap:
+        """The map as a value, ready for contact laws."""
+        return EHDMap(self.dataset, self.backbone)
 
 
 def generate(
@@ -73,25 +81,71 @@ def generate(
     InputError, StoreError, MapError
         With what to do; everything solved is kept.
     """
-    chosen = solver or solvers.build(job.solver, job.solver_options)
-    tasks = line_tasks(job, chosen)
-    refined = refinement(job, chosen)
-    check = plan_check(job, chosen)
-    everything = (*tasks, *(refined.tasks if refined else ()), *(check.tasks if check else ()))
-    total = sum(task.points for task in everything)
+    planned = _plan(job, solver or solvers.build(job.solver, job.solver_options))
+    everything, total = planned.everything, planned.points
     processes = workers or available_cores()
     with Store(store_path(output), fresh) as store, StatusFile(output, job, total, processes) as status:
         told = progress(total) if progress else None
         result = sweep(everything, store, processes, told, [status])
         status.write()
-        dataset = assemble(job, chosen, tasks, result.arrays)
-        validate(dataset, str(output))
-        group = backbone_group(refined, result.arrays) if refined else None
-        if check:
-            dataset.attrs.update(checked_laws(check, EHDMap(dataset, group), result.arrays))
-        dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, group)
+        dataset, group = _finished(planned, result, str(output))
         write_map(dataset, output, {schema.BACKBONE_GROUP: group} if group is not None else None)
-    return Generated(dataset, result)
+    return Generated(dataset, group, result)
+
+
+def generate_in_memory(
+    job: Job,
+    workers: int | None = None,
+    progress: Callable[[int], Progress] | None = None,
+    solver: ContactSolver | None = None,
+) -> Generated:
+    """Make a map without a file and without a store: what is not finished is lost.
+
+    Arguments and errors as of `generate`.
+    """
+    planned = _plan(job, solver or solvers.build(job.solver, job.solver_options))
+    told = progress(planned.points) if progress else None
+    result = sweep(planned.everything, NoStore(), workers or available_cores(), told)
+    dataset, group = _finished(planned, result, job.name)
+    return Generated(dataset, group, result)
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """All that is solved for a map: its points, the lines of a contact law, and the check of the laws."""
+
+    job: Job
+    solver: ContactSolver
+    tasks: tuple[LineTask, ...]
+    refined: Refinement | None
+    check: LawCheck | None
+
+    @property
+    def everything(self) -> tuple[LineTask, ...]:
+        """All tasks, in the order in which they are solved."""
+        refined = self.refined.tasks if self.refined else ()
+        return (*self.tasks, *refined, *(self.check.tasks if self.check else ()))
+
+    @property
+    def points(self) -> int:
+        """Number of points in all."""
+        return sum(task.points for task in self.everything)
+
+
+def _plan(job: Job, solver: ContactSolver) -> _Plan:
+    """Lay out what is to be solved."""
+    return _Plan(job, solver, line_tasks(job, solver), refinement(job, solver), plan_check(job, solver))
+
+
+def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Dataset, xr.Dataset | None]:
+    """Put results together, with the check of the laws and a checksum: the map and its backbone."""
+    dataset = assemble(planned.job, planned.solver, planned.tasks, result.arrays)
+    validate(dataset, where)
+    group = backbone_group(planned.refined, result.arrays) if planned.refined else None
+    if planned.check:
+        dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), result.arrays))
+    dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, group)
+    return dataset, group
 
 
 def available_cores() -> int:

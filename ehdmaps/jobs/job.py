@@ -6,13 +6,16 @@ import dataclasses
 import hashlib
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ehdmaps.errors import InputError
+from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.solids import STEEL, Material
 
 MOST_POINTS = 2_000_000
 """Points of one map: a week of the default solver, and 300 MB. More is a slip in the job file."""
@@ -69,6 +72,102 @@ class Job:
     backbone: str = "law"
     law_check: int = 0
 
+    @classmethod
+    def build(
+        cls,
+        *,
+        lubricant: Lubricant,
+        loads: Iterable[float],
+        entrainment_speeds: Iterable[float],
+        temperatures: Iterable[float],
+        bearing: BearingGeometry | None = None,
+        contact: LineContact | None = None,
+        material: Material = STEEL,
+        solver: str = "reynolds",
+        solver_options: Mapping[str, str | int | float | bool] | None = None,
+        structural_law: StructuralLaw = "iso16281",
+        fill: str = "neighbours",
+        backbone: str = "law",
+        law_check: int = 0,
+        name: str = "job",
+    ) -> Job:
+        """Make a job from values, all in SI.
+
+        Its `text` is written from the values and read again by the reader of job files: the map of such a job carries
+        a job file like any other, and what a job file may not say is refused here too. Numbers are kept to the 15
+        digits of a job file. An own oil is called "own oil" and a bearing by its dimensions, as there; give them a
+        label.
+
+        Parameters
+        ----------
+        lubricant : Lubricant
+            A named oil, or one made by `barus`, `roelands` or `fva3`.
+        loads, entrainment_speeds, temperatures : iterable of float
+            Axes of the map [N/m], [m/s], [K], rising.
+        bearing : BearingGeometry, optional
+            Or `contact`.
+        contact : LineContact, optional
+            A bare line contact; it brings its material and structural law.
+        material : Material
+            Of the bearing.
+        solver : str
+            hertz, formula, reynolds or openfoam.
+        solver_options : mapping, optional
+            The solver's own keys, as in [solver].
+        structural_law : {"iso16281", "palmgren", "half_space"}
+            Of the bearing's contacts.
+        fill, backbone, law_check
+            See the attributes.
+        name : str
+            Name of the job.
+
+        Raises
+        ------
+        InputError
+            With every value that a job may not have.
+
+        Examples
+        --------
+        >>> job = Job.build(
+        ...     bearing=BearingGeometry.named("NU308"),
+        ...     lubricant=Lubricant.named("FVA3"),
+        ...     loads=[1e4, 1e5],
+        ...     entrainment_speeds=[1.0, 2.0],
+        ...     temperatures=[313.15],
+        ... )
+        >>> job.shape
+        (2, 2, 2, 1)
+        """
+        from ehdmaps.jobs.job_text import job_text
+        from ehdmaps.jobs.reader import parse_job
+
+        solids = contact or bearing
+        if solids is None or (contact and bearing):
+            got = "both" if solids else "none"
+            raise InputError(f"Job.build, bearing and contact: got {got}; allowed: one of the two")
+        text = job_text(
+            solids,
+            contact.material if contact else material,
+            lubricant,
+            (loads, entrainment_speeds, temperatures),
+            {
+                "name": solver,
+                "structural_law": contact.structural_law if contact else structural_law,
+                "fill": fill,
+                "backbone": backbone,
+                "law_check": law_check,
+                **(solver_options or {}),
+            },
+        )
+        job = parse_job(text, name, "Job.build")
+        lost = _differing(lubricant.record(), job.lubricant.record())
+        if lost:
+            raise InputError(
+                f"Job.build, lubricant: {', '.join(lost)} of {lubricant.name!r} cannot be said in a job file; allowed: "
+                "a named oil, or one made by Lubricant.barus, roelands or fva3"
+            )
+        return job
+
     @property
     def sha256(self) -> str:
         """Hash of the job file's text."""
@@ -90,6 +189,24 @@ class Job:
         if self.bearing is None:
             return f"line contact R = {self.contacts[0].radius * 1e3:.4g} mm"
         return self.bearing.title
+
+
+_NAMES = ("name", "label", "verified")
+"""Entries of a record that are words about it, not numbers of it."""
+
+
+def _differing(first: Mapping[str, object], second: Mapping[str, object]) -> list[str]:
+    """Names of the entries in which two records differ, but for words."""
+    return sorted(
+        key for key in first.keys() | second.keys() if key not in _NAMES and not _alike(first.get(key), second.get(key))
+    )
+
+
+def _alike(a: object, b: object) -> bool:
+    """Whether two entries are the same, to the 15 digits that a job file keeps."""
+    if isinstance(a, float) and isinstance(b, float):
+        return math.isclose(a, b, rel_tol=1e-14)
+    return a == b
 
 
 def record_json(record: object) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from importlib import resources
+from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
@@ -32,12 +33,12 @@ def shipped_jobs() -> tuple[str, ...]:
     return tuple(sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml")))
 
 
-def read_job(source: str, solver: str | None = None, to_run: bool = False) -> Job:
+def read_job(source: str | PathLike[str], solver: str | None = None, to_run: bool = False) -> Job:
     """Read a job.
 
     Parameters
     ----------
-    source : str
+    source : str or path
         Name of a shipped job ("nu308"), path of a job file, or path of a map file, whose job is read again.
     solver : str, optional
         Takes the place of the job's solver; its own keys have their defaults then.
@@ -49,6 +50,7 @@ def read_job(source: str, solver: str | None = None, to_run: bool = False) -> Jo
     InputError
         With every problem found.
     """
+    source = fspath(source)
     if source in shipped_jobs():
         text = (resources.files("ehdmaps.jobs") / "shipped" / f"{source}.toml").read_text(encoding="utf-8")
         return parse_job(text, name=source, where=f"{source} (shipped)", solver=solver, to_run=to_run)

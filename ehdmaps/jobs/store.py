@@ -15,7 +15,7 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Protocol, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -34,6 +34,50 @@ _ID_AT = 68
 
 _BUSY = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED)
 _BROKEN = (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT)
+
+
+class Results(Protocol):
+    """What is solved already, by key."""
+
+    @property
+    def damaged(self) -> int:
+        """Entries that were unreadable and count as not solved."""
+        ...
+
+    def get(self, key: str) -> Arrays | None:
+        """Return the arrays of a key, or None if it is not solved."""
+        ...
+
+    def put(self, key: str, arrays: Mapping[str, npt.NDArray[Any]], at_once: bool = False) -> None:
+        """Keep the arrays of a key."""
+        ...
+
+    def commit_if_due(self) -> None:
+        """Bring what was put to where it stays, now and then."""
+        ...
+
+    def commit(self) -> None:
+        """Bring what was put to where it stays."""
+        ...
+
+
+class NoStore:
+    """Keeps nothing: for results that stay in memory, with the sweep that found them."""
+
+    damaged = 0
+
+    def get(self, key: str) -> Arrays | None:
+        """Return None: nothing is solved already."""
+        return None
+
+    def put(self, key: str, arrays: Mapping[str, npt.NDArray[Any]], at_once: bool = False) -> None:
+        """Do nothing."""
+
+    def commit_if_due(self) -> None:
+        """Do nothing."""
+
+    def commit(self) -> None:
+        """Do nothing."""
 
 
 def store_path(output: Path) -> Path:

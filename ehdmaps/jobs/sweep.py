@@ -22,7 +22,7 @@ from typing import Protocol
 
 from ehdmaps.errors import SolverError
 from ehdmaps.interrupts import deaf_children
-from ehdmaps.jobs.store import COMMIT_SECONDS, Arrays, Store
+from ehdmaps.jobs.store import COMMIT_SECONDS, Arrays, Results
 
 _THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 _AHEAD = 3
@@ -115,7 +115,7 @@ class SweepResult:
 
 def sweep(
     tasks: Sequence[Task],
-    store: Store,
+    store: Results,
     workers: int,
     progress: Progress | None = None,
     watches: Sequence[Watch] = (),
@@ -126,8 +126,8 @@ def sweep(
     ----------
     tasks : sequence of Task
         What to do; the order of results does not depend on it.
-    store : Store
-        Open store.
+    store : Results
+        An open `Store`, or `NoStore`.
     workers : int
         Processes; 1 runs in this one.
     progress : Progress, optional
@@ -197,7 +197,7 @@ def _in_process(tasks: Sequence[Task]) -> _Outcomes:
         yield task, _run(task), True
 
 
-def _in_pool(tasks: Sequence[Task], workers: int, store: Store) -> _Outcomes:
+def _in_pool(tasks: Sequence[Task], workers: int, store: Results) -> _Outcomes:
     """Run tasks in worker processes; those that were out when a worker died are tried again alone."""
     waiting = deque(tasks)
     while waiting:

@@ -10,7 +10,7 @@ import xarray as xr
 from ehdmaps.errors import MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.assemble import assemble
-from ehdmaps.jobs.compare import compare
+from ehdmaps.jobs.compare import compare, comparison_text
 from ehdmaps.jobs.curves import curves, law_field
 from ehdmaps.jobs.describe import describe
 from ehdmaps.jobs.generate import generate
@@ -402,7 +402,8 @@ def test_compare_finds_the_difference_and_its_place():
     second = first.copy(deep=True)
     second["damping"].values[1, 6, 2, 1] *= 1.25
     second.attrs["solver"] = "other"
-    text = compare(first, second, ("a.nc", "b.nc"))
+    found = compare(first, second, ("a.nc", "b.nc"))
+    text = comparison_text(found)
     assert "differ in solver" in text
     assert "84 points in common, 84 of them solved in both" in text
     (line,) = [line for line in text.splitlines() if line.startswith("  damping")]
@@ -410,18 +411,25 @@ def test_compare_finds_the_difference_and_its_place():
     assert line.endswith("outer, 1000 N/mm, 2 m/s, 40 degC")
     (line,) = [line for line in text.splitlines() if line.startswith("  stiffness")]
     assert line.split()[1:4] == ["0", "0", "0"]
+    # A quotient of two numbers of this size is right to rounding.
+    assert float(found.relative["damping"].sel(contact="outer").max()) == pytest.approx(0.25, rel=1e-12)
+    assert np.count_nonzero(found.relative["damping"]) == 1
+    (damping,) = [entry for entry in found.differences if entry.variable == "damping"]
+    assert damping.place == {"contact": "outer", "load": 1e6, "entrainment_speed": 2.0, "temperature": 313.15}
 
 
 def test_compare_takes_common_points_only():
     first = made(job_of())
     second = made(job_of(TEXT.replace('"1 m/s", "2 m/s"', '"1 m/s", "3 m/s"')))
-    assert "56 points in common, 56 of them solved in both (A has 84, B 84)" in compare(first, second, ("a", "b"))
+    assert "56 points in common, 56 of them solved in both (A has 84, B 84)" in comparison_text(
+        compare(first, second, ("a", "b"))
+    )
     holey = made(job_of(), Holey((job_of().loads[3],)))
-    assert "56 points in common, 52 of them solved in both" in compare(holey, second, ("a", "b"))
+    assert "56 points in common, 52 of them solved in both" in comparison_text(compare(holey, second, ("a", "b")))
 
 
 def test_compare_leaves_zeros_out_and_says_so():
-    text = compare(made(job_of(), HertzSolver()), made(job_of()), ("a", "b"))
+    text = comparison_text(compare(made(job_of(), HertzSolver()), made(job_of()), ("a", "b")))
     assert "damping                   no point to compare  (84 points where A is zero left out)" in text
 
 

@@ -1,0 +1,202 @@
+"""What the commands do, as functions of Python: `ehdmaps.generate`, `compare`, `solve` and `solve_points`."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from os import PathLike, fspath
+from pathlib import Path
+
+import xarray as xr
+
+from ehdmaps.errors import InputError
+from ehdmaps.jobs import compare as comparing
+from ehdmaps.jobs import generate as generating
+from ehdmaps.jobs import points as many
+from ehdmaps.jobs import solvers
+from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.reader import read_job
+from ehdmaps.jobs.sweep import Progress
+from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.outputs import MAP, Output, check_outputs
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solution import ContactSolution, ContactSolver, contact_solution
+
+
+def generate(
+    job: Job | str | PathLike[str],
+    output: str | PathLike[str] | None = None,
+    *,
+    solver: str | ContactSolver | None = None,
+    workers: int | None = 1,
+    fresh: bool = False,
+    progress: Callable[[int], Progress] | None = None,
+) -> xr.Dataset:
+    """Make a map.
+
+    With an output file it works as the command does: what its store beside the file has already is taken over, so that
+    an interrupted run goes on. Without one everything stays in memory, and the refinement lines of a contact law are
+    left out: `EHDMap(dataset).law` then interpolates between the points of the map. Give an output file and open it for
+    the refined law.
+
+    Parameters
+    ----------
+    job : Job, str or path
+        A job, the path of a job file or of a map file, or the name of a shipped job ("nu308").
+    output : str or path, optional
+        The map file.
+    solver : str or ContactSolver, optional
+        In place of the job's: a name, for its default settings, or a solver.
+    workers : int or None
+        Processes; None for all cores. A script that uses more than one needs the usual
+        ``if __name__ == "__main__":``.
+    fresh : bool
+        Drop the store of the output file first.
+    progress : callable, optional
+        Takes the number of points, gives the `Progress` to tell.
+
+    Returns
+    -------
+    xarray.Dataset
+        The map.
+
+    Raises
+    ------
+    InputError, StoreError, MapError
+        With what to do; everything solved is kept where there is an output file.
+    """
+    name = solver if isinstance(solver, str) else None
+    chosen = _with_solver(job, name) if isinstance(job, Job) else read_job(job, name)
+    made_by = None if isinstance(solver, str) else solver
+    if output is None:
+        plain = dataclasses.replace(chosen, backbone="none")
+        return generating.generate_in_memory(plain, workers, progress, made_by).dataset
+    check_outputs([Output("output", Path(output), MAP)], [] if isinstance(job, Job) else [fspath(job)])
+    return generating.generate(chosen, Path(output), workers, fresh, progress, made_by).dataset
+
+
+def _with_solver(job: Job, name: str | None) -> Job:
+    """The job with another solver, which has its default settings."""
+    if name is None or name == job.solver:
+        return job
+    return dataclasses.replace(job, solver=_known(name), solver_options={})
+
+
+def compare(
+    first: EHDMap | xr.Dataset | str | PathLike[str], second: EHDMap | xr.Dataset | str | PathLike[str]
+) -> comparing.Comparison:
+    """Compare two maps on the points that they share.
+
+    Parameters
+    ----------
+    first, second : EHDMap, xarray.Dataset, str or path
+        The maps, or their files.
+
+    Returns
+    -------
+    Comparison
+        Relative differences, point by point and summed up.
+
+    Raises
+    ------
+    MapError
+        If a file is no map, or they have no point in common.
+    """
+    a, first_name = _opened(first, "first")
+    b, second_name = _opened(second, "second")
+    return comparing.compare(a, b, (first_name, second_name))
+
+
+def _opened(source: EHDMap | xr.Dataset | str | PathLike[str], name: str) -> tuple[xr.Dataset, str]:
+    """A map, and what it is called."""
+    if isinstance(source, xr.Dataset):
+        return source, name
+    if isinstance(source, EHDMap):
+        return source.dataset, name
+    return open_map(source).dataset, fspath(source)
+
+
+def solve(
+    contact: LineContact,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    solver: str | ContactSolver = "reynolds",
+) -> ContactSolution:
+    """Solve one contact at one operating point; for many of them see `solve_points`.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    lubricant : Lubricant
+        The oil.
+    point : OperatingPoint
+        Load, entrainment speed and temperature.
+    solver : str or ContactSolver
+        Name of a solver with its default settings ("hertz", "formula", "reynolds", "openfoam"), or a solver.
+
+    Returns
+    -------
+    ContactSolution
+        With a status: numbers are NaN where it is not usable.
+
+    Raises
+    ------
+    InputError
+        For a solver that does not exist.
+    """
+    (film,) = _solver(solver).solve_line(contact, lubricant, (point.load,), point.entrainment_speed, point.temperature)
+    return contact_solution(film, contact, point)
+
+
+def solve_points(
+    contact: LineContact | Sequence[LineContact],
+    lubricant: Lubricant,
+    points: xr.Dataset,
+    solver: str | ContactSolver = "reynolds",
+    *,
+    workers: int = 1,
+) -> xr.Dataset:
+    """Solve one contact or several at many operating points.
+
+    Parameters
+    ----------
+    contact : LineContact or sequence of LineContact
+        The contacts; `BearingGeometry.contacts` gives those of a bearing.
+    lubricant : Lubricant
+        The oil.
+    points : xarray.Dataset
+        load [N/m], entrainment_speed [m/s] and temperature [K] over any dims. Each over a dim of its own gives all
+        combinations, as in a map; all over one dim gives single points; a number stands for all points.
+    solver : str or ContactSolver
+        Name of a solver with its default settings, or a solver.
+    workers : int
+        Processes. A script that uses more than one needs the usual ``if __name__ == "__main__":``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over contact and the dims of the points: the variables of a map file. A point without a solution has NaN, a
+        status and a reason.
+
+    Raises
+    ------
+    InputError
+        For a solver that does not exist, and with every value that is missing or not possible.
+    """
+    contacts = (contact,) if isinstance(contact, LineContact) else tuple(contact)
+    return many.solve_points(contacts, lubricant, points, _solver(solver), workers)
+
+
+def _solver(solver: str | ContactSolver) -> ContactSolver:
+    """The solver, made by its name."""
+    return solvers.build(_known(solver), {}) if isinstance(solver, str) else solver
+
+
+def _known(name: str) -> str:
+    """Refuse the name of a solver that does not exist."""
+    if name not in solvers.SOLVER_NAMES:
+        raise InputError(f"solver: got {name!r}; allowed: {', '.join(solvers.SOLVER_NAMES)}")
+    return name
