@@ -96,7 +96,17 @@ def _valley_load(job: Job, contact: LineContact, speed: float, temperature: floa
 
 
 def checked_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> dict[str, float | int | str]:
-    """Errors of the laws as attributes, or why there are none: a map with holes makes no law."""
+    """Errors of the laws as attributes, or why there are none: a map with holes makes no law.
+
+    Parameters
+    ----------
+    check : LawCheck
+        Which points are checked.
+    emap : EHDMap
+        The map.
+    results : Mapping[str, Arrays]
+        Fresh solves of the tasks of the check, by key.
+    """
     try:
         return check_laws(check, emap, results)
     except MapError as error:

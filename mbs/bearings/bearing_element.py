@@ -118,7 +118,7 @@ class BearingElement:
     def evaluate(
         self, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Force on the inner ring, stiffness and damping, see `mbs.elements.Element`."""
+        """Force on the inner ring, stiffness and damping, see `Element.evaluate`."""
         return self.force(
             displacement,
             velocity,
