@@ -53,7 +53,7 @@ class LawCheck:
 
 
 def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
-    """Draw the points: load and speed log-uniform, temperature uniform, contact by lot; None where none are wanted."""
+    """Draw the points: load and speed log-uniform, temperature uniform, contact at random; None if `law_check` is 0."""
     count = job.law_check
     speeds = [u for u in job.entrainment_speeds if u > 0.0]
     if not count or not speeds or len(speeds) * len(job.loads) * len(job.temperatures) < 2:

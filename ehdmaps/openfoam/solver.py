@@ -309,7 +309,7 @@ class OpenFoamSolver:
     ) -> GridSolution:
         """Run one grid from `start`; where that stagnates over a grid between, from its own start, on other columns.
 
-        Behind a steep pressure spike it depends on where the columns stand whether Newton's method finds its way, and
+        Behind a steep pressure spike, whether Newton's method converges depends on the positions of the columns, and
         the spike of a grid twice as coarse may be too far from that of the fine one.
         """
         moved = _resized(parameters, MOVED_COLUMNS, 1.0)

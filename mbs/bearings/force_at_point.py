@@ -1,4 +1,4 @@
-"""The bearing force at one speed, temperature and centrifugal load: the law made ready once, then called fast."""
+"""The bearing force at one speed, temperature and centrifugal load: the law is prepared once and then called fast."""
 
 from __future__ import annotations
 
