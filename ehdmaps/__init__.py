@@ -28,6 +28,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    __version__: str
     from ehdmaps.jobs.calls import compare, generate, solve, solve_points
     from ehdmaps.jobs.compare import Comparison
     from ehdmaps.jobs.job import Job
@@ -87,10 +88,14 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> object:
-    """Load a name from its module when it is first used."""
-    if name not in _HOMES:
+    """Load a name from its module when it is first used; `__version__` is looked up then."""
+    value: object
+    if name == "__version__":
+        value = import_module("ehdmaps.version").version()
+    elif name in _HOMES:
+        value = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    else:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value: object = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
     globals()[name] = value
     return value
 

@@ -162,6 +162,15 @@ def written_aside(path: str | Path, kind: Kind, advice: str = "") -> Iterator[Pa
 def write_text(path: str | Path, text: str, kind: Kind) -> None:
     """Write a text in UTF-8 that carries its mark itself.
 
+    Parameters
+    ----------
+    path : str or Path
+        Where to.
+    text : str
+        What to write.
+    kind : Kind
+        Kind of file, by which a later run knows that it may replace it.
+
     Raises
     ------
     InputError
@@ -234,7 +243,17 @@ MADE_AS = "made_as"
 
 
 def dataset_kind(name: str, made_as: str, endings: tuple[str, ...] = ()) -> Kind:
-    """Return the kind of a netCDF file that says by its attribute `MADE_AS` what it is."""
+    """Return the kind of a netCDF file that says by its attribute `MADE_AS` what it is.
+
+    Parameters
+    ----------
+    name : str
+        How messages call the kind.
+    made_as : str
+        Value of the attribute `MADE_AS`.
+    endings : tuple of str
+        Endings that a path of this kind may have; any if empty.
+    """
     return Kind(name, endings, lambda path: root_attributes(path).get(MADE_AS) == made_as)
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ehdmaps.provenance import source_state
+
 NAME = "ehdmaps"
 """Of the distribution."""
 
@@ -11,7 +13,7 @@ NOT_INSTALLED = "not installed"
 
 
 def version(package: str = NAME) -> str:
-    """Return the version of an installed package.
+    """Return the version of a package.
 
     Parameters
     ----------
@@ -21,28 +23,36 @@ def version(package: str = NAME) -> str:
     Returns
     -------
     str
-        Such as "0.1.0". Of one that is not installed: "not installed"; of ours, which runs from a clone then, the
-        version that the clone gives itself: "0.1.0 (not installed)".
+        Of another package the version of its installation, or "not installed". Of ours number and state of the
+        sources: "0.1.0+g19eceb2715" in a clone, "0.1.0+g19eceb2715.dirty" where files differ from that commit,
+        "0.1.0+src.5d41402abc" elsewhere (`ehdmaps.provenance`). The number is that of the project file in a clone,
+        else that of the installation.
     """
+    if package != NAME:
+        return _installed(package) or NOT_INSTALLED
+    root = Path(__file__).parents[1]
+    number = _of_the_clone(root) or _installed(NAME)
+    return "+".join(filter(None, (number, source_state(root)))) if number else NOT_INSTALLED
+
+
+def _installed(package: str) -> str:
+    """Version of an installed package, or an empty text."""
     from importlib import metadata
 
     try:
         # A damaged installation has a record without a version.
-        found = str(metadata.version(package) or "")
+        return str(metadata.version(package) or "")
     except metadata.PackageNotFoundError:
-        found = ""
-    return found or (_of_the_clone() if package == NAME else NOT_INSTALLED)
+        return ""
 
 
-def _of_the_clone() -> str:
-    """Version in the project file beside the package."""
+def _of_the_clone(root: Path) -> str:
+    """Version in the project file beside the package, if it is ours."""
     import tomllib
 
     try:
-        with (Path(__file__).parents[1] / "pyproject.toml").open("rb") as file:
+        with (root / "pyproject.toml").open("rb") as file:
             project = tomllib.load(file).get("project", {})
     except (OSError, ValueError):
-        project = {}
-    if project.get("name") != NAME or "version" not in project:
-        return NOT_INSTALLED
-    return f"{project['version']} ({NOT_INSTALLED})"
+        return ""
+    return str(project.get("version", "")) if project.get("name") == NAME else ""

@@ -270,7 +270,17 @@ def _with_clearance(entry: SceneBearing, clearance: float, problems: list[str]) 
 
 
 def geometry_problems(where: str, geometry: BearingGeometry, emap: EHDMap) -> list[str]:
-    """In what a map was made for something else than a bearing, which messages call `where`."""
+    """In what a map was made for something else than a bearing, which messages call `where`.
+
+    Parameters
+    ----------
+    where : str
+        How messages call the bearing.
+    geometry : BearingGeometry
+        Geometry of the bearing.
+    emap : EHDMap
+        The map.
+    """
     made_for = emap.bearing
     if made_for is None:
         return [f"--map: is made for a bare contact; {where} needs a map of {geometry.name}"]

@@ -129,6 +129,19 @@ class Inertia:
     ) -> Inertia:
         """Hollow cylinder from `begin` to `end` along x [m], of outer diameter and bore [m] and density [kg/m3].
 
+        Parameters
+        ----------
+        begin : float
+            Left end along x [m].
+        end : float
+            Right end [m].
+        diameter : float
+            Outer diameter [m].
+        bore : float
+            Diameter of the bore [m].
+        density : float
+            [kg/m3].
+
         Examples
         --------
         >>> round(Inertia.cylinder(-0.108, 0.108, 0.04).mass, 3)

@@ -24,7 +24,7 @@ FARTHEST = 0.1
 """A step that would have to be longer than this [m or rad] means that something moves freely."""
 
 NEGLIGIBLE = 1e-15
-"""A Newton step shorter than this [m or rad] is the last one: without loads only round-off is left to compare with."""
+"""Newton stops at steps below this [m or rad]: without a load there is no force scale for the relative tolerance."""
 
 _STEPS = 200
 _CUTS = 40

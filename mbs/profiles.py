@@ -130,7 +130,17 @@ class SpeedProfile:
 
     @classmethod
     def ramp(cls, begin: float, end: float, duration: float) -> SpeedProfile:
-        """From one speed to another [rad/s] within a duration [s], then held."""
+        """From one speed to another [rad/s] within a duration [s], then held.
+
+        Parameters
+        ----------
+        begin : float
+            First speed [rad/s].
+        end : float
+            Last speed [rad/s].
+        duration : float
+            [s].
+        """
         return cls(Course((0.0, duration), (begin, end)))
 
     def at(self, time: float) -> tuple[float, float]:

@@ -35,7 +35,7 @@ class SceneBearing:
     rollers_as_bodies : bool
         Whether each roller has a radial freedom, between two contacts with a law each.
     centrifugal : bool
-        Whether the centrifugal load of the rollers is felt.
+        Whether the centrifugal load of the rollers is taken into account.
     """
 
     name: str

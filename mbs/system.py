@@ -42,7 +42,17 @@ class Connected:
     transform: FloatArray
 
     def evaluate(self, q: FloatArray, v: FloatArray, operation: Operation) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Force, stiffness and damping of the element in its ports."""
+        """Force, stiffness and damping of the element in its ports.
+
+        Parameters
+        ----------
+        q : ndarray
+            Coordinates of the system, shape (n,).
+        v : ndarray
+            Their rates, shape (n,).
+        operation : Operation
+            Speed, angle and time.
+        """
         return self.element.evaluate(self.transform @ q, self.transform @ v, operation)
 
 

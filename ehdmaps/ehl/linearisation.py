@@ -56,8 +56,16 @@ def film_response(
 
     Parameters
     ----------
+    problem : LineProblem
+        Dimensionless groups.
+    grid : Grid
+        The grid of the solution.
+    kernel : ndarray, shape (n + 1, n + 1)
+        Deflection at the nodes by the pressures at the nodes.
     unknowns : ndarray, shape (n + 2,)
         Converged unknowns on `grid`.
+    load : float
+        Integral of the dimensionless pressure.
     neighbour : Neighbour, optional
         Needed where the grid has a spike term: the grid then follows the spike.
     frequency : float

@@ -58,6 +58,16 @@ def newton(
 
     Parameters
     ----------
+    problem : LineProblem
+        Dimensionless groups.
+    x, step, face_step : ndarray
+        The grid, see `Grid`.
+    kernel : ndarray, shape (n + 1, n + 1)
+        Deflection at the nodes by the pressures at the nodes.
+    start : ndarray, shape (n + 2,)
+        Unknowns to start from.
+    load : float
+        Integral of the dimensionless pressure.
     tolerance : float
         On the last full step: pressure relative to its maximum, film and exit relative to film and exit.
     most_steps : int
@@ -114,7 +124,23 @@ def newton(
 
 @njit(cache=True)
 def hertz_start(x: Array, step: Array, kernel: Array, film_guess: float, exit_guess: float, load: float) -> Array:
-    """Cold start: Hertz pressure with its edges rounded by the film, and a film of about `film_guess` at the centre."""
+    """Cold start: Hertz pressure with its edges rounded by the film, and a film of about `film_guess` at the centre.
+
+    Parameters
+    ----------
+    x : ndarray
+        Nodes, counted from the exit [b].
+    step : ndarray
+        dx/ds at the nodes, s counted in cells [b].
+    kernel : ndarray, shape (n + 1, n + 1)
+        Deflection at the nodes by the pressures at the nodes.
+    film_guess : float
+        Film at the centre [b^2/R].
+    exit_guess : float
+        Coordinate of the exit [b].
+    load : float
+        Integral of the dimensionless pressure.
+    """
     n = x.size - 1
     zone = film_guess ** (2 / 3)
     rounding = 0.15 * zone

@@ -95,6 +95,15 @@ def moved(profile: Profile, grid: Grid, by_index: bool) -> Array:
     """Start on another grid from a solution nearby, at the same places or at the same share of the nodes.
 
     What differs from the Hertz pressure is interpolated.
+
+    Parameters
+    ----------
+    profile : Profile
+        Solution nearby, on its own grid.
+    grid : Grid
+        Grid of the start.
+    by_index : bool
+        True: at the same share of the nodes; False: at the same places.
     """
     exit_at = profile.unknowns[-2]
     excess = profile.pressure - _hertz(profile.position)

@@ -106,7 +106,7 @@ class ReynoldsSolver:
         temperature: float,
         frequency: float = 0.0,
     ) -> tuple[FilmSolution, ...]:
-        """Films at each load [N/m], in the order given; each starts from the one before it."""
+        """Films at each load, each from the one before it; arguments as of `ContactSolver.solve_line`."""
         state = lubricant.at(temperature)
         films = []
         previous: Profile | None = None
@@ -149,7 +149,19 @@ class ReynoldsSolver:
 def line_problem(
     contact: LineContact, state: LubricantState, load: float, speed: float
 ) -> tuple[LineProblem, float, float]:
-    """Groups of one operating point: those of the equations, and Moes' M and L."""
+    """Groups of one operating point: those of the equations, and Moes' M and L.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    state : LubricantState
+        The oil at the temperature of the point.
+    load : float
+        w [N/m].
+    speed : float
+        u [m/s].
+    """
     law = state.pressure_viscosity
     peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
     M, L = moes_groups(load, speed, state.viscosity, law.pressure_viscosity, contact.radius, contact.reduced_modulus)

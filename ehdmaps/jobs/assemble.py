@@ -185,5 +185,5 @@ def _structural_scaling(contact: LineContact) -> float:
 
 
 def package_versions() -> dict[str, str]:
-    """Return the versions under the numbers; a package that runs without being installed says so."""
+    """Return the versions under the numbers: ours with the state of its sources."""
     return {"python": platform.python_version(), **{package: version(package) for package in _PACKAGES}}

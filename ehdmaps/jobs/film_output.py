@@ -35,6 +35,17 @@ class FilmOutputs:
     ) -> tuple[list[FilmSolution], list[str]]:
         """Solve a point for every contact and write the files.
 
+        Parameters
+        ----------
+        solver : ContactSolver
+            A solver with film fields.
+        job : Job
+            The job.
+        point : OperatingPoint
+            Load, speed and temperature.
+        frequency : float
+            Of the oscillation [Hz]; 0 is the low-frequency limit.
+
         Returns
         -------
         films : list of FilmSolution
@@ -75,6 +86,17 @@ class FilmOutputs:
 
 def film_outputs(job: Job, fields: str | None, plot: str | None, read: str) -> FilmOutputs | None:
     """Check which files are asked for; None if there are none.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    fields : str or None
+        File for the film's fields, if asked for.
+    plot : str or None
+        File for the figure, if asked for.
+    read : str
+        File of the job, which is not to be replaced.
 
     Raises
     ------

@@ -53,7 +53,7 @@ class LawCheck:
 
 
 def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
-    """Draw the points: load and speed log-uniform, temperature uniform, contact by lot; None where none are wanted."""
+    """Draw the points: load and speed log-uniform, temperature uniform, contact at random; None if `law_check` is 0."""
     count = job.law_check
     speeds = [u for u in job.entrainment_speeds if u > 0.0]
     if not count or not speeds or len(speeds) * len(job.loads) * len(job.temperatures) < 2:
@@ -96,7 +96,17 @@ def _valley_load(job: Job, contact: LineContact, speed: float, temperature: floa
 
 
 def checked_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> dict[str, float | int | str]:
-    """Errors of the laws as attributes, or why there are none: a map with holes makes no law."""
+    """Errors of the laws as attributes, or why there are none: a map with holes makes no law.
+
+    Parameters
+    ----------
+    check : LawCheck
+        Which points are checked.
+    emap : EHDMap
+        The map.
+    results : Mapping[str, Arrays]
+        Fresh solves of the tasks of the check, by key.
+    """
     try:
         return check_laws(check, emap, results)
     except MapError as error:

@@ -132,7 +132,17 @@ class StatusFile:
             os.close(self._held)
 
     def found(self, task: Task, arrays: Arrays, now: bool) -> None:
-        """Count a result, and write now and then."""
+        """Count a result, and write now and then.
+
+        Parameters
+        ----------
+        task : Task
+            What was solved, or found in the store.
+        arrays : Arrays
+            Its result.
+        now : bool
+            True if it was solved now, False if the store had it.
+        """
         if now:
             self._pace.solved(task.points)
         else:

@@ -164,6 +164,15 @@ class Store:
     def put(self, key: str, arrays: Mapping[str, npt.NDArray[Any]], at_once: bool = False) -> None:
         """Keep the arrays of a key; on disk within `COMMIT_SECONDS` of the next call, or `at_once`.
 
+        Parameters
+        ----------
+        key : str
+            Key of a task.
+        arrays : mapping of str to ndarray
+            What to keep, by name.
+        at_once : bool
+            Whether it is on disk when this returns.
+
         Raises
         ------
         StoreError

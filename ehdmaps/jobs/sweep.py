@@ -86,7 +86,17 @@ class Watch(Protocol):
     """Who looks at every result."""
 
     def found(self, task: Task, arrays: Arrays, now: bool) -> None:
-        """Look at the arrays of a task, which were found now or were in the store already."""
+        """Look at the arrays of a task, which were found now or were in the store already.
+
+        Parameters
+        ----------
+        task : Task
+            What was solved, or found in the store.
+        arrays : Arrays
+            Its result.
+        now : bool
+            True if it was solved now, False if the store had it.
+        """
         ...
 
 

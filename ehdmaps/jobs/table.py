@@ -54,14 +54,40 @@ class Table:
         return self._values.get(key)
 
     def table(self, key: str, where: str, required: str = "") -> Table | None:
-        """Return the table under a key."""
+        """Return the table under a key.
+
+        Parameters
+        ----------
+        key : str
+            Key in this table.
+        where : str
+            How messages call the table under the key.
+        required : str
+            What a missing key should have been; empty if it may be absent.
+        """
         values = self.get(key, required)
         return None if key not in self else Table(values, where, self.problems)
 
     def quantity(
         self, key: str, unit: str, low: float, high: float, display: Display, *, required: bool = False
     ) -> float | None:
-        """Return a string with a unit as a number in SI, within [low, high]."""
+        """Return a string with a unit as a number in SI, within [low, high].
+
+        Parameters
+        ----------
+        key : str
+            Key in this table.
+        unit : str
+            SI unit of the result.
+        low : float
+            Smallest value allowed.
+        high : float
+            Largest value allowed.
+        display : Display
+            How messages show the limits.
+        required : bool
+            Whether an absent key is a problem.
+        """
         limits = f"{display.text(low)} to {display.text(high)}"
         text = self.get(key, f"a quantity of {limits}" if required else "")
         if key not in self:
@@ -69,7 +95,23 @@ class Table:
         return self.quantity_of(text, key, unit, low, high, display)
 
     def quantity_of(self, text: object, key: str, unit: str, low: float, high: float, display: Display) -> float | None:
-        """Return one string with a unit (an entry of a list, say) as a number in SI, within [low, high]."""
+        """Return one string with a unit (an entry of a list, say) as a number in SI, within [low, high].
+
+        Parameters
+        ----------
+        text : object
+            The string, as read.
+        key : str
+            How messages call the entry.
+        unit : str
+            SI unit of the result.
+        low : float
+            Smallest value allowed.
+        high : float
+            Largest value allowed.
+        display : Display
+            How messages show the limits.
+        """
         try:
             value = quantity(text, unit)
         except InputError as error:
@@ -84,7 +126,19 @@ class Table:
         return value
 
     def number(self, key: str, low: float, high: float, *, required: bool = False) -> float | None:
-        """Return a bare number within [low, high]."""
+        """Return a bare number within [low, high].
+
+        Parameters
+        ----------
+        key : str
+            Key in this table.
+        low : float
+            Smallest value allowed.
+        high : float
+            Largest value allowed.
+        required : bool
+            Whether an absent key is a problem.
+        """
         value = self.get(key, f"a number from {low:g} to {high:g}" if required else "")
         if key not in self:
             return None
@@ -97,7 +151,19 @@ class Table:
         return float(value)
 
     def integer(self, key: str, low: int, high: int, *, required: bool = False) -> int | None:
-        """Return a whole number within [low, high]."""
+        """Return a whole number within [low, high].
+
+        Parameters
+        ----------
+        key : str
+            Key in this table.
+        low : int
+            Smallest value allowed.
+        high : int
+            Largest value allowed.
+        required : bool
+            Whether an absent key is a problem.
+        """
         value = self.get(key, f"a whole number from {low} to {high}" if required else "")
         if key not in self:
             return None
@@ -117,7 +183,17 @@ class Table:
         return value
 
     def choice(self, key: str, allowed: tuple[str, ...], *, required: bool = False) -> str | None:
-        """Return one of some words."""
+        """Return one of some words.
+
+        Parameters
+        ----------
+        key : str
+            Key in this table.
+        allowed : tuple of str
+            The words.
+        required : bool
+            Whether an absent key is a problem.
+        """
         listed = ", ".join(repr(word) for word in allowed)
         value = self.get(key, listed if required else "")
         if key not in self:

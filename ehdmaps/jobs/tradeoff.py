@@ -113,7 +113,17 @@ def measure(
 
 
 def table(measured: Sequence[Measured], truth: Measured, points: int) -> str:
-    """Return the measurement as a printed table."""
+    """Return the measurement as a printed table.
+
+    Parameters
+    ----------
+    measured : sequence of Measured
+        Settings with their cost and errors.
+    truth : Measured
+        The fine solution that errors are measured against.
+    points : int
+        Number of points of the measurement.
+    """
     lines = [
         f"{points} points; errors relative to {truth.label} ({truth.seconds_per_point * 1e3:.3g} ms a point, "
         f"{truth.solved} solved); median / 95 %",

@@ -83,9 +83,11 @@ def plan_backbone(
 
     Parameters
     ----------
-    contacts
+    contacts : sequence of LineContact
         Contacts of the map; all of one material.
-    loads, speeds, temperatures
+    lubricant : Lubricant
+        The oil.
+    loads, speeds, temperatures : sequence of float
         Axes of the map [N/m], [m/s], [K].
     """
     positive = [u for u in speeds if u > 0.0]

@@ -50,6 +50,15 @@ def content_sha256(dataset: xr.Dataset, backbone: xr.Dataset | None) -> str:
 def check_content(dataset: xr.Dataset, backbone: xr.Dataset | None, where: str) -> None:
     """Refuse a map that is not what its checksum says; maps without one, made before there was any, pass.
 
+    Parameters
+    ----------
+    dataset : xr.Dataset
+        The map.
+    backbone : xr.Dataset or None
+        Its group of refinement lines, if it has one.
+    where : str
+        How messages call the map.
+
     Raises
     ------
     MapError

@@ -49,6 +49,6 @@ class DryField:
     def films(
         self, contact: str, loads: FloatArray, speeds: FloatArray, temperatures: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """h = 1 um w1/w, its compliance and some loss."""
+        """h = 1 um w1/w, its compliance and some loss; see `FilmField.films`."""
         film = _FILM * self.load_range[0] / loads
         return film, film / loads, np.asarray(1e-3 * film / loads)

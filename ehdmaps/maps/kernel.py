@@ -240,7 +240,19 @@ def evaluate_at(point: Point, delta: float, rate: float, counts: CountArray) -> 
 def within_map(
     table: LawTable, entrainment_speed: float, temperature: float, counts: CountArray
 ) -> tuple[float, float]:
-    """Size of the speed, and temperature, held at the edges of the map and counted outside."""
+    """Size of the speed, and temperature, held at the edges of the map and counted outside.
+
+    Parameters
+    ----------
+    table : LawTable
+        The law.
+    entrainment_speed : float
+        u [m/s], of either sign.
+    temperature : float
+        T [K].
+    counts : ndarray
+        Calls outside the map, counted by cause.
+    """
     speed = abs(entrainment_speed)
     if speed > table.counted_speed * (1.0 + EDGE_TOLERANCE):
         counts[SPEED] += 1

@@ -215,6 +215,15 @@ class ContactLaw:
     def at(self, entrainment_speed: float, temperature: float, centrifugal_load: float = 0.0) -> LawAtPoint:
         """Law at one speed [m/s], temperature [K] and centrifugal load [N/m]: equal values, faster.
 
+        Parameters
+        ----------
+        entrainment_speed : float
+            u [m/s].
+        temperature : float
+            T [K].
+        centrifugal_load : float
+            Of the roller, per unit length [N/m].
+
         Raises
         ------
         InputError, OutsideMapError

@@ -76,7 +76,19 @@ def stretched(z: float) -> tuple[float, float]:
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def state_of(g: float, dg: float, log_ratio: float, dlog_ratio: float) -> State:
-    """State at rest from g, ln(c/w) and their derivatives by the approach; zero for g < 0."""
+    """State at rest from g, ln(c/w) and their derivatives by the approach; zero for g < 0.
+
+    Parameters
+    ----------
+    g : float
+        g, the cube root of the load [(N/m)^(1/3)]; no load below 0.
+    dg : float
+        Its derivative by the approach.
+    log_ratio : float
+        ln(c/w).
+    dlog_ratio : float
+        Its derivative by the approach.
+    """
     g = g if g > 0.0 else 0.0
     w, dw = g * g * g, 3.0 * g * g * dg
     ratio = exp(log_ratio)
@@ -119,7 +131,17 @@ def collapsed_row(
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def cubics(coefficients: FloatArray, cell: int, t: float) -> tuple[float, float, float, float]:
-    """Both cubics of a cell of a line, and their derivatives by t."""
+    """Both cubics of a cell of a line, and their derivatives by t.
+
+    Parameters
+    ----------
+    coefficients : ndarray
+        Of the line, cell by cell.
+    cell : int
+        Index of the cell.
+    t : float
+        Place in the cell, 0 to 1.
+    """
     c, k = coefficients, np.uint64(cell)
     a1, a2, a3 = c[k, np.uint64(1)], c[k, np.uint64(2)], c[k, np.uint64(3)]
     b1, b2, b3 = c[k, np.uint64(5)], c[k, np.uint64(6)], c[k, np.uint64(7)]
@@ -146,7 +168,17 @@ def splines(sums: FloatArray, t: float) -> tuple[float, float, float, float]:
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def place_of(table: ApproachTable, log_speed: float, temperature: float) -> tuple[int, float, int, float]:
-    """Nearest nodes of a speed and a temperature, and the steps from them."""
+    """Nearest nodes of a speed and a temperature, and the steps from them.
+
+    Parameters
+    ----------
+    table : ApproachTable
+        The table.
+    log_speed : float
+        ln u, u in m/s.
+    temperature : float
+        T [K].
+    """
     last_u, last_t = table.coefficients.shape[0] - 3, table.coefficients.shape[1] - 3
     x = place_within((log_speed - table.log_speed_start) * table.log_speed_step, last_u)
     cold = 1.0 / (temperature - COLDEST)
@@ -159,7 +191,21 @@ def place_of(table: ApproachTable, log_speed: float, temperature: float) -> tupl
 def collapsed_line(
     table: ApproachTable, cubics: FloatArray, sums: FloatArray, log_speed: float, temperature: float
 ) -> Line:
-    """A table at one speed and temperature, written into `cubics`."""
+    """A table at one speed and temperature, written into `cubics`.
+
+    Parameters
+    ----------
+    table : ApproachTable
+        The table.
+    cubics : ndarray
+        Where the cubics of the line are written to.
+    sums : ndarray
+        Scratch.
+    log_speed : float
+        ln u, u in m/s.
+    temperature : float
+        T [K].
+    """
     i, t, j, r = place_of(table, log_speed, temperature)
     along_u, along_t = quadratic_weights(t), quadratic_weights(r)
     collapsed_row(table.place, i, j, along_u, along_t, 0, 2, sums)
@@ -179,7 +225,21 @@ def collapsed_line(
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def table_state(table: ApproachTable, delta: float, log_speed: float, temperature: float, sums: FloatArray) -> State:
-    """State of a table at an approach, speed and temperature within it; `sums` is scratch for 8 numbers."""
+    """State of a table at an approach, speed and temperature within it; `sums` is scratch for 8 numbers.
+
+    Parameters
+    ----------
+    table : ApproachTable
+        The table.
+    delta : float
+        Approach [m].
+    log_speed : float
+        ln u, u in m/s.
+    temperature : float
+        T [K].
+    sums : ndarray
+        Scratch, shape (8,).
+    """
     i, t, j, r = place_of(table, log_speed, temperature)
     along_u, along_t = quadratic_weights(t), quadratic_weights(r)
     collapsed_row(table.place, i, j, along_u, along_t, 0, 2, sums)
@@ -209,7 +269,17 @@ def line_state(line: Line, delta: float) -> State:
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def line_curvature(line: Line, delta: float, state: State) -> float:
-    """Second derivative of the load of a line by the approach, where it carries load."""
+    """Second derivative of the load of a line by the approach, where it carries load.
+
+    Parameters
+    ----------
+    line : Line
+        The line.
+    delta : float
+        Approach [m].
+    state : State
+        State at this approach.
+    """
     z = (delta - line.offset) * line.inverse_scale
     s, ds = stretched(z)
     c = line.coefficients

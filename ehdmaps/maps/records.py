@@ -16,7 +16,7 @@ from ehdmaps.physics.solids import Material
 from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw, VogelViscosity
 
 _UNREADABLE = (ValueError, KeyError, TypeError, AttributeError, ArithmeticError, RecursionError, InputError)
-"""What a record that is none stumbles over."""
+"""What reading an invalid record raises."""
 
 _RADII, _MODULI = (1e-7, 1e3), (1e4, 1e14)
 """Reduced radii [m] and moduli [Pa]: far outside of every contact, what lies beyond is damage."""

@@ -240,7 +240,10 @@ class OpenFoamSolver:
         temperature: float,
         frequency: float = 0.0,
     ) -> tuple[FilmSolution, ...]:
-        """Films at each load [N/m], each on its own; a run that fails is a point with a status and its cause."""
+        """Films at each load, each on its own; arguments as of `ContactSolver.solve_line`.
+
+        A run that fails is a point with a status and its cause.
+        """
         return tuple(
             self.solve_fields(contact, lubricant, OperatingPoint(load, entrainment_speed, temperature), frequency)[0]
             for load in loads
@@ -306,7 +309,7 @@ class OpenFoamSolver:
     ) -> GridSolution:
         """Run one grid from `start`; where that stagnates over a grid between, from its own start, on other columns.
 
-        Behind a steep pressure spike it depends on where the columns stand whether Newton's method finds its way, and
+        Behind a steep pressure spike, whether Newton's method converges depends on the positions of the columns, and
         the spike of a grid twice as coarse may be too far from that of the fine one.
         """
         moved = _resized(parameters, MOVED_COLUMNS, 1.0)
@@ -341,7 +344,19 @@ class OpenFoamSolver:
     def parameters(
         self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequency: float = 0.0
     ) -> Parameters:
-        """Return the parameters of a run on the fine grid, with the starter's start if there is one."""
+        """Return the parameters of a run on the fine grid, with the starter's start if there is one.
+
+        Parameters
+        ----------
+        contact : LineContact
+            The contact.
+        lubricant : Lubricant
+            The oil.
+        point : OperatingPoint
+            Load, speed and temperature.
+        frequency : float
+            Of the oscillation [Hz]; 0 is the low-frequency limit.
+        """
         state = lubricant.at(point.temperature)
         guess = self.starter and self.starter(
             contact, lubricant, point.load, point.entrainment_speed, point.temperature

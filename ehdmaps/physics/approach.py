@@ -59,7 +59,17 @@ def iso16281(load: Values, roller_length: float, reduced_modulus: float = STEEL_
 
 
 def iso16281_compliance(load: Values, roller_length: float, reduced_modulus: float = STEEL_REDUCED_MODULUS) -> Values:
-    """d(delta)/dw of `iso16281` [m2/N]; inf at and below zero load."""
+    """d(delta)/dw of `iso16281` [m2/N]; inf at and below zero load.
+
+    Parameters
+    ----------
+    load : float or array
+        w [N/m].
+    roller_length : float
+        Effective length L of the whole roller [m], never of a slice.
+    reduced_modulus : float
+        E' [Pa].
+    """
     return _power_law_slope(load, iso16281(load, roller_length, reduced_modulus))
 
 
@@ -95,7 +105,17 @@ def palmgren(load: Values, roller_length: float, reduced_modulus: float = STEEL_
 
 
 def palmgren_compliance(load: Values, roller_length: float, reduced_modulus: float = STEEL_REDUCED_MODULUS) -> Values:
-    """d(delta)/dw of `palmgren` [m2/N]; inf at and below zero load."""
+    """d(delta)/dw of `palmgren` [m2/N]; inf at and below zero load.
+
+    Parameters
+    ----------
+    load : float or array
+        w [N/m].
+    roller_length : float
+        Effective length L of the whole roller [m], never of a slice.
+    reduced_modulus : float
+        E' [Pa].
+    """
     return _power_law_slope(load, palmgren(load, roller_length, reduced_modulus))
 
 
@@ -138,7 +158,19 @@ def half_space(load: Values, reference_depth: float, radius: float, reduced_modu
 
 
 def half_space_compliance(load: Values, reference_depth: float, radius: float, reduced_modulus: float) -> Values:
-    """d(delta)/dw of `half_space`, (4/(pi E')) ln(2 d*/b) [m2/N]; inf at and below zero load."""
+    """d(delta)/dw of `half_space`, (4/(pi E')) ln(2 d*/b) [m2/N]; inf at and below zero load.
+
+    Parameters
+    ----------
+    load : float or array
+        w [N/m].
+    reference_depth : float
+        d* [m], see `roller_reference_depth`.
+    radius : float
+        R [m].
+    reduced_modulus : float
+        E' [Pa].
+    """
     _, ratio = _half_space_terms(load, reference_depth, radius, reduced_modulus)
     return as_given(4.0 / (math.pi * reduced_modulus) * np.log(2.0 * ratio), load)
 

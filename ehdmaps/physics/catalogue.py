@@ -151,6 +151,17 @@ def estimate_from_dimensions(
 
     The raceways divide the section as they do in the mean of the table.
 
+    Parameters
+    ----------
+    bore : float
+        d [m].
+    outside_diameter : float
+        D [m].
+    width : float
+        B [m].
+    basic_static_rating : float
+        C0 [N].
+
     Raises
     ------
     InputError

@@ -54,7 +54,7 @@ class HertzSolver:
         temperature: float,
         frequency: float = 0.0,
     ) -> tuple[FilmSolution, ...]:
-        """Dry films at each load [N/m]; oil, speed, temperature and frequency do not matter."""
+        """Dry films at each load, whatever the oil and its speed; arguments as of `ContactSolver.solve_line`."""
         _check(loads, entrainment_speed, temperature)
         return tuple(_dry(contact, load, Status.CONVERGED) for load in loads)
 
@@ -104,7 +104,7 @@ class FormulaSolver:
         temperature: float,
         frequency: float = 0.0,
     ) -> tuple[FilmSolution, ...]:
-        """Films at each load [N/m]; the frequency does not matter."""
+        """Films at each load, at any frequency; arguments as of `ContactSolver.solve_line`."""
         _check(loads, entrainment_speed, temperature)
         state = lubricant.at(temperature)
         return tuple(self._solve(contact, state, load, entrainment_speed) for load in loads)

@@ -80,6 +80,15 @@ def so_klaus(viscosity: float, density: float, slope: float) -> float:
 def gold_mineral(viscosity: float, density: float = 0.0, slope: float = 0.0) -> float:
     """Alpha [1e-8 1/Pa] of Gold and others for mineral oils, 0.9904 nu^0.139, nu in mm2/s.
 
+    Parameters
+    ----------
+    viscosity : float
+        Kinematic viscosity nu [mm2/s].
+    density : float
+        Not used; for a common signature with the other correlations.
+    slope : float
+        Not used either.
+
     References
     ----------
     P. W. Gold, A. Schmidt, H. Dicke, J. Loos, C. Assmann, Viscosity-pressure-temperature behaviour of mineral and

@@ -40,7 +40,16 @@ def rolling_film_damping(film: Values, viscosity: float, radius: float) -> Value
 def squeeze_film_damping(film: Values, viscosity: float, radius: float) -> Values:
     """Damping of a rigid isoviscous squeeze film without cavitation, c = 3 sqrt(2) pi eta (R/h)^1.5 [N s/m2].
 
-    The whole parabola carries, under tension too when the bodies part. Units as in `rolling_film_damping`.
+    The whole parabola carries, under tension too when the bodies part.
+
+    Parameters
+    ----------
+    film : float or array
+        h, the smallest film [m], h << R.
+    viscosity : float
+        eta [Pa s].
+    radius : float
+        R [m].
 
     Examples
     --------
@@ -54,7 +63,16 @@ def rigid_inlet_damping(film: Values, viscosity: float, radius: float) -> Values
     """Damping of the inlet half of a rigid squeeze film, c = (3/sqrt 2) pi eta (R/h)^1.5 [N s/m2].
 
     Half of `squeeze_film_damping`, as if the gap ended at its narrowest place. A bound only: elastic contacts
-    yield, and share the velocity between film and solids. Units as in `rolling_film_damping`.
+    yield, and share the velocity between film and solids.
+
+    Parameters
+    ----------
+    film : float or array
+        h, the smallest film [m], h << R.
+    viscosity : float
+        eta [Pa s].
+    radius : float
+        R [m].
 
     Examples
     --------

@@ -39,6 +39,15 @@ def dowson_higginson_minimum(speed_number: float, load_number: Values, material_
     Fitted to compressible solutions in the piezoviscous-elastic regime; full solutions lie within -7/+16 %
     of it for M >= 2. It vanishes for an isoviscous oil and must not be used there.
 
+    Parameters
+    ----------
+    speed_number : float
+        U = eta0 u/(E'R), u the mean of the surface speeds; see `dowson_groups`.
+    load_number : float or array
+        W = w/(E'R).
+    material_number : float
+        G = alpha E'.
+
     References
     ----------
     D. Dowson, Elastohydrodynamics, Proc. Inst. Mech. Engrs 182 (3A), 1968, 151-167.
@@ -56,6 +65,15 @@ def dowson_toyoda_central(speed_number: float, load_number: Values, material_num
 
     For an incompressible oil in the piezoviscous-elastic regime; within 22 % of full solutions for
     2 <= M <= 1000.
+
+    Parameters
+    ----------
+    speed_number : float
+        U = eta0 u/(E'R), u the mean of the surface speeds; see `dowson_groups`.
+    load_number : float or array
+        W = w/(E'R).
+    material_number : float
+        G = alpha E'.
 
     References
     ----------
@@ -75,6 +93,15 @@ def pan_hamrock_minimum(speed_number: float, load_number: Values, material_numbe
 
     Fitted to compressible solutions with Roelands' law in the piezoviscous-elastic regime.
 
+    Parameters
+    ----------
+    speed_number : float
+        U = eta0 u/(E'R), u the mean of the surface speeds; see `dowson_groups`.
+    load_number : float or array
+        W = w/(E'R).
+    material_number : float
+        G = alpha E'.
+
     References
     ----------
     P. Pan, B. J. Hamrock, Simple formulas for performance parameters used in elastohydrodynamically
@@ -92,6 +119,15 @@ def pan_hamrock_central(speed_number: float, load_number: Values, material_numbe
     """Central film, h/R = 2.922 W^-0.166 U^0.692 G^0.470.
 
     Fit, range and reference as for `pan_hamrock_minimum`.
+
+    Parameters
+    ----------
+    speed_number : float
+        U = eta0 u/(E'R), u the mean of the surface speeds; see `dowson_groups`.
+    load_number : float or array
+        W = w/(E'R).
+    material_number : float
+        G = alpha E'.
 
     Examples
     --------

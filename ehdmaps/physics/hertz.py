@@ -38,7 +38,14 @@ def half_width(load: Values, radius: float, reduced_modulus: float) -> Values:
 def max_pressure(load: Values, radius: float, reduced_modulus: float) -> Values:
     """Largest pressure, p_H = 2 w/(pi b) = sqrt(w E' / (2 pi R)) [Pa].
 
-    Units as in `half_width`.
+    Parameters
+    ----------
+    load : float or array
+        w [N/m], >= 0.
+    radius : float
+        R [m].
+    reduced_modulus : float
+        E' [Pa].
 
     Examples
     --------
@@ -49,7 +56,17 @@ def max_pressure(load: Values, radius: float, reduced_modulus: float) -> Values:
 
 
 def pressure(x: FloatArray, half_width: float, max_pressure: float) -> FloatArray:
-    """Pressure p_H sqrt(1 - (x/b)^2) inside the contact, zero outside [Pa], at the places x [m]."""
+    """Pressure p_H sqrt(1 - (x/b)^2) inside the contact, zero outside [Pa], at the places x [m].
+
+    Parameters
+    ----------
+    x : ndarray
+        Places along the contact [m], 0 at its centre.
+    half_width : float
+        b [m].
+    max_pressure : float
+        p_H [Pa].
+    """
     return np.asarray(max_pressure * np.sqrt(np.maximum(1.0 - (x / half_width) ** 2, 0.0)))
 
 
@@ -57,6 +74,15 @@ def gap(x: FloatArray, half_width: float, radius: float) -> FloatArray:
     """Gap beside the contact, (b^2/2R) [X sqrt(X^2 - 1) - ln(X + sqrt(X^2 - 1))], X = |x|/b >= 1 [m].
 
     Zero inside the contact; x^2/(2R) - (b^2/2R)(ln(2X) + 1/2) far away.
+
+    Parameters
+    ----------
+    x : ndarray
+        Places along the contact [m], 0 at its centre.
+    half_width : float
+        b [m].
+    radius : float
+        R [m].
     """
     distance = np.maximum(np.abs(x) / half_width, 1.0)
     root = np.sqrt(distance**2 - 1.0)

@@ -57,14 +57,40 @@ def moes_groups(
 
 
 def moes_speed_number(speed: float, viscosity: float, radius: float, reduced_modulus: float) -> float:
-    """Group eta0 us/(E'R) with the sum us = 2u of the surface speeds; units as in `moes_groups`."""
+    """Group eta0 us/(E'R) with the sum us = 2u of the surface speeds.
+
+    Parameters
+    ----------
+    speed : float
+        Entrainment speed u, the mean of the surface speeds [m/s], > 0.
+    viscosity : float
+        eta0 [Pa s].
+    radius : float
+        R [m].
+    reduced_modulus : float
+        E' [Pa].
+    """
     return viscosity * 2.0 * speed / (reduced_modulus * radius)
 
 
 def film_from_moes(
     film_number: Values, speed: float, viscosity: float, radius: float, reduced_modulus: float
 ) -> Values:
-    """Film thickness h = H R (eta0 us/(E'R))^(1/2) [m] of Moes' film number H; units as in `moes_groups`."""
+    """Film thickness h = H R (eta0 us/(E'R))^(1/2) [m] of Moes' film number H.
+
+    Parameters
+    ----------
+    film_number : float or array
+        Moes' film number H.
+    speed : float
+        Entrainment speed u, the mean of the surface speeds [m/s], > 0.
+    viscosity : float
+        eta0 [Pa s].
+    radius : float
+        R [m].
+    reduced_modulus : float
+        E' [Pa].
+    """
     scale = radius * math.sqrt(moes_speed_number(speed, viscosity, radius, reduced_modulus))
     return as_given(film_number * scale, film_number)
 
@@ -79,7 +105,22 @@ def load_and_speed(
 ) -> tuple[float, float]:
     """Load w [N/m] and entrainment speed u [m/s] at which a given oil and contact have the groups M and L.
 
-    The inverse of `moes_groups`, for L > 0 and pressure_viscosity > 0; units as there.
+    The inverse of `moes_groups`.
+
+    Parameters
+    ----------
+    load_number : float
+        Moes' load number M.
+    oil_number : float
+        Moes' oil number L, > 0.
+    viscosity : float
+        eta0 [Pa s].
+    pressure_viscosity : float
+        alpha [1/Pa], > 0.
+    radius : float
+        R [m].
+    reduced_modulus : float
+        E' [Pa].
 
     Examples
     --------
@@ -106,7 +147,22 @@ def dowson_groups(
     radius: float,
     reduced_modulus: float,
 ) -> tuple[float, Values, float]:
-    """Groups U = eta0 u/(E'R) with the mean speed u, W = w/(E'R), G = alpha E'; units as in `moes_groups`.
+    """Groups U = eta0 u/(E'R) with the mean speed u, W = w/(E'R), G = alpha E'.
+
+    Parameters
+    ----------
+    load : float or array
+        w [N/m].
+    speed : float
+        Entrainment speed u, the mean of the surface speeds [m/s], > 0.
+    viscosity : float
+        eta0 [Pa s].
+    pressure_viscosity : float
+        alpha = d ln eta/dp at p = 0 [1/Pa].
+    radius : float
+        R [m].
+    reduced_modulus : float
+        E' [Pa].
 
     Examples
     --------

@@ -72,7 +72,19 @@ def own_laws(
 
 
 def estimated_coefficient(correlation: str, law: ViscosityLaw, viscosity: float, density: float) -> float:
-    """Alpha [1/Pa] by a correlation where an oil has these eta0 [Pa s] and rho0 [kg/m3]."""
+    """Alpha [1/Pa] by a correlation where an oil has these eta0 [Pa s] and rho0 [kg/m3].
+
+    Parameters
+    ----------
+    correlation : str
+        Name of a correlation.
+    law : ViscosityLaw
+        Viscosity over temperature, from which a correlation takes its slope.
+    viscosity : float
+        eta0 [Pa s].
+    density : float
+        rho0 [kg/m3].
+    """
     slope = law.slope if isinstance(law, AstmViscosity) else 0.0
     return estimate(correlation, viscosity / density, density, slope)
 

@@ -151,7 +151,23 @@ class ContactSolver(Protocol):
         temperature: float,
         frequency: float = 0.0,
     ) -> tuple[FilmSolution, ...]:
-        """Films at each load [N/m], in the order given, at one speed [m/s], temperature [K] and frequency [Hz]."""
+        """Films at each load [N/m], in the order given, at one speed [m/s], temperature [K] and frequency [Hz].
+
+        Parameters
+        ----------
+        contact : LineContact
+            The contact.
+        lubricant : Lubricant
+            The oil.
+        loads : tuple of float
+            Loads w [N/m], in the order in which the films are returned.
+        entrainment_speed : float
+            u [m/s].
+        temperature : float
+            Of the oil supply [K].
+        frequency : float
+            Of the small oscillation to which stiffness and damping belong [Hz]; 0 is the low-frequency limit.
+        """
         ...
 
     def settings(self) -> dict[str, float | int | str]:
@@ -169,6 +185,17 @@ def contact_solution(
 
     Errors are carried over to first order: 1/k has the absolute error of the film compliance, and c = loss k^2 has that
     of the loss plus twice that of k, with their signs, and a twentieth of both magnitudes in case they cancel.
+
+    Parameters
+    ----------
+    film : FilmSolution
+        Film of one contact.
+    contact : LineContact
+        The contact, with its structural law.
+    point : OperatingPoint
+        Load, speed and temperature of the film.
+    frequency : float
+        Of the oscillation [Hz]; 0 is the low-frequency limit.
     """
     dry = contact.structural_compliance(point.load)
     compliance = dry + film.film_compliance

@@ -52,7 +52,7 @@ class BearingElement:
     start_angle : float
         Angle of the first roller from y at the beginning [rad].
     centrifugal : bool
-        Whether the rollers' centrifugal load is felt.
+        Whether the rollers' centrifugal load is taken into account.
     """
 
     name: str
@@ -92,7 +92,7 @@ class BearingElement:
         return self.rates[1] * abs(operation.speed)
 
     def centrifugal_load(self, operation: Operation) -> float:
-        """Centrifugal load for each metre of a roller [N/m]; zero where it is not felt."""
+        """Centrifugal load for each metre of a roller [N/m]; zero where it is left out."""
         return self.rates[2] * operation.speed**2
 
     def rollers(self, displacement: FloatArray, operation: Operation) -> RollerLoads:
@@ -118,7 +118,7 @@ class BearingElement:
     def evaluate(
         self, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Force on the inner ring, stiffness and damping, see `mbs.elements.Element`."""
+        """Force on the inner ring, stiffness and damping, see `Element.evaluate`."""
         return self.force(
             displacement,
             velocity,

@@ -83,6 +83,15 @@ class BearingForce:
     ) -> ForceAtPoint:
         """Element at one speed [m/s], temperature [K] and centrifugal load [N/m]; dry laws need none of them.
 
+        Parameters
+        ----------
+        entrainment_speed : float
+            u [m/s].
+        temperature : float
+            T [K].
+        centrifugal_load : float
+            Of a roller, per unit length [N/m].
+
         Raises
         ------
         InputError, OutsideMapError
@@ -137,7 +146,19 @@ class BearingForce:
         temperature: float = math.nan,
         centrifugal_load: float = 0.0,
     ) -> RollerLoads:
-        """Loads and approaches of all rollers and slices, to look at; arguments as of a call."""
+        """Loads and approaches of all rollers and slices, to look at.
+
+        Parameters
+        ----------
+        pose, velocity : array (6,)
+            Of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
+        cage_angle : float
+            Angle of the first roller, from y towards z [rad].
+        entrainment_speed, temperature : float
+            u [m/s] and T [K]; a map's law needs them.
+        centrifugal_load : float
+            Of a roller [N/m]; for a map's law only.
+        """
         point = self._prepared(entrainment_speed, temperature, centrifugal_load)
         return point.rollers(pose, velocity, cage_angle)
 
@@ -184,8 +205,14 @@ class BearingForce:
 
         Parameters
         ----------
+        pose, velocity : array (6,)
+            Of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
         angles : int
-            Number of cage angles, evenly spaced over a pitch; other arguments as of a call.
+            Number of cage angles, evenly spaced over a pitch.
+        entrainment_speed, temperature : float
+            u [m/s] and T [K]; a map's law needs them.
+        centrifugal_load : float
+            Of a roller [N/m]; for a map's law only.
         """
         if not isinstance(angles, int) or angles < 1:
             raise InputError(f"bearing force, angles: got {angles!r}; allowed: a whole number >= 1")

@@ -279,7 +279,7 @@ def bearing_force(
     state : array (13,)
         Pose (6), velocity (6), cage angle: [m], [rad], [m/s], [rad/s].
     geometry : array (6,)
-        Half the diametral clearance [m], slice length [m], largest travel [m] and tilt [rad] that are taken seriously,
+        Half the diametral clearance [m], slice length [m], largest accepted travel [m] and tilt [rad],
         half the roller length [m], twice the smallest profile [m].
     slices : array (2, n)
         Positions of the slices and twice the profile there [m].

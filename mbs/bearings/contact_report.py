@@ -112,7 +112,19 @@ def extrapolated(contacts: BearingContacts, oil: Lubricant | None) -> str:
 
 
 def outside_map(law: Law, load: float, entrainment_speed: float, temperature: float) -> list[str]:
-    """Which axis of a law's map a point leaves, with its value, what is done there, and what to do."""
+    """Which axis of a law's map a point leaves, with its value, what is done there, and what to do.
+
+    Parameters
+    ----------
+    law : Law
+        The law of a contact.
+    load : float
+        w [N/m].
+    entrainment_speed : float
+        u [m/s].
+    temperature : float
+        T [K].
+    """
     return [
         f"{axis}, where the law is held at its edge; make a map that reaches there"
         for axis in axes_left(law, load, entrainment_speed, temperature)

@@ -69,7 +69,19 @@ class FilmSource(Protocol):
         ...
 
     def state(self, side: int, load: FloatArray, entrainment_speed: float, temperature: float) -> ContactState:
-        """Pressure and films of the inner (0) or outer (1) contact at loads w [N/m], at u [m/s] and T [K]."""
+        """Pressure and films of the inner (0) or outer (1) contact at loads w [N/m], at u [m/s] and T [K].
+
+        Parameters
+        ----------
+        side : int
+            0: inner contact, 1: outer contact.
+        load : ndarray
+            Loads w [N/m].
+        entrainment_speed : float
+            u [m/s].
+        temperature : float
+            T [K].
+        """
         ...
 
 
@@ -96,7 +108,7 @@ class DryContacts:
         return None
 
     def state(self, side: int, load: FloatArray, entrainment_speed: float, temperature: float) -> ContactState:
-        """Hertz' pressure; see `FilmSource`."""
+        """Hertz' pressure; see `FilmSource.state`."""
         contact = self.contacts[side]
         pressure = np.asarray(max_pressure(load, contact.radius, contact.reduced_modulus))
         unknown = np.full(load.shape, np.nan)
@@ -124,7 +136,7 @@ class FormulaFilms:
         return f"films: Moes' formula (minimum: Dowson-Higginson, Martin) for {self.lubricant.name}"
 
     def state(self, side: int, load: FloatArray, entrainment_speed: float, temperature: float) -> ContactState:
-        """Hertz' pressure and films by formula, zero at standstill; see `FilmSource`."""
+        """Hertz' pressure and films by formula, zero at standstill; see `FilmSource.state`."""
         contact = self.contacts[side]
         pressure = np.asarray(max_pressure(load, contact.radius, contact.reduced_modulus))
         loaded = load > 0.0
@@ -187,7 +199,7 @@ class MapFilms:
         return self.emap.lubricant
 
     def state(self, side: int, load: FloatArray, entrainment_speed: float, temperature: float) -> ContactState:
-        """Pressure and films from the map; see `FilmSource`."""
+        """Pressure and films from the map; see `FilmSource.state`."""
         kelvins = self.emap.dataset["temperature"].values
         temperature = float(np.clip(temperature, kelvins[0], kelvins[-1]))
         plain = self._formula.state(side, load, entrainment_speed, temperature)

@@ -1,4 +1,4 @@
-"""The bearing force at one speed, temperature and centrifugal load: the law made ready once, then called fast."""
+"""The bearing force at one speed, temperature and centrifugal load: the law is prepared once and then called fast."""
 
 from __future__ import annotations
 
@@ -133,7 +133,17 @@ class ForceAtPoint:
     def rollers(
         self, pose: npt.ArrayLike, velocity: npt.ArrayLike | None = None, cage_angle: float = 0.0
     ) -> RollerLoads:
-        """Loads and approaches of all rollers and slices, to look at."""
+        """Loads and approaches of all rollers and slices, to look at.
+
+        Parameters
+        ----------
+        pose : array_like
+            Of the inner ring in O, shape (6,) [m], [rad].
+        velocity : array_like, optional
+            Its rate, shape (6,) [m/s], [rad/s]; at rest if left out.
+        cage_angle : float
+            Angle at which the cage stands [rad].
+        """
         self(pose, velocity, cage_angle)
         w = self._work
         return roller_loads(self._force.bearing, w.slices, w.states, w.rollers, cage_angle)

@@ -131,6 +131,19 @@ class RollerContacts:
 
         Rollers without load stay in the middle.
 
+        Parameters
+        ----------
+        inner_pose : array_like
+            Of the inner ring, shape (6,) [m], [rad].
+        outer_pose : array_like, optional
+            Of the outer ring, shape (6,); at the origin if left out.
+        cage_angle : float
+            Angle at which the cage stands [rad].
+        entrainment_speed : float
+            u [m/s].
+        temperature : float
+            T [K].
+
         Raises
         ------
         SolverError

@@ -69,7 +69,7 @@ class RollerElement:
     def evaluate(
         self, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Forces on rings and rollers, stiffness and damping, see `mbs.elements.Element`."""
+        """Forces on rings and rollers, stiffness and damping, see `Element.evaluate`."""
         plain = self.plain
         f, K, C = self.contacts(
             displacement,

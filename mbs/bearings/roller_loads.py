@@ -112,7 +112,21 @@ class RollerLoads:
 def roller_loads(
     bearing: Bearing, slices: FloatArray, states: FloatArray, rollers: FloatArray, cage_angle: float
 ) -> RollerLoads:
-    """Make the record from the work space that a call of `bearing_force` leaves."""
+    """Make the record from the work space that a call of `bearing_force` leaves.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+    slices : ndarray
+        Constants of the slices.
+    states : ndarray
+        States of the slices' contacts.
+    rollers : ndarray
+        Sums over each roller.
+    cage_angle : float
+        Angle of the first roller [rad].
+    """
     count = bearing.geometry.rollers
     x, lost = slices
     approach = rollers[GAP][:, None] + x * rollers[TILT][:, None] - lost

@@ -71,7 +71,21 @@ class CrossSection:
     def annulus(
         cls, diameter: float, bore: float, youngs_modulus: float, poisson_ratio: float, density: float
     ) -> CrossSection:
-        """Hollow circle of outer diameter and bore [m], of E [Pa], nu and density [kg/m3]."""
+        """Hollow circle of outer diameter and bore [m], of E [Pa], nu and density [kg/m3].
+
+        Parameters
+        ----------
+        diameter : float
+            Outer diameter [m].
+        bore : float
+            Diameter of the bore [m].
+        youngs_modulus : float
+            E [Pa].
+        poisson_ratio : float
+            nu.
+        density : float
+            [kg/m3].
+        """
         outer, inner = 0.5 * diameter, 0.5 * bore
         area = math.pi * (outer - inner) * (outer + inner)
         second_moment = 0.25 * area * (outer**2 + inner**2)

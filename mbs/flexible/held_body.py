@@ -26,7 +26,7 @@ _DENSE = 600
 """Up to this size all modes are computed at once."""
 
 _FREE = 1e-12
-"""A mode whose omega^2 is less than this part of the typical K/M of a single degree of freedom is rounding of zero."""
+"""A mode with omega^2 below this fraction of the typical K/M of a degree of freedom is taken as a rigid-body mode."""
 
 _DEPENDENT = 1e-11
 """Eigenvalue of the scaled multiplier matrix below which averages depend on each other."""

@@ -192,6 +192,15 @@ def without_fixed(stiffness: Labelled, mass: Labelled) -> tuple[Labelled, Labell
 def read_triplets(path: Path, nodes: IntArray, directions: IntArray) -> Labelled:
     """Read lines "row column value", counted from 1, of one half of a symmetric matrix or of the whole.
 
+    Parameters
+    ----------
+    path : Path
+        The file.
+    nodes : IntArray
+        Node of each row of the matrix.
+    directions : IntArray
+        Direction of each row.
+
     Raises
     ------
     InputError

@@ -1,7 +1,7 @@
 """Where the nodes of a mesh are, by their numbers.
 
-Abaqus and CalculiX decks are read here, because node numbers matter and need not count on; all other formats by meshio,
-where node k is the k-th point of the file.
+Abaqus and CalculiX decks are read here, because node numbers matter and need not be consecutive; all other formats by
+meshio, where node k is the k-th point of the file.
 """
 
 from __future__ import annotations

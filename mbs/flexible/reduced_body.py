@@ -155,7 +155,7 @@ def to_body(
     Raises
     ------
     InputError
-        For a damping ratio that is none.
+        For an invalid damping ratio.
     """
     here = np.asarray(position, dtype=np.float64)
     return Body(

@@ -257,6 +257,6 @@ def _body(given: Mapping[str, Any]) -> ReducedBody:
 
 
 def _unreadable(path: Path, error: BaseException) -> InputError:
-    """What is said about a file that is none."""
+    """The message about a file that is not a reduced body."""
     words = " ".join(str(error).split())
     return InputError(f"{path}: is no reduced body ({words:.100}); allowed: a file written by mbs reduce")

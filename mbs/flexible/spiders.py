@@ -225,7 +225,21 @@ def nodes_in_plane(
     tolerance: float,
     radius: float = math.inf,
 ) -> IntArray:
-    """Nodes in the plane through a point [m] with a normal of any length, to a tolerance [m], up to a radius [m]."""
+    """Nodes in the plane through a point [m] with a normal of any length, to a tolerance [m], up to a radius [m].
+
+    Parameters
+    ----------
+    model : FiniteElementModel
+        The finite element model.
+    point : sequence of float
+        A point of the plane, shape (3,) [m].
+    normal : sequence of float
+        Normal of the plane, of any length, shape (3,).
+    tolerance : float
+        Largest distance from the plane [m].
+    radius : float
+        Largest distance from the point [m].
+    """
     unit = np.asarray(normal, dtype=np.float64)
     away = model.positions - np.asarray(point, dtype=np.float64)
     off = np.abs(away @ (unit / np.linalg.norm(unit)))

@@ -316,7 +316,17 @@ class GearMesh:
         return np.array(constants), pair.series if self.varying else np.zeros((4, 0))
 
     def flanks(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> FloatArray:
-        """Force [N], stiffness [N/m] and damping [N s/m] of the driving and of the other flank, shape (2, 3)."""
+        """Force [N], stiffness [N/m] and damping [N s/m] of the driving and of the other flank, shape (2, 3).
+
+        Parameters
+        ----------
+        displacement : ndarray
+            Of both ports, shape (12,) [m], [rad].
+        velocity : ndarray
+            Their rates, shape (12,) [m/s], [rad/s].
+        operation : Operation
+            Speed, angle and time.
+        """
         out = np.empty((2, 3))
         mesh_force(*self.arrays, operation.angle, operation.speed, self.rows @ displacement, self.rows @ velocity, out)
         return out
@@ -324,7 +334,7 @@ class GearMesh:
     def evaluate(
         self, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Force on both gears, stiffness and damping, see `mbs.elements.Element`."""
+        """Force on both gears, stiffness and damping, see `Element.evaluate`."""
         flanks = self.flanks(displacement, velocity, operation)
         driving, other = self._squares
         return (

@@ -32,7 +32,19 @@ FORCE, SLOPE, BY_RATE = range(3)
 
 @njit(cache=True, error_model="numpy")
 def flank_force(compression: float, rate: float, stiffness: float, damping: float) -> tuple[float, float, float]:
-    """Force of a flank, and its derivatives by compression and by rate."""
+    """Force of a flank, and its derivatives by compression and by rate.
+
+    Parameters
+    ----------
+    compression : float
+        Of the mesh spring [m]; no force below 0.
+    rate : float
+        Of the compression [m/s].
+    stiffness : float
+        [N/m].
+    damping : float
+        [N s/m].
+    """
     if compression <= 0.0:
         return 0.0, 0.0, 0.0
     if compression < TOUCH:
@@ -51,7 +63,19 @@ def flank_force(compression: float, rate: float, stiffness: float, damping: floa
 
 @njit(cache=True, error_model="numpy")
 def mesh_course(constants: FloatArray, series: FloatArray, angle: float, speed: float) -> tuple[float, float, float]:
-    """Stiffness [N/m], transmission error [m] and its rate [m/s] at an angle and speed of the system."""
+    """Stiffness [N/m], transmission error [m] and its rate [m/s] at an angle and speed of the system.
+
+    Parameters
+    ----------
+    constants : ndarray
+        Of the mesh, see `GearMesh.arrays`.
+    series : ndarray
+        Fourier series of stiffness and error, see there.
+    angle : float
+        Of the system [rad].
+    speed : float
+        Of the system [rad/s].
+    """
     phase = constants[TEETH] * angle + constants[PHASE]
     pace = constants[TEETH] * speed
     part, error, error_rate = 1.0, 0.0, 0.0

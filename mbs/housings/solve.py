@@ -63,10 +63,12 @@ def own_frequencies(mesh: Mesh, material: Material, clamped: IntArray, count: in
 
     Parameters
     ----------
-    mesh, material, clamped, folder
+    mesh, material, clamped
         As of `matrices`.
     count : int
         Frequencies to find.
+    folder : Path
+        Empty, for the files of CalculiX.
 
     Raises
     ------

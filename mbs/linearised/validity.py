@@ -56,6 +56,17 @@ def film_limit(name: str, bearing: Bearing, load: float, entrainment_speed: floa
     """Limit of a bearing at the load per unit length of its most loaded contact [N/m] and a speed u [m/s].
 
     The outer contact is the wider one.
+
+    Parameters
+    ----------
+    name : str
+        Of the bearing.
+    bearing : Bearing
+        The bearing.
+    load : float
+        Of its most loaded contact, per unit length [N/m].
+    entrainment_speed : float
+        u [m/s].
     """
     modulus = reduced_modulus(bearing.material, bearing.material)
     width = half_width(load, bearing.geometry.outer_radius, modulus)

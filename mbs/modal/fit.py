@@ -29,10 +29,10 @@ MOST = 100
 """Highest number of pole pairs that is taken."""
 
 _SIGNIFICANT = 6.0
-"""Without a mode the error rises by the square of this, in variances of one value, or it is none."""
+"""A pole counts as a mode only if leaving it out raises the error by the square of this, in variances of one value."""
 
 _STRAYED = 1.0
-"""Half widths that a pole may move when it is refined; one that moves farther was none."""
+"""Half widths that a pole may move when it is refined; one that moves farther is not a mode."""
 
 _SMOOTH = 100
 """One part in so many of the lines over which the noise is averaged."""

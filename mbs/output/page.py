@@ -24,7 +24,19 @@ _SIZE = (9.0, 5.5)
 
 
 def page(model: Model, words: str, panels: int, stacked: bool = False) -> tuple[Figure, list[Axes]]:
-    """A figure with its heading and rows, or a stack, of at least so many panels; `words` follow the law."""
+    """A figure with its heading and rows, or a stack, of at least so many panels; `words` follow the law.
+
+    Parameters
+    ----------
+    model : Model
+        What was computed, for the heading.
+    words : str
+        What the heading says after the law.
+    panels : int
+        Smallest number of panels.
+    stacked : bool
+        One panel above the other instead of rows.
+    """
     figure = headed(model, words)
     rows = panels if stacked else max(round(math.sqrt(panels / 1.5)), 1)
     axes = figure.subplots(rows, math.ceil(panels / rows), sharex=stacked, squeeze=False)
@@ -32,7 +44,17 @@ def page(model: Model, words: str, panels: int, stacked: bool = False) -> tuple[
 
 
 def headed(model: Model, words: str, size: tuple[float, float] = _SIZE) -> Figure:
-    """A figure with its heading: title, law, `words`, temperature, clearance."""
+    """A figure with its heading: title, law, `words`, temperature, clearance.
+
+    Parameters
+    ----------
+    model : Model
+        What was computed, for the heading.
+    words : str
+        What the heading says after the law.
+    size : tuple[float, float]
+        Width and height [inches].
+    """
     clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
     at = [
         *([words] if words else []),
@@ -57,7 +79,19 @@ def grid(panel: Axes) -> None:
 
 
 def shade(panel: Axes, begin: float, end: float, bottom: float = 0.0) -> None:
-    """Shade a range of the horizontal axis behind what is drawn, from a part of the height on."""
+    """Shade a range of the horizontal axis behind what is drawn, from a part of the height on.
+
+    Parameters
+    ----------
+    panel : Axes
+        The panel.
+    begin : float
+        Left end of the range, in units of the axis.
+    end : float
+        Right end.
+    bottom : float
+        Part of the height at which the shade begins, 0 to 1.
+    """
     panel.axvspan(begin, end, bottom, 1.0, color=SHADE, alpha=SHADE_ALPHA, lw=0.0, zorder=0)
 
 

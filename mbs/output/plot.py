@@ -22,7 +22,19 @@ _RPM = 30.0 / np.pi
 def statics_figure(
     model: Model, balance: Equilibrium, contacts: Sequence[BearingContacts], warnings: Sequence[str] = ()
 ) -> Figure:
-    """Load of each roller around each bearing, with its pressures and films, and what is to be warned of."""
+    """Load of each roller around each bearing, with its pressures and films, and what is to be warned of.
+
+    Parameters
+    ----------
+    model : Model
+        The system.
+    balance : Equilibrium
+        Its equilibrium.
+    contacts : sequence of BearingContacts
+        Pressures and films of each bearing.
+    warnings : sequence of str
+        What is to be warned of, written on the page.
+    """
     figure, axes = _page(model, f"{model.scene.speed * _RPM:.4g} rpm", len(model.bearings))
     for panel, bearing, state in zip(axes, model.bearings, contacts, strict=False):
         motion = model.system.relative(bearing.inner, bearing.outer) @ balance.displacement

@@ -117,7 +117,23 @@ def linear_dataset(
     inputs: Sequence[Input],
     sensors: Sequence[Sensor],
 ) -> xr.Dataset:
-    """State space and frequency responses."""
+    """State space and frequency responses.
+
+    Parameters
+    ----------
+    balance : Equilibrium
+        The equilibrium.
+    space : StateSpace
+        State space about it.
+    responses : ndarray
+        Shape (frequencies, sensors, inputs).
+    frequencies : ndarray
+        [Hz].
+    inputs : sequence of Input
+        Where forces act.
+    sensors : sequence of Sensor
+        Where motion is measured.
+    """
     names = list(balance.system.coordinates)
     states = [*names, *(f"{name}.rate" for name in names)]
     dims = ("frequency", "sensor", "input")

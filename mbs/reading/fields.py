@@ -45,7 +45,17 @@ def cylinder(table: Table) -> Inertia | None:
 
 
 def text(section: Table, key: str, required: bool = False) -> str | None:
-    """Read a short text."""
+    """Read a short text.
+
+    Parameters
+    ----------
+    section : Table
+        The table of the scene file.
+    key : str
+        Key in the table.
+    required : bool
+        Whether an absent key is a problem.
+    """
     value = section.get(key, "a short text" if required else "")
     if key not in section:
         return None
@@ -56,7 +66,17 @@ def text(section: Table, key: str, required: bool = False) -> str | None:
 
 
 def words(section: Table, key: str, allowed: tuple[str, ...]) -> tuple[str, ...] | None:
-    """Read a list of words."""
+    """Read a list of words.
+
+    Parameters
+    ----------
+    section : Table
+        The table of the scene file.
+    key : str
+        Key in the table.
+    allowed : tuple of str
+        The words that may stand there.
+    """
     value = section.get(key, f"a list of {', '.join(allowed)}")
     if key not in section:
         return None
@@ -85,7 +105,17 @@ def places(section: Table) -> tuple[str | None, str]:
 
 
 def lengths(section: Table, key: str, value: Any) -> tuple[float, ...] | None:
-    """Read three lengths; None if absent or wrong."""
+    """Read three lengths; None if absent or wrong.
+
+    Parameters
+    ----------
+    section : Table
+        The table of the scene file.
+    key : str
+        How messages call the value.
+    value : Any
+        What was read.
+    """
     if value is None:
         return None
     if not isinstance(value, list) or len(value) != 3:
@@ -98,7 +128,19 @@ def lengths(section: Table, key: str, value: Any) -> tuple[float, ...] | None:
 
 
 def vector(section: Table, key: str, unit: str, display: Display) -> tuple[float, ...] | None:
-    """Read three forces or moments; zeros if absent, None if wrong."""
+    """Read three forces or moments; zeros if absent, None if wrong.
+
+    Parameters
+    ----------
+    section : Table
+        The table of the scene file.
+    key : str
+        Key in the table.
+    unit : str
+        SI unit of the result.
+    display : Display
+        How messages show the limits.
+    """
     value = section.get(key)
     if key not in section:
         return (0.0, 0.0, 0.0)
@@ -112,7 +154,21 @@ def vector(section: Table, key: str, unit: str, display: Display) -> tuple[float
 
 
 def diagonal(section: Table, key: str, along: str, about: str, *, required: bool = False) -> FloatArray | None:
-    """Read stiffness or damping by freedom, such as { y = "1e5 N/m" }; shape (6,)."""
+    """Read stiffness or damping by freedom, such as { y = "1e5 N/m" }; shape (6,).
+
+    Parameters
+    ----------
+    section : Table
+        The table of the scene file.
+    key : str
+        Key in the table.
+    along : str
+        Unit for the translations.
+    about : str
+        Unit for the rotations.
+    required : bool
+        Whether an absent key is a problem.
+    """
     values = np.zeros(6)
     table = section.table(key, f"{section.where} {key}", f'{{ y = "1e5 {along}", z = ... }}' if required else "")
     if table is None:

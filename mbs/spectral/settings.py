@@ -1,4 +1,4 @@
-"""What of a run-up is looked at: a light module, which reading a scene needs."""
+"""Settings of a run-up's Campbell diagram; light to import, because reading a scene needs them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ HIGHEST = 5000.0
 
 @dataclass(frozen=True)
 class CampbellSettings:
-    """What of a run is looked at.
+    """Settings of a Campbell diagram.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""A run in compiled code: what `run_kernel` needs, made ready for a batch of steps, and the steps between.
+"""A run in compiled code: what `run_kernel` needs, prepared for a batch of steps, and the steps between.
 
 Steps that have no table of the law (speeds below the map, where films fade; loads above the map) are made by
 `mbs.transient.stepping`, from the same state.

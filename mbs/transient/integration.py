@@ -79,7 +79,7 @@ def integrate(
     Raises
     ------
     InputError
-        For a start or a duration that is none, and for more samples than can be recorded.
+        For an invalid start or duration, and for more samples than can be recorded.
     AnalysisError
         If a step finds no solution although it was halved ten times.
     """

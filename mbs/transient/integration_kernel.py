@@ -14,7 +14,19 @@ from ehdmaps.physics._values import FloatArray
 
 @njit(cache=True, error_model="numpy")
 def port_motion(transform: FloatArray, q: FloatArray, v: FloatArray, motion: FloatArray) -> None:
-    """Displacement and velocity of all ports, into `motion` (2, m), from those of the coordinates."""
+    """Displacement and velocity of all ports, into `motion` (2, m), from those of the coordinates.
+
+    Parameters
+    ----------
+    transform : ndarray
+        Ports by coordinates, shape (m, n).
+    q : ndarray
+        Coordinates, shape (n,).
+    v : ndarray
+        Their rates, shape (n,).
+    motion : ndarray
+        Result, shape (2, m).
+    """
     for i in range(transform.shape[0]):
         x = rate = 0.0
         for j in range(q.size):

@@ -40,7 +40,7 @@ class Linear(NamedTuple):
     size : array (m, m)
         T T^T.
     physical : array (n, n)
-        Coordinates of the system by the modes; of no rows where errors are not asked for.
+        Coordinates of the system by the modes; shape (0, n) if errors are not controlled.
     reference : float
         Speed [rad/s].
     turning : bool

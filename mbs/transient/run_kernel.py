@@ -150,6 +150,17 @@ def blend(films: Films, film: int, node: int, weight: float) -> None:
 
     Tables have the same cells in z = (delta - centre)/scale, so that the blend of laws that rise with the approach
     rises too, and is C1.
+
+    Parameters
+    ----------
+    films : Films
+        Tables over speed of all bearings; the one in use is written.
+    film : int
+        Index of the bearing.
+    node : int
+        The lower node.
+    weight : float
+        Of the upper node, 0 to 1.
     """
     if films.in_use[film, 0] == node and films.in_use[film, 1] == weight:
         return
@@ -262,7 +273,17 @@ def _jacobian(slopes: FloatArray, receptance: FloatArray, out: FloatArray) -> No
 
 @njit(cache=True, error_model="numpy")
 def observe(state: State, records: Records, row: int) -> None:
-    """Record the state."""
+    """Record the state.
+
+    Parameters
+    ----------
+    state : State
+        The state of the run.
+    records : Records
+        What is recorded.
+    row : int
+        Index of the sample.
+    """
     for i in range(records.orders.size):
         seen, motion = records.rows[i], state.motion[records.orders[i]]
         total = 0.0

@@ -29,7 +29,7 @@ NODES = 32
 """How many tables are held."""
 
 _STANDSTILL = -700.0
-"""ln of a speed that is none: the part of the film that is left there is zero in double precision."""
+"""ln of a speed that stands for rest: the part of the film that is left there is zero in double precision."""
 
 
 class SpeedTables:

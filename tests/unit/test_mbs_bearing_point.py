@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import doctest
 import math
 
 import numpy as np
@@ -21,7 +20,6 @@ from mbs.bearings.contact_report import fading, heated, outside_map
 from mbs.bearings.films import FormulaFilms
 from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
-from mbs.output import bearing_text
 from mbs.scene_reader import read_scene
 from tests.unit.mbs_cases import map_law
 
@@ -180,8 +178,3 @@ def test_the_point_is_that_of_a_scene():
 def test_a_point_cannot_be_changed():
     with pytest.raises(dataclasses.FrozenInstanceError):
         dry_point("NU308", (1e3, 0.0)).speed = 0.0
-
-
-def test_examples_in_the_docstrings():
-    failed, tried = doctest.testmod(bearing_text)
-    assert (failed, tried > 0) == (0, True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
-import doctest
 import importlib
 import types
 from importlib import resources
@@ -21,7 +20,6 @@ from mbs.errors import AnalysisError
 from mbs.output.campbell_data import campbell_dataset
 from mbs.output.campbell_plot import Overlay, Reach, campbell_figure
 from mbs.reading.campbell import read_campbell
-from mbs.spectral import levels
 from mbs.spectral.campbell import campbell, run_up_spectra
 from mbs.spectral.levels import LOWEST, Reference, difference_text, level
 from mbs.spectral.orders import OrderTracks, angle_signal, order_peaks, order_spectra, track_orders
@@ -278,11 +276,6 @@ def test_peaks_are_local_maxima_strongest_first():
 
 
 # Levels and settings
-
-
-def test_examples_of_the_docstrings_hold():
-    for module in (levels,):
-        assert doctest.testmod(importlib.import_module(module.__name__)) == (0, 2)
 
 
 def test_references_are_those_of_the_quantity():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import doctest
 import math
 
 import numpy as np
@@ -14,7 +13,7 @@ from hypothesis import strategies as st
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.reader import parse_job
-from mbs import cli, planning
+from mbs import cli
 from mbs.assembly import assemble
 from mbs.commands.plan import job_text
 from mbs.elements import Load
@@ -70,12 +69,6 @@ def run(capsys, *arguments):
     status = cli.main(["plan", *map(str, arguments)])
     captured = capsys.readouterr()
     return status, captured.out, captured.err
-
-
-def test_examples():
-    found = doctest.testmod(planning)
-    assert found.attempted >= 3
-    assert found.failed == 0
 
 
 def test_speeds_go_down_to_a_part_of_the_highest_where_rest_is_passed():

@@ -1,22 +1,12 @@
-"""The examples in the docstrings of ehdmaps.physics, and what importing it costs."""
+"""What the package docstring of ehdmaps.physics lists, and what importing it costs."""
 
-import doctest
-import importlib
 import pkgutil
 import subprocess
 import sys
 
-import pytest
-
 import ehdmaps.physics
 
 MODULES = sorted(module.name for module in pkgutil.iter_modules(ehdmaps.physics.__path__, "ehdmaps.physics."))
-
-
-@pytest.mark.parametrize("name", MODULES)
-def test_examples_of_the_docstrings_hold(name):
-    failed, _ = doctest.testmod(importlib.import_module(name))
-    assert failed == 0
 
 
 def test_package_docstring_lists_every_module():
