@@ -42,7 +42,11 @@ print(f"{made.attrs['title']}: {job.points} points; at {job.loads[5]:.4g} N/m th
 
 figure = Figure(figsize=(7.0, 3.0), layout="constrained")
 left, right = figure.subplots(1, 2)
-left.loglog(job.loads, 1e6 * made["central_film"].sel(contact="inner").values[:, :, 0])
+for speed, film in zip(
+    job.entrainment_speeds, made["central_film"].sel(contact="inner").values[:, :, 0].T, strict=True
+):
+    left.loglog(job.loads, 1e6 * film, label=f"{speed:g} m/s")
+left.legend()
 left.set(xlabel="load, N/m", ylabel="central film, um")
 right.loglog(job.loads, k)
 right.set(xlabel="load, N/m", ylabel="stiffness of a roller, N/m2")
