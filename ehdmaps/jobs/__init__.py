@@ -20,6 +20,7 @@ assemble     results -> dataset of the map
 write        dataset -> map file, aside and renamed
 generate     the whole story: job -> map file, or a map in memory
 points       many operating points: dataset in, dataset out
+point_report one operating point, in words and as JSON
 calls        the functions of Python: generate, compare, solve, solve_points
 progress     a bar on a terminal, lines elsewhere
 status       how far a map is, for others to look at while it is made

@@ -44,11 +44,6 @@ class Generated:
     backbone: xr.Dataset | None
     sweep: SweepResult
 
-    @property
-    def map(self) -> EHDMap:
-        """The map as a value, ready for contact laws."""
-        return EHDMap(self.dataset, self.backbone)
-
 
 def generate(
     job: Job,

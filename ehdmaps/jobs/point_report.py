@@ -1,0 +1,178 @@
+"""One operating point in words: the record of a contact, as JSON has it, and the table of all contacts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.report import ERRORS
+from ehdmaps.physics import hertz
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.moes import moes_groups
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solution import ContactSolution, FilmSolution, contact_solution
+from ehdmaps.units import FILM, LENGTH, LOAD, PRESSURE, RPM, TEMPERATURE, Display
+
+_SOLUTION_FIELDS = (
+    "approach",
+    "film_offset",
+    "stiffness",
+    "damping",
+    "central_film",
+    "minimum_film",
+    "max_pressure",
+    "film_offset_error",
+    "film_compliance_error",
+    "stiffness_error",
+    "damping_error",
+    "central_film_error",
+    "minimum_film_error",
+    "max_pressure_error",
+    "iterations",
+    "solve_seconds",
+    "viscosity_extrapolated",
+)
+
+
+def point_record(
+    film: FilmSolution, contact: LineContact, oil: Lubricant, point: OperatingPoint, frequency: float
+) -> dict[str, Any]:
+    """Return one contact's solution as plain values, SI; None where there is no number.
+
+    Parameters
+    ----------
+    film : FilmSolution
+        What the solver gave.
+    contact : LineContact
+        The contact.
+    oil : Lubricant
+        The oil.
+    point : OperatingPoint
+        Load, entrainment speed, temperature.
+    frequency : float
+        [Hz].
+    """
+    solution = contact_solution(film, contact, point, frequency)
+    modulus = contact.reduced_modulus
+    record: dict[str, Any] = {
+        "contact": contact.name,
+        "load_per_length": point.load,
+        "entrainment_speed": point.entrainment_speed,
+        "temperature": point.temperature,
+        "frequency": frequency,
+        **_groups(contact, oil, point),
+        "hertz_half_width": hertz.half_width(point.load, contact.radius, modulus),
+        "hertz_pressure": hertz.max_pressure(point.load, contact.radius, modulus),
+        **_numbers(solution),
+        "status": solution.status.word,
+        "reason": solution.reason,
+    }
+    return {
+        key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in record.items()
+    }
+
+
+def _numbers(solution: ContactSolution) -> dict[str, Any]:
+    """Return the numbers of a solution; a hole has none."""
+    values = {name: getattr(solution, name) for name in _SOLUTION_FIELDS}
+    values["viscosity_extrapolated"] = int(solution.viscosity_extrapolated)
+    return values
+
+
+def _groups(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> dict[str, float | None]:
+    """Return Moes' M and L; none at standstill."""
+    if point.entrainment_speed == 0:
+        return {"M": None, "L": None}
+    state = oil.at(point.temperature)
+    M, L = moes_groups(
+        point.load,
+        point.entrainment_speed,
+        state.viscosity,
+        state.pressure_viscosity.pressure_viscosity,
+        contact.radius,
+        contact.reduced_modulus,
+    )
+    return {"M": M, "L": L}
+
+
+def point_table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, length: float | None) -> str:
+    """Return the printed table: one column a contact, per length and, if known, times the length.
+
+    Parameters
+    ----------
+    job : Job
+        What the contacts belong to.
+    records : list of dict
+        Of the contacts, see `point_record`.
+    point : OperatingPoint
+        Load, entrainment speed, temperature.
+    length : float or None
+        Of a slice [m].
+    """
+    rows: list[tuple[str, str, list[Any]]] = list(_rows(records, length))
+    law = job.contacts[0].structural_law
+    header = f"{job.title}, {job.lubricant.title}, solver {job.solver}, structural law {law}"
+    place = f"{LOAD.text(point.load)}, {_speed(job, point)}, {TEMPERATURE.text(point.temperature)}"
+    if length is not None:
+        place += f", slice of {LENGTH.text(length)} ({point.load * length:.5g} N)"
+    lines = [header, place, f"{'':38s}" + "".join(f"{record['contact']:>14s}" for record in records)]
+    for label, unit, values in rows:
+        shown = "".join(f"{_shown(value):>14s}" for value in values)
+        lines.append(f"  {label:22s} {unit:12s} {shown}")
+    lines.extend(f"  {record['contact']}: {record['reason']}" for record in records if record["reason"])
+    lines.extend(f"  {record['contact']}: {note}" for record in records if (note := _extrapolated(job, record)))
+    return "\n".join(lines)
+
+
+def _speed(job: Job, point: OperatingPoint) -> str:
+    """Return the entrainment speed, and what it is of the inner ring of a bearing."""
+    speed = f"{point.entrainment_speed:.6g} m/s"
+    if job.bearing is None:
+        return speed
+    return f"{speed} (inner ring {RPM.text(job.bearing.inner_speed(point.entrainment_speed), 6)}, outer ring fixed)"
+
+
+def _extrapolated(job: Job, record: dict[str, Any]) -> str:
+    """Say that the pressure of a contact lies beyond the viscosity's fit; empty where it does not."""
+    if not record["viscosity_extrapolated"]:
+        return ""
+    limit = PRESSURE.text(job.lubricant.fitted_pressure)
+    return f"viscosity extrapolated: pressure above {limit}, to which it was fitted"
+
+
+def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple[str, str, list[Any]]]:
+    """Yield label, unit and values of each line of the table."""
+
+    def row(label: str, key: str, display: Display, times: float = 1.0) -> tuple[str, str, list[Any]]:
+        values = [None if record[key] is None else display.value(record[key] * times) for record in records]
+        return label, display.unit, values
+
+    plain = Display("")
+    yield "status", "", [record["status"] for record in records]
+    yield row("M", "M", plain)
+    yield row("L", "L", plain)
+    yield row("Hertz half-width", "hertz_half_width", FILM)
+    yield row("Hertz pressure", "hertz_pressure", PRESSURE)
+    yield row("largest pressure", "max_pressure", PRESSURE)
+    yield row("approach", "approach", FILM)
+    yield row("film offset", "film_offset", FILM)
+    yield row("central film", "central_film", FILM)
+    yield row("minimum film", "minimum_film", FILM)
+    yield row("stiffness k", "stiffness", Display("N/m2"))
+    yield row("damping c", "damping", Display("N s/m2"))
+    if length is not None:
+        yield row("k x length", "stiffness", Display("N/m"), length)
+        yield row("c x length", "damping", Display("N s/m"), length)
+    for name in ERRORS:
+        yield row(f"error of {name.removesuffix('_error').replace('_', ' ')}", name, plain)
+    yield row("time to solve", "solve_seconds", Display("ms", 1e3))
+
+
+def _shown(value: Any) -> str:
+    """Return a value for the table."""
+    if value is None:
+        return "-"
+    return value if isinstance(value, str) else f"{value:.5g}"

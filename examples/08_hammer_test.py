@@ -1,0 +1,47 @@
+"""A hammer test: hits on a shipped machine, and the modes that a fit finds in them.
+
+Run it with `python examples/08_hammer_test.py [FOLDER]`; the figure is written to the folder.
+The records are simulated, with 1 % of noise, as an analyser would give them; no file is needed. The fit knows the
+records only, and must find frequency and damping of an eigenvalue of the linear system that was hit.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ehdmaps.outputs import write_figure
+from mbs.assembly import assemble
+from mbs.linearised.modes import modes
+from mbs.linearised.steady import steady_system
+from mbs.modal.estimation import estimate
+from mbs.modal.fit import identify
+from mbs.modal.hammer import HammerTest, linear_hits
+from mbs.scene_reader import read_scene
+from mbs.statics import equilibrium
+
+model = assemble(read_scene("n1014_testrig"), "hertz")
+balance = equilibrium(steady_system(model.system), model.operation)
+test = HammerTest(highest=3000.0, duration=1.3, hits=8, noise=0.01, seed=1)
+responses = estimate(linear_hits(balance, model.scene.inputs, model.scene.sensors, test)).responses
+found = identify(responses, band=(1000.0, 1800.0))
+
+eigenvalues = modes(balance)
+for frequency, ratio in zip(found.frequency, found.damping_ratio, strict=True):
+    nearest = int(np.argmin(np.abs(eigenvalues.frequency - frequency)))
+    expected, damped = eigenvalues.frequency[nearest], eigenvalues.damping_ratio[nearest]
+    print(f"{frequency:.2f} Hz, {100 * ratio:.4f} %; eigenvalue {expected:.2f} Hz, {100 * damped:.4f} %")
+    assert abs(frequency / expected - 1.0) < 1e-4  # noise, and what modes outside the band add
+    assert abs(ratio / damped - 1.0) < 0.02
+assert found.frequency.size > 0
+
+figure = Figure(figsize=(7.0, 3.5), layout="constrained")
+axes = figure.subplots()
+for row, label in zip(responses.response, responses.labels, strict=True):
+    axes.semilogy(responses.frequency, np.abs(row) / np.abs(row).max(), label=label, linewidth=0.8)
+for frequency in found.frequency:
+    axes.axvline(frequency, color="k", linestyle="--", linewidth=0.8)
+axes.set(xlabel="frequency, Hz", ylabel="response over its largest value", xlim=(0.0, test.highest))
+axes.legend()
+write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "08_hammer.png", 120)
