@@ -132,6 +132,18 @@ def test_examples_of_docstrings(name):
     assert doctest.testmod(importlib.import_module(name)).failed == 0
 
 
+def test_the_table_of_the_package_has_every_module():
+    table = {line.split("  ")[0] for line in (analyses.__doc__ or "").splitlines()}
+    assert {entry.name for entry in pkgutil.iter_modules(analyses.__path__)} <= table
+
+
+def test_analyses_load_no_command_and_no_figures():
+    code = "import sys, mbs; [getattr(mbs, name) for name in mbs.__all__]; print([*sys.modules])"
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "mbs.analyses.campbell" in result.stdout
+    assert not [name for name in ("mbs.commands", "mbs.cli", "matplotlib") if f"'{name}'" in result.stdout]
+
+
 class TestAsTheCommand:
     def test_statics(self, model, written):
         xr.testing.assert_identical(statics(model).dataset, written("statics"))
