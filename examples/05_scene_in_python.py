@@ -20,8 +20,8 @@ from mbs.bearings.films import DryContacts
 from mbs.bearings.laws import hertz
 from mbs.body import Inertia, rigid_body
 from mbs.elements import Load, Operation
+from mbs.equilibrium import equilibrium
 from mbs.linearised.modes import undamped_modes
-from mbs.statics import equilibrium
 from mbs.system import System
 
 SPEED, TEMPERATURE = 500 * math.pi / 30, 313.15

@@ -15,12 +15,12 @@ from matplotlib.figure import Figure
 from ehdmaps.outputs import write_figure
 from mbs.assembly import assemble
 from mbs.elements import Operation
+from mbs.equilibrium import equilibrium
 from mbs.profiles import SpeedProfile
 from mbs.scene_reader import read_scene
 from mbs.spectral.campbell import run_up_spectra
 from mbs.spectral.levels import Reference
 from mbs.spectral.run_signal import RunSignal
-from mbs.statics import equilibrium
 from mbs.transient.run import run
 from mbs.transient.stepping import Settings
 

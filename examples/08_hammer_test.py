@@ -13,13 +13,13 @@ from matplotlib.figure import Figure
 
 from ehdmaps.outputs import write_figure
 from mbs.assembly import assemble
+from mbs.equilibrium import equilibrium
 from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
 from mbs.modal.estimation import estimate
 from mbs.modal.fit import identify
 from mbs.modal.hammer import HammerTest, linear_hits
 from mbs.scene_reader import read_scene
-from mbs.statics import equilibrium
 
 model = assemble(read_scene("n1014_testrig"), "hertz")
 balance = equilibrium(steady_system(model.system), model.operation)

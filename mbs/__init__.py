@@ -24,7 +24,7 @@ one bearing         `bearing_point` (its equilibrium under a load, pressures and
 the system          `system`; `equilibrium`, `free_motion`; `planning` (the map that it needs)
 linear              `linearised` (modes, responses, over speed); `modal` (identified from hammer hits)
 in time             `transient` (method, compiled runs); `spectral` (levels over speed and order)
-analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, hammer, as functions
+analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, hammer, plan
 for people          `output` (datasets, figures), `commands`, `cli`; `systems` (shipped scenes)
 ==================  ====================================================================================
 
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from mbs.analyses.hammer import HammerSettings, hammer
     from mbs.analyses.lsa import LsaSettings, lsa
     from mbs.analyses.modes import modes
+    from mbs.analyses.plan import PlanSettings, plan
     from mbs.analyses.runup import runup
     from mbs.analyses.statics import statics
     from mbs.analyses.sweep import SweepSettings, sweep
@@ -67,6 +68,7 @@ __all__ = [
     "LsaSettings",
     "Model",
     "Operation",
+    "PlanSettings",
     "RunUp",
     "Scene",
     "SweepRange",
@@ -77,6 +79,7 @@ __all__ = [
     "lsa",
     "modes",
     "parse_scene",
+    "plan",
     "read_scene",
     "runup",
     "shipped_systems",
@@ -94,6 +97,7 @@ _HOMES = {
     "LsaSettings": "analyses.lsa",
     "Model": "assembly",
     "Operation": "elements",
+    "PlanSettings": "analyses.plan",
     "RunUp": "scene",
     "Scene": "scene",
     "SweepRange": "linearised.sweep",
@@ -104,6 +108,7 @@ _HOMES = {
     "lsa": "analyses.lsa",
     "modes": "analyses.modes",
     "parse_scene": "scene_reader",
+    "plan": "analyses.plan",
     "read_scene": "scene_reader",
     "runup": "analyses.runup",
     "shipped_systems": "scene_reader",

@@ -129,7 +129,7 @@ def assemble(
     >>> from mbs import assemble, read_scene
     >>> model = assemble(read_scene("nu308_rigid"), clearance=20e-6)
     >>> model.label, model.system.size
-    ('dry Hertz', 5)
+    ('dry Hertz', 8)
     """
     if isinstance(emap, (str, Path)):
         emap = open_map(emap)

@@ -10,6 +10,9 @@ sweep        modes, bearings and responses over speed, of one or more models
 runup        the nonlinear system in time over its speed profile
 campbell     run-ups with one or more laws as levels over speed, frequency and order
 hammer       a simulated hammer test
+plan         which ranges a scene needs of a contact map, and the jobs that cover them
+planned_job  the text of such a job
+coverage     whether a map covers what is needed
 case         the models that an analysis compares, with their labels
 progress     how an analysis tells how far it is
 reach        where the films of a law begin, and calls outside its map

@@ -108,7 +108,7 @@ def hammer(model: Model, settings: HammerSettings | None = None, progress: Progr
     >>> model = assemble(read_scene("nu308_rigid"))
     >>> found = hammer(model, HammerSettings(hits=2, duration=0.05))
     >>> len(found.hits), found.test.samples
-    (1, 640)
+    (1, 1280)
     """
     settings = settings or HammerSettings()
     scene = model.scene

@@ -71,7 +71,7 @@ def statics(model: Model, operation: Operation | None = None) -> StaticsResult:
     >>> from mbs import assemble, read_scene, statics
     >>> found = statics(assemble(read_scene("nu308_rigid")))
     >>> float(found.dataset["bearing_force"].sel(bearing="bearing_left")[1].round(1))
-    -2500.0
+    -100.0
     """
     balance = equilibrium(model.system, operation or model.operation)
     free = tuple(free_lines(free_motions(balance)))

@@ -87,7 +87,13 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
     clearances = [read_clearance(text, problems) for text in _given(arguments, "clearance")] or [None]
     factors = [_factor(text, problems) for text in _given(arguments, "load_factor")] or [1.0]
     angles = [_angle(text, problems) for text in _given(arguments, "start_angle")] or [None]
-    problems += scene_output_problems(arguments, scene.files if scene else (), kind)
+    problems += scene_output_problems(
+        arguments.scene,
+        [*_given(arguments, "map"), *(scene.files if scene else ())],
+        arguments.output,
+        arguments.plot,
+        kind,
+    )
     count = len(laws) * len(clearances) * len(factors) * len(angles)
     if count > MOST_CASES:
         problems.append(
@@ -114,21 +120,26 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
 
 
 def scene_output_problems(
-    arguments: argparse.Namespace, read: Iterable[str | Path] = (), kind: Kind = RESULT
+    scene: str,
+    read: Iterable[str | Path] = (),
+    output: str | None = None,
+    plot: str | None = None,
+    kind: Kind = RESULT,
 ) -> list[str]:
     """What is wrong about -o and --plot: said before anything is computed, so that no result is lost by it.
 
     Parameters
     ----------
-    arguments : argparse.Namespace
-        With `scene`, `map`, `output`, `plot`; each but the scene may be None or left out.
+    scene : str
+        As it was given: a shipped system or a file.
     read : iterable of str or Path
-        Further files that the command reads: those that the scene names.
+        Further files that the command reads: maps, and those that the scene names.
+    output, plot : str, optional
+        What -o and --plot name.
     kind : Kind
         Of what -o writes.
     """
-    files = [Output("-o", arguments.output, kind), Output("--plot", arguments.plot, FIGURE)]
-    return output_problems(files, [arguments.scene, *_given(arguments, "map"), *read])
+    return output_problems([Output("-o", output, kind), Output("--plot", plot, FIGURE)], [scene, *read])
 
 
 def _given(arguments: argparse.Namespace, name: str) -> list[str]:

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.reader import parse_job
 from mbs import cli
+from mbs.analyses.planned_job import job_text
 from mbs.assembly import assemble
-from mbs.commands.plan import job_text
 from mbs.elements import Load
 from mbs.errors import AnalysisError
 from mbs.planning import (

@@ -1,0 +1,306 @@
+"""`mbs` as a library: every analysis from Python, without files, gives what its command writes."""
+
+from __future__ import annotations
+
+import dataclasses
+import doctest
+import importlib
+import pkgutil
+import subprocess
+import sys
+from importlib import resources
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import mbs
+from ehdmaps.errors import InputError, MapError
+from ehdmaps.jobs import cli as jobs_cli
+from ehdmaps.maps.emap import open_map
+from ehdmaps.outputs import MADE_AS
+from ehdmaps.units import quantity
+from mbs import (
+    CampbellSettings,
+    Case,
+    HammerSettings,
+    LsaSettings,
+    Operation,
+    PlanSettings,
+    SweepRange,
+    SweepSettings,
+    analyses,
+    assemble,
+    campbell,
+    cli,
+    hammer,
+    lsa,
+    modes,
+    parse_scene,
+    plan,
+    read_scene,
+    runup,
+    statics,
+    sweep,
+)
+from mbs.errors import AnalysisError
+from mbs.modal.uff import read_uff
+
+JOB = """
+schema = 1
+[bearing]
+name = "NU308"
+[lubricant]
+name = "FVA3"
+[grid]
+load = ["1 N/mm", "10 N/mm", "100 N/mm", "400 N/mm"]
+entrainment_speed = ["0.1 m/s", "0.5 m/s", "2 m/s", "10 m/s"]
+temperature = ["40 degC"]
+[solver]
+name = "formula"
+structural_law = "iso16281"
+"""
+
+EXAMPLES = ["mbs.assembly", *(f"mbs.analyses.{entry.name}" for entry in pkgutil.iter_modules(analyses.__path__))]
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    """The shipped NU308 with a short run and few frequencies."""
+    text = (resources.files("mbs") / "systems" / "nu308_rigid.toml").read_text(encoding="utf-8")
+    path = tmp_path_factory.mktemp("scene") / "short.toml"
+    path.write_text(
+        text.replace('from = "0 rpm"', 'from = "2000 rpm"')
+        .replace('to = "2000 rpm"', 'to = "5000 rpm"')
+        .replace('duration = "0.2 s"', 'duration = "0.08 s"')
+        .replace('sample = "0.1 ms"', "")
+        .replace("slices = 41", "slices = 5")
+    )
+    return path
+
+
+@pytest.fixture(scope="module")
+def model(path):
+    return assemble(read_scene(str(path)))
+
+
+@pytest.fixture
+def written(path, tmp_path, capsys):
+    """What a command on the scene writes."""
+
+    def run(command, *options):
+        out = tmp_path / "out.nc"
+        assert cli.main([command, str(path), *options, "-o", str(out)]) == 0
+        capsys.readouterr()
+        with xr.open_dataset(out) as data:
+            found = data.load()
+        del found.attrs[MADE_AS]
+        return found
+
+    return run
+
+
+def counted():
+    """A progress, and what it was told."""
+    told = []
+    return told, lambda done, total: told.append((done, total))
+
+
+def check_told(told, total):
+    assert told[0] == (0, total)
+    assert told[-1] == (total, total)
+    assert told == sorted(told)
+
+
+@pytest.mark.parametrize("name", sorted(mbs.__all__))
+def test_every_name_is_there(name):
+    assert getattr(mbs, name).__name__ == name
+    assert name in dir(mbs)
+
+
+def test_names_stay_what_they_are_after_their_modules_are_loaded():
+    code = (
+        "import mbs.analyses.statics, mbs.analyses.plan, mbs.cli, mbs.scene_reader, mbs.commands.sweep; import mbs; "
+        "print(all(callable(getattr(mbs, name)) for name in mbs.__all__))"
+    )
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert result.stdout.strip() == "True"
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_examples_of_docstrings(name):
+    assert doctest.testmod(importlib.import_module(name)).failed == 0
+
+
+def test_the_table_of_the_package_has_every_module():
+    table = {line.split("  ")[0] for line in (analyses.__doc__ or "").splitlines()}
+    assert {entry.name for entry in pkgutil.iter_modules(analyses.__path__)} <= table
+
+
+def test_analyses_load_no_command_and_no_figures():
+    code = "import sys, mbs; [getattr(mbs, name) for name in mbs.__all__]; print([*sys.modules])"
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "mbs.analyses.campbell" in result.stdout
+    assert not [name for name in ("mbs.commands", "mbs.cli", "matplotlib") if f"'{name}'" in result.stdout]
+
+
+class TestAsTheCommand:
+    def test_statics(self, model, written):
+        xr.testing.assert_identical(statics(model).dataset, written("statics"))
+
+    def test_modes(self, model, written):
+        xr.testing.assert_identical(modes(model).dataset, written("modes"))
+
+    def test_lsa(self, model, written):
+        xr.testing.assert_identical(lsa(model).dataset, written("lsa"))
+
+    def test_sweep_of_two_laws(self, model, written):
+        other = assemble(model.scene, "formula")
+        told, progress = counted()
+        found = sweep(
+            [model, other],
+            SweepSettings(SweepRange(quantity("1000 rpm", "rad/s"), quantity("2000 rpm", "rad/s"), 2), 2),
+            progress,
+        )
+        speeds = ("--speeds", "1000 rpm", "2000 rpm", "2")
+        xr.testing.assert_identical(
+            found.dataset, written("sweep", "--law", "hertz", "--law", "formula", *speeds, "--cage-angles", "2")
+        )
+        check_told(told, 2)
+
+    def test_runup(self, model, written):
+        told, progress = counted()
+        found = runup(model, progress=progress)
+        xr.testing.assert_identical(found.dataset, written("runup"))
+        check_told(told, found.trajectory.steps)
+
+    def test_campbell_of_two_laws(self, model, written):
+        other = assemble(model.scene, "constant:hertz")
+        told, progress = counted()
+        settings = CampbellSettings(sensor="S1", highest=3000.0)
+        found = campbell([model, other], settings, progress, with_modes=True)
+        xr.testing.assert_identical(
+            found.dataset,
+            written("campbell", "--law", "hertz", "--law", "constant:hertz", "--sensor", "S1", "--highest", "3 kHz"),
+        )
+        check_told(told, sum(entry.record.steps for entry in found.runs))
+        assert found.failed == ()
+        assert all(entry.modes is not None for entry in found.runs)
+
+    @pytest.mark.parametrize("nonlinear", [False, True])
+    def test_hammer(self, path, model, tmp_path, capsys, nonlinear):
+        out = tmp_path / "hits.uff"
+        options = ["--hits", "2", "--duration", "50 ms", *(["--nonlinear"] if nonlinear else [])]
+        assert cli.main(["hammer", str(path), *options, "-o", str(out)]) == 0
+        capsys.readouterr()
+        told, progress = counted()
+        found = hammer(model, HammerSettings(duration=0.05, hits=2, nonlinear=nonlinear), progress)
+        for ours, theirs in zip(found.hits, read_uff(out).hits, strict=True):
+            # 1e-6: single precision of a universal file.
+            scale = np.abs(ours.response).max()
+            np.testing.assert_allclose(theirs.response, ours.response, rtol=0.0, atol=1e-6 * scale)
+        assert told == ([(0, 2), (1, 2), (2, 2)] if nonlinear else [])
+
+    def test_plan(self, path, tmp_path, capsys):
+        out = tmp_path / "job.toml"
+        assert cli.main(["plan", str(path), "--margin", "2", "-o", str(out)]) == 0
+        capsys.readouterr()
+        (job,) = plan(read_scene(str(path)), PlanSettings(margin=2.0)).jobs(["job"])
+        assert job.text.strip() in out.read_text(encoding="utf-8")
+
+
+def test_the_operation_goes_before_that_of_the_scene(model):
+    turned = Operation(2.0 * model.scene.speed)
+    for analysis in (statics, modes):
+        assert analysis(model, turned).dataset.attrs["speed_rad_per_s"] == turned.speed
+    asked = LsaSettings(frequencies=(50.0, 60.0), operation=turned)
+    assert lsa(model, asked).dataset.attrs["speed_rad_per_s"] == turned.speed
+    assert lsa(model, asked).asked == 2
+
+
+def test_a_map_may_be_a_path(model, tmp_path):
+    path = tmp_path / "map.nc"
+    with pytest.raises(MapError, match=r"map\.nc: cannot be read"):
+        assemble(model.scene, emap=path)
+    (tmp_path / "job.toml").write_text(JOB)
+    assert jobs_cli.main(["generate", str(tmp_path / "job.toml"), "-o", str(path), "--workers", "1"]) == 0
+    for emap in (path, str(path), open_map(path)):
+        assert assemble(model.scene, emap=emap).label == "formula map"
+
+
+def test_models_of_one_law_need_labels(model):
+    other = assemble(model.scene, clearance=20e-6)
+    with pytest.raises(InputError, match=r"models: got 2 with the labels dry Hertz, dry Hertz; allowed: .* a Case"):
+        sweep([model, other])
+    with pytest.raises(InputError, match=r"models: got 0 with the labels none; allowed: at least one"):
+        campbell([])
+    settings = SweepSettings(SweepRange(100.0, 200.0, 2))
+    found = sweep([Case("tight", model, 0.0), Case("loose", other, 20e-6)], settings)
+    assert found.dataset["case"].values.tolist() == ["tight", "loose"]
+
+
+def test_what_a_scene_lacks_is_said(model):
+    bare = dataclasses.replace(
+        model,
+        scene=dataclasses.replace(
+            model.scene, run_up=None, sweep=None, inputs=(), sensors=(), lubricant=None, frequencies=()
+        ),
+    )
+    for analysis, words in (
+        (runup, r"\[runup\] missing; a run needs"),
+        (campbell, r"\[runup\] missing; a run-up needs"),
+        (sweep, r"no speeds; allowed: --speeds"),
+        (lsa, r"\[\[sensors\]\] missing; a linear analysis needs"),
+        (hammer, r"\[\[inputs\]\] missing; a hammer test needs"),
+    ):
+        with pytest.raises(InputError, match=words):
+            analysis(bare)
+    with pytest.raises(InputError, match=r"got no \[lubricant\], which a map is made for"):
+        plan(bare.scene)
+
+
+def test_a_plan_takes_dry_laws_only(model):
+    with pytest.raises(InputError, match=r"--law: got 'map'; allowed here: hertz, constant:NAME"):
+        plan(model.scene, PlanSettings(law="map"))
+
+
+class TestStopped:
+    """What Ctrl-C and a failing law leave of a comparison."""
+
+    def run(self, model, monkeypatch, error, **keywords):
+        module = importlib.import_module("mbs.analyses.campbell")
+        whole, calls = module.run_system, []
+
+        def fails_second(*values, **more):
+            calls.append(None)
+            if len(calls) == 2:
+                raise error
+            return whole(*values, **more)
+
+        monkeypatch.setattr(module, "run_system", fails_second)
+        return campbell([Case(name, model, 0.0) for name in "abc"], **keywords)
+
+    def test_stopped_it_is_raised(self, model, monkeypatch):
+        with pytest.raises(KeyboardInterrupt):
+            self.run(model, monkeypatch, KeyboardInterrupt())
+
+    def test_stopped_it_keeps_what_is_done_if_it_is_asked_to(self, model, monkeypatch):
+        found = self.run(model, monkeypatch, KeyboardInterrupt(), keep_partial=True)
+        assert found.dataset["law"].values.tolist() == ["a"]
+        assert found.failed == ("b: stopped, no result", "c: stopped, no result")
+
+    def test_a_failing_law_leaves_the_others(self, model, monkeypatch):
+        told, progress = counted()
+        found = self.run(model, monkeypatch, AnalysisError("no solution"), progress=progress)
+        assert found.dataset["law"].values.tolist() == ["a", "c"]
+        assert found.failed == ("b: no solution",)
+        check_told(told, 3 * found.runs[0].record.steps)
+
+
+def test_a_scene_needs_no_file():
+    scene = parse_scene(read_scene("nu308_rigid").text, "mine", "mine.toml")
+    assert scene.name == "mine"
+    # Both bearings carry half of the load.
+    forces = statics(assemble(scene)).dataset["bearing_force"].sum("bearing").values
+    loads = sum(load.force[:3] for load in scene.loads)
+    np.testing.assert_allclose(forces[1:], -loads[1:], rtol=1e-8)  # the equilibrium is found to 1e-10
