@@ -108,7 +108,7 @@ class BearingGeometry:
         return 0.5 * self.roller_diameter * (1.0 + self.gamma)
 
     def entrainment_speed(self, inner_speed: float, outer_speed: float = 0.0) -> float:
-        """Entrainment speed u = (d_m/4) |omega_i - omega_o| (1 - gamma^2) [m/s].
+        """Entrainment speed u = (d_m/4) abs(omega_i - omega_o) (1 - gamma^2) [m/s].
 
         Pure rolling is taken; u is then the same at both races.
 

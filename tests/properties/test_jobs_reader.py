@@ -2,6 +2,7 @@
 
 import copy
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -120,6 +121,7 @@ def test_the_unchanged_job_is_good():
     assert parse_job(written(GOOD), "job", "job.toml").points == 40
 
 
+@pytest.mark.slow
 @settings(max_examples=400, deadline=None)
 @given(mutations)
 def test_a_mutated_job_is_read_or_refused(changes):

@@ -44,6 +44,7 @@ def made_map(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_script_prints_what_is_shown(made_map, monkeypatch, capsys):
     found = re.search(r"```python\n([^`]*from mbs import[^`]*)```\n\nprints\n\n```\n([^`]*)```", README)
     assert found is not None
@@ -67,6 +68,7 @@ def test_blocks_of_python_compile():
         compile(block, "README.md", "exec")
 
 
+@pytest.mark.slow
 def test_first_block_of_python_runs(made_map, monkeypatch):
     block = re.findall(r"```python\n(.*?)```", README, re.DOTALL)[0]
     monkeypatch.chdir(made_map)

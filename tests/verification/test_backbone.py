@@ -97,6 +97,7 @@ def test_lines_cover_what_is_read() -> None:
                 assert low <= zeta <= high
 
 
+@pytest.mark.slow
 def test_field_against_fresh_solves() -> None:
     plan = _plan()
     field = _field(plan, _group(plan))

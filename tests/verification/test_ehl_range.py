@@ -118,6 +118,7 @@ def test_errors_and_their_estimates() -> None:
     assert np.all(np.median(table, axis=0) <= 5.0), np.median(table, axis=0)
 
 
+@pytest.mark.slow
 def test_errors_of_films_and_pressure_and_their_estimates() -> None:
     """Central and smallest film and largest pressure, as the test above: what is stated bounds what is wrong."""
     fine = replace(SOLVER, density=4.0 * SOLVER.density, inlet_length=2.0 * SOLVER.inlet_length)
@@ -166,6 +167,7 @@ def test_border_at_rest_is_continuous() -> None:
     assert 0.6 < exponent < 0.75  # thin-film exponent of the speed in Dowson and Higginson's range of formulas
 
 
+@pytest.mark.slow
 def test_damping_valley() -> None:
     """NU308, 2.06 m/s, 40 degC: damping dives by two decades between 4 and 20 N per 0.7 mm, and recovers.
 

@@ -145,6 +145,7 @@ def test_statics_and_modes(model):
     np.testing.assert_allclose(theirs, undamped_modes(balance).frequency, rtol=1e-3)
 
 
+@pytest.mark.slow
 def test_response_in_time(model):
     """50 ms at 500 rpm with a pulse of 50 N on the shaft; 1 % of the largest motion is asked.
 

@@ -345,6 +345,7 @@ def test_modes_of_the_shaft_of_beams(solid, elements):
     np.testing.assert_allclose(there.frequencies()[: ours.size], ours, rtol=3e-3)
 
 
+@pytest.mark.slow
 def test_spinning_shaft_of_beams(solid):
     """Gyroscopic moments turn the plane of a free vibration, which a force along y has begun.
 

@@ -31,6 +31,8 @@ from mbs.housings.designs import HOUSINGS, PedestalShape
 SHIPPED = Path(mbs.__file__).parent / "systems"
 NONE = np.zeros(0, dtype=np.int64)
 
+pytestmark = pytest.mark.slow
+
 
 @functools.cache
 def why_not() -> str:

@@ -76,6 +76,7 @@ def films(emap):
     }
 
 
+@pytest.mark.slow
 class TestGearbox:
     scene = read_scene("gearbox")
 
@@ -195,6 +196,7 @@ class TestFlexibleShaft:
         assert np.all(found[1] > found[0])
         assert np.all(found[2] > found[1])
 
+    @pytest.mark.slow
     def test_no_force_jumps_in_the_run_up(self, emap):
         """A jump would be as large however short the steps are; here it falls with them."""
         model = assemble(self.scene, "map", emap)
@@ -226,6 +228,7 @@ class TestRig:
         undamped, film, damped = (self.height(f"constant:{law}") for law in ("undamped", "cfd", "damped"))
         assert undamped > 2.0 * film > 4.0 * damped
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("seed", [0, 1])
     def test_hammer_test_finds_the_modes(self, seed):
         model = assemble(self.scene, "formula")

@@ -239,6 +239,7 @@ class TestIdentity:
         orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
         np.testing.assert_allclose(orders, 1.0, atol=0.1)
 
+    @pytest.mark.slow
     def test_holds_for_a_bearing_with_films(self):
         """NU308 with the film formula, 20 um: the sum over 19 steps agrees with the shift to 1 % of it."""
         model = assemble(read_scene("nu308_rigid"), "formula", clearance=20e-6)

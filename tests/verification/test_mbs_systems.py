@@ -470,6 +470,7 @@ class TestN1014:
         np.testing.assert_allclose(places[0], places[1], rtol=1e-6, atol=1e-13)
         np.testing.assert_allclose(stiffness[0][1:3, 1:3], stiffness[1][1:3, 1:3], rtol=1e-5, atol=1.0)
 
+    @pytest.mark.slow
     def test_film_laws_of_each_contact_give_the_statics_of_the_series(self):
         """Rigid rollers balance as a whole, slices in series each for itself: alike but for unlike contacts."""
         model = assemble(self.SCENE, "formula")

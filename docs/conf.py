@@ -1,0 +1,24 @@
+"""Settings of the documentation; `sphinx-build -W -b html docs docs/_build` needs no network."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from ehdmaps import version as ehdmaps_version
+
+project = "ehdmaps"
+author = "The ehdmaps developers"
+copyright = author
+release = ehdmaps_version.version()
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"]
+myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 3
+napoleon_google_docstring = False
+autodoc_typehints = "none"
+autodoc_member_order = "bysource"
+exclude_patterns = ["_build"]
+html_theme = "alabaster"
+# Pages of the repository are included as they are: their links to its files are for readers of the repository.
+suppress_warnings = ["myst.xref_missing", "myst.header"]

@@ -1,0 +1,36 @@
+"""What the files beside the packages say of the project agrees."""
+
+import re
+import tomllib
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+
+def test_citation_has_the_version_and_licence_of_the_project():
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert re.search(r"(?m)^version: (\S+)$", citation)[1] == PROJECT["version"]
+    assert re.search(r"(?m)^license: (\S+)$", citation)[1] == PROJECT["license"]["text"]
+
+
+def test_contributing_names_files_that_exist():
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    table = "\n".join(line for line in text.splitlines() if line.startswith("| a"))
+    named = [name for name in re.findall(r"`([\w./]+/[\w./]*)`", table) if "NAME" not in name]
+    assert len(named) >= 15
+    assert [name for name in named if not (ROOT / name).exists()] == []
+
+
+def test_check_runs_what_contributing_promises():
+    check = (ROOT / ".ci" / "check").read_text(encoding="utf-8")
+    tools = ("ruff check", "ruff format --check", "codespell", "mypy", "sphinx-build -q -W", "pytest")
+    assert [tool for tool in tools if f".venv/bin/{tool}" not in check and f"-m {tool}" not in check] == []
+    extra = " ".join(PROJECT["optional-dependencies"]["test"])
+    assert [name for name in PROJECT["optional-dependencies"]["docs"] if name not in extra] == []
+
+
+def test_pages_of_the_documentation_are_listed():
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    listed = set(index.partition("maxdepth")[2].split())
+    assert {page.stem for page in (ROOT / "docs").glob("*.md")} - {"index"} <= listed
