@@ -23,9 +23,6 @@ from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import FilmSolution, Status
 
-DENSITY_PRESSURE = 0.59e9
-"""Pressure in the Dowson-Higginson density law [Pa]."""
-
 LARGEST_PRESSURE = 10e9
 """Hertz pressure above which no solve is tried [Pa]; steel yields long before."""
 
@@ -150,17 +147,10 @@ def line_problem(
     contact: LineContact, state: LubricantState, load: float, speed: float
 ) -> tuple[LineProblem, float, float]:
     """Groups of one operating point: those of the equations, and Moes' M and L."""
-    law = state.pressure_viscosity
+    alpha = state.pressure_viscosity.pressure_viscosity
     peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
-    M, L = moes_groups(load, speed, state.viscosity, law.pressure_viscosity, contact.radius, contact.reduced_modulus)
-    problem = LineProblem(
-        wedge=3.0 * math.pi**2 / (8.0 * M * M),
-        alpha=law.pressure_viscosity * peak,
-        exponent=law.exponent,
-        pressure_ratio=peak / law.pressure_scale,
-        density_ratio=peak / DENSITY_PRESSURE if state.compressible else 0.0,
-    )
-    return problem, float(M), L
+    M, L = moes_groups(load, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
+    return LineProblem(3.0 * math.pi**2 / (8.0 * M * M), state.isotherm(peak)), float(M), L
 
 
 def dry_film(peak: float, reason: str) -> FilmSolution:
