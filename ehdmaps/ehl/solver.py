@@ -10,6 +10,7 @@ import time
 from dataclasses import dataclass
 
 from ehdmaps.ehl.grid import GridShape
+from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.ehl.line import GroupSolution, Resolution, solve_groups
 from ehdmaps.ehl.newton import CONVERGED, DIVERGED
 from ehdmaps.ehl.profile import Profile
@@ -17,14 +18,11 @@ from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.errors import InputError
 from ehdmaps.physics.closed_form import THIN_FILM_LIMIT
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.hertz import half_width, max_pressure
+from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import FilmSolution, Status
-
-LARGEST_PRESSURE = 10e9
-"""Hertz pressure above which no solve is tried [Pa]; steel yields long before."""
 
 HEAVIEST_LOAD_NUMBER = 2e6
 """Moes' M above which the film is too thin for double precision to see it beside the elastic deflection."""
@@ -59,11 +57,10 @@ class ReynoldsSolver:
     tolerance: float = 1e-6
 
     def __post_init__(self) -> None:
-        limits = {"density": (3.0, 60.0), "inlet_length": (20.0, 1e5), "tolerance": (1e-12, 1e-3)}
         problems = [
             f"reynolds solver, {name}: got {getattr(self, name)!r}; allowed: {low:g} to {high:g}; "
             "leave it out for the default"
-            for name, (low, high) in limits.items()
+            for name, (low, high) in SETTING_LIMITS.items()
             if not low <= getattr(self, name) <= high
         ]
         if problems:

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from ehdmaps.ehl.line import LOAD, GroupSolution, at_load
-from ehdmaps.ehl.linearisation import DRY_COMPLIANCE, film_response
+from ehdmaps.ehl.linearisation import film_response
 from ehdmaps.ehl.newton import CONVERGED, newton
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import residual, stored_mass, stored_mass_rate
+from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from tests.verification.ehl_cases import roelands_problem, solved
 
 
