@@ -9,6 +9,7 @@
 | `profile` | a converged solution, and how it starts the next one |
 | `linearisation` | stiffness and damping: linear response, on a grid that follows the spike |
 | `line` | the story of one solve: coarse grid, place of the spike, fine grid, response, error estimate |
+| `limits` | allowed settings of the solver |
 | `solver` | `ReynoldsSolver`: operating points in SI, one line of loads after another |
 | `start` | what the solution of a point gives to another solver |
 

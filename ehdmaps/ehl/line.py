@@ -239,13 +239,7 @@ def problem_load(problem: LineProblem) -> float:
 def at_load(problem: LineProblem, factor: float) -> LineProblem:
     """The same contact, oil and speed at `factor` times the load: p_H and b go with its square root."""
     root = math.sqrt(factor)
-    return LineProblem(
-        wedge=problem.wedge / (factor * factor),
-        alpha=problem.alpha * root,
-        exponent=problem.exponent,
-        pressure_ratio=problem.pressure_ratio * root,
-        density_ratio=problem.density_ratio * root,
-    )
+    return LineProblem(problem.wedge / (factor * factor), problem.isotherm.scaled(root))
 
 
 def _with_spike(

@@ -11,7 +11,6 @@ response does not depend on how the grid moves.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -21,11 +20,9 @@ from scipy.linalg import lu_factor, lu_solve
 from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid
 from ehdmaps.ehl.reynolds import LineProblem, residual, stored_mass, stored_mass_rate
+from ehdmaps.physics.hertz import DRY_COMPLIANCE
 
 Array = NDArray[np.float64]
-
-DRY_COMPLIANCE = math.log(2.0) / math.pi
-"""a of the dry Hertz contact: what the log kernel with reference length b gives."""
 
 
 class Neighbour(NamedTuple):

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ehdmaps.ehl.reynolds import LineProblem, film, residual
+from ehdmaps.ehl.reynolds import LineProblem, film, residual, steepest_viscosity_step
 
 Array = NDArray[np.float64]
 
@@ -97,12 +97,9 @@ def newton(
             abs(move[n]) / (1.0 + abs(unknowns[n])),
             abs(move[n + 1]) / (outflow + 1e-3),
         )
-        thickening = 0.0
         for i in range(n - 1):
             last = max(last, abs(move[i]) / peak)
-            p = max(unknowns[i], 0.0)
-            slope = problem.alpha * (1.0 + problem.pressure_ratio * p) ** (problem.exponent - 1.0)
-            thickening = max(thickening, abs(move[i]) * slope)
+        thickening = steepest_viscosity_step(problem, unknowns, move)
         if not math.isfinite(last):
             return NewtonResult(unknowns, DIVERGED, count, last)
         length = 1.0

@@ -30,6 +30,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ehdmaps.physics.isotherm import Isotherm, density, log_viscosity
+
 Array = NDArray[np.float64]
 
 FITTED_STEP = 1.0
@@ -43,48 +45,39 @@ class LineProblem(NamedTuple):
     ----------
     wedge : float
         lambda = 3 pi^2/(8 M^2).
-    alpha : float
-        alpha p_H = L sqrt(M/(2 pi)).
-    exponent, pressure_ratio : float
-        ln eta = alpha/(z q) ((1 + q P)^z - 1): z, and q = p_H/p_c. Barus has q = 0, z = 0 is alpha/q ln(1 + q P).
-    density_ratio : float
-        p_H/0.59 GPa of the Dowson-Higginson density; 0 is incompressible.
+    isotherm : Isotherm
+        Viscosity and density over P: pressures in p_H.
     """
 
     wedge: float
-    alpha: float
-    exponent: float
-    pressure_ratio: float
-    density_ratio: float
+    isotherm: Isotherm
+
+
+_log_viscosity, _density = njit(cache=True)(log_viscosity), njit(cache=True)(density)
 
 
 @njit(cache=True)
 def oil(
     problem: LineProblem, pressure: Array, log_eta: Array, log_eta_slope: Array, rho: Array, rho_slope: Array
 ) -> None:
-    """Fill ln eta, rho and their derivatives at each pressure; a negative trial pressure acts as zero on ln eta."""
-    z, q, alpha, kappa = problem.exponent, problem.pressure_ratio, problem.alpha, problem.density_ratio
+    """Fill ln eta, rho and their derivatives at each pressure; a negative trial pressure acts as zero on them."""
     for i in range(pressure.size):
         p = max(pressure[i], 0.0)
-        if q == 0.0 or z == 1.0:
-            log_eta[i] = alpha * p
-            log_eta_slope[i] = alpha
-        elif z == -1.0:
-            f = 1.0 / (1.0 + q * p)
-            log_eta[i] = alpha * p * f
-            log_eta_slope[i] = alpha * f * f
-        elif z == 0.0:
-            log_eta[i] = alpha / q * math.log1p(q * p)
-            log_eta_slope[i] = alpha / (1.0 + q * p)
-        else:
-            g = (1.0 + q * p) ** z
-            log_eta[i] = alpha / (z * q) * (g - 1.0)
-            log_eta_slope[i] = alpha * g / (1.0 + q * p)
+        log_eta[i], log_eta_slope[i] = _log_viscosity(problem.isotherm, p)
+        rho[i], rho_slope[i] = _density(problem.isotherm, p)
         if pressure[i] < 0.0:
             log_eta_slope[i] = 0.0
-        t = kappa * p
-        rho[i] = (1.0 + 1.34 * t) / (1.0 + t)
-        rho_slope[i] = 0.34 * kappa / (1.0 + t) ** 2 if pressure[i] >= 0.0 else 0.0
+            rho_slope[i] = 0.0
+
+
+@njit(cache=True)
+def steepest_viscosity_step(problem: LineProblem, unknowns: Array, move: Array) -> float:
+    """Largest change of ln eta by a move of the unknowns, to first order."""
+    largest = 0.0
+    for i in range(unknowns.size - 3):
+        slope = _log_viscosity(problem.isotherm, max(unknowns[i], 0.0))[1]
+        largest = max(largest, abs(move[i]) * slope)
+    return largest
 
 
 @njit(cache=True)

@@ -10,6 +10,7 @@ import time
 from dataclasses import dataclass
 
 from ehdmaps.ehl.grid import GridShape
+from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.ehl.line import GroupSolution, Resolution, solve_groups
 from ehdmaps.ehl.newton import CONVERGED, DIVERGED
 from ehdmaps.ehl.profile import Profile
@@ -17,17 +18,11 @@ from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.errors import InputError
 from ehdmaps.physics.closed_form import THIN_FILM_LIMIT
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.hertz import half_width, max_pressure
+from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import FilmSolution, Status
-
-DENSITY_PRESSURE = 0.59e9
-"""Pressure in the Dowson-Higginson density law [Pa]."""
-
-LARGEST_PRESSURE = 10e9
-"""Hertz pressure above which no solve is tried [Pa]; steel yields long before."""
 
 HEAVIEST_LOAD_NUMBER = 2e6
 """Moes' M above which the film is too thin for double precision to see it beside the elastic deflection."""
@@ -62,11 +57,10 @@ class ReynoldsSolver:
     tolerance: float = 1e-6
 
     def __post_init__(self) -> None:
-        limits = {"density": (3.0, 60.0), "inlet_length": (20.0, 1e5), "tolerance": (1e-12, 1e-3)}
         problems = [
             f"reynolds solver, {name}: got {getattr(self, name)!r}; allowed: {low:g} to {high:g}; "
             "leave it out for the default"
-            for name, (low, high) in limits.items()
+            for name, (low, high) in SETTING_LIMITS.items()
             if not low <= getattr(self, name) <= high
         ]
         if problems:
@@ -162,17 +156,10 @@ def line_problem(
     speed : float
         u [m/s].
     """
-    law = state.pressure_viscosity
+    alpha = state.pressure_viscosity.pressure_viscosity
     peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
-    M, L = moes_groups(load, speed, state.viscosity, law.pressure_viscosity, contact.radius, contact.reduced_modulus)
-    problem = LineProblem(
-        wedge=3.0 * math.pi**2 / (8.0 * M * M),
-        alpha=law.pressure_viscosity * peak,
-        exponent=law.exponent,
-        pressure_ratio=peak / law.pressure_scale,
-        density_ratio=peak / DENSITY_PRESSURE if state.compressible else 0.0,
-    )
-    return problem, float(M), L
+    M, L = moes_groups(load, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
+    return LineProblem(3.0 * math.pi**2 / (8.0 * M * M), state.isotherm(peak)), float(M), L
 
 
 def dry_film(peak: float, reason: str) -> FilmSolution:

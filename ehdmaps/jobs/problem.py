@@ -15,6 +15,7 @@ from ehdmaps.physics.catalogue import designations, estimate, estimate_from_dime
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.correlations import CORRELATIONS
 from ehdmaps.physics.lubricant import DENSITY_LAWS, LUBRICANTS, Lubricant
+from ehdmaps.physics.pressure_viscosity import PRESSURE_LAWS, Parameter
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import LENGTH, Display, closest, short
 
@@ -42,12 +43,8 @@ _OIL_QUANTITIES: dict[str, tuple[str, float, float, Display]] = {
     "density_slope": ("kg/(m^3 K)", -5.0, 0.0, Display("kg/(m^3 K)")),
     "fitted_pressure": ("Pa", 1e7, 1e10, _GPA),
 }
-_OIL_LAWS: dict[str, Callable[..., Lubricant]] = {
-    "barus": Lubricant.barus,
-    "roelands": Lubricant.roelands,
-    "fva3": Lubricant.fva3,
-}
-_OIL_KEYS = ("viscosity_law", *_OIL_QUANTITIES, "pressure_viscosity", "roelands_z", "density_law")
+_LAW_PARAMETERS = {parameter.key: parameter for law in PRESSURE_LAWS.values() for parameter in law.parameters}
+_OIL_KEYS = ("viscosity_law", *_OIL_QUANTITIES, "pressure_viscosity", *_LAW_PARAMETERS, "density_law")
 _ISOVISCOUS = ("0 1/GPa", "0 1/Pa")
 
 
@@ -231,27 +228,40 @@ def read_lubricant(section: Table) -> Lubricant | None:
                 section.note(key, "stands beside name; allowed: a name, or data without a name; delete one")
         section.close(others=_OIL_KEYS)
         return replace(Lubricant.named(name), label=label) if name is not None else None
-    law = section.choice("viscosity_law", tuple(_OIL_LAWS), required=True)
+    law = section.choice("viscosity_law", tuple(PRESSURE_LAWS), required=True)
     values: dict[str, Any] = {
         key: section.quantity(key, *rule, required=key == "density") for key, rule in _OIL_QUANTITIES.items()
     }
     values["pressure_viscosity"] = _pressure_viscosity(section)
     density_law = section.choice("density_law", DENSITY_LAWS)
-    if law == "roelands":
-        values["roelands_z"] = section.number("roelands_z", 0.05, 2.0)
-    elif "roelands_z" in section and law is not None:
-        section.get("roelands_z")
-        section.note("roelands_z", f"stands beside viscosity_law = {law!r}; allowed: with 'roelands' only; delete it")
-    else:
-        section.get("roelands_z")
+    numbers = {parameter.key: _law_parameter(section, parameter, law) for parameter in _LAW_PARAMETERS.values()}
     if density_law is not None:
         values["density_law"] = density_law
     section.close(others=("name",))
-    wrong = [key for key in values if key in section and values[key] is None]
+    read = values | numbers
+    wrong = [key for key in read if key in section and read[key] is None]
     if law is None or wrong or values["density"] is None:
         return None
     given = {key: value for key, value in values.items() if value is not None}
-    return _built(section, lambda: replace(_OIL_LAWS[law](**given), label=label))
+    stated = {_LAW_PARAMETERS[key].field: value for key, value in numbers.items() if value is not None}
+    return _built(section, lambda: replace(Lubricant.own(law, stated, **given), label=label))
+
+
+def _law_parameter(section: Table, parameter: Parameter, law: str | None) -> float | None:
+    """Read a number of the law over pressure; note it where it belongs to another one."""
+    key = parameter.key
+    if law is None or parameter in PRESSURE_LAWS[law].parameters:
+        needed = law is not None and PRESSURE_LAWS[law].coefficient == "none"
+        if not parameter.unit:
+            return section.number(key, parameter.low, parameter.high, required=needed)
+        display = Display(*parameter.shown)
+        return section.quantity(key, parameter.unit, parameter.low, parameter.high, display, required=needed)
+    if key in section:
+        section.get(key)
+        owners = [repr(word) for word, kind in PRESSURE_LAWS.items() if parameter in kind.parameters]
+        allowed = f"with {' or '.join(owners)} only"
+        section.note(key, f"stands beside viscosity_law = {law!r}; allowed: {allowed}; delete it")
+    return None
 
 
 def _pressure_viscosity(section: Table) -> float | str | None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.solution import ContactSolver
@@ -131,9 +132,11 @@ SOLVERS: Mapping[str, SolverEntry] = {
     ),
     "reynolds": SolverEntry(
         (
-            Number("density", 3.0, 60.0, "grid cells per e-fold of distance from inlet, exit and spike"),
-            Number("inlet_length", 20.0, 1e5, "length of the inlet over sqrt(2 h R)"),
-            Number("tolerance", 1e-12, 1e-3, "Newton tolerance on the last step"),
+            Number(
+                "density", *SETTING_LIMITS["density"], "grid cells per e-fold of distance from inlet, exit and spike"
+            ),
+            Number("inlet_length", *SETTING_LIMITS["inlet_length"], "length of the inlet over sqrt(2 h R)"),
+            Number("tolerance", *SETTING_LIMITS["tolerance"], "Newton tolerance on the last step"),
         ),
         _reynolds,
     ),

@@ -11,7 +11,7 @@ from ehdmaps.errors import InputError, MapError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.pressure_viscosity import Barus, Fva3, PressureViscosityLaw, Roelands
+from ehdmaps.physics.pressure_viscosity import law_from_record
 from ehdmaps.physics.solids import Material
 from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw, VogelViscosity
 
@@ -110,7 +110,7 @@ def lubricant_from_json(text: str) -> Lubricant:
             name=record["name"],
             verified=record["verified"],
             viscosity=_viscosity(record),
-            pressure_viscosity=_isotherms(record),
+            pressure_viscosity=law_from_record(record),
             density_15=record["density_15"],
             density_slope=record["density_slope"],
             density_law=record["density_law"],
@@ -162,20 +162,6 @@ def _viscosity(record: Mapping[str, Any]) -> ViscosityLaw:
         return AstmViscosity(record["viscosity_40"], record["viscosity_100"])
     if word == "vogel":
         return VogelViscosity(record["vogel_factor"], record["vogel_slope"], record["vogel_offset"])
-    raise KeyError(word)
-
-
-def _isotherms(record: Mapping[str, Any]) -> PressureViscosityLaw:
-    """Viscosity over pressure."""
-    cold, hot = record.get("pressure_viscosity_40"), record.get("pressure_viscosity_100")
-    word = record["viscosity_law"]
-    if word == "barus":
-        return Barus(record["pressure_viscosity_40"], record["pressure_viscosity_100"])
-    if word == "roelands":
-        return Roelands(record.get("roelands_z"), cold, hot)
-    if word == "fva3":
-        numbers = {key: record[key] for key in ("a1", "a2", "b1", "b2")}
-        return Fva3(**numbers, pressure_viscosity_40=cold, pressure_viscosity_100=hot)
     raise KeyError(word)
 
 

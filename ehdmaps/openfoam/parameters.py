@@ -214,20 +214,20 @@ class Parameters:
 
 
 def _viscosity(oil: LubricantState) -> list[str]:
-    """The isotherm (alpha p_c/z) [(1 + p/p_c)^z - 1] under the name of its law."""
+    """The isotherm under the name of its law, with its numbers."""
     law = oil.pressure_viscosity
-    entries = [_entry("viscosity", oil.viscosity), _entry("pressureViscosity", law.pressure_viscosity)]
-    if law.exponent == 1.0:
-        return ["type Barus;", *entries]
-    scale = _entry("pressureScale", law.pressure_scale)
-    if law.exponent == -1.0:
-        return ["type FVA3;", *entries, scale]
-    if not law.exponent > 0.0:
-        raise InputError(
-            f"ehlProperties, exponent: got {law.exponent!r}; allowed: > 0 (Roelands), 1 (Barus) or -1 (FVA 3); "
-            "use the solver reynolds for other laws"
-        )
-    return ["type Roelands;", *entries, _entry("exponent", law.exponent), scale]
+    try:
+        numbers = law.case_numbers()
+    except InputError as error:
+        raise InputError([f"ehlProperties, {problem}" for problem in error.problems]) from None
+    entries = [_entry(_camel(key), value) for key, value in numbers.items()]
+    return [f"type {law.case_name};", _entry("viscosity", oil.viscosity), *entries]
+
+
+def _camel(name: str) -> str:
+    """A name in the dictionary's spelling: pressure_scale is pressureScale."""
+    first, *others = name.split("_")
+    return first + "".join(map(str.capitalize, others))
 
 
 def _block(name: str, entries: Sequence[str]) -> Iterator[str]:

@@ -24,15 +24,12 @@ from ehdmaps.openfoam.run import KilledError, RunError, log_tail, run
 from ehdmaps.physics.closed_form import THIN_FILM_LIMIT, HertzSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import moes_central
-from ehdmaps.physics.hertz import half_width, max_pressure
+from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import film_from_moes, moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.peak import peak_sampling_error
 from ehdmaps.physics.solution import FilmSolution, Status
-
-LARGEST_PRESSURE = 10e9
-"""Hertz pressure above which no run is tried [Pa]; steel yields long before."""
 
 CAVITATION_RANGE = 1e-6
 """Pressure over which liquid turns into the cavitated mixture, over the largest of the film (about)."""

@@ -8,7 +8,8 @@ bearing             `BearingGeometry`: reduced radii, entrainment speed, the two
 catalogue           `BearingGeometry` estimated from what a catalogue says
 approach            the structural part of the approach: ISO 16281, Palmgren, half space
 contact             `LineContact`: one contact, and its structural approach and compliance
-pressure_viscosity  ln(eta/eta0) over pressure: Barus, Roelands and the law of FVA 3 as one family
+isotherm            viscosity and density over pressure at one temperature; what solvers compile
+pressure_viscosity  isotherms over temperature: Barus, Roelands, the law of FVA 3, Tait-Doolittle
 viscosity           eta0 over temperature: constant, ASTM D341, Vogel
 correlations        alpha estimated from the viscosity at ambient pressure: So and Klaus, Gold
 own_oil             the laws of an own oil, from what its user states

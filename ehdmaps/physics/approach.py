@@ -21,6 +21,9 @@ StructuralLaw = Literal["iso16281", "palmgren", "half_space"]
 STRUCTURAL_LAWS: tuple[StructuralLaw, ...] = ("iso16281", "palmgren", "half_space")
 
 STEEL_REDUCED_MODULUS = reduced_modulus(STEEL, STEEL)
+ISO_LINE_CONSTANT = 35948.0
+"""c_L/L^(8/9) of ISO/TS 16281 for the total approach of both contacts of a roller, N and mm."""
+
 _LOAD_EXPONENT = 0.9
 _HALF_PLANE_DEPTH_RATIO = 0.49
 
@@ -54,7 +57,7 @@ def iso16281(load: Values, roller_length: float, reduced_modulus: float = STEEL_
     18.113
     """
     length_mm = 1e3 * roller_length
-    coefficient = 0.5e-3 * (1e-3 * length_mm ** (1.0 / 9.0) / 35948.0) ** _LOAD_EXPONENT
+    coefficient = 0.5e-3 * (1e-3 * length_mm ** (1.0 / 9.0) / ISO_LINE_CONSTANT) ** _LOAD_EXPONENT
     return _power_law(load, coefficient * _material_factor(reduced_modulus))
 
 

@@ -14,6 +14,9 @@ from ehdmaps.physics._values import FloatArray, Values, as_given
 DRY_COMPLIANCE = math.log(2.0) / math.pi
 """-dH0/dW of dry Hertz: lengths by b, film by b^2/R, pressure by p_H, log kernel with reference length b."""
 
+LARGEST_PRESSURE = 10e9
+"""Hertz pressure above which no film is solved [Pa]; steel yields long before."""
+
 
 def half_width(load: Values, radius: float, reduced_modulus: float) -> Values:
     """Half-width of the contact, b = sqrt(8 w R / (pi E')) [m].

@@ -8,7 +8,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Literal
+from types import MappingProxyType
+from typing import Any, Literal
 
 import numpy as np
 
@@ -16,24 +17,23 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics._labels import label_problem
 from ehdmaps.physics._values import Values, as_given
 from ehdmaps.physics.correlations import CORRELATIONS
-from ehdmaps.physics.own_oil import Laws, Stated, estimated_coefficient, own_laws
+from ehdmaps.physics.isotherm import FreeVolume, Isotherm, IsothermLaw, PressureViscosity, density
+from ehdmaps.physics.own_oil import Stated, estimated_coefficient, own_laws
 from ehdmaps.physics.pressure_viscosity import (
     ROELANDS_LOG,
     ROELANDS_PRESSURE,
     ZERO_CELSIUS,
     Fva3,
-    PressureViscosity,
     PressureViscosityLaw,
     Roelands,
+    law_record,
 )
 from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw, VogelViscosity
 
-__all__ = ["DENSITY_LAWS", "LUBRICANTS", "DensityLaw", "Lubricant", "LubricantState", "PressureViscosity"]
+__all__ = ["DENSITY_LAWS", "LUBRICANTS", "DensityLaw", "FreeVolume", "Lubricant", "LubricantState", "PressureViscosity"]
 
 DensityLaw = Literal["dowson-higginson", "incompressible"]
 DENSITY_LAWS: tuple[DensityLaw, ...] = ("dowson-higginson", "incompressible")
-
-_DENSITY_PRESSURE, _DENSITY_LIMIT = 0.59e9, 1.34
 
 FITTED_PRESSURE = 0.6e9
 """Pressure [Pa] above which viscosity counts as extrapolated where nobody stated a range; our assumption."""
@@ -51,7 +51,7 @@ class LubricantState:
         eta0 at ambient pressure [Pa s].
     density : float
         rho0 at ambient pressure [kg/m3].
-    pressure_viscosity : PressureViscosity
+    pressure_viscosity : PressureViscosity or FreeVolume
         The isotherm ln(eta/eta0) over pressure.
     compressible : bool
         Density after Dowson and Higginson if true, constant if false.
@@ -62,9 +62,13 @@ class LubricantState:
     temperature: float
     viscosity: float
     density: float
-    pressure_viscosity: PressureViscosity
+    pressure_viscosity: IsothermLaw
     compressible: bool
     fitted_pressure: float
+
+    def isotherm(self, pressure_unit: float = 1.0) -> Isotherm:
+        """Viscosity and density over pressure as plain numbers, with pressures in `pressure_unit` [Pa]."""
+        return self.pressure_viscosity.isotherm(pressure_unit, self.compressible)
 
     def viscosity_at(self, p: Values) -> Values:
         """Viscosity eta [Pa s] at the pressures p [Pa], >= 0; inf where it exceeds the range of floats."""
@@ -72,28 +76,20 @@ class LubricantState:
             return as_given(self.viscosity * np.exp(self.pressure_viscosity.log_ratio(p)), p)
 
     def density_ratio(self, p: Values) -> Values:
-        """rho/rho0 = (0.59e9 + 1.34 p)/(0.59e9 + p) at the pressures p [Pa], >= 0; 1 if incompressible.
-
-        References
-        ----------
-        D. Dowson, G. R. Higginson, Elasto-Hydrodynamic Lubrication, Pergamon, 1966.
-        """
-        if not self.compressible:
-            return as_given(np.ones_like(p), p)
-        return (_DENSITY_PRESSURE + _DENSITY_LIMIT * p) / (_DENSITY_PRESSURE + p)
+        """rho/rho0 at the pressures p [Pa], >= 0, after Dowson and Higginson; 1 if incompressible."""
+        return as_given(density(self.isotherm(), p)[0], p)
 
     def density_ratio_slope(self, p: Values) -> Values:
         """d(rho/rho0)/dp [1/Pa] at the pressures p [Pa], >= 0."""
-        if not self.compressible:
-            return as_given(np.zeros_like(p), p)
-        return as_given((_DENSITY_LIMIT - 1.0) * _DENSITY_PRESSURE / (_DENSITY_PRESSURE + p) ** 2, p)
+        return as_given(density(self.isotherm(), p)[1], p)
 
 
 @dataclass(frozen=True)
 class Lubricant:
     """An oil as laws over temperature; comparable, and equal oils give equal numbers.
 
-    Make one by `named`, or by hand with `barus`, `roelands` or `fva3` (called after their law over pressure).
+    Make one by `named`; or by hand with `barus`, `roelands` or `fva3` (called after their law over pressure), or with
+    `of_law` for any law over pressure.
 
     Attributes
     ----------
@@ -103,7 +99,7 @@ class Lubricant:
         Whether its numbers have a stated source (`named`), or are vouched for by the user (own oils).
     viscosity : ConstantViscosity, AstmViscosity or VogelViscosity
         eta0 over temperature.
-    pressure_viscosity : Barus, Roelands or Fva3
+    pressure_viscosity : Barus, Roelands, Fva3 or TaitDoolittle
         Isotherms over temperature.
     density_15 : float
         rho0 at 15 degC [kg/m3].
@@ -163,6 +159,10 @@ class Lubricant:
             problems.append(f"{where}, thermal_conductivity: got {conductivity!r} W/(m K); allowed: finite and > 0")
         if self.correlation is not None and self.correlation not in CORRELATIONS:
             problems.append(f"{where}, correlation: got {self.correlation!r}; allowed: {', '.join(CORRELATIONS)}")
+        if self.correlation is not None and self.pressure_viscosity.coefficient == "none":
+            problems.append(
+                f"{where}, correlation: got {self.correlation!r} with a law whose numbers give alpha; allowed: none"
+            )
         if problems:
             raise InputError(problems)
 
@@ -255,8 +255,7 @@ class Lubricant:
         stated = Stated(
             viscosity, viscosity_40, viscosity_100, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100
         )
-        laws = own_laws(name, "barus", stated, density, density_slope)
-        return cls._own(name, laws, density, density_slope, density_law, fitted_pressure)
+        return cls._own(name, "barus", stated, density, density_slope, density_law, fitted_pressure)
 
     @classmethod
     def roelands(
@@ -290,8 +289,8 @@ class Lubricant:
         stated = Stated(
             viscosity, viscosity_40, viscosity_100, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100
         )
-        laws = own_laws(name, "roelands", stated, density, density_slope, roelands_z)
-        return cls._own(name, laws, density, density_slope, density_law, fitted_pressure)
+        numbers = {} if roelands_z is None else {"exponent": roelands_z}
+        return cls._own(name, "roelands", stated, density, density_slope, density_law, fitted_pressure, numbers)
 
     @classmethod
     def fva3(
@@ -323,14 +322,70 @@ class Lubricant:
         stated = Stated(
             viscosity, viscosity_40, viscosity_100, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100
         )
-        laws = own_laws(name, "fva3", stated, density, density_slope)
-        return cls._own(name, laws, density, density_slope, density_law, fitted_pressure)
+        return cls._own(name, "fva3", stated, density, density_slope, density_law, fitted_pressure)
+
+    @classmethod
+    def own(
+        cls,
+        viscosity_law: str,
+        numbers: Mapping[str, float],
+        *,
+        density: float,
+        pressure_viscosity: float | str | None = None,
+        pressure_viscosity_40: float | None = None,
+        pressure_viscosity_100: float | None = None,
+        viscosity: float | None = None,
+        viscosity_40: float | None = None,
+        viscosity_100: float | None = None,
+        density_slope: float = 0.0,
+        density_law: DensityLaw = "dowson-higginson",
+        fitted_pressure: float = FITTED_PRESSURE,
+        name: str = "own oil",
+    ) -> Lubricant:
+        """An oil with any law over pressure.
+
+        Parameters
+        ----------
+        viscosity_law : str
+            One of `PRESSURE_LAWS`.
+        numbers : mapping of str to float
+            Attributes of that law in SI; those of Barus' law and the law of FVA 3 are none beside the coefficient.
+        density, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100, viscosity, viscosity_40, \
+        viscosity_100, density_slope, density_law, fitted_pressure, name
+            As for `barus`; a law whose numbers give alpha takes no pressure_viscosity.
+
+        Raises
+        ------
+        InputError
+            With every value that is missing, doubly given, unknown or out of its limits.
+
+        Examples
+        --------
+        >>> numbers = dict(doolittle_slope=4.5, occupied_fraction=0.66, occupied_expansion=-7e-4, volume_expansion=8e-4,
+        ...     bulk_modulus=8.7e9, bulk_modulus_decay=6.3e-3, bulk_modulus_slope=11.0, reference_temperature=313.15)
+        >>> oil = Lubricant.own("tait-doolittle", numbers, viscosity=0.02, density=800.0)
+        >>> round(oil.at(313.15).viscosity_at(0.5e9), 2)
+        17.85
+        """
+        stated = Stated(
+            viscosity, viscosity_40, viscosity_100, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100
+        )
+        return cls._own(name, viscosity_law, stated, density, density_slope, density_law, fitted_pressure, numbers)
 
     @classmethod
     def _own(
-        cls, name: str, laws: Laws, density: float, slope: float, density_law: DensityLaw, fitted_pressure: float
+        cls,
+        name: str,
+        word: str,
+        stated: Stated,
+        density: float,
+        slope: float,
+        density_law: DensityLaw,
+        fitted_pressure: float,
+        numbers: Mapping[str, float] = MappingProxyType({}),
     ) -> Lubricant:
-        """An own oil of given laws; its user vouches for it, but not for an estimate."""
+        """An own oil; its user vouches for it, but not for an estimate."""
+        laws = own_laws(name, word, stated, density, slope, numbers)
         return cls(
             name=name,
             verified=laws.correlation is None,
@@ -379,7 +434,8 @@ class Lubricant:
         if self.correlation is None:
             return self.pressure_viscosity
         alpha = estimated_coefficient(self.correlation, self.viscosity, viscosity, density)
-        return replace(self.pressure_viscosity, pressure_viscosity_40=alpha, pressure_viscosity_100=alpha)
+        coefficients: dict[str, Any] = {"pressure_viscosity_40": alpha, "pressure_viscosity_100": alpha}
+        return replace(self.pressure_viscosity, **coefficients)
 
     def record(self) -> dict[str, float | str | bool]:
         """Everything that defines the oil, flat, for provenance; SI units; values not given are left out."""
@@ -390,8 +446,7 @@ class Lubricant:
                 record["viscosity_over_temperature"] = _VISCOSITY_WORDS[type(value)]
                 record.update(_given(value, rename=_VOGEL_WORDS))
             elif entry.name == "pressure_viscosity":
-                record["viscosity_law"] = type(value).__name__.lower()
-                record.update(_given(value, rename={"exponent": "roelands_z"}))
+                record.update(law_record(value))
             elif value is not None:
                 record[entry.name] = value
         if self.estimated:
@@ -408,10 +463,9 @@ _VISCOSITY_WORDS: Mapping[type, str] = {
 _VOGEL_WORDS = {"factor": "vogel_factor", "slope": "vogel_slope", "offset": "vogel_offset"}
 
 
-def _given(law: ViscosityLaw | PressureViscosityLaw, rename: Mapping[str, str]) -> dict[str, float]:
-    """The parameters of a law that are not None."""
-    values = {rename.get(field.name, field.name): getattr(law, field.name) for field in fields(law)}
-    return {name: value for name, value in values.items() if value is not None}
+def _given(law: ViscosityLaw, rename: Mapping[str, str]) -> dict[str, float]:
+    """The parameters of a law."""
+    return {rename.get(field.name, field.name): getattr(law, field.name) for field in fields(law)}
 
 
 def _fva3() -> Lubricant:

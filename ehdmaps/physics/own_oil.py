@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.correlations import CORRELATIONS, estimate
-from ehdmaps.physics.pressure_viscosity import ZERO_CELSIUS, Barus, Fva3, PressureViscosityLaw, Roelands
+from ehdmaps.physics.pressure_viscosity import PRESSURE_LAWS, ZERO_CELSIUS, PressureViscosityLaw
 from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw
 
 
@@ -33,7 +34,7 @@ class Laws(NamedTuple):
 
 
 def own_laws(
-    name: str, word: str, stated: Stated, density: float, density_slope: float, roelands_z: float | None = None
+    name: str, word: str, stated: Stated, density: float, density_slope: float, numbers: Mapping[str, float]
 ) -> Laws:
     """Laws of an own oil.
 
@@ -41,25 +42,25 @@ def own_laws(
     ----------
     name : str
         Of the oil, for messages.
-    word : {"barus", "roelands", "fva3"}
-        Law over pressure.
+    word : str
+        Law over pressure, one of `PRESSURE_LAWS`.
     stated : Stated
         In SI.
     density, density_slope : float
         At 15 degC [kg/m3], and over temperature [kg/(m3 K)].
-    roelands_z : float, optional
-        Exponent of Roelands' law.
+    numbers : mapping of str to float
+        Attributes of that law, beside the pressure-viscosity coefficient.
 
     Raises
     ------
     InputError
         With everything that is missing, doubly given or out of its limits.
     """
-    problems: list[str] = []
+    problems = _law_problems(name, word, stated, numbers)
     viscosity = _viscosity_law(name, stated, problems)
     correlation = _correlation(name, stated, viscosity, problems)
     pair = None if correlation else _coefficient_pair(name, stated, problems)
-    if pair is None and correlation is None and word != "roelands" and not problems:
+    if pair is None and correlation is None and not problems and PRESSURE_LAWS[word].coefficient == "needed":
         problems.append(
             f"lubricant {name!r}, pressure_viscosity: got none; viscosity_law {word} needs it; give it in 1/Pa, or the "
             f"name of a correlation that estimates it: {', '.join(CORRELATIONS)}"
@@ -68,7 +69,7 @@ def own_laws(
         raise InputError(problems)
     if correlation:
         pair = _estimated_pair(name, correlation, viscosity, density, density_slope)
-    return Laws(viscosity, _isotherms(word, pair, roelands_z), correlation)
+    return Laws(viscosity, _isotherms(word, pair, numbers), correlation)
 
 
 def estimated_coefficient(correlation: str, law: ViscosityLaw, viscosity: float, density: float) -> float:
@@ -89,12 +90,37 @@ def estimated_coefficient(correlation: str, law: ViscosityLaw, viscosity: float,
     return estimate(correlation, viscosity / density, density, slope)
 
 
-def _isotherms(word: str, pair: tuple[float, float] | None, roelands_z: float | None) -> PressureViscosityLaw:
+def _law_problems(name: str, word: str, stated: Stated, numbers: Mapping[str, float]) -> list[str]:
+    """An unknown law, and numbers that do not belong to it or that it lacks."""
+    where = f"lubricant {name!r}"
+    if word not in PRESSURE_LAWS:
+        raise InputError(f"{where}, viscosity_law: got {word!r:.60}; allowed: {', '.join(PRESSURE_LAWS)}")
+    kind = PRESSURE_LAWS[word]
+    known = [parameter.field for parameter in kind.parameters]
+    problems = [
+        f"{where}, {field}: stands beside viscosity_law = {word!r}, which has: {', '.join(known) or 'none'}; delete it"
+        for field in numbers
+        if field not in known
+    ]
+    if kind.coefficient == "none":
+        if stated[3:] != (None, None, None):
+            problems.append(
+                f"{where}, pressure_viscosity: stands beside viscosity_law = {word!r}, whose numbers give it; delete it"
+            )
+        lacking = [field for field in known if field not in numbers]
+        problems += [f"{where}, {field}: missing; viscosity_law {word} needs it" for field in lacking]
+    return problems
+
+
+def _isotherms(word: str, pair: tuple[float, float] | None, numbers: Mapping[str, float]) -> PressureViscosityLaw:
     """The law over pressure."""
-    if word == "roelands":
-        return Roelands(roelands_z, *(pair or (None, None)))
-    assert pair is not None  # `own_laws` saw to it
-    return Barus(*pair) if word == "barus" else Fva3(pressure_viscosity_40=pair[0], pressure_viscosity_100=pair[1])
+    kind = PRESSURE_LAWS[word]
+    values: dict[str, float | None] = dict(numbers)
+    if kind.coefficient != "none":
+        cold, hot = pair or (None, None)
+        values |= {"pressure_viscosity_40": cold, "pressure_viscosity_100": hot}
+        values |= {parameter.field: None for parameter in kind.parameters if parameter.field not in numbers}
+    return kind(**values)  # type: ignore[arg-type]
 
 
 def _estimated_pair(

@@ -1,18 +1,19 @@
-"""Viscosity over pressure: Barus, Roelands and the law of FVA 3 as one family, over temperature.
+"""Viscosity over pressure and temperature: Barus, Roelands, the law of FVA 3, and Tait-Doolittle.
 
-Three laws of an oil (`Barus`, `Roelands`, `Fva3`) say how the family depends on temperature; each gives the
-`PressureViscosity` of a temperature by `at(temperature, viscosity)`.
+Each law gives the isotherm of a temperature by `at(temperature, viscosity)`. `PRESSURE_LAWS` is the table from which
+job files and the records of maps are read. A new law is a class here with a row of that table, and where its isotherm
+has a new form, that form in `isotherm`.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-
-import numpy as np
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, Literal, NamedTuple
 
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import Values, as_given
+from ehdmaps.physics.isotherm import FreeVolume, PressureViscosity
 
 ZERO_CELSIUS = 273.15
 ROELANDS_PRESSURE = 1.96e8
@@ -22,79 +23,33 @@ ROELANDS_LOG = 9.67
 
 _COLD, _HOT = 40.0, 100.0  # degC, at which a pressure-viscosity coefficient over temperature is given
 
+Coefficient = Literal["needed", "allowed", "none"]
+"""Whether a law takes a pressure-viscosity coefficient."""
 
-@dataclass(frozen=True)
-class PressureViscosity:
-    """One isotherm: ln(eta/eta0) = (alpha p_c/z) [(1 + p/p_c)^z - 1].
 
-    z = 1 is Barus' law alpha p, for any p_c; z = 0 is the limit alpha p_c ln(1 + p/p_c); Roelands has
-    p_c = 1.96e8 Pa and alpha = z (ln eta0 + 9.67)/p_c; z = -1 is p/(a + b p) with alpha = 1/a, p_c = a/b.
+class Parameter(NamedTuple):
+    """A number of a law as job files and records have it.
 
     Attributes
     ----------
-    pressure_viscosity : float
-        alpha = d ln eta/dp at p = 0 [1/Pa], >= 0.
-    exponent : float
-        z.
-    pressure_scale : float
-        p_c [Pa], > 0; inf is allowed with z = 1.
-
-    Raises
-    ------
-    InputError
-        With every value out of these limits.
-
-    References
-    ----------
-    C. J. A. Roelands, Correlational aspects of the viscosity-temperature-pressure relationship of lubricating
-    oils, PhD thesis, TH Delft, 1966.
-
-    Examples
-    --------
-    >>> barus = PressureViscosity(2e-8, exponent=1.0, pressure_scale=math.inf)
-    >>> barus.log_ratio(1e9)
-    20.0
-    >>> fva3 = PressureViscosity(1.0 / 44.7e6, exponent=-1.0, pressure_scale=44.7e6 / 0.01646)
-    >>> round(fva3.log_ratio(1e9), 6), round(1e9 / (44.7e6 + 0.01646 * 1e9), 6)
-    (16.350556, 16.350556)
+    field : str
+        Attribute of the law.
+    key : str
+        Key in job files and records.
+    low, high : float
+        What a job file may state, in SI.
+    unit : str
+        SI unit; empty for a bare number.
+    shown : tuple of str and float
+        Unit of messages, and its factor.
     """
 
-    pressure_viscosity: float
-    exponent: float
-    pressure_scale: float
-
-    def __post_init__(self) -> None:
-        problems = []
-        if not (math.isfinite(self.pressure_viscosity) and self.pressure_viscosity >= 0):
-            problems.append(
-                f"pressure_viscosity: got {self.pressure_viscosity!r} 1/Pa; allowed: finite and >= 0; "
-                "mineral oils have about 2e-8 1/Pa"
-            )
-        if not math.isfinite(self.exponent):
-            problems.append(f"exponent: got {self.exponent!r}; allowed: finite")
-        if not self.pressure_scale > 0 or (math.isinf(self.pressure_scale) and self.exponent != 1.0):
-            problems.append(
-                f"pressure_scale: got {self.pressure_scale!r} Pa with the exponent {self.exponent!r}; "
-                "allowed: > 0 Pa, and inf only with the exponent 1"
-            )
-        if problems:
-            raise InputError(problems)
-
-    def log_ratio(self, p: Values) -> Values:
-        """ln(eta/eta0) at the pressures p [Pa], >= 0."""
-        if self.exponent == 1.0:
-            return as_given(self.pressure_viscosity * p, p)
-        growth = np.log1p(p / self.pressure_scale)
-        if self.exponent != 0.0:
-            growth = np.expm1(self.exponent * growth) / self.exponent
-        return as_given(self.pressure_viscosity * self.pressure_scale * growth, p)
-
-    def log_ratio_slope(self, p: Values) -> Values:
-        """D ln(eta)/dp [1/Pa] at the pressures p [Pa], >= 0: alpha (1 + p/p_c)^(z - 1)."""
-        if self.exponent == 1.0:
-            return as_given(self.pressure_viscosity * np.ones_like(p), p)
-        growth = (1.0 + p / self.pressure_scale) ** (self.exponent - 1.0)
-        return as_given(self.pressure_viscosity * growth, p)
+    field: str
+    key: str
+    low: float
+    high: float
+    unit: str = ""
+    shown: tuple[str, float] = ("", 1.0)
 
 
 @dataclass(frozen=True)
@@ -110,6 +65,9 @@ class Barus:
     ----------
     C. Barus, Isothermals, isopiestics and isometrics relative to viscosity, Am. J. Science 45, 1893, 87-96.
     """
+
+    parameters: ClassVar[tuple[Parameter, ...]] = ()
+    coefficient: ClassVar[Coefficient] = "needed"
 
     pressure_viscosity_40: float
     pressure_viscosity_100: float
@@ -138,6 +96,9 @@ class Roelands:
     pressure_viscosity_40, pressure_viscosity_100 : float or None
         alpha at 40 and 100 degC [1/Pa], ln alpha linear in temperature; alike for a constant.
     """
+
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("exponent", "roelands_z", 0.05, 2.0),)
+    coefficient: ClassVar[Coefficient] = "allowed"
 
     exponent: float | None
     pressure_viscosity_40: float | None
@@ -194,6 +155,9 @@ class Fva3:
     Lubricants 11, 2023, 369, table A1 (with p in bar there).
     """
 
+    parameters: ClassVar[tuple[Parameter, ...]] = ()
+    coefficient: ClassVar[Coefficient] = "needed"
+
     a1: float = 327.7918e5
     a2: float = 2.9862e5
     b1: float = 4.419e-3
@@ -223,7 +187,155 @@ class Fva3:
         return PressureViscosity(alpha, exponent=-1.0, pressure_scale=1.0 / (alpha * b))
 
 
-PressureViscosityLaw = Barus | Roelands | Fva3
+@dataclass(frozen=True)
+class TaitDoolittle:
+    """Doolittle's free-volume law with the volume of Tait's equation: one set of numbers over pressure and temperature.
+
+    With V_R the volume at p = 0 and the reference temperature T_R, and T in K,
+
+        ln eta = const + B R0 (V_occ/V_occR)/(V/V_R - R0 V_occ/V_occR),  V_occ/V_occR = 1 + epsilon (T - T_R),
+        V/V0 = 1 - ln(1 + (1 + K0') p/K0)/(1 + K0'),  V0/V_R = 1 + a_V (T - T_R),  K0 = K00 exp(-beta_K T).
+
+    It is used over pressure only; the viscosity at ambient pressure is stated for itself, as for the other laws. The
+    numbers are fits to viscosities and volumes measured under pressure, and hold in that range: as a rule to 1 GPa,
+    since viscosities above some 1e7 Pa s are not measured. The density of the film remains that of the `density_law`.
+
+    Attributes
+    ----------
+    doolittle_slope : float
+        B, 0.1 to 100.
+    occupied_fraction : float
+        R0, occupied part of the volume at T_R and p = 0, 0.05 to 0.99.
+    occupied_expansion : float
+        epsilon [1/K], within 0.01.
+    volume_expansion : float
+        a_V [1/K], within 0.01.
+    bulk_modulus : float
+        K00, bulk modulus at p = 0 extrapolated to 0 K [Pa], 0.1 GPa to 1 TPa.
+    bulk_modulus_decay : float
+        beta_K [1/K], 0 to 0.1.
+    bulk_modulus_slope : float
+        K0' = dK/dp at p = 0, 2 to 100; liquids have about 11.
+    reference_temperature : float
+        T_R [K], 150 to 600.
+
+    Raises
+    ------
+    InputError
+        With every value out of these limits.
+
+    References
+    ----------
+    R. L. Cook, H. E. King, C. A. Herbst, D. R. Herschbach, Pressure and temperature dependent viscosity of two glass
+    forming liquids: glycerol and dibutyl phthalate, J. Chem. Phys. 100, 1994, 5178-5189 (the form); see `FreeVolume`
+    for Doolittle's and Tait's laws.
+
+    Examples
+    --------
+    At T_R: alpha = B R0/((1 - R0)^2 K0), here 4.5 * 0.66/(0.34^2 * 1.2 GPa).
+
+    >>> oil = TaitDoolittle(4.5, 0.66, 0.0, 8e-4, 1.2e9, 0.0, 11.0, 313.15)
+    >>> round(1e9 * oil.at(313.15, 0.03).pressure_viscosity, 2), round(4.5 * 0.66 / (0.34**2 * 1.2), 2)
+    (21.41, 21.41)
+    """
+
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("doolittle_slope", "doolittle_slope", 0.1, 100.0),
+        Parameter("occupied_fraction", "occupied_fraction", 0.05, 0.99),
+        Parameter("occupied_expansion", "occupied_expansion", -1e-2, 1e-2, "1/K", ("1/K", 1.0)),
+        Parameter("volume_expansion", "volume_expansion", -1e-2, 1e-2, "1/K", ("1/K", 1.0)),
+        Parameter("bulk_modulus", "bulk_modulus", 1e8, 1e12, "Pa", ("GPa", 1e-9)),
+        Parameter("bulk_modulus_decay", "bulk_modulus_decay", 0.0, 0.1, "1/K", ("1/K", 1.0)),
+        Parameter("bulk_modulus_slope", "bulk_modulus_slope", 2.0, 100.0),
+        Parameter("reference_temperature", "reference_temperature", 150.0, 600.0, "K", ("K", 1.0)),
+    )
+    coefficient: ClassVar[Coefficient] = "none"
+
+    doolittle_slope: float
+    occupied_fraction: float
+    occupied_expansion: float
+    volume_expansion: float
+    bulk_modulus: float
+    bulk_modulus_decay: float
+    bulk_modulus_slope: float
+    reference_temperature: float
+
+    def __post_init__(self) -> None:
+        problems = [
+            f"{key}: got {getattr(self, field)!r}{' ' * bool(unit)}{unit}; allowed: {low:g} to {high:g}"
+            for field, key, low, high, unit, _ in self.parameters
+            if not low <= getattr(self, field) <= high
+        ]
+        if problems:
+            raise InputError(problems)
+
+    def at(self, temperature: float, viscosity: float) -> FreeVolume:
+        """The isotherm of a temperature [K]; `viscosity` eta0 [Pa s] does not matter here."""
+        warmer = temperature - self.reference_temperature
+        volume = 1.0 + self.volume_expansion * warmer
+        occupied = self.occupied_fraction * (1.0 + self.occupied_expansion * warmer)
+        if not 0.0 < occupied < volume:
+            raise InputError(
+                f"temperature: got {temperature - ZERO_CELSIUS:.6g} degC, where the law tait-doolittle has an occupied "
+                f"volume of {occupied:.4g} in a volume of {volume:.4g}; allowed: above 0 and below the volume; stay "
+                "near the reference_temperature"
+            )
+        part = occupied / volume
+        free = 1.0 - part
+        modulus = self.bulk_modulus * math.exp(-self.bulk_modulus_decay * temperature)
+        return FreeVolume(
+            self.doolittle_slope * part / (free * free * modulus),
+            pressure_scale=modulus / (1.0 + self.bulk_modulus_slope),
+            free_volume=(1.0 + self.bulk_modulus_slope) * free,
+        )
+
+
+PressureViscosityLaw = Barus | Roelands | Fva3 | TaitDoolittle
+
+PRESSURE_LAWS: Mapping[str, type[PressureViscosityLaw]] = {
+    "barus": Barus,
+    "roelands": Roelands,
+    "fva3": Fva3,
+    "tait-doolittle": TaitDoolittle,
+}
+"""The laws by their word in job files and records."""
+
+
+def law_record(law: PressureViscosityLaw) -> dict[str, float | str]:
+    """Word and numbers of a law, for the record of an oil; values not given are left out."""
+    (word,) = (word for word, kind in PRESSURE_LAWS.items() if type(law) is kind)
+    keys = _keys(type(law))
+    values = {key: getattr(law, field) for field, key in keys.items() if getattr(law, field) is not None}
+    return {"viscosity_law": word, **values}
+
+
+def law_from_record(record: Mapping[str, Any]) -> PressureViscosityLaw:
+    """The law of a record made by `law_record`, other entries in it disregarded.
+
+    Raises
+    ------
+    KeyError
+        If its word, or one of its numbers, is missing or unknown.
+    InputError
+        If a number is out of its limits.
+
+    Examples
+    --------
+    >>> law_from_record({"viscosity_law": "barus", "pressure_viscosity_40": 2e-8, "pressure_viscosity_100": 1e-8})
+    Barus(pressure_viscosity_40=2e-08, pressure_viscosity_100=1e-08)
+    """
+    kind = PRESSURE_LAWS[record["viscosity_law"]]
+    may_lack = {field.name for field in fields(kind) if "None" in str(field.type)}
+    values: dict[str, Any] = {
+        field: record.get(key) if field in may_lack else record[key] for field, key in _keys(kind).items()
+    }
+    return kind(**values)
+
+
+def _keys(kind: type[PressureViscosityLaw]) -> dict[str, str]:
+    """Key in a record by attribute: those of the job file, where it has one."""
+    stated = {parameter.field: parameter.key for parameter in kind.parameters}
+    return {field.name: stated.get(field.name, field.name) for field in fields(kind)}
 
 
 def _check_coefficients(cold: float | None, hot: float | None) -> None:

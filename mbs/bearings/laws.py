@@ -19,7 +19,7 @@ import numpy.typing as npt
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
-from ehdmaps.physics.approach import STEEL_REDUCED_MODULUS, StructuralLaw
+from ehdmaps.physics.approach import ISO_LINE_CONSTANT, STEEL_REDUCED_MODULUS, StructuralLaw
 from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
@@ -29,7 +29,6 @@ from mbs.bearings.bearing import Bearing
 FloatArray = npt.NDArray[np.float64]
 
 _EXPONENT = 10.0 / 9.0
-_ISO = 35948.0
 
 
 @dataclass(frozen=True)
@@ -132,7 +131,7 @@ def hertz(bearing: Bearing, damping: float = 0.0) -> DryLaw:
     """
     length_mm = 1e3 * bearing.geometry.roller_length
     stiffer = reduced_modulus(bearing.material, bearing.material) / STEEL_REDUCED_MODULUS
-    coefficient = _ISO * length_mm ** (8.0 / 9.0) * 1e3**_EXPONENT * stiffer
+    coefficient = ISO_LINE_CONSTANT * length_mm ** (8.0 / 9.0) * 1e3**_EXPONENT * stiffer
     return DryLaw("hertz", "series", coefficient, _EXPONENT, 0.5 * _number("hertz", "damping", damping))
 
 

@@ -24,6 +24,8 @@ from ehdmaps.ehl.profile import Profile, refined
 from ehdmaps.ehl.reynolds import FITTED_STEP, LineProblem, residual
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.isotherm import density as density_over_pressure
+from ehdmaps.physics.isotherm import log_viscosity
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
@@ -40,12 +42,9 @@ def numpy_residual(problem: LineProblem, profile: Profile, unknowns: np.ndarray)
     n = grid.x.size - 1
     pressure = np.concatenate([[0.0], unknowns[: n - 1], [0.0]])
     p = np.maximum(pressure, 0.0)
-    base = 1.0 + problem.pressure_ratio * p
-    z, q = problem.exponent, problem.pressure_ratio
-    log_eta = problem.alpha / (z * q) * (base**z - 1.0)
-    slope = np.where(pressure >= 0.0, problem.alpha * base ** (z - 1.0), 0.0)
-    t = problem.density_ratio * p
-    rho, rho_slope = (1.0 + 1.34 * t) / (1.0 + t), 0.34 * problem.density_ratio / (1.0 + t) ** 2
+    log_eta, slope = log_viscosity(problem.isotherm, p)
+    slope = np.where(pressure >= 0.0, slope, 0.0)
+    rho, rho_slope = density_over_pressure(problem.isotherm, p)
     gap = unknowns[n + 1] + 0.5 * (unknowns[n] + grid.x) ** 2 - kernel @ pressure
     by_unknowns = np.column_stack([-kernel[:, 1:n], np.zeros(n + 1), unknowns[n] + grid.x, np.ones(n + 1)])
     rows, inner = np.arange(n), np.zeros((n + 1, n + 2))

@@ -6,14 +6,13 @@ import math
 from dataclasses import dataclass
 from functools import cache
 
-from ehdmaps.ehl.linearisation import DRY_COMPLIANCE
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.ehl.start import reynolds_start
 from ehdmaps.openfoam.parameters import Flow
 from ehdmaps.openfoam.solver import OpenFoamSolver
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.hertz import half_width, max_pressure
+from ehdmaps.physics.hertz import DRY_COMPLIANCE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.solids import STEEL

@@ -11,7 +11,7 @@ import pytest
 
 from ehdmaps.openfoam.parameters import Flow, Parameters
 from ehdmaps.openfoam.results import Results
-from ehdmaps.physics.hertz import half_width, max_pressure
+from ehdmaps.physics.hertz import DRY_COMPLIANCE, half_width, max_pressure
 from tests.openfoam import cases
 
 pytestmark = pytest.mark.openfoam
@@ -30,7 +30,7 @@ def _in_groups(results: Results, settings: Parameters) -> dict[str, float]:
     return {
         "minimum_film": results.minimum_film / film,
         "central_film": results.central_film / film,
-        "compliance": results.film_compliance[0] * unit + math.log(2.0) / math.pi,
+        "compliance": results.film_compliance[0] * unit + DRY_COMPLIANCE,
         "loss": results.loss_compliance[0] * unit * speed / half,
     }
 

@@ -181,11 +181,23 @@ def test_broken_files_and_attributes_are_refused(emap, tmp_path):
         _ = EHDMap(emap.dataset.assign_attrs(contacts=swapped)).contacts
 
 
+TAIT_DOOLITTLE = {
+    "doolittle_slope": 4.5,
+    "occupied_fraction": 0.66,
+    "occupied_expansion": -7e-4,
+    "volume_expansion": 8e-4,
+    "bulk_modulus": 8.7e9,
+    "bulk_modulus_decay": 6.3e-3,
+    "bulk_modulus_slope": 11.0,
+    "reference_temperature": 313.15,
+}
+
 OILS = [
     *(Lubricant.named(name) for name in LUBRICANTS),
     Lubricant.barus(viscosity=0.1, pressure_viscosity=2e-8, density=880.0, density_law="incompressible"),
     Lubricant.roelands(viscosity_40=1e-4, viscosity_100=1e-5, density=870.0, roelands_z=0.6),
     Lubricant.fva3(viscosity=0.05, density=880.0, pressure_viscosity_40=2e-8, pressure_viscosity_100=1.5e-8),
+    Lubricant.own("tait-doolittle", TAIT_DOOLITTLE, viscosity_40=2e-5, viscosity_100=4e-6, density=810.0),
 ]
 
 

@@ -9,6 +9,7 @@ from ehdmaps.jobs.job import record_json
 from ehdmaps.jobs.reader import parse_job, read_job, shipped_jobs
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.pressure_viscosity import TaitDoolittle
 
 GOOD = """
 schema = 1
@@ -82,6 +83,42 @@ def test_a_bearing_and_an_oil_by_hand():
     assert job.lubricant == Lubricant.roelands(
         viscosity_40=95e-6, viscosity_100=10.6e-6, pressure_viscosity=22.4e-9, density=880.0
     )
+
+
+TAIT_DOOLITTLE = """[lubricant]
+viscosity_law = "tait-doolittle"
+viscosity = "20 mPa s"
+density = "800 kg/m^3"
+doolittle_slope = 4.5
+occupied_fraction = 0.66
+occupied_expansion = "-7e-4 1/K"
+volume_expansion = "8e-4 1/K"
+bulk_modulus = "8.7 GPa"
+bulk_modulus_decay = "6.3e-3 1/K"
+bulk_modulus_slope = 11.0
+reference_temperature = "40 degC"
+"""
+
+
+def test_an_oil_of_free_volume():
+    law = parse(GOOD.replace(NAMED_OIL, TAIT_DOOLITTLE)).lubricant.pressure_viscosity
+    assert law == TaitDoolittle(4.5, 0.66, -7e-4, 8e-4, 8.7e9, 6.3e-3, 11.0, 313.15)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("occupied_fraction = 0.66\n", "", r"occupied_fraction: missing"),
+        ("0.66", "1.2", r"occupied_fraction: got 1.2; allowed: 0.05 to 0.99"),
+        ('"8.7 GPa"', '"8.7 Pa"', r"bulk_modulus: got '8.7 Pa'; allowed: 0.1 GPa to 1000 GPa"),
+        ("doolittle_slope", 'pressure_viscosity = "20 1/GPa"\ndoolittle_slope', r"pressure_viscosity: stands beside"),
+        ('"tait-doolittle"', '"fva3"', r"bulk_modulus: stands beside .* allowed: with 'tait-doolittle' only"),
+    ],
+)
+def test_numbers_that_are_not_of_the_law_are_refused(old, new, message):
+    assert old in TAIT_DOOLITTLE
+    with pytest.raises(InputError, match=message):
+        parse(GOOD.replace(NAMED_OIL, TAIT_DOOLITTLE.replace(old, new)))
 
 
 def test_a_bare_contact_with_a_linear_axis_and_another_material():

@@ -7,23 +7,26 @@ from functools import cache
 
 from ehdmaps.ehl.line import GroupSolution, Resolution, solve_groups
 from ehdmaps.ehl.reynolds import LineProblem
+from ehdmaps.physics.isotherm import PressureViscosity
 
 
 def roelands_problem(M: float, L: float) -> LineProblem:
     """The oil of the reference points: Roelands z = 0.67, p0 = 1.96e8 Pa, alpha = 1.7e-8 1/Pa, compressible."""
     alpha = L * math.sqrt(M / (2.0 * math.pi))
     peak = alpha / 1.7e-8
-    return LineProblem(3.0 * math.pi**2 / (8.0 * M * M), alpha, 0.67, peak / 1.96e8, peak / 0.59e9)
+    isotherm = PressureViscosity(1.7e-8, 0.67, 1.96e8).isotherm(peak, compressible=True)._replace(alpha=alpha)
+    return LineProblem(3.0 * math.pi**2 / (8.0 * M * M), isotherm)
 
 
 def isoviscous_problem(M: float) -> LineProblem:
     """Constant viscosity and density."""
-    return LineProblem(3.0 * math.pi**2 / (8.0 * M * M), 0.0, 1.0, 0.0, 0.0)
+    return LineProblem(3.0 * math.pi**2 / (8.0 * M * M), PressureViscosity(0.0, 1.0, math.inf).isotherm())
 
 
 def incompressible_problem(M: float, L: float) -> LineProblem:
     """The same viscosity law, incompressible: the fluid for which the bands of the film formulas are stated."""
-    return roelands_problem(M, L)._replace(density_ratio=0.0)
+    problem = roelands_problem(M, L)
+    return problem._replace(isotherm=problem.isotherm._replace(density_curvature=0.0))
 
 
 def moes_film(film: float, M: float) -> float:

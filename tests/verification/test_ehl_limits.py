@@ -12,8 +12,8 @@ import pytest
 from ehdmaps.ehl.elastic import DRY_DATUM, log_kernel
 from ehdmaps.ehl.grid import lay_out
 from ehdmaps.ehl.line import Resolution, solve_groups
-from ehdmaps.ehl.linearisation import DRY_COMPLIANCE
 from ehdmaps.physics.films import dowson_higginson_minimum, dowson_toyoda_central, moes_central
+from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from tests.verification.ehl_cases import isoviscous_problem, moes_film, solved
 
 REFERENCES = tomllib.loads((Path(__file__).parents[1] / "references" / "line_contact.toml").read_text())

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from ehdmaps.ehl.line import LOAD, GroupSolution, at_load
-from ehdmaps.ehl.linearisation import DRY_COMPLIANCE, film_response
+from ehdmaps.ehl.linearisation import film_response
 from ehdmaps.ehl.newton import CONVERGED, newton
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import residual, stored_mass, stored_mass_rate
+from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from tests.verification.ehl_cases import roelands_problem, solved
 
 
@@ -107,10 +108,9 @@ def test_mass_is_conserved() -> None:
     # an independent second-order flux at the faces, where the film is thin and the cells are small
     problem, pressure, gap = profile.problem, profile.pressure, profile.film
     middle = 0.5 * (pressure[1:] + pressure[:-1])
-    eta = np.exp(
-        problem.alpha / (0.67 * problem.pressure_ratio) * ((1.0 + problem.pressure_ratio * middle) ** 0.67 - 1.0)
-    )
-    rho = (1.0 + 1.34 * problem.density_ratio * middle) / (1.0 + problem.density_ratio * middle)
+    law = problem.isotherm
+    eta = np.exp(law.alpha / (0.67 * law.curvature) * ((1.0 + law.curvature * middle) ** 0.67 - 1.0))
+    rho = (1.0 + 1.34 * law.density_curvature * middle) / (1.0 + law.density_curvature * middle)
     height = 0.5 * (gap[1:] + gap[:-1])
     flux = rho * height - rho * height**3 / (problem.wedge * eta) * np.diff(pressure) / np.diff(grid.x)
     near = (0.5 * (profile.position[1:] + profile.position[:-1]) > -1.2) & (middle > 0.0)
