@@ -2,7 +2,8 @@
 
 Run it with `python examples/08_hammer_test.py [FOLDER]`; the figure is written to the folder.
 The records are simulated, with 1 % of noise, as an analyser would give them; no file is needed. The fit knows the
-records only, and must find frequency and damping of an eigenvalue of the linear system that was hit.
+records only; the mode that it finds in the band must have frequency and damping of an eigenvalue of the linear system
+that was hit. It does not find every eigenvalue: modes that the hits hardly excite are lost in the noise.
 """
 
 import sys

@@ -49,7 +49,17 @@ class Results(Protocol):
         ...
 
     def put(self, key: str, arrays: Mapping[str, npt.NDArray[Any]], at_once: bool = False) -> None:
-        """Keep the arrays of a key."""
+        """Keep the arrays of a key.
+
+        Parameters
+        ----------
+        key : str
+            Hash of all that shapes the numbers.
+        arrays : mapping
+            Arrays by name.
+        at_once : bool
+            Whether they are worth a trip to the disk of their own.
+        """
         ...
 
     def commit_if_due(self) -> None:
@@ -71,7 +81,7 @@ class NoStore:
         return None
 
     def put(self, key: str, arrays: Mapping[str, npt.NDArray[Any]], at_once: bool = False) -> None:
-        """Do nothing."""
+        """Do nothing; see `Results.put`."""
 
     def commit_if_due(self) -> None:
         """Do nothing."""

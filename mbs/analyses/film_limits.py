@@ -15,7 +15,17 @@ from mbs.linearised.validity import FilmLimit, film_limit
 
 
 def film_limits(model: Model, displacement: FloatArray, operation: Operation) -> list[FilmLimit]:
-    """Up to which frequency the films of each bearing follow; empty for dry laws and constant ones."""
+    """Up to which frequency the films of each bearing follow; empty for dry laws and constant ones.
+
+    Parameters
+    ----------
+    model : Model
+        The machine with its law.
+    displacement : array, shape (n,)
+        Of all coordinates at the equilibrium.
+    operation : Operation
+        Speed and angle of the system.
+    """
     limits = []
     for bearing, motion in ring_motions(model, displacement):
         if not isinstance(bearing.force, BearingForce) or not isinstance(bearing.force.law, ContactLaw):

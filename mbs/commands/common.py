@@ -108,7 +108,23 @@ def film_course(model: Model, speeds: Iterable[float]) -> list[str]:
 def read_option(
     option: str, text: str | None, unit: str, limits: tuple[float, float], display: Display, problems: list[str]
 ) -> float | None:
-    """Read a quantity of the command line within limits; None if absent or wrong, with the problem noted."""
+    """Read a quantity of the command line within limits; None if absent or wrong, with the problem noted.
+
+    Parameters
+    ----------
+    option : str
+        Its name, such as "--highest".
+    text : str or None
+        What was given; None if it was left out.
+    unit : str
+        SI unit of the value.
+    limits : (float, float)
+        Smallest and largest value that is allowed, in SI.
+    display : Display
+        How messages show them.
+    problems : list of str
+        Appended to.
+    """
     if text is None:
         return None
     try:
@@ -123,7 +139,17 @@ def read_option(
 
 
 def outside_at(model: Model, balance: Equilibrium, calls: Mapping[str, int]) -> list[str]:
-    """Lines on bearings whose equilibrium lies outside the map, with the calls outside by bearing."""
+    """Lines on bearings whose equilibrium lies outside the map.
+
+    Parameters
+    ----------
+    model : Model
+        The machine with its law.
+    balance : Equilibrium
+        The equilibrium.
+    calls : mapping of str to int
+        How often each bearing called its law outside the map there.
+    """
     if not any(calls.values()):
         return []
     loads = {
@@ -135,7 +161,17 @@ def outside_at(model: Model, balance: Equilibrium, calls: Mapping[str, int]) -> 
 
 
 def write(arguments: argparse.Namespace, dataset: xr.Dataset, figure: Figure | None) -> list[str]:
-    """Write what -o and --plot ask for; a line for each file."""
+    """Write what -o and --plot ask for; a line for each file.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        With `output` and `plot`.
+    dataset : xarray.Dataset
+        The result.
+    figure : matplotlib.figure.Figure or None
+        The figure; None where there is none to draw.
+    """
     lines = []
     if arguments.output:
         path = Path(arguments.output)

@@ -13,7 +13,17 @@ from mbs.reading.fields import RPM
 
 
 def fade_lines(model: Model, speeds: FloatArray, of: str = "the speeds") -> list[str]:
-    """A line where some of the speeds [rad/s] lie below the films of the law; `of` says what the speeds are."""
+    """A line where some of the speeds lie below the films of the law.
+
+    Parameters
+    ----------
+    model : Model
+        The machine with its law.
+    speeds : array, shape (n,)
+        Of the system [rad/s].
+    of : str
+        What the speeds are, in words.
+    """
     fade = fade_of(model)
     if fade is None or not np.any(fade.below(speeds)):
         return []

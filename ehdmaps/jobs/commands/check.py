@@ -71,7 +71,17 @@ def oil_lines(job: Job) -> Iterator[str]:
 
 
 def estimated_time(job: Job, solver: ContactSolver, points: int) -> str:
-    """Estimate the time of a run by solving a few lines of it."""
+    """Estimate the time of a run by solving a few lines of it.
+
+    Parameters
+    ----------
+    job : Job
+        What is to be solved.
+    solver : ContactSolver
+        By which solver.
+    points : int
+        How many points in all.
+    """
     tasks = line_tasks(job, solver)
     if is_slow(solver):
         return _time_of_slow(tasks[len(tasks) // 2], points)
