@@ -16,6 +16,7 @@ from mbs.scene_reader import shipped_systems
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
+PYTHON = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
 NUMBER = re.compile(r"-?\d+(?:\.\d*)?")
 
 # Of the shipped job's map only what the operating points need: 0.83 and 1.7 m/s, 40 degC
@@ -46,7 +47,7 @@ def made_map(tmp_path_factory):
 
 @pytest.mark.slow
 def test_script_prints_what_is_shown(made_map, monkeypatch, capsys):
-    found = re.search(r"```python\n([^`]*from mbs import[^`]*)```\n\nprints\n\n```\n([^`]*)```", README)
+    found = re.search(r"```python\n([^`]*from mbs import[^`]*)```\n\nprints\n\n```\n([^`]*)```", PYTHON)
     assert found is not None
     script, shown = found.groups()
     assert script.count("\n") <= 30
@@ -62,10 +63,19 @@ def test_script_prints_what_is_shown(made_map, monkeypatch, capsys):
 
 
 def test_blocks_of_python_compile():
-    blocks = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    assert len(blocks) >= 2
+    blocks = re.findall(r"```python\n(.*?)```", README + PYTHON, re.DOTALL)
+    assert len(blocks) == 3
     for block in blocks:
         compile(block, "README.md", "exec")
+
+
+@pytest.mark.slow
+def test_a_whole_machine_from_python(made_map, monkeypatch):
+    block = re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL)[1]
+    monkeypatch.chdir(made_map)
+    Path("machine.py").write_text(block)
+    found = runpy.run_path("machine.py")
+    assert found["over_speed"]["case"].values.tolist() == ["dry Hertz", "Reynolds map"]
 
 
 @pytest.mark.slow
@@ -78,7 +88,14 @@ def test_first_block_of_python_runs(made_map, monkeypatch):
     np.testing.assert_allclose(found["fixed"](2e-6, 0.0), [found[name] for name in "wkc"], rtol=1e-9)
 
 
-PAGES = ("README.md", "ehdmaps/REFERENCE.md", "mbs/REFERENCE.md", "mbs/MACHINES.md", "openfoam_cases/RESULTS.md")
+PAGES = (
+    "README.md",
+    "docs/accuracy.md",
+    "ehdmaps/REFERENCE.md",
+    "mbs/REFERENCE.md",
+    "mbs/MACHINES.md",
+    "openfoam_cases/RESULTS.md",
+)
 PARSERS = {"ehdmaps": ehdmaps_cli.parser, "mbs": cli.parser}
 LEFT_OUT = {
     "ehdmaps solve": ["n1014", "--load", "1 N/mm", "--speed", "1 m/s", "--temperature", "40 degC"],
