@@ -18,14 +18,9 @@ from ehdmaps.outputs import write_figure
 
 MASS, FORCE, SPEED, TEMPERATURE = 0.2, 1500.0, 2.0, 333.15
 bearing = ehdmaps.BearingGeometry.named("NU308")
-job = ehdmaps.Job.build(
-    bearing=bearing,
-    lubricant=ehdmaps.Lubricant.named("FVA3"),
-    loads=np.geomspace(1e3, 1e6, 13),
-    entrainment_speeds=[1.0, 2.0, 4.0],
-    temperatures=[TEMPERATURE],
-    solver_options={"density": 4.5},
-)
+oil = ehdmaps.Lubricant.named("FVA3")
+grid = {"loads": np.geomspace(1e3, 1e6, 13), "entrainment_speeds": [1.0, 2.0, 4.0], "temperatures": [TEMPERATURE]}
+job = ehdmaps.Job.build(bearing=bearing, lubricant=oil, **grid, solver_options={"density": 4.5})
 law = ehdmaps.EHDMap(ehdmaps.generate(job)).law("series").at(SPEED, TEMPERATURE)
 LENGTH = bearing.roller_length
 rest = brentq(lambda x: LENGTH * float(law(x, 0.0)[0]) - FORCE, 1e-6, 20e-6, xtol=1e-15)

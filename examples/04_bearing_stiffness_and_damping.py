@@ -22,14 +22,13 @@ from mbs.bearings.laws import hertz
 TEMPERATURE, SPEED = 333.15, 1500 * math.pi / 30
 bearing = Bearing(ehdmaps.BearingGeometry.named("NU308"), profile="straight")
 u = bearing.geometry.entrainment_speed(SPEED)
-job = ehdmaps.Job.build(
-    bearing=bearing.geometry,
-    lubricant=ehdmaps.Lubricant.named("FVA3"),
-    loads=np.geomspace(1e2, 1e6, 17),
-    entrainment_speeds=[0.8 * u, u, 1.25 * u],
-    temperatures=[TEMPERATURE],
-    solver_options={"density": 4.5},
-)
+oil = ehdmaps.Lubricant.named("FVA3")
+grid = {
+    "loads": np.geomspace(1e2, 1e6, 17),
+    "entrainment_speeds": [0.8 * u, u, 1.25 * u],
+    "temperatures": [TEMPERATURE],
+}
+job = ehdmaps.Job.build(bearing=bearing.geometry, lubricant=oil, **grid, solver_options={"density": 4.5})
 emap = ehdmaps.EHDMap(ehdmaps.generate(job))
 loads = np.geomspace(500.0, 10e3, 9)
 sources = {
