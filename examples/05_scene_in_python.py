@@ -9,7 +9,7 @@ import math
 import sys
 from pathlib import Path
 
-from matplotlib.figure import Figure
+import matplotlib.pyplot as plt
 
 from ehdmaps.outputs import write_figure
 from mbs import assemble, modes, parse_scene
@@ -21,8 +21,7 @@ operation = { speed = "500 rpm", temperature = "40 degC" }
 loads = [{ name = "pull", on = "shaft", force = ["0 N", "0 N", "-300 N"] }]
 bearings = [
     { name = "left", inner = "shaft:left", outer = "ground", geometry = { name = "NU308" } },
-    { name = "right", inner = "shaft:right", outer = "ground", geometry = { name = "NU308" } },
-]
+    { name = "right", inner = "shaft:right", outer = "ground", geometry = { name = "NU308" } }]
 [[bodies]]
 name = "shaft"
 freedoms = ["y", "z", "theta_y", "theta_z"]
@@ -33,16 +32,13 @@ frames = { left = ["-10 cm", "0 cm", "0 cm"], right = ["10 cm", "0 cm", "0 cm"] 
 """
 model = assemble(parse_scene(SCENE, "disc", "the scene"), clearance=-2e-6)  # preloaded a little
 found = modes(model).dataset["frequency"].values
-
 scene, bearing = model.scene, model.bearings[0]
 one = bearing_point(bearing.force, model.films["left"], (0.0, -150.0), scene.speed, scene.temperature)
 expected = math.sqrt(2.0 * one.stiffness[1, 1] / model.system.mass[0, 0]) / (2.0 * math.pi)
 bounce = min(found, key=lambda frequency: abs(frequency - expected))
 print(f"{found.round(2)} Hz; bounce {bounce:.4f} Hz, of one bearing and half the mass {expected:.4f} Hz")
 assert abs(bounce / expected - 1.0) < 1e-6  # rounding of two equilibria
-
-figure = Figure(figsize=(6.0, 3.0), layout="constrained")
-axes = figure.subplots()
+figure, axes = plt.subplots(figsize=(6.0, 3.0), layout="constrained")
 axes.bar(range(1, 5), found)
 axes.axhline(expected, color="k", linestyle="--")
 axes.set(xlabel="mode", ylabel="natural frequency, Hz", title="dashed: two springs k, one mass")
