@@ -24,30 +24,20 @@ bearing = ehdmaps.BearingGeometry(
     diametral_clearance=20e-6,
 )
 oil = ehdmaps.Lubricant.roelands(viscosity_40=68e-6, viscosity_100=8.7e-6, pressure_viscosity=2e-8, density=870.0)
-job = ehdmaps.Job.build(
-    bearing=bearing,
-    lubricant=oil,
-    loads=np.geomspace(1e3, 1e6, 10),
-    entrainment_speeds=[0.5, 1.0, 2.0, 4.0],
-    temperatures=[333.15],
-    solver_options={"density": 4.5},
-    name="mine",
-)
+loads, speeds, temperature = np.geomspace(1e3, 1e6, 10), [0.5, 1.0, 2.0, 4.0], 333.15
+grid = {"loads": loads, "entrainment_speeds": speeds, "temperatures": [temperature]}
+job = ehdmaps.Job.build(bearing=bearing, lubricant=oil, **grid, solver_options={"density": 4.5}, name="mine")
 made = ehdmaps.generate(job)  # with an output file it would go on after an interruption
-w, k, c = ehdmaps.EHDMap(made).law("series")(
-    made["approach"].sum("contact").values[:, 2, 0], 0.0, job.entrainment_speeds[2], job.temperatures[0]
-)
-assert np.allclose(w, job.loads, rtol=1e-4)  # what a smooth table loses of coarse points
-print(f"{made.attrs['title']}: {job.points} points; at {job.loads[5]:.4g} N/m the law gives {w[5]:.4g} N/m")
+approach = made["approach"].sum("contact").values[:, 2, 0]
+w, k, c = ehdmaps.EHDMap(made).law("series")(approach, 0.0, speeds[2], temperature)
+assert np.allclose(w, loads, rtol=1e-4)  # what a smooth table loses of coarse points
+print(f"{made.attrs['title']}: {job.points} points; at {loads[5]:.4g} N/m the law gives {w[5]:.4g} N/m")
 
 figure = Figure(figsize=(7.0, 3.0), layout="constrained")
 left, right = figure.subplots(1, 2)
-for speed, film in zip(
-    job.entrainment_speeds, made["central_film"].sel(contact="inner").values[:, :, 0].T, strict=True
-):
-    left.loglog(job.loads, 1e6 * film, label=f"{speed:g} m/s")
+left.loglog(loads, 1e6 * made["central_film"].sel(contact="inner")[..., 0], label=[f"{u:g} m/s" for u in speeds])
 left.legend()
 left.set(xlabel="load, N/m", ylabel="central film, um")
-right.loglog(job.loads, k)
+right.loglog(loads, k)
 right.set(xlabel="load, N/m", ylabel="stiffness of a roller, N/m2")
 write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "02_own_map.png", 120)

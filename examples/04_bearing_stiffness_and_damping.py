@@ -9,8 +9,8 @@ import math
 import sys
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.figure import Figure
 
 import ehdmaps
 from ehdmaps.outputs import write_figure
@@ -19,29 +19,20 @@ from mbs.bearing_point import bearing_points
 from mbs.bearings.films import DryContacts, MapFilms
 from mbs.bearings.laws import hertz
 
-TEMPERATURE, SPEED = 333.15, 1500 * math.pi / 30
+T, SPEED = 333.15, 1500 * math.pi / 30
 bearing = Bearing(ehdmaps.BearingGeometry.named("NU308"), profile="straight")
-u = bearing.geometry.entrainment_speed(SPEED)
-job = ehdmaps.Job.build(
-    bearing=bearing.geometry,
-    lubricant=ehdmaps.Lubricant.named("FVA3"),
-    loads=np.geomspace(1e2, 1e6, 17),
-    entrainment_speeds=[0.8 * u, u, 1.25 * u],
-    temperatures=[TEMPERATURE],
-    solver_options={"density": 4.5},
-)
-emap = ehdmaps.EHDMap(ehdmaps.generate(job))
-loads = np.geomspace(500.0, 10e3, 9)
+oil, u = ehdmaps.Lubricant.named("FVA3"), bearing.geometry.entrainment_speed(SPEED)
+grid = {"loads": np.geomspace(1e2, 1e6, 17), "entrainment_speeds": [0.8 * u, u, 1.25 * u], "temperatures": [T]}
+job = ehdmaps.Job.build(bearing=bearing.geometry, lubricant=oil, **grid, solver_options={"density": 4.5})
+emap, loads = ehdmaps.EHDMap(ehdmaps.generate(job)), np.geomspace(500.0, 10e3, 9)
 sources = {
     "dry": (hertz(bearing), DryContacts(bearing.geometry.contacts(bearing.material, "iso16281"))),
     "film": (emap.law("series", outside="asymptote"), MapFilms(emap)),
 }
-figure = Figure(figsize=(7.0, 3.0), layout="constrained")
-left, right = figure.subplots(1, 2)
+figure, (left, right) = plt.subplots(1, 2, figsize=(7.0, 3.0), layout="constrained")
 for name, (law, films) in sources.items():
-    points = [row[0] for row in bearing_points(bearing, law, films, [(0.0, f) for f in loads], [SPEED], TEMPERATURE)]
-    K = np.array([point.along_across(point.stiffness)[0] for point in points])
-    C = np.array([point.along_across(point.damping)[0] for point in points])
+    points = [row[0] for row in bearing_points(bearing, law, films, [(0.0, f) for f in loads], [SPEED], T)]
+    K, C = np.array([(point.stiffness[1, 1], point.damping[1, 1]) for point in points]).T  # z: along the load
     left.plot(loads, 1e-6 * K, label=name)
     right.plot(loads, 1e-3 * C, label=name)
     if name == "dry":

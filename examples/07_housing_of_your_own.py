@@ -1,18 +1,16 @@
 """A housing of your own: stiffness and mass of a finite-element body as files, reduced to its interface.
 
 Run it with `python examples/07_housing_of_your_own.py [FOLDER]`; matrices and figure are written to the folder.
-The body is a clamped block, a truss of bars along edges and diagonals of cubes: numpy makes it here, so that no mesher
-is needed; any program that writes Matrix Market does as well. A Craig-Bampton reduction keeps low frequencies: those
-of the reduced body must be those of the whole matrices.
+The body is a clamped block, a truss of bars along edges and diagonals of cubes, made here so that no mesher is needed;
+any program that writes Matrix Market does. A reduction keeps low frequencies: they must be those of the whole body.
 """
 
 import sys
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.figure import Figure
-from scipy import io, sparse
-from scipy.linalg import eigh
+from scipy import io, linalg, sparse, spatial
 
 from ehdmaps.outputs import write_figure
 from mbs.flexible.matrix_files import NodePositions, assemble_model, read_matrix_market
@@ -22,40 +20,26 @@ from mbs.flexible.spiders import Interface, nodes_in_plane
 FOLDER = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
 SPACING, COUNT, MODULUS, DENSITY = 0.02, (12, 4, 4), 210e9, 7850.0
 places = SPACING * np.array(list(np.ndindex(COUNT)), dtype=float)
-size = 3 * len(places)
-K = np.zeros((size, size))
-for i, first in enumerate(places):  # every bar is a spring E A/length along its axis
-    for j in range(i + 1, len(places)):
-        along = places[j] - first
-        length = float(np.linalg.norm(along))
-        if length < 1.8 * SPACING:
-            link = 0.2 * MODULUS * SPACING**2 / length * np.outer(along, along) / length**2
-            a, b = slice(3 * i, 3 * i + 3), slice(3 * j, 3 * j + 3)
-            K[a, a] += link
-            K[b, b] += link
-            K[a, b] -= link
-            K[b, a] -= link
+first, second = spatial.KDTree(places).query_pairs(1.8 * SPACING, output_type="ndarray").T  # ends of the bars
+along, ends = (each[second] - each[first] for each in (places, np.eye(len(places))))
+length = np.linalg.norm(along, axis=1)[:, None]  # every bar is a spring E A/length
 free = np.flatnonzero(np.repeat(places[:, 0] > 0.0, 3))  # clamped at x = 0
-K, M = K[np.ix_(free, free)], DENSITY * SPACING**3 * np.eye(free.size)
-for name, matrix in (("stiffness", K), ("mass", M)):
-    io.mmwrite(FOLDER / f"07_{name}.mtx", sparse.coo_array(matrix), symmetry="symmetric", precision=17)
+stretch = (ends[:, :, None] * (along / length)[:, None]).reshape(len(along), -1)[:, free]
+K, M = stretch.T @ (0.2 * MODULUS * SPACING**2 / length * stretch), DENSITY * SPACING**3 * np.eye(free.size)
 np.savetxt(FOLDER / "07_dofs.txt", np.column_stack([free // 3 + 1, free % 3 + 1]), fmt="%d")
-
-stiffness, mass = (
-    read_matrix_market(FOLDER / f"07_{name}.mtx", FOLDER / "07_dofs.txt") for name in ("stiffness", "mass")
-)
-model = assemble_model(stiffness, mass, NodePositions(np.arange(1, len(places) + 1), places))
+read = []
+for name, matrix in (("stiffness", K), ("mass", M)):
+    file = FOLDER / f"07_{name}.mtx"
+    io.mmwrite(file, sparse.coo_array(matrix), symmetry="symmetric", precision=17)
+    read.append(read_matrix_market(file, FOLDER / "07_dofs.txt"))
+model = assemble_model(*read, NodePositions(np.arange(1, len(places) + 1), places))
 end = places[-1] * (1.0, 0.5, 0.5)
 reduced = reduce(model, {"seat": Interface(end, nodes_in_plane(model, end, (1, 0, 0), 1e-6))}, cutoff=20e3)
-frequency = np.sqrt(eigh(reduced.stiffness, reduced.mass, eigvals_only=True)) / (2.0 * np.pi)
-whole = np.sqrt(eigh(K, M, eigvals_only=True)) / (2.0 * np.pi)
-print(
-    f"{free.size} to {len(reduced.coordinates)} freedoms; lowest {frequency[0]:.3f} Hz, of the whole {whole[0]:.3f} Hz"
-)
+frequency = np.sqrt(linalg.eigh(reduced.stiffness, reduced.mass, eigvals_only=True)) / (2.0 * np.pi)
+whole = np.sqrt(linalg.eigh(K, M, eigvals_only=True)) / (2.0 * np.pi)
+print(f"{free.size} to {frequency.size} freedoms; lowest {frequency[0]:.3f} Hz, of the whole {whole[0]:.3f} Hz")
 assert abs(frequency[0] / whole[0] - 1.0) < 1e-4  # what modes beyond the cut-off would add
-
-figure = Figure(figsize=(6.0, 3.0), layout="constrained")
-axes = figure.subplots()
+figure, axes = plt.subplots(figsize=(6.0, 3.0), layout="constrained")
 axes.semilogy(range(1, 13), np.abs(frequency[:12] / whole[:12] - 1.0), "o")
 axes.set(xlabel="mode", ylabel="error of the reduced frequency")
 write_figure(figure, FOLDER / "07_housing.png", 120)
