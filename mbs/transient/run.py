@@ -320,7 +320,5 @@ def _start(name: str, given: FloatArray | None, system: System) -> FloatArray:
 def _outside(system: System) -> dict[str, int]:
     """Calls outside the map so far, by element that counts them."""
     return {
-        entry.element.name: int(calls)
-        for entry in system.elements
-        if (calls := getattr(entry.element, "outside_calls", None)) is not None
+        entry.element.name: calls for entry in system.elements if (calls := entry.element.outside_calls) is not None
     }
