@@ -21,7 +21,7 @@ scene file          `reading`, `scene_reader` -> `scene` -> `assembly`
 what bodies are     `body`, `flexible` (beams, finite elements, reduction), `housings` (the shipped ones)
 what connects them  `elements`, `bearings` (the bearing force), `gears`; `profiles` (what is prescribed)
 one bearing         `bearing_point` (its equilibrium under a load, pressures and films), without a scene
-the system          `system`; `equilibrium`, `free_motion`; `planning` (the map that it needs)
+the system          `system`; `equilibrium`, `free_motion`; `planning` (the map that it needs), `outside_calls`
 linear              `linearised` (modes, responses, over speed); `modal` (identified from hammer hits)
 in time             `transient` (method, compiled runs); `spectral` (levels over speed and order)
 analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, hammer, plan

@@ -74,11 +74,8 @@ class Model:
 
     @property
     def outside_calls(self) -> dict[str, int]:
-        """Calls outside the map so far, by bearing."""
-        return {
-            connected.element.name: int(getattr(connected.element, "outside_calls", 0))
-            for connected in self.system.elements
-        }
+        """Calls outside the map so far, by element; 0 for one without a map."""
+        return {connected.element.name: connected.element.outside_calls or 0 for connected in self.system.elements}
 
 
 def choose_law(name: str | None, emap: EHDMap | None) -> str:

@@ -56,7 +56,10 @@ class Port:
 
 
 class Element(Protocol):
-    """A nonlinear element. Its force is linear algebra in its ports; what happens in there is its own."""
+    """A nonlinear element. Its force is linear algebra in its ports; what happens in there is its own.
+
+    An element has every member; a class that inherits from `ElementDefaults` leaves out `outside_calls`.
+    """
 
     @property
     def name(self) -> str:
@@ -66,6 +69,11 @@ class Element(Protocol):
     @property
     def ports(self) -> tuple[Port, ...]:
         """What it feels; the displacements of all ports make one vector of size m."""
+        ...
+
+    @property
+    def outside_calls(self) -> int | None:
+        """Calls outside the map so far; None for an element without a map."""
         ...
 
     def evaluate(
@@ -88,6 +96,15 @@ class Element(Protocol):
             -d force/d displacement and -d force/d velocity.
         """
         ...
+
+
+class ElementDefaults:
+    """What an element without a map says of itself, to inherit from."""
+
+    @property
+    def outside_calls(self) -> int | None:
+        """None: there is no map to leave."""
+        return None
 
 
 @dataclass(frozen=True, eq=False)

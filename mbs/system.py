@@ -217,6 +217,12 @@ class System:
             if name in seen:
                 problems.append(f"{name!r}: is there twice; bodies, springs, loads and bearings have names apart")
             seen.add(name)
+        problems += [
+            f"{element.name!r}, outside_calls: missing; allowed: a count, or None without a map; an element inherits "
+            "that from mbs.elements.ElementDefaults, the force of a bearing without a map has outside_calls = 0"
+            for element in elements
+            if not hasattr(element, "outside_calls")
+        ]
         for where, on, against in _connections(springs, loads, elements):
             wrong = [problem for place in (on, against) if (problem := self.check_place(place))]
             problems += [f"{where}: {problem}" for problem in wrong]

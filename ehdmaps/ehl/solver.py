@@ -22,7 +22,7 @@ from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.solution import FilmSolution, Status
+from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status
 
 HEAVIEST_LOAD_NUMBER = 2e6
 """Moes' M above which the film is too thin for double precision to see it beside the elastic deflection."""
@@ -32,7 +32,7 @@ LARGEST_OIL_NUMBER = 150.0
 
 
 @dataclass(frozen=True)
-class ReynoldsSolver:
+class ReynoldsSolver(ContactSolverDefaults):
     """Finite-difference solver of the steady line contact and of its linear response.
 
     Isothermal, Newtonian, piezoviscous, compressible, fully flooded, with Reynolds' cavitation condition at the exit.

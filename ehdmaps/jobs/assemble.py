@@ -163,7 +163,7 @@ def _attributes(job: Job, solver: ContactSolver) -> dict[str, Any]:
         "solver": solver.name,
         "solver_settings": record_json(solver.settings()),
         "solver_version": solver_version(solver),
-        **getattr(solver, "provenance", {}),
+        **solver.provenance,
         "structural_law": job.contacts[0].structural_law,
         "structural_scaling": _structural_scaling(job.contacts[0]),
         "fill": job.fill,

@@ -135,7 +135,8 @@ def solve(
     point : OperatingPoint
         Load, entrainment speed and temperature.
     solver : str or ContactSolver
-        Name of a solver with its default settings ("hertz", "formula", "reynolds", "openfoam"), or a solver.
+        Name of a solver with its default settings ("hertz", "formula", "reynolds", "openfoam"), or a solver; one of
+        your own inherits from `ehdmaps.physics.solution.ContactSolverDefaults`.
 
     Returns
     -------
@@ -145,7 +146,7 @@ def solve(
     Raises
     ------
     InputError
-        For a solver that does not exist.
+        For a solver that does not exist or lacks a member of `ContactSolver`.
     """
     (film,) = _solver(solver).solve_line(contact, lubricant, (point.load,), point.entrainment_speed, point.temperature)
     return contact_solution(film, contact, point)
@@ -184,7 +185,8 @@ def solve_points(
     Raises
     ------
     InputError
-        For a solver that does not exist, and with every value that is missing or not possible.
+        For a solver that does not exist or lacks a member of `ContactSolver`, and with every value that is missing or
+        not possible.
     """
     contacts = (contact,) if isinstance(contact, LineContact) else tuple(contact)
     return many.solve_points(contacts, lubricant, points, _solver(solver), workers)
@@ -192,7 +194,7 @@ def solve_points(
 
 def _solver(solver: str | ContactSolver) -> ContactSolver:
     """The solver, made by its name."""
-    return solvers.build(_known(solver), {}) if isinstance(solver, str) else solver
+    return solvers.build(_known(solver), {}) if isinstance(solver, str) else solvers.complete(solver)
 
 
 def _known(name: str) -> str:

@@ -76,7 +76,7 @@ def generate(
     InputError, StoreError, MapError
         With what to do; everything solved is kept.
     """
-    planned = _plan(job, solver or solvers.build(job.solver, job.solver_options))
+    planned = _plan(job, solvers.complete(solver or solvers.build(job.solver, job.solver_options)))
     everything, total = planned.everything, planned.points
     processes = workers or available_cores()
     with Store(store_path(output), fresh) as store, StatusFile(output, job, total, processes) as status:
@@ -98,7 +98,7 @@ def generate_in_memory(
 
     Arguments and errors as of `generate`.
     """
-    planned = _plan(job, solver or solvers.build(job.solver, job.solver_options))
+    planned = _plan(job, solvers.complete(solver or solvers.build(job.solver, job.solver_options)))
     told = progress(planned.points) if progress else None
     result = sweep(planned.everything, NoStore(), workers or available_cores(), told)
     dataset, group = _finished(planned, result, job.name)

@@ -15,7 +15,7 @@ from ehdmaps.jobs.assemble import only_usable, package_versions, with_structure
 from ehdmaps.jobs.job import record_json
 from ehdmaps.jobs.store import NoStore
 from ehdmaps.jobs.sweep import sweep
-from ehdmaps.jobs.tasks import LONGEST_LINE, LineTask, is_slow, solver_version
+from ehdmaps.jobs.tasks import LONGEST_LINE, LineTask, solver_version
 from ehdmaps.maps import schema
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
@@ -62,7 +62,7 @@ def solve_points(
     """
     values, dims = _broadcast(points)
     _check(contacts, lubricant, values)
-    lines = _lines(points, dims, values[0].shape, 1 if is_slow(solver) else LONGEST_LINE)
+    lines = _lines(points, dims, values[0].shape, 1 if solver.slow else LONGEST_LINE)
     tasks = [
         (index, line, LineTask(contact, lubricant, *_line(values, line), solver))
         for index, contact in enumerate(contacts)

@@ -31,7 +31,7 @@ class Refinement:
 
 def refinement(job: Job, solver: ContactSolver) -> Refinement | None:
     """Plan the backbone of a job; None where the solver does not ask for one or the job declines it."""
-    if not getattr(solver, "wants_backbone", False) or job.backbone == "none":
+    if not solver.wants_backbone or job.backbone == "none":
         return None
     plan = plan_backbone(job.contacts, job.lubricant, job.loads, job.entrainment_speeds, job.temperatures)
     if plan is None:

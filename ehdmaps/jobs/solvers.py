@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -159,6 +160,9 @@ SOLVERS: Mapping[str, SolverEntry] = {
 }
 SOLVER_NAMES = tuple(SOLVERS)
 
+_MEMBERS = {name: entry for name, entry in vars(ContactSolver).items() if not name.startswith("_")}
+"""What a `ContactSolver` has."""
+
 
 def read_options(name: str, table: Table) -> dict[str, Any]:
     """Read the solver's own keys from [solver]; those that are absent or wrong are left out."""
@@ -179,6 +183,28 @@ def build(name: str, options: Mapping[str, Any]) -> ContactSolver:
     if lacking:
         raise InputError([f"solver {name!r}: {problem}" for problem in lacking])
     return entry.build(**options)
+
+
+def complete(solver: ContactSolver) -> ContactSolver:
+    """Return the same solver, written by a user, once it has all that a solver has.
+
+    Raises
+    ------
+    InputError
+        For each member that is missing.
+    """
+    # looked up without a call: a version may take a program to find out; what the Protocol writes down is no answer
+    lacking = [name for name, stub in _MEMBERS.items() if inspect.getattr_static(solver, name, stub) is stub]
+    if lacking:
+        kind = type(solver).__name__
+        raise InputError(
+            [
+                f"solver {kind}, {name}: missing; a solver has {', '.join(_MEMBERS)}; inherit from "
+                "ehdmaps.physics.solution.ContactSolverDefaults, which has all but name, solve_line and settings"
+                for name in lacking
+            ]
+        )
+    return solver
 
 
 def case_options(name: str, keep_cases: str | None) -> dict[str, Any]:

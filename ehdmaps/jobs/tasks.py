@@ -90,7 +90,7 @@ class LineTask:
     @property
     def slow(self) -> bool:
         """Whether every point deserves to be brought to the disk at once."""
-        return is_slow(self.solver)
+        return self.solver.slow
 
     def run(self) -> Arrays:
         """Solve the line; arrays over the loads, by the names of `FilmSolution`."""
@@ -117,7 +117,7 @@ def film_arrays(films: list[FilmSolution] | tuple[FilmSolution, ...]) -> Arrays:
 
 def line_tasks(job: Job, solver: ContactSolver) -> tuple[LineTask, ...]:
     """Return the tasks of a whole map: lines of loads, or single points for a slow solver."""
-    length = 1 if is_slow(solver) else LONGEST_LINE
+    length = 1 if solver.slow else LONGEST_LINE
     return tuple(
         LineTask(
             contact=contact,
@@ -135,20 +135,14 @@ def line_tasks(job: Job, solver: ContactSolver) -> tuple[LineTask, ...]:
     )
 
 
-def is_slow(solver: ContactSolver) -> bool:
-    """Whether one point of a solver takes seconds or more (its attribute `slow`)."""
-    return bool(getattr(solver, "slow", False))
-
-
 def solver_version(solver: ContactSolver) -> str:
     """Return what tells one version of a solver from the next.
 
-    Its attribute `version` where it has one: results that took days should not be lost to an edited comment.
+    Its `version` where that is not None: results that took days should not be lost to an edited comment.
     Else a hash of the sources of its package and of the physics, so that a changed formula never meets stale results.
     """
-    version = getattr(solver, "version", None)
-    if version is not None:
-        return str(version)
+    if (version := solver.version) is not None:
+        return version
     own = type(solver).__module__.rpartition(".")[0]
     return _sources_hash(tuple(sorted({"ehdmaps.physics", own} - {""})))
 

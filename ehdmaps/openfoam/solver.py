@@ -29,7 +29,7 @@ from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import film_from_moes, moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.peak import peak_sampling_error
-from ehdmaps.physics.solution import FilmSolution, Status
+from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status
 
 CAVITATION_RANGE = 1e-6
 """Pressure over which liquid turns into the cavitated mixture, over the largest of the film (about)."""
@@ -95,7 +95,7 @@ class GridSolution:
 
 
 @dataclass(frozen=True)
-class OpenFoamSolver:
+class OpenFoamSolver(ContactSolverDefaults):
     """Film-resolved line contact with elastic surfaces; a point costs seconds.
 
     Each point is solved on a grid of half the cells each way, then on the grid itself from there; a third of the

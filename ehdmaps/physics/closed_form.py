@@ -28,7 +28,7 @@ from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.solution import FilmSolution, Status
+from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status
 
 FilmFormula = Literal["moes", "dowson-toyoda", "pan-hamrock"]
 
@@ -37,7 +37,7 @@ THIN_FILM_LIMIT = 0.01
 
 
 @dataclass(frozen=True)
-class HertzSolver:
+class HertzSolver(ContactSolverDefaults):
     """Dry contact: no film, no film compliance, no loss."""
 
     @property
@@ -64,7 +64,7 @@ class HertzSolver:
 
 
 @dataclass(frozen=True)
-class FormulaSolver:
+class FormulaSolver(ContactSolverDefaults):
     """Film offset = central film h_c of a published formula; its load derivative gives the film compliance.
 
     The loss compliance is c/k_h^2 with the rigid rolling film, c = 6.548 eta0 (R/h_c)^1.5, and k_h =

@@ -7,6 +7,7 @@ every solver, and gives the numbers of the map (`ContactSolution`).
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Protocol
@@ -135,11 +136,34 @@ class ContactSolver(Protocol):
 
     `solve_line` never raises for a point that does not converge: it returns the status. It is deterministic: the same
     line gives the same numbers, whatever was solved before.
+
+    A solver has every member; a class that inherits from `ContactSolverDefaults` writes `name`, `solve_line` and
+    `settings` only.
     """
 
     @property
     def name(self) -> str:
         """Name of the solver, as in a job file."""
+        ...
+
+    @property
+    def slow(self) -> bool:
+        """Whether a point takes seconds or more: each is then a task of its own, and is kept at once."""
+        ...
+
+    @property
+    def version(self) -> str | None:
+        """What tells results of one version from those of the next; None for a hash of the solver's sources."""
+        ...
+
+    @property
+    def wants_backbone(self) -> bool:
+        """Whether its maps get the lines that a contact law needs besides."""
+        ...
+
+    @property
+    def provenance(self) -> Mapping[str, str]:
+        """Further attributes of its maps, by name."""
         ...
 
     def solve_line(
@@ -173,6 +197,33 @@ class ContactSolver(Protocol):
     def settings(self) -> dict[str, float | int | str]:
         """Everything that changes the numbers, by name; goes into the map's attributes and the store's key."""
         ...
+
+
+class ContactSolverDefaults:
+    """What most solvers say of themselves, to inherit from: a quick solver, known by its sources.
+
+    A solver overrides what is different for it, by a property or by an attribute of its class such as ``slow = True``.
+    """
+
+    @property
+    def slow(self) -> bool:
+        """A point takes less than seconds: lines of loads are tasks."""
+        return False
+
+    @property
+    def version(self) -> str | None:
+        """No version: a hash of the solver's sources and of the physics stands for it."""
+        return None
+
+    @property
+    def wants_backbone(self) -> bool:
+        """Its maps get no lines besides their points."""
+        return False
+
+    @property
+    def provenance(self) -> Mapping[str, str]:
+        """Its maps get no further attributes."""
+        return {}
 
 
 def contact_solution(

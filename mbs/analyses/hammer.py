@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ehdmaps.errors import InputError
 from mbs.analyses.film_limits import film_limits
 from mbs.analyses.progress import Progress, silent
-from mbs.analyses.reach import calls_at, calls_since
+from mbs.analyses.reach import calls_at
 from mbs.assembly import Model
 from mbs.equilibrium import Equilibrium, equilibrium
 from mbs.linearised.modes import Modes, modes
@@ -16,6 +16,7 @@ from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import FilmLimit
 from mbs.modal.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
 from mbs.modal.records import Hits
+from mbs.outside_calls import calls_outside
 
 HIGHEST = 5000.0
 """Highest frequency of a scene that names none [Hz]."""
@@ -127,9 +128,8 @@ def hammer(model: Model, settings: HammerSettings | None = None, progress: Progr
     highest = settings.highest or (scene.frequencies[-1] if scene.frequencies else HIGHEST)
     duration = settings.duration or suggested_duration(found, highest)
     test = HammerTest(highest, duration, settings.hits, settings.noise, settings.seed)
-    before = model.outside_calls
-    hits = _hit(model, balance, test, settings.nonlinear, progress or silent)
-    called = calls_since(model, before)
+    with calls_outside(lambda: model.outside_calls) as called:
+        hits = _hit(model, balance, test, settings.nonlinear, progress or silent)
     return HammerResult(
         model=model,
         balance=balance,

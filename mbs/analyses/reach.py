@@ -15,6 +15,7 @@ from mbs.assembly import Model
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
 from mbs.elements import Operation
+from mbs.outside_calls import calls_outside
 
 
 @dataclass(frozen=True)
@@ -94,12 +95,7 @@ def calls_at(model: Model, displacement: FloatArray, operation: Operation) -> di
     operation : Operation
         Speed and angle.
     """
-    before = model.outside_calls
-    for connected in model.system.elements:
-        connected.evaluate(displacement, 0.0 * displacement, operation)
-    return calls_since(model, before)
-
-
-def calls_since(model: Model, before: Mapping[str, int]) -> dict[str, int]:
-    """Calls outside the map since the counters of `Model.outside_calls` stood at `before`, by bearing."""
-    return {name: count - before[name] for name, count in model.outside_calls.items()}
+    with calls_outside(lambda: model.outside_calls) as outside:
+        for connected in model.system.elements:
+            connected.evaluate(displacement, 0.0 * displacement, operation)
+    return outside

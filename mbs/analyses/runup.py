@@ -11,11 +11,11 @@ import xarray as xr
 
 from ehdmaps.errors import InputError
 from mbs.analyses.progress import Progress, silent
-from mbs.analyses.reach import calls_since
 from mbs.assembly import Model, law_attributes
 from mbs.elements import Operation
 from mbs.equilibrium import equilibrium
 from mbs.output.results import described, run_dataset
+from mbs.outside_calls import calls_outside
 from mbs.scene import RunUp
 from mbs.transient.integration import Trajectory, integrate
 
@@ -81,20 +81,19 @@ def runup(model: Model, settings: RunUp | None = None, progress: Progress | None
         raise InputError(f"{model.scene.name}: [runup] missing; a run needs from, to, duration and step")
     tell = progress or silent
     start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
-    before = model.outside_calls
     steps = course.settings.steps_per_sample
     total = math.ceil(course.duration / course.settings.sample - 1e-9) * steps
     tell(0, total)
     begin = time.perf_counter()
-    result = integrate(
-        model.system,
-        course.speed,
-        course.duration,
-        course.settings,
-        displacement=start.displacement,
-        progress=lambda done: tell(done * steps, total),
-    )
+    with calls_outside(lambda: model.outside_calls) as outside:
+        result = integrate(
+            model.system,
+            course.speed,
+            course.duration,
+            course.settings,
+            displacement=start.displacement,
+            progress=lambda done: tell(done * steps, total),
+        )
     seconds = time.perf_counter() - begin
-    outside = calls_since(model, before)
     dataset = described(run_dataset(model.system, result, outside), **law_attributes(model))
     return RunUpResult(model, course, result, outside, seconds, dataset)

@@ -15,7 +15,15 @@ from mbs.elements import Operation, Port
 
 
 class RingForce(Protocol):
-    """What a `BearingForce` does; a test or a study may put something else in its place."""
+    """What a `BearingForce` does; a test or a study may put something else in its place.
+
+    A force without a map has ``outside_calls = 0`` as an attribute of its class.
+    """
+
+    @property
+    def outside_calls(self) -> int:
+        """Calls outside the map so far; 0 for a force that has none."""
+        ...
 
     def __call__(
         self,
@@ -73,8 +81,8 @@ class BearingElement:
 
     @property
     def outside_calls(self) -> int:
-        """Calls outside the map so far; 0 for a force that does not count."""
-        return int(getattr(self.force, "outside_calls", 0))
+        """Calls outside the map so far."""
+        return self.force.outside_calls
 
     @cached_property
     def rates(self) -> tuple[float, float, float]:

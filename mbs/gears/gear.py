@@ -18,7 +18,7 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
-from mbs.elements import Operation, Port
+from mbs.elements import ElementDefaults, Operation, Port
 from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_force
 
 FEWEST_TEETH, MOST_TEETH = 5, 10_000
@@ -269,7 +269,7 @@ class GearPair:
 
 
 @dataclass(frozen=True, eq=False)
-class GearMesh:
+class GearMesh(ElementDefaults):
     """A gear pair in a system; make it by `gear_mesh`.
 
     Attributes

@@ -22,6 +22,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from mbs.elements import Sensor
 from mbs.errors import AnalysisError
+from mbs.outside_calls import calls_outside
 from mbs.profiles import SpeedProfile
 from mbs.system import System
 from mbs.transient.compiled_run import CompiledRun
@@ -146,17 +147,19 @@ def record(
     """`run`, and the motion of all coordinates if `states` (else of no samples)."""
     plan = _Plan.of(system, sensors, duration, settings, states)
     start = [_start(name, given, system) for name, given in (("displacement", displacement), ("velocity", velocity))]
-    before = _outside(system)
-    stepper = Stepper(system, speed, settings, start[0], start[1])
-    engine: _Engine
-    if compiled and _has_modes(system) and all(is_known(connected.element) for connected in system.elements):
-        engine = CompiledRun(system, speed, settings, stepper, plan.rows, plan.orders, plan.samples + 1, plan.states)
-    else:
-        engine = _Reference(stepper, plan, settings)
-    steps, halved = _drive(engine, settings, plan.samples, progress)
+    with calls_outside(lambda: _outside(system)) as outside:
+        stepper = Stepper(system, speed, settings, start[0], start[1])
+        engine: _Engine
+        if compiled and _has_modes(system) and all(is_known(connected.element) for connected in system.elements):
+            engine = CompiledRun(
+                system, speed, settings, stepper, plan.rows, plan.orders, plan.samples + 1, plan.states
+            )
+        else:
+            engine = _Reference(stepper, plan, settings)
+        steps, halved = _drive(engine, settings, plan.samples, progress)
+        outputs, forces, motions = engine.recorded()
     times = np.asarray(np.arange(plan.samples + 1) * settings.sample, dtype=np.float64)
     courses = np.array([speed.at(time) for time in times])
-    outputs, forces, motions = engine.recorded()
     ports = [connected.transform.shape[0] for connected in system.elements]
     ends = np.cumsum([0, *ports]).tolist()
     parts = [slice(begin, end) for begin, end in pairwise(ends)]
@@ -171,7 +174,7 @@ def record(
         steps=steps,
         halved=halved,
         iterations=engine.iterations,
-        outside={name: calls - before[name] for name, calls in _outside(system).items()},
+        outside=outside,
         compiled=engine.compiled,
     )
     return recording, States(motions[:, 0], motions[:, 1], motions[:, 2])
@@ -320,7 +323,5 @@ def _start(name: str, given: FloatArray | None, system: System) -> FloatArray:
 def _outside(system: System) -> dict[str, int]:
     """Calls outside the map so far, by element that counts them."""
     return {
-        entry.element.name: int(calls)
-        for entry in system.elements
-        if (calls := getattr(entry.element, "outside_calls", None)) is not None
+        entry.element.name: calls for entry in system.elements if (calls := entry.element.outside_calls) is not None
     }

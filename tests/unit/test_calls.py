@@ -15,7 +15,7 @@ from ehdmaps.errors import InputError, MapError, SolverError
 from ehdmaps.maps import schema
 from ehdmaps.physics.catalogue import estimate, estimate_from_dimensions
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
-from ehdmaps.physics.solution import Status
+from ehdmaps.physics.solution import ContactSolverDefaults, Status
 
 NU308, FVA3 = BearingGeometry.named("NU308"), Lubricant.named("FVA3")
 CONTACT = NU308.contacts(STEEL, "iso16281")[0]
@@ -213,6 +213,36 @@ class Failing(FormulaSolver):
         if entrainment_speed < 2.0:
             raise SolverError("too slow for me")
         return super().solve_line(contact, lubricant, loads, entrainment_speed, temperature, frequency)
+
+
+class Old:
+    """A solver without what `ContactSolverDefaults` gives."""
+
+    name = "old"
+    version = None
+
+    def solve_line(self, contact, lubricant, loads, entrainment_speed, temperature, frequency=0.0):
+        return FormulaSolver().solve_line(contact, lubricant, loads, entrainment_speed, temperature, frequency)
+
+    def settings(self):
+        return {}
+
+
+class Complete(ContactSolverDefaults, Old):
+    """The same with it."""
+
+
+def test_a_solver_that_lacks_members_is_told_which():
+    for call in (
+        lambda: ehdmaps.solve_points(CONTACT, FVA3, GRID, Old()),
+        lambda: ehdmaps.generate("nu308", solver=Old()),
+    ):
+        with pytest.raises(InputError, match=r"inherit from .*\.ContactSolverDefaults") as caught:
+            call()
+        lacking = [problem.split(":")[0] for problem in caught.value.problems]
+        assert lacking == ["solver Old, slow", "solver Old, wants_backbone", "solver Old, provenance"]
+    found = ehdmaps.solve_points(CONTACT, FVA3, GRID, Complete())
+    np.testing.assert_array_equal(found["stiffness"], ehdmaps.solve_points(CONTACT, FVA3, GRID, "formula")["stiffness"])
 
 
 def test_points_that_fail_are_results():

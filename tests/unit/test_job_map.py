@@ -26,7 +26,7 @@ from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.validation import validate
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
 from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.solution import FilmSolution, Status, contact_solution
+from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status, contact_solution
 
 TEXT = """
 schema = 1
@@ -64,7 +64,7 @@ structural_law = "half_space"
 
 
 @dataclass(frozen=True)
-class Holey:
+class Holey(ContactSolverDefaults):
     """The formula solver with points that do not converge."""
 
     lost: tuple[float, ...] = ()

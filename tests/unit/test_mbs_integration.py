@@ -9,7 +9,7 @@ import pytest
 
 from ehdmaps.errors import InputError
 from mbs.body import Inertia, rigid_body
-from mbs.elements import Load, Spring
+from mbs.elements import ElementDefaults, Load, Spring
 from mbs.errors import AnalysisError
 from mbs.profiles import Harmonic, SpeedProfile
 from mbs.system import System
@@ -96,7 +96,7 @@ def test_settings_that_are_not_possible_are_refused_all_at_once():
         Settings(0.0, 1.0)
 
 
-class Mad:
+class Mad(ElementDefaults):
     """An element whose Jacobian has the wrong sign and size, so that Newton never arrives."""
 
     name = "mad"

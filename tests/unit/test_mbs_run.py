@@ -14,7 +14,7 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
 from mbs.body import Inertia, rigid_body
-from mbs.elements import Load, Operation, Port, Sensor, Spring
+from mbs.elements import ElementDefaults, Load, Operation, Port, Sensor, Spring
 from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
 from mbs.profiles import SpeedProfile
@@ -53,7 +53,7 @@ def shaft(law=None, load=500.0, clearance=20e-6):
     return System([body], [held], [Load("weight", "shaft", along(y=load))], [element])
 
 
-class Foreign:
+class Foreign(ElementDefaults):
     """An element that compiled code does not know: a spring in y."""
 
     name = "foreign"

@@ -15,7 +15,7 @@ from mbs.assembly import assemble
 from mbs.body import Inertia, rigid_body
 from mbs.commands import sweep as command
 from mbs.commands.cases import load_cases
-from mbs.elements import Input, Operation, Port, Sensor, Spring
+from mbs.elements import ElementDefaults, Input, Operation, Port, Sensor, Spring
 from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
 from mbs.linearised.steady import steady_system
@@ -118,7 +118,7 @@ class TestMatching:
         assert gone.size == 4
 
 
-class Film:
+class Film(ElementDefaults):
     """A bearing along y that holds a preload."""
 
     def __init__(self, stiffness=1e6, name="film", load=100.0, damping=10.0):

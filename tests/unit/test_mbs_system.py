@@ -9,7 +9,7 @@ import pytest
 
 from ehdmaps.errors import InputError
 from mbs.body import Inertia, lever_arm, rigid_body
-from mbs.elements import Input, Load, Operation, Port, Sensor, Spring
+from mbs.elements import ElementDefaults, Input, Load, Operation, Port, Sensor, Spring
 from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
 from mbs.linearised.linear import frequency_response, state_space, with_peaks
@@ -30,7 +30,7 @@ def force(**freedoms):
     return np.diag(stiff(**freedoms))
 
 
-class OneSided:
+class OneSided(ElementDefaults):
     """A contact that only pushes: f = -k max(y - gap, 0)^1.5."""
 
     def __init__(self, name, on, against="ground", k=1e12, gap=0.0):
@@ -104,6 +104,13 @@ class TestSystem:
         assert "spring 'a': got the body 'c'" in text
         assert "load 'l': got the frame 'tip' of 'a'; allowed: centre" in text
         assert "a and b are 100 mm apart; allowed: the same point" in text
+
+    def test_an_element_says_whether_it_counts(self):
+        class Old:
+            name, ports = "old", (Port("a"),)
+
+        with pytest.raises(InputError, match=r"'old', outside_calls: missing; .* mbs\.elements\.ElementDefaults"):
+            System([rigid_body("a", [MASS], ["y"])], (), (), [Old()])
         with pytest.raises(InputError, match="bodies: got none"):
             System([])
 

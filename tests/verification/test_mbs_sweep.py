@@ -14,7 +14,7 @@ import pytest
 
 from mbs.assembly import assemble
 from mbs.body import Inertia, rigid_body
-from mbs.elements import Input, Operation, Port, Sensor, Spring
+from mbs.elements import ElementDefaults, Input, Operation, Port, Sensor, Spring
 from mbs.equilibrium import equilibrium
 from mbs.linearised import crossings
 from mbs.linearised.linear import frequency_response, state_space
@@ -31,7 +31,7 @@ Y = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
 ROUND_OFF = 1e-9
 
 
-class OverSpeed:
+class OverSpeed(ElementDefaults):
     """A spring and damper along y that vary with the speed, in place of a bearing."""
 
     def __init__(self, name, on, against="ground", stiffness=lambda speed: 0.0, damping=lambda speed: 0.0):

@@ -329,6 +329,8 @@ class TestEnergy:
 class HardSwitch:
     """Dry below a speed, film above it: the negative control."""
 
+    outside_calls = 0
+
     def __init__(self, dry, film, at):
         self.dry, self.film, self.at = dry, film, at
 

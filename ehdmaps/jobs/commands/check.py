@@ -12,7 +12,7 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.refinement import refinement
 from ehdmaps.jobs.report import AXES, span
-from ehdmaps.jobs.tasks import LineTask, is_slow, line_tasks
+from ehdmaps.jobs.tasks import LineTask, line_tasks
 from ehdmaps.physics.sensitivity import film_change
 from ehdmaps.physics.solution import ContactSolver, Status
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
@@ -83,7 +83,7 @@ def estimated_time(job: Job, solver: ContactSolver, points: int) -> str:
         How many points in all.
     """
     tasks = line_tasks(job, solver)
-    if is_slow(solver):
+    if solver.slow:
         return _time_of_slow(tasks[len(tasks) // 2], points)
     tasks[0].run()  # compiles, where the solver does
     sample = tasks[:: max(len(tasks) // _SAMPLES, 1)][:_SAMPLES]
