@@ -2,7 +2,8 @@
 
 Run it with `python examples/06_campbell.py [FOLDER]`; the figure is written to the folder.
 Rollers that pass under the load excite the machine. The cage turns at (1 - gamma)/2 of the speed of the shaft, so Z
-rollers pass Z (1 - gamma)/2 times a turn: that must be the strongest order of the ring's travel (its acceleration has stronger ones at high frequency).
+rollers pass Z (1 - gamma)/2 times a turn: that must be the strongest order of the ring's travel.
+Its acceleration has stronger ones at high frequency.
 """
 
 import dataclasses
@@ -20,7 +21,8 @@ from mbs.transient.integration import Settings
 RPM = math.pi / 30
 course = RunUp(SpeedProfile.ramp(500 * RPM, 2000 * RPM, 1.0), 1.0, Settings(step=25e-6, sample=25e-6))
 scene = dataclasses.replace(read_scene("nu308_rigid"), run_up=course)
-found = campbell(assemble(scene, clearance=20e-6), CampbellSettings(sensor="approach", highest=1500.0)).dataset.isel(law=0)
+settings = CampbellSettings(sensor="approach", highest=1500.0)
+found = campbell(assemble(scene, clearance=20e-6), settings).dataset.isel(law=0)
 
 geometry = scene.bearings[0].geometry
 passing = geometry.rollers * (1.0 - geometry.gamma) / 2.0
