@@ -191,7 +191,7 @@ def rigid_body(
     Raises
     ------
     InputError
-        For freedoms that are none, parts missing, or a frame called "centre".
+        For unknown freedoms, missing parts, or a frame called "centre".
     """
     problems = [
         f"body {name!r}, freedoms: got {freedom!r}; allowed: {', '.join(FREEDOMS)}, each once"

@@ -16,14 +16,14 @@ from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.axes import AxisRule, read_axis
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.table import Table
-from ehdmaps.units import TEMPERATURE, Display, closest, short
+from ehdmaps.units import RPM, TEMPERATURE, Display, closest, short
 from mbs.body import FREEDOMS, Body, Inertia, rigid_body
 from mbs.elements import Input, Load, Sensor, Spring
 from mbs.profiles import Constant, Course, Harmonic, LoadProfile, SpeedProfile
 from mbs.reading import fields
 from mbs.reading.attached import read_attached
 from mbs.reading.campbell import read_campbell
-from mbs.reading.fields import DEGREE, FORCE, HERTZ, MICROMETRE, MILLISECOND, MOMENT, RPM, Built
+from mbs.reading.fields import DEGREE, FORCE, HERTZ, MICROMETRE, MILLISECOND, MOMENT, Built
 from mbs.reading.flexible import read_flexible
 from mbs.reading.gears import read_gears
 from mbs.reading.shaft import read_shaft

@@ -108,7 +108,7 @@ def _floats(entry: xr.DataArray) -> Array:
 
 
 def _check(contacts: Sequence[LineContact], lubricant: Lubricant, values: tuple[Array, Array, Array]) -> None:
-    """Refuse points that are none, and temperatures at which the oil has no data."""
+    """Refuse points outside of what solvers take, and temperatures at which the oil has no data."""
     names = [contact.name for contact in contacts]
     problems: list[str] = []
     if not names or len(set(names)) < len(names):

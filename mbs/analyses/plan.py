@@ -12,12 +12,11 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.units import SPEED
+from ehdmaps.units import RPM, SPEED
 from mbs import planning
 from mbs.analyses.planned_job import job_text
 from mbs.assembly import Model, assemble, constant_name, find_problems
 from mbs.planning import Needed
-from mbs.reading.fields import RPM
 from mbs.scene import Scene
 
 

@@ -179,7 +179,7 @@ def formula(
     Raises
     ------
     InputError
-        For ranges that are none.
+        For empty ranges.
     SolverError
         Where the formula gives no film.
     """

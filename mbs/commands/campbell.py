@@ -11,7 +11,7 @@ import numpy.typing as npt
 from matplotlib.figure import Figure
 
 from ehdmaps.errors import InputError
-from ehdmaps.units import TEMPERATURE
+from ehdmaps.units import RPM, TEMPERATURE
 from mbs.analyses.campbell import MODE_SPEEDS, CampbellResult, LawRun, campbell, campbell_problems
 from mbs.analyses.case import Case
 from mbs.analyses.film_limits import lowest_limits
@@ -24,7 +24,7 @@ from mbs.elements import Sensor
 from mbs.linearised.sweep_result import Sweep
 from mbs.output.campbell_plot import MOST_LAWS, Overlay, Reach, campbell_figure
 from mbs.reading.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
-from mbs.reading.fields import HERTZ, MICROMETRE, MILLISECOND, RPM
+from mbs.reading.fields import HERTZ, MICROMETRE, MILLISECOND
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, difference_text
 from mbs.spectral.orders import OrderPeak

@@ -14,7 +14,7 @@ from matplotlib.text import Text
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import Bar, Lines, progress
 from ehdmaps.outputs import write_figure
-from ehdmaps.units import TEMPERATURE, Display, quantity
+from ehdmaps.units import RPM, TEMPERATURE, Display, quantity
 from mbs.analyses.film_limits import film_limits, ring_motions
 from mbs.analyses.reach import axes_outside
 from mbs.assembly import Model
@@ -24,7 +24,7 @@ from mbs.elements import Operation
 from mbs.equilibrium import Equilibrium, equilibrium
 from mbs.linearised.validity import HIGHEST_RATIO, FilmLimit
 from mbs.output.results import write_dataset
-from mbs.reading.fields import MICROMETRE, RPM
+from mbs.reading.fields import MICROMETRE
 
 RESOLUTION = 150
 

@@ -17,14 +17,14 @@ from ehdmaps.jobs.reader import read_job, shipped_jobs
 from ehdmaps.jobs.refinement import refinement
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.outputs import SEALED, Output, output_problems, sealed, write_text
-from ehdmaps.units import LOAD, SPEED, TEMPERATURE, Display
+from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display
 from mbs import planning
 from mbs.analyses.coverage import AxisCover, Coverage, coverage
 from mbs.analyses.plan import PlanResult, PlanSettings, law_problems, plan, plan_problems
 from mbs.commands.cases import read_clearance, scene_output_problems
 from mbs.commands.common import heading
 from mbs.planning import Needed
-from mbs.reading.fields import MICROMETRE, RPM
+from mbs.reading.fields import MICROMETRE
 from mbs.scene import Scene
 from mbs.scene_reader import read_scene
 

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from ehdmaps.physics._values import FloatArray
+from ehdmaps.units import RPM
 from mbs.analyses.reach import fade_of, share_below
 from mbs.assembly import Model
-from mbs.reading.fields import RPM
 
 
 def fade_lines(model: Model, speeds: FloatArray, of: str = "the speeds") -> list[str]:

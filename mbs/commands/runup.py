@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ehdmaps.physics._values import FloatArray
+from ehdmaps.units import RPM
 from mbs.analyses.reach import Fade, axes_outside, fade_of
 from mbs.analyses.runup import runup
 from mbs.assembly import Model
@@ -15,7 +16,6 @@ from mbs.commands.cases import load_model
 from mbs.commands.common import Told, film_course, heading, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.output.run_plot import run_figure
-from mbs.reading.fields import RPM
 from mbs.transient.integration import Trajectory
 
 

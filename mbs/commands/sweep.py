@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ehdmaps.errors import InputError
-from ehdmaps.units import TEMPERATURE, quantity
+from ehdmaps.units import RPM, TEMPERATURE, quantity
 from mbs.analyses.case import Case
 from mbs.analyses.film_limits import film_limits, lowest_limits
 from mbs.analyses.reach import axes_outside, fade_of
@@ -24,7 +24,7 @@ from mbs.linearised.sweep import MOST_ANGLES, MOST_SPEEDS, SweepRange
 from mbs.linearised.sweep_result import Sweep
 from mbs.linearised.validity import HIGHEST_RATIO
 from mbs.output.sweep_plot import sweep_figure
-from mbs.reading.fields import MICROMETRE, RPM
+from mbs.reading.fields import MICROMETRE
 
 _LEAST_SHARE = 0.05
 _LEAST_ASSURANCE = 0.5

@@ -108,7 +108,7 @@ def read_matrix_market(path: Path, dofs: Path) -> Labelled:
     Raises
     ------
     InputError
-        For files that are none or do not fit together.
+        For files that do not read or do not fit together.
     """
     nodes, directions = read_dof_table(dofs)
     check_file(path)

@@ -112,7 +112,7 @@ def sweep(
     Raises
     ------
     InputError
-        For speeds or frequencies that are none, or more responses than memory should hold.
+        For missing speeds or frequencies, or more responses than memory should hold.
     AnalysisError
         If there is no equilibrium at a speed.
     """

@@ -12,9 +12,7 @@ from matplotlib.figure import Figure
 from mbs.assembly import Model
 from mbs.bearings.contact_report import BearingContacts
 from mbs.equilibrium import Equilibrium
-from mbs.output.page import COLOURS as _COLOURS
-from mbs.output.page import grid as _grid
-from mbs.output.page import page as _page
+from mbs.output.page import COLOURS, grid, page
 
 _RPM = 30.0 / np.pi
 
@@ -35,15 +33,15 @@ def statics_figure(
     warnings : sequence of str
         What is to be warned of, written on the page.
     """
-    figure, axes = _page(model, f"{model.scene.speed * _RPM:.4g} rpm", len(model.bearings))
+    figure, axes = page(model, f"{model.scene.speed * _RPM:.4g} rpm", len(model.bearings))
     for panel, bearing, state in zip(axes, model.bearings, contacts, strict=False):
         motion = model.system.relative(bearing.inner, bearing.outer) @ balance.displacement
         rollers = bearing.rollers(motion, balance.operation)
-        panel.bar(np.degrees(rollers.angle), rollers.load, width=0.6 * 360.0 / rollers.angle.size, color=_COLOURS[0])
+        panel.bar(np.degrees(rollers.angle), rollers.load, width=0.6 * 360.0 / rollers.angle.size, color=COLOURS[0])
         panel.set_title(f"{bearing.name}\n{_contact_words(state)}", fontsize=9)
         panel.set_xlim(-200, 200)
         panel.set_xticks(np.arange(-180, 181, 90))
-        _grid(panel)
+        grid(panel)
     for panel in axes[len(model.bearings) :]:
         panel.set_visible(False)
     figure.supylabel("load of the roller, N", fontsize=10)
@@ -52,7 +50,7 @@ def statics_figure(
     if wrapped:
         for panel in axes:
             panel.set_xlabel(words, fontsize=8)
-        figure.supxlabel("\n".join(wrapped), fontsize=8, color=_COLOURS[1])
+        figure.supxlabel("\n".join(wrapped), fontsize=8, color=COLOURS[1])
     else:
         figure.supxlabel(words, fontsize=10)
     return figure

@@ -16,7 +16,6 @@ from ehdmaps.units import LENGTH, Display, short
 from mbs.body import FREEDOMS, Inertia
 from mbs.elements import GROUND
 
-RPM = Display("rpm", 30.0 / math.pi)
 FORCE = Display("N")
 MOMENT = Display("N m")
 MICROMETRE = Display("um", 1e6)

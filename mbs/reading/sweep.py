@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from ehdmaps.jobs.table import Table
+from ehdmaps.units import RPM
 from mbs.linearised.sweep import MOST_SPEEDS, SweepRange
 from mbs.reading import fields
-from mbs.reading.fields import RPM
 
 
 def read_sweep(section: Table) -> SweepRange | None:

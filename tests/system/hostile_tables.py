@@ -368,7 +368,7 @@ EHDMAPS_OPTIONS: dict[str, tuple[str, int, str]] = {
     ),
     "a force without length": ("solve job.toml --load 40N --speed 1m/s --temperature 40degC", 2, "--length"),
     "a negative load": ("solve job.toml --load=-4N/mm --speed 1m/s --temperature 40degC", 2, "--load"),
-    "a load that is none": (
+    "a load of NaN": (
         "solve job.toml --load nanN/mm --speed 1m/s --temperature 40degC",
         2,
         "--load: got 'nanN/mm'",
