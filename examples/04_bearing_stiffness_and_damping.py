@@ -15,7 +15,7 @@ import numpy as np
 import ehdmaps
 from ehdmaps.outputs import write_figure
 from mbs import Bearing
-from mbs.bearing_point import bearing_points
+from mbs.analyses.bearing_point import bearing_points
 from mbs.bearings.films import DryContacts, MapFilms
 from mbs.bearings.laws import hertz
 

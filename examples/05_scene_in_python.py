@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt
 
 from ehdmaps.outputs import write_figure
 from mbs import assemble, modes, parse_scene
-from mbs.bearing_point import bearing_point
+from mbs.analyses.bearing_point import bearing_point
 
 SCENE = """
 schema = 1

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from ehdmaps.outputs import write_figure
 from mbs import CampbellSettings, RunUp, assemble, campbell, read_scene
-from mbs.profiles import SpeedProfile
+from mbs.model.profiles import SpeedProfile
 from mbs.transient.integration import Settings
 
 RPM = math.pi / 30

@@ -17,11 +17,10 @@ and of a whole scene::
 What is where, in the order of the data:
 
 ==================  ====================================================================================
-scene file          `reading`, `scene_reader` -> `scene` -> `assembly`
-what bodies are     `body`, `flexible` (beams, finite elements, reduction), `housings` (the shipped ones)
-what connects them  `elements`, `bearings` (the bearing force), `gears`; `profiles` (what is prescribed)
-one bearing         `bearing_point` (its equilibrium under a load, pressures and films), without a scene
-the system          `system`; `equilibrium`, `free_motion`; `planning` (the map that it needs), `outside_calls`
+scene file          `scene`: reader -> scene -> assembly
+the system          `model`: bodies, elements, what is prescribed; the system and its equilibrium
+what bodies are     `flexible` (beams, finite elements, reduction), `housings` (the shipped ones)
+what connects them  `bearings` (the bearing force), `gears`
 linear              `linearised` (modes, responses, over speed); `modal` (identified from hammer hits)
 in time             `transient` (method, compiled runs); `spectral` (levels over speed and order)
 analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, hammer, plan
@@ -48,14 +47,14 @@ if TYPE_CHECKING:
     from mbs.analyses.runup import runup
     from mbs.analyses.statics import statics
     from mbs.analyses.sweep import SweepSettings, sweep
-    from mbs.assembly import Model, assemble
     from mbs.bearings.bearing import Bearing
     from mbs.bearings.bearing_force import BearingForce
-    from mbs.elements import Operation
     from mbs.errors import AnalysisError
     from mbs.linearised.sweep import SweepRange
-    from mbs.scene import RunUp, Scene
-    from mbs.scene_reader import parse_scene, read_scene, shipped_systems
+    from mbs.model.elements import Operation
+    from mbs.scene.assembly import Model, assemble
+    from mbs.scene.reader import parse_scene, read_scene, shipped_systems
+    from mbs.scene.scene import RunUp, Scene
     from mbs.spectral.settings import CampbellSettings
 
 __all__ = [
@@ -95,23 +94,23 @@ _HOMES = {
     "Case": "analyses.case",
     "HammerSettings": "analyses.hammer",
     "LsaSettings": "analyses.lsa",
-    "Model": "assembly",
-    "Operation": "elements",
+    "Model": "scene.assembly",
+    "Operation": "model.elements",
     "PlanSettings": "analyses.plan",
-    "RunUp": "scene",
-    "Scene": "scene",
+    "RunUp": "scene.scene",
+    "Scene": "scene.scene",
     "SweepRange": "linearised.sweep",
     "SweepSettings": "analyses.sweep",
-    "assemble": "assembly",
+    "assemble": "scene.assembly",
     "campbell": "analyses.campbell",
     "hammer": "analyses.hammer",
     "lsa": "analyses.lsa",
     "modes": "analyses.modes",
-    "parse_scene": "scene_reader",
+    "parse_scene": "scene.reader",
     "plan": "analyses.plan",
-    "read_scene": "scene_reader",
+    "read_scene": "scene.reader",
     "runup": "analyses.runup",
-    "shipped_systems": "scene_reader",
+    "shipped_systems": "scene.reader",
     "statics": "analyses.statics",
     "sweep": "analyses.sweep",
 }

@@ -2,22 +2,24 @@
 
 The modules in the order in which a machine is looked at:
 
-===========  ====================================================================================
-statics      equilibrium, pressures and films, stiffness and damping of the bearings
-modes        complex modes at the equilibrium
-lsa          state space and frequency responses at the equilibrium
-sweep        modes, bearings and responses over speed, of one or more models
-runup        the nonlinear system in time over its speed profile
-campbell     run-ups with one or more laws as levels over speed, frequency and order
-hammer       a simulated hammer test
-plan         which ranges a scene needs of a contact map, and the jobs that cover them
-planned_job  the text of such a job
-coverage     whether a map covers what is needed
-case         the models that an analysis compares, with their labels
-progress     how an analysis tells how far it is
-reach        where the films of a law begin, and calls outside its map
-film_limits  up to which frequency the films follow
-===========  ====================================================================================
+=============  ====================================================================================
+statics        equilibrium, pressures and films, stiffness and damping of the bearings
+bearing_point  one bearing without a scene: its equilibrium under a load, pressures and films
+modes          complex modes at the equilibrium
+lsa            state space and frequency responses at the equilibrium
+sweep          modes, bearings and responses over speed, of one or more models
+runup          the nonlinear system in time over its speed profile
+campbell       run-ups with one or more laws as levels over speed, frequency and order
+hammer         a simulated hammer test
+plan           which ranges a scene needs of a contact map, and the jobs that cover them
+planning       operating points of a scene and the loads and speeds seen there
+planned_job    the text of such a job
+coverage       whether a map covers what is needed
+case           the models that an analysis compares, with their labels
+progress       how an analysis tells how far it is
+reach          where the films of a law begin, and calls outside its map
+film_limits    up to which frequency the films follow
+=============  ====================================================================================
 
 Nothing is imported here: take the functions from `mbs`, or from their modules.
 """

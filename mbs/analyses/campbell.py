@@ -15,16 +15,16 @@ from ehdmaps.errors import InputError
 from ehdmaps.units import closest
 from mbs.analyses.case import Case, as_cases
 from mbs.analyses.progress import Progress, silent
-from mbs.assembly import Model, law_attributes
-from mbs.elements import Operation, Sensor
-from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
 from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_result import Sweep
+from mbs.model.elements import Operation, Sensor
+from mbs.model.equilibrium import equilibrium
 from mbs.output.campbell_data import campbell_dataset
 from mbs.output.results import described
-from mbs.reading.fields import HERTZ
-from mbs.scene import RunUp, Scene
+from mbs.scene.assembly import Model, law_attributes
+from mbs.scene.fields import HERTZ
+from mbs.scene.scene import RunUp, Scene
 from mbs.spectral.campbell import RunUpSpectra, run_up_spectra
 from mbs.spectral.levels import Reference
 from mbs.spectral.run_signal import RunSignal

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ehdmaps.errors import InputError
-from mbs.assembly import Model
+from mbs.scene.assembly import Model
 
 
 @dataclass(frozen=True, eq=False)

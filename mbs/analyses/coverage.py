@@ -11,8 +11,8 @@ import numpy as np
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.usable import check_usable
 from ehdmaps.physics._values import FloatArray
-from mbs import planning
-from mbs.planning import Needed
+from mbs.analyses import planning
+from mbs.analyses.planning import Needed
 
 ROUND_OFF = 1e-9
 """Of units that a map was written with, relative."""

@@ -6,12 +6,12 @@ import numpy as np
 
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics._values import FloatArray
-from mbs.assembly import Model
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.elements import Operation
-from mbs.equilibrium import equilibrium
 from mbs.linearised.validity import FilmLimit, film_limit
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.scene.assembly import Model
 
 
 def film_limits(model: Model, displacement: FloatArray, operation: Operation) -> list[FilmLimit]:

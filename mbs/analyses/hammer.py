@@ -9,14 +9,14 @@ from ehdmaps.errors import InputError
 from mbs.analyses.film_limits import film_limits
 from mbs.analyses.progress import Progress, silent
 from mbs.analyses.reach import calls_at
-from mbs.assembly import Model
-from mbs.equilibrium import Equilibrium, equilibrium
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import FilmLimit
 from mbs.modal.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
 from mbs.modal.records import Hits
-from mbs.outside_calls import calls_outside
+from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.outside_calls import calls_outside
+from mbs.scene.assembly import Model
 
 HIGHEST = 5000.0
 """Highest frequency of a scene that names none [Hz]."""

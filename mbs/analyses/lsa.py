@@ -12,14 +12,14 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from mbs.analyses.film_limits import film_limits
 from mbs.analyses.reach import calls_at
-from mbs.assembly import Model, law_attributes
-from mbs.elements import Operation
-from mbs.equilibrium import Equilibrium, equilibrium
 from mbs.linearised.linear import ComplexArray, StateSpace, frequency_response, state_space, with_peaks
 from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import DynamicLoad, FilmLimit, dynamic_loads
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import described, linear_dataset
+from mbs.scene.assembly import Model, law_attributes
 
 
 @dataclass(frozen=True)

@@ -9,14 +9,14 @@ import xarray as xr
 
 from mbs.analyses.film_limits import film_limits
 from mbs.analyses.reach import calls_at
-from mbs.assembly import Model, law_attributes
-from mbs.elements import Operation
-from mbs.equilibrium import Equilibrium, equilibrium
 from mbs.linearised.modes import Modes
 from mbs.linearised.modes import modes as modes_at
 from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import FilmLimit
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import described, modes_dataset
+from mbs.scene.assembly import Model, law_attributes
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,11 +13,11 @@ from ehdmaps.jobs.reader import parse_job
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import RPM, SPEED
-from mbs import planning
+from mbs.analyses import planning
 from mbs.analyses.planned_job import job_text
-from mbs.assembly import Model, assemble, constant_name, find_problems
-from mbs.planning import Needed
-from mbs.scene import Scene
+from mbs.analyses.planning import Needed
+from mbs.scene.assembly import Model, assemble, constant_name, find_problems
+from mbs.scene.scene import Scene
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ import tomllib
 
 from ehdmaps.jobs.axes import LOAD_AXIS, SPEED_AXIS, AxisRule
 from ehdmaps.units import LOAD, SPEED, Display
-from mbs import planning
-from mbs.planning import Needed
-from mbs.scene import Scene
+from mbs.analyses import planning
+from mbs.analyses.planning import Needed
+from mbs.scene.scene import Scene
 
 LOADS_PER_DECADE, SPEEDS_PER_DECADE = 6, 5
 """As close as in the shipped jobs; contact laws choose lines of their own besides."""

@@ -11,11 +11,11 @@ import numpy.typing as npt
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import LOAD
-from mbs.assembly import Model
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
-from mbs.elements import Operation
-from mbs.outside_calls import calls_outside
+from mbs.model.elements import Operation
+from mbs.model.outside_calls import calls_outside
+from mbs.scene.assembly import Model
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,12 @@ import xarray as xr
 
 from ehdmaps.errors import InputError
 from mbs.analyses.progress import Progress, silent
-from mbs.assembly import Model, law_attributes
-from mbs.elements import Operation
-from mbs.equilibrium import equilibrium
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.model.outside_calls import calls_outside
 from mbs.output.results import described, run_dataset
-from mbs.outside_calls import calls_outside
-from mbs.scene import RunUp
+from mbs.scene.assembly import Model, law_attributes
+from mbs.scene.scene import RunUp
 from mbs.transient.integration import Trajectory, integrate
 
 

@@ -11,13 +11,13 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics.solids import STEEL
 from mbs.analyses.film_limits import ring_motions
 from mbs.analyses.reach import calls_at
-from mbs.assembly import Model, law_attributes
 from mbs.bearings.contact_report import BearingContacts, bearing_contacts, overload
 from mbs.bearings.films import DryContacts
-from mbs.elements import Operation
-from mbs.equilibrium import Equilibrium, equilibrium
-from mbs.free_motion import free_lines, free_motions
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.free_motion import free_lines, free_motions
 from mbs.output.results import described, statics_dataset
+from mbs.scene.assembly import Model, law_attributes
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ from ehdmaps.physics._values import FloatArray
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.roller_loads import RollerLoads
-from mbs.elements import Operation, Port
+from mbs.model.elements import Operation, Port
 
 
 class RingForce(Protocol):

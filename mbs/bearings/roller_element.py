@@ -14,8 +14,8 @@ from ehdmaps.physics._values import FloatArray
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.roller_contacts import RollerContacts
-from mbs.body import Body
-from mbs.elements import Operation, Port
+from mbs.model.body import Body
+from mbs.model.elements import Operation, Port
 
 
 def roller_body(name: str, bearing: Bearing) -> Body:

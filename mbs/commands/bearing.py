@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from ehdmaps.outputs import write_figure
-from mbs.bearing_point import bearing_points
+from mbs.analyses.bearing_point import bearing_points
 from mbs.bearings import laws
 from mbs.bearings.laws import Law
 from mbs.commands.bearing_request import BearingRequest, read_request

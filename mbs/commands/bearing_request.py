@@ -23,12 +23,12 @@ from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
-from mbs.assembly import geometry_problems
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import FilmSource, FormulaFilms, MapFilms
 from mbs.commands.cases import WIDEST, read_clearance
 from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, result_kind
-from mbs.reading.fields import FORCE, MICROMETRE
+from mbs.scene.assembly import geometry_problems
+from mbs.scene.fields import FORCE, MICROMETRE
 
 LAWS = ("hertz", "formula", "map")
 PROFILES = ("iso", "straight")

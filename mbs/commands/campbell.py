@@ -16,15 +16,15 @@ from mbs.analyses.campbell import MODE_SPEEDS, CampbellResult, LawRun, campbell,
 from mbs.analyses.case import Case
 from mbs.analyses.film_limits import lowest_limits
 from mbs.analyses.reach import axes_outside, fade_of
-from mbs.assembly import Model
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Told, film_course, heading, read_option, write
 from mbs.commands.reach import fade_lines, outside_lines
-from mbs.elements import Sensor
 from mbs.linearised.sweep_result import Sweep
+from mbs.model.elements import Sensor
 from mbs.output.campbell_plot import MOST_LAWS, Overlay, Reach, campbell_figure
-from mbs.reading.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
-from mbs.reading.fields import HERTZ, MICROMETRE, MILLISECOND
+from mbs.scene.assembly import Model
+from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
+from mbs.scene.fields import HERTZ, MICROMETRE, MILLISECOND
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, difference_text
 from mbs.spectral.orders import OrderPeak

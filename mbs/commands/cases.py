@@ -19,11 +19,11 @@ from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
 from ehdmaps.units import quantity
 from mbs.analyses.case import Case, common_clearance
-from mbs.assembly import Model, assemble, find_problems, law_label
 from mbs.output.results import RESULT
-from mbs.reading.fields import DEGREE, MICROMETRE
-from mbs.scene import Scene
-from mbs.scene_reader import read_scene
+from mbs.scene.assembly import Model, assemble, find_problems, law_label
+from mbs.scene.fields import DEGREE, MICROMETRE
+from mbs.scene.reader import read_scene
+from mbs.scene.scene import Scene
 
 WIDEST = 1e-2
 """Largest clearance of --clearance, either way [m]."""

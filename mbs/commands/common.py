@@ -17,14 +17,14 @@ from ehdmaps.outputs import write_figure
 from ehdmaps.units import RPM, TEMPERATURE, Display, quantity
 from mbs.analyses.film_limits import film_limits, ring_motions
 from mbs.analyses.reach import axes_outside
-from mbs.assembly import Model
 from mbs.bearings.bearing_force import BearingForce
 from mbs.commands.reach import outside_lines
-from mbs.elements import Operation
-from mbs.equilibrium import Equilibrium, equilibrium
 from mbs.linearised.validity import HIGHEST_RATIO, FilmLimit
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import write_dataset
-from mbs.reading.fields import MICROMETRE
+from mbs.scene.assembly import Model
+from mbs.scene.fields import MICROMETRE
 
 RESOLUTION = 150
 

@@ -16,7 +16,7 @@ from mbs.commands.common import Told, film_warnings, heading, outside_at
 from mbs.linearised.modes import Modes
 from mbs.modal.hammer import HammerTest
 from mbs.modal.uff import UFF, Measurement, write_uff
-from mbs.reading.fields import MILLISECOND
+from mbs.scene.fields import MILLISECOND
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:

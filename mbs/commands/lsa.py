@@ -11,13 +11,13 @@ from scipy.signal import find_peaks
 
 from ehdmaps.physics._values import FloatArray
 from mbs.analyses.lsa import lsa
-from mbs.assembly import Model
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_warnings, heading, outside_at, write
 from mbs.commands.reach import fade_lines
 from mbs.linearised.linear import ComplexArray, response_unit
 from mbs.linearised.validity import DynamicLoad
 from mbs.output.response_plot import response_figure
+from mbs.scene.assembly import Model
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:

@@ -9,14 +9,14 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from mbs.analyses.modes import modes
-from mbs.assembly import Model
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_warnings, heading, outside_at, read_option, write
 from mbs.commands.reach import fade_lines
 from mbs.linearised.modes import IntArray, Modes
 from mbs.output.modes_plot import modes_figure
-from mbs.reading.campbell import HIGHEST_HIGHEST, LOWEST_HIGHEST
-from mbs.reading.fields import HERTZ, MILLISECOND
+from mbs.scene.assembly import Model
+from mbs.scene.campbell import HIGHEST_HIGHEST, LOWEST_HIGHEST
+from mbs.scene.fields import HERTZ, MILLISECOND
 
 HIGHEST = 10e3
 """Highest frequency shown of a scene that asks for no responses [Hz]."""

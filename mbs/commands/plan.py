@@ -18,15 +18,15 @@ from ehdmaps.jobs.refinement import refinement
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.outputs import SEALED, Output, output_problems, sealed, write_text
 from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display
-from mbs import planning
+from mbs.analyses import planning
 from mbs.analyses.coverage import AxisCover, Coverage, coverage
 from mbs.analyses.plan import PlanResult, PlanSettings, law_problems, plan, plan_problems
+from mbs.analyses.planning import Needed
 from mbs.commands.cases import read_clearance, scene_output_problems
 from mbs.commands.common import heading
-from mbs.planning import Needed
-from mbs.reading.fields import MICROMETRE
-from mbs.scene import Scene
-from mbs.scene_reader import read_scene
+from mbs.scene.fields import MICROMETRE
+from mbs.scene.reader import read_scene
+from mbs.scene.scene import Scene
 
 _UNSAFE = re.compile(r"[^A-Za-z0-9_-]+")
 

@@ -9,7 +9,7 @@ import numpy as np
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import RPM
 from mbs.analyses.reach import fade_of, share_below
-from mbs.assembly import Model
+from mbs.scene.assembly import Model
 
 
 def fade_lines(model: Model, speeds: FloatArray, of: str = "the speeds") -> list[str]:

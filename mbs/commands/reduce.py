@@ -19,9 +19,9 @@ from ehdmaps.version import version
 from mbs.flexible.extent import Extent, extent
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduced_file import REDUCED, write_reduced
-from mbs.reading.fields import HERTZ
-from mbs.reading.flexible import Reduction, read_reduction
-from mbs.scene_reader import LONGEST_FILE
+from mbs.scene.fields import HERTZ
+from mbs.scene.flexible import Reduction, read_reduction
+from mbs.scene.reader import LONGEST_FILE
 
 _SHOWN = 30
 

@@ -11,11 +11,11 @@ from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import RPM
 from mbs.analyses.reach import Fade, axes_outside, fade_of
 from mbs.analyses.runup import runup
-from mbs.assembly import Model
 from mbs.commands.cases import load_model
 from mbs.commands.common import Told, film_course, heading, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.output.run_plot import run_figure
+from mbs.scene.assembly import Model
 from mbs.transient.integration import Trajectory
 
 

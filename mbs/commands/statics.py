@@ -12,14 +12,14 @@ from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import FILM, PRESSURE
 from mbs.analyses.film_limits import film_limits, ring_motions
 from mbs.analyses.statics import statics
-from mbs.assembly import Model
 from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.roller_element import ring_matrices
 from mbs.commands.cases import load_model
 from mbs.commands.common import heading, outside_at, write
 from mbs.commands.reach import fade_lines
-from mbs.equilibrium import Equilibrium
+from mbs.model.equilibrium import Equilibrium
 from mbs.output.plot import statics_figure
+from mbs.scene.assembly import Model
 
 _SHOWN = (1, 2, 4, 5)
 _ROUND_OFF = 1e-9

@@ -14,17 +14,17 @@ from mbs.analyses.case import Case
 from mbs.analyses.film_limits import film_limits, lowest_limits
 from mbs.analyses.reach import axes_outside, fade_of
 from mbs.analyses.sweep import SweepSettings, sweep
-from mbs.assembly import Model
 from mbs.commands.cases import load_cases
 from mbs.commands.common import NO_LONGER_VALID, heading, write
 from mbs.commands.reach import fade_lines, outside_lines
-from mbs.elements import Operation
 from mbs.linearised.crossings import exchanged
 from mbs.linearised.sweep import MOST_ANGLES, MOST_SPEEDS, SweepRange
 from mbs.linearised.sweep_result import Sweep
 from mbs.linearised.validity import HIGHEST_RATIO
+from mbs.model.elements import Operation
 from mbs.output.sweep_plot import sweep_figure
-from mbs.reading.fields import MICROMETRE
+from mbs.scene.assembly import Model
+from mbs.scene.fields import MICROMETRE
 
 _LEAST_SHARE = 0.05
 _LEAST_ASSURANCE = 0.5

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ehdmaps.errors import InputError
-from mbs.body import Body, Inertia, lever_arm
+from mbs.model.body import Body, Inertia, lever_arm
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,10 @@
 """Timoshenko beam element of a round section: stiffness, mass and gyroscopic matrix between two nodes along x.
 
 Freedoms of the element: x y z theta_x theta_y theta_z of the first node, then of the second; rotations are small
-rotations of the section, as in `mbs.body.lever_arm`, so that without shear theta_z = dy/dx and theta_y = -dz/dx. The
-shape functions of bending solve the static problem exactly, so loads at the nodes bend the beam without error, whatever
-the length of the elements. With mass, frequencies are too high by an error of fourth order in the length where a beam
-bends, and of second order where it shears (see `element_length`).
+rotations of the section, as in `mbs.model.body.lever_arm`, so that without shear theta_z = dy/dx and theta_y = -dz/dx.
+The shape functions of bending solve the static problem exactly, so loads at the nodes bend the beam without error,
+whatever the length of the elements. With mass, frequencies are too high by an error of fourth order in the length
+where a beam bends, and of second order where it shears (see `element_length`).
 
 References
 ----------
@@ -204,7 +204,7 @@ def element_mass(section: CrossSection, length: float) -> FloatArray:
 def element_gyroscopic(section: CrossSection, length: float) -> FloatArray:
     """Gyroscopic matrix G of an element, skew, shape (12, 12) [kg, kg m, kg m2], with M q'' + speed G q' + K q.
 
-    The angular momentum about x, 2 rho I speed per length, turns with the section, as in `mbs.body.rigid_body`.
+    The angular momentum about x, 2 rho I speed per length, turns with the section, as in `mbs.model.body.rigid_body`.
 
     Parameters
     ----------

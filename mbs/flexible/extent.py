@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.physics._values import FloatArray
-from mbs.body import lever_arm
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.matrix_files import UNIT_SYSTEMS
+from mbs.model.body import lever_arm
 
 DENSITIES = (1.0, 25e3)
 """Mean density over the box [kg/m3]: osmium has 22.6e3; a frame of rods in a large box has some kilograms."""

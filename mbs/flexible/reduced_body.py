@@ -10,8 +10,8 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
-from mbs.body import Body, Frame
 from mbs.flexible.damping import modal_damping
+from mbs.model.body import Body, Frame
 
 UNITS = ("m", "rad", "1")
 """Of coordinates: displacements, rotations, and modal amplitudes."""

@@ -19,8 +19,8 @@ import xarray as xr
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import check_input
 from ehdmaps.outputs import MADE_AS, Kind, root_attributes, written_aside
-from mbs.body import FREEDOMS, Frame
 from mbs.flexible.reduced_body import MOST_COORDINATES, ReducedBody
+from mbs.model.body import FREEDOMS, Frame
 
 SCHEMA_VERSION = 1
 

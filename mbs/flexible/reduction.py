@@ -17,12 +17,12 @@ from scipy import sparse
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
-from mbs.body import FREEDOMS, Frame
 from mbs.errors import AnalysisError
 from mbs.flexible.finite_elements import FiniteElementModel, IntArray, named
 from mbs.flexible.held_body import HeldBody
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.spiders import Interface, Spider, nearest_node, spider
+from mbs.model.body import FREEDOMS, Frame
 
 Point = Interface | Sequence[float] | int
 """Where a body is only observed: an averaging interface, a position (its nearest node is taken), or a node number."""

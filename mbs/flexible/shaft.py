@@ -12,10 +12,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ehdmaps.errors import InputError
-from mbs.body import FREEDOMS, Body, Frame
 from mbs.flexible.damping import modal_damping
 from mbs.flexible.shaft_model import reduced, shaft_model
 from mbs.flexible.shaft_parts import Disc, Section, misfits
+from mbs.model.body import FREEDOMS, Body, Frame
 
 CUTOFFS = (1e-3, 1e7)
 """Lowest and highest cut-off [Hz]."""

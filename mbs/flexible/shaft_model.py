@@ -17,7 +17,6 @@ from scipy.linalg import cho_factor, cho_solve, eigh
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
-from mbs.body import FREEDOMS, Inertia, lever_arm
 from mbs.flexible.beam import (
     CrossSection,
     element_gyroscopic,
@@ -27,6 +26,7 @@ from mbs.flexible.beam import (
     wave_length,
 )
 from mbs.flexible.shaft_parts import GROUPS, TOGETHER, Disc, Section
+from mbs.model.body import FREEDOMS, Inertia, lever_arm
 
 WAVE_ERROR = 1e-4
 """Relative error of the frequency of bending waves at the cut-off that elements may make; much less below it."""

@@ -8,8 +8,8 @@ from itertools import combinations
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.solids import STEEL
-from mbs.body import FREEDOMS, Inertia
 from mbs.flexible.beam import CrossSection
+from mbs.model.body import FREEDOMS, Inertia
 
 FARTHEST = 1e4
 """Places and diameters of shafts are within this [m]."""

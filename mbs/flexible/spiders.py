@@ -18,8 +18,8 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
-from mbs.body import FREEDOMS, lever_arm
 from mbs.flexible.finite_elements import FiniteElementModel, IntArray, named
+from mbs.model.body import FREEDOMS, lever_arm
 
 Kind = Literal["rigid", "averaging"]
 KINDS: tuple[str, ...] = get_args(Kind)

@@ -18,8 +18,8 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
-from mbs.elements import ElementDefaults, Operation, Port
 from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_force
+from mbs.model.elements import ElementDefaults, Operation, Port
 
 FEWEST_TEETH, MOST_TEETH = 5, 10_000
 MOST_HARMONICS = 50

@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.physics._values import FloatArray
-from mbs.elements import Input, Quantity, Sensor
-from mbs.equilibrium import Equilibrium
+from mbs.model.elements import Input, Quantity, Sensor
+from mbs.model.equilibrium import Equilibrium
 
 ComplexArray = npt.NDArray[np.complex128]
 

@@ -13,11 +13,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from ehdmaps.physics._values import FloatArray
-from mbs.elements import Input, Sensor
-from mbs.equilibrium import Equilibrium
 from mbs.errors import AnalysisError
 from mbs.linearised.linear import ComplexArray, frequency_response, input_matrix, responses, sensor_matrix
 from mbs.linearised.modes import StateModes
+from mbs.model.elements import Input, Sensor
+from mbs.model.equilibrium import Equilibrium
 
 TOLERANCE = 1e-8
 """Error at the frequencies checked, above which all are solved directly; others may have some times as much."""

@@ -13,9 +13,9 @@ import numpy.typing as npt
 from scipy.linalg import eigh
 
 from ehdmaps.physics._values import FloatArray
-from mbs.equilibrium import Equilibrium
 from mbs.errors import AnalysisError
 from mbs.linearised.linear import ComplexArray
+from mbs.model.equilibrium import Equilibrium
 
 IntArray = npt.NDArray[np.int64]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import copy
 from typing import Protocol, runtime_checkable
 
-from mbs.elements import Element
-from mbs.system import Connected, System
+from mbs.model.elements import Element
+from mbs.model.system import Connected, System
 
 
 @runtime_checkable

@@ -17,8 +17,6 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
-from mbs.elements import Input, Operation, Sensor
-from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
 from mbs.linearised.crossings import straightened
 from mbs.linearised.linear import ComplexArray
@@ -28,7 +26,9 @@ from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep_point import Along, Point, bearing_parts, bridge, first_order_shift, over_pitch, solve_modes
 from mbs.linearised.sweep_result import BearingSweep, ComplexSweep, ResponseSweep, Sweep, UndampedSweep
 from mbs.linearised.tracking import match, numbers, tracks
-from mbs.system import System
+from mbs.model.elements import Input, Operation, Sensor
+from mbs.model.equilibrium import equilibrium
+from mbs.model.system import System
 
 __all__ = ["MOST_ANGLES", "MOST_SPEEDS", "Sweep", "SweepRange", "sweep"]
 

@@ -11,11 +11,11 @@ import numpy as np
 from ehdmaps.physics._values import FloatArray
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.roller_element import RollerElement, ring_matrices
-from mbs.elements import Element, Operation
-from mbs.equilibrium import Equilibrium, equilibrium
 from mbs.linearised.linear import ComplexArray
 from mbs.linearised.modes import IntArray, StateModes, UndampedModes, energy_shares, state_modes, undamped_modes
 from mbs.linearised.tracking import Match, ModeSet, compose, match
+from mbs.model.elements import Element, Operation
+from mbs.model.equilibrium import Equilibrium, equilibrium
 
 SURE = 0.8
 """Assurance below which speeds are put in between."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.physics._values import FloatArray
-from mbs.elements import Input, Sensor
 from mbs.linearised.linear import ComplexArray
 from mbs.linearised.modes import IntArray, damping_ratio
+from mbs.model.elements import Input, Sensor
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,9 +12,9 @@ from ehdmaps.physics._values import FloatArray
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.solids import reduced_modulus
 from mbs.bearings.bearing import Bearing
-from mbs.elements import Input
-from mbs.equilibrium import Equilibrium
 from mbs.linearised.linear import responses
+from mbs.model.elements import Input
+from mbs.model.equilibrium import Equilibrium
 
 HIGHEST_RATIO = 0.3
 """omega b/u above which stiffness and damping of the low-frequency limit are no longer valid."""

@@ -19,13 +19,13 @@ from scipy.signal import firwin, upfirdn
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
-from mbs.elements import Input, Sensor
-from mbs.equilibrium import Equilibrium
 from mbs.errors import AnalysisError
 from mbs.linearised.linear import input_matrix, sensor_matrix, state_space
 from mbs.linearised.modes import Modes
 from mbs.modal.records import LONGEST, Channel, Hits, Measured
-from mbs.profiles import Course, HalfSine, SpeedProfile
+from mbs.model.elements import Input, Sensor
+from mbs.model.equilibrium import Equilibrium
+from mbs.model.profiles import Course, HalfSine, SpeedProfile
 from mbs.transient.integration import Settings, Trajectory, integrate
 
 OVERSAMPLING = 16

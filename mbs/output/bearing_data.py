@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.outputs import MARK, TABLE, Kind, write_text
-from mbs.bearing_point import BearingPoint
+from mbs.analyses.bearing_point import BearingPoint
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import SIDES
 from mbs.output.results import RESULT, described

@@ -14,12 +14,12 @@ from matplotlib.ticker import MaxNLocator
 
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import PRESSURE, RPM
-from mbs.bearing_point import BearingPoint
+from mbs.analyses.bearing_point import BearingPoint
 from mbs.bearings.contact_report import STATIC_LIMIT
 from mbs.bearings.films import SIDES
 from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, Points, bearing_row
 from mbs.output.bearing_text import bearing_heading, without_numbers
-from mbs.reading.fields import FORCE, MICROMETRE
+from mbs.scene.fields import FORCE, MICROMETRE
 
 _COLOURS = ("#1f5fa8", "#c8102e")
 """Inner and outer contact; along and across the load."""

@@ -8,10 +8,10 @@ from collections.abc import Iterable
 import numpy as np
 
 from ehdmaps.units import FILM, PRESSURE, RPM, TEMPERATURE
-from mbs.bearing_point import BearingPoint
+from mbs.analyses.bearing_point import BearingPoint
 from mbs.bearings.films import SIDES
 from mbs.output.bearing_data import BearingDescription, Points, bearing_row
-from mbs.reading.fields import FORCE, MICROMETRE
+from mbs.scene.fields import FORCE, MICROMETRE
 
 REGIMES = ((1.0, "boundary: the surfaces touch"), (3.0, "mixed: asperities touch"), (math.inf, "full film"))
 """What is usually said of Lambda below these values."""

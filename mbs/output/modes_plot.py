@@ -8,10 +8,10 @@ import math
 import numpy as np
 from matplotlib.figure import Figure
 
-from mbs.assembly import Model
 from mbs.linearised.modes import IntArray, Modes
 from mbs.linearised.validity import HIGHEST_RATIO
 from mbs.output.page import headed, shade, shade_handle
+from mbs.scene.assembly import Model
 
 _RPM = 30.0 / np.pi
 _MOST_LEVEL_LABELS = 12

@@ -10,8 +10,8 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import ScalarFormatter
 
 from ehdmaps.units import TEMPERATURE
-from mbs.assembly import Model
-from mbs.reading.fields import MICROMETRE
+from mbs.scene.assembly import Model
+from mbs.scene.fields import MICROMETRE
 
 COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00", "#6a3d9a")
 

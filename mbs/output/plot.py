@@ -9,10 +9,10 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from mbs.assembly import Model
 from mbs.bearings.contact_report import BearingContacts
-from mbs.equilibrium import Equilibrium
+from mbs.model.equilibrium import Equilibrium
 from mbs.output.page import COLOURS, grid, page
+from mbs.scene.assembly import Model
 
 _RPM = 30.0 / np.pi
 

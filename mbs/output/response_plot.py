@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehdmaps.physics._values import FloatArray
-from mbs.assembly import Model
 from mbs.linearised.linear import ComplexArray, response_unit
 from mbs.linearised.validity import HIGHEST_RATIO
 from mbs.output.page import COLOURS, grid, page, shade, shown
+from mbs.scene.assembly import Model
 
 _RPM = 30.0 / np.pi
 _ROUND_OFF = 1e-6

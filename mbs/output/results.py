@@ -16,12 +16,12 @@ from ehdmaps.version import version
 from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.films import SIDES
 from mbs.bearings.roller_element import ring_matrices
-from mbs.body import FREEDOMS
-from mbs.elements import Input, Sensor
-from mbs.equilibrium import Equilibrium
 from mbs.linearised.linear import ComplexArray, StateSpace
 from mbs.linearised.modes import Modes
-from mbs.system import System
+from mbs.model.body import FREEDOMS
+from mbs.model.elements import Input, Sensor
+from mbs.model.equilibrium import Equilibrium
+from mbs.model.system import System
 from mbs.transient.integration import Trajectory
 
 SCHEMA_VERSION = 1

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehdmaps.physics._values import FloatArray
-from mbs.assembly import Model
 from mbs.output.page import COLOURS, grid, headed, shade, shade_handle, whole_numbers
+from mbs.scene.assembly import Model
 from mbs.transient.integration import Trajectory
 
 _RPM = 30.0 / np.pi

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.physics._values import FloatArray
-from mbs.elements import Quantity, Sensor
+from mbs.model.elements import Quantity, Sensor
 
 SPREAD = (0.05, 0.5, 0.95)
 """Quantiles by which differences of levels are told."""

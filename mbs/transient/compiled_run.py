@@ -15,8 +15,8 @@ import scipy.linalg
 
 from ehdmaps.physics._values import FloatArray
 from mbs.bearings import slice_table as table
-from mbs.profiles import LoadProfile, SpeedProfile
-from mbs.system import System
+from mbs.model.profiles import LoadProfile, SpeedProfile
+from mbs.model.system import System
 from mbs.transient.linear_part import LinearPart
 from mbs.transient.run_arrays import Course, Films, IndexArray, Numbers, Records, State
 from mbs.transient.run_elements import RunElements

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ehdmaps.physics._values import FloatArray
-from mbs.profiles import SpeedProfile
-from mbs.system import System
+from mbs.model.profiles import SpeedProfile
+from mbs.model.system import System
 from mbs.transient.run import record
 from mbs.transient.stepping import Settings
 

@@ -20,11 +20,11 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
-from mbs.elements import Sensor
 from mbs.errors import AnalysisError
-from mbs.outside_calls import calls_outside
-from mbs.profiles import SpeedProfile
-from mbs.system import System
+from mbs.model.elements import Sensor
+from mbs.model.outside_calls import calls_outside
+from mbs.model.profiles import SpeedProfile
+from mbs.model.system import System
 from mbs.transient.compiled_run import CompiledRun
 from mbs.transient.run_arrays import IndexArray
 from mbs.transient.run_elements import is_known

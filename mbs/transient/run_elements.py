@@ -13,9 +13,9 @@ from ehdmaps.physics._values import FloatArray
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.force_at_point import Work
-from mbs.elements import Element
 from mbs.gears.gear import GearMesh
-from mbs.system import Connected
+from mbs.model.elements import Element
+from mbs.model.system import Connected
 from mbs.transient.run_arrays import Elements
 from mbs.transient.run_kernel import PORTS
 from mbs.transient.speed_tables import SpeedTables

@@ -20,9 +20,9 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
-from mbs.elements import Operation
-from mbs.profiles import SpeedProfile
-from mbs.system import System
+from mbs.model.elements import Operation
+from mbs.model.profiles import SpeedProfile
+from mbs.model.system import System
 from mbs.transient.integration_kernel import correction, port_motion, unbalanced
 
 ITERATIONS = 12

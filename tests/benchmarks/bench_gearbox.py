@@ -36,18 +36,18 @@ from scipy.signal import butter, resample_poly, sosfiltfilt
 
 import ehdmaps
 from ehdmaps.maps.emap import EHDMap
-from mbs.assembly import Model, assemble
-from mbs.body import Body, Frame
-from mbs.elements import Operation, Sensor
-from mbs.equilibrium import equilibrium
 from mbs.linearised.modes import undamped_modes
-from mbs.profiles import Course, SpeedProfile
-from mbs.scene import RunUp, Scene
-from mbs.scene_reader import parse_scene, read_scene
+from mbs.model.body import Body, Frame
+from mbs.model.elements import Operation, Sensor
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import Course, SpeedProfile
+from mbs.model.system import System
+from mbs.scene.assembly import Model, assemble
+from mbs.scene.reader import parse_scene, read_scene
+from mbs.scene.scene import RunUp, Scene
 from mbs.spectral.levels import Reference, level
 from mbs.spectral.run_signal import RunSignal
 from mbs.spectral.spectra import short_time_spectra
-from mbs.system import System
 from mbs.transient.run import Recording, run
 from mbs.transient.stepping import Settings
 

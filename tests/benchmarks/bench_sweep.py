@@ -24,18 +24,18 @@ import numpy as np
 
 import ehdmaps
 from ehdmaps.maps.emap import EHDMap
-from mbs.assembly import assemble
 from mbs.bearings.bearing import Bearing
-from mbs.elements import Operation
-from mbs.equilibrium import equilibrium
 from mbs.linearised.linear import frequency_response, state_space
 from mbs.linearised.modes import state_modes, undamped_modes
 from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep import Sweep, sweep
 from mbs.linearised.sweep_point import along_load
-from mbs.scene import Scene
-from mbs.scene_reader import read_scene
-from mbs.system import System
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.model.system import System
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import read_scene
+from mbs.scene.scene import Scene
 
 RPM = math.pi / 30.0
 SPEEDS = np.linspace(500.0, 2500.0, 40) * RPM

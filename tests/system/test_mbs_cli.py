@@ -14,7 +14,7 @@ import xarray as xr
 from ehdmaps import errors
 from ehdmaps.jobs import cli as ehdmaps_cli
 from mbs import cli
-from mbs.scene_reader import read_scene
+from mbs.scene.reader import read_scene
 
 JOB = """
 schema = 1

@@ -18,11 +18,11 @@ from ehdmaps.jobs import cli as ehdmaps_cli
 from ehdmaps.maps.emap import open_map
 from mbs import cli
 from mbs.analyses import campbell
-from mbs.assembly import assemble
-from mbs.equilibrium import equilibrium
 from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
-from mbs.scene_reader import parse_scene, read_scene
+from mbs.model.equilibrium import equilibrium
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import parse_scene, read_scene
 
 HEAD = """
 schema = 1

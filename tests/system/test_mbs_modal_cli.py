@@ -12,7 +12,7 @@ import xarray as xr
 from ehdmaps.outputs import MARK
 from mbs import cli
 from mbs.modal.uff import read_uff
-from mbs.scene_reader import read_scene
+from mbs.scene.reader import read_scene
 from tests.unit.modal_cases import DAMPING, FREQUENCY, hits, measured
 
 

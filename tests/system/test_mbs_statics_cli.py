@@ -10,7 +10,7 @@ import xarray as xr
 
 from ehdmaps.jobs import cli as ehdmaps_cli
 from mbs import Bearing
-from mbs.scene_reader import read_scene
+from mbs.scene.reader import read_scene
 from tests.system.test_mbs_cli import JOB, check_units, run
 
 STRAIGHT = ('profile = "iso"', 'profile = "straight"')

@@ -12,7 +12,7 @@ import pytest
 
 from ehdmaps.jobs import cli as ehdmaps_cli
 from mbs import cli
-from mbs.scene_reader import shipped_systems
+from mbs.scene.reader import shipped_systems
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -49,7 +49,7 @@ ALLOWED = {
         "ehdmaps.physics",
         "ehdmaps.maps",
     },
-    "mbs.scene": {
+    "mbs.scene.scene": {
         "ehdmaps.errors",
         "ehdmaps.inputs",
         "ehdmaps.outputs",
@@ -64,7 +64,7 @@ ALLOWED = {
 }
 """What each layer may import besides itself and other distributions. `ehdmaps` itself is the shop window of all."""
 
-SCENES = ("__main__", "analyses", "assembly", "cli", "commands", "output", "reading", "scene", "scene_reader")
+SCENES = ("__main__", "analyses", "cli", "commands", "output", "scene")
 """Modules of mbs that plan a scene or are its command line: they may call ehdmaps.jobs; no other module of mbs may
 call them."""
 
@@ -72,7 +72,7 @@ call them."""
 def _layer(module: str) -> str | None:
     parts = module.split(".")
     if parts[0] == "mbs":
-        return "mbs.scene" if len(parts) > 1 and parts[1] in SCENES else "mbs"
+        return "mbs.scene.scene" if len(parts) > 1 and parts[1] in SCENES else "mbs"
     if parts[0] != "ehdmaps":
         return None
     return ".".join(parts[:2])

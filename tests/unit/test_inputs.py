@@ -20,7 +20,7 @@ from mbs.flexible.matrix_files import read_abaqus_matrix, read_dof_table, read_m
 from mbs.flexible.mesh import read_mesh_nodes
 from mbs.flexible.reduced_file import read_reduced
 from mbs.modal.uff import read_uff
-from mbs.scene_reader import parse_scene, read_scene
+from mbs.scene.reader import parse_scene, read_scene
 
 
 @pytest.fixture(autouse=True)

@@ -11,16 +11,16 @@ import pytest
 from ehdmaps.errors import InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import STEEL
-from mbs.assembly import assemble
-from mbs.bearing_point import bearing_point, bearing_points
+from mbs.analyses.bearing_point import bearing_point, bearing_points
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import fading, heated, outside_map
 from mbs.bearings.films import FormulaFilms
-from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
-from mbs.scene_reader import read_scene
+from mbs.model.equilibrium import equilibrium
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import read_scene
 from tests.unit.mbs_cases import map_law
 
 OIL = Lubricant.named("FVA3")

@@ -15,11 +15,11 @@ import xarray as xr
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from mbs.analyses.reach import Fade
-from mbs.elements import Sensor
 from mbs.errors import AnalysisError
+from mbs.model.elements import Sensor
 from mbs.output.campbell_data import campbell_dataset
 from mbs.output.campbell_plot import Overlay, Reach, campbell_figure
-from mbs.reading.campbell import read_campbell
+from mbs.scene.campbell import read_campbell
 from mbs.spectral.campbell import campbell, run_up_spectra
 from mbs.spectral.levels import LOWEST, Reference, difference_text, level
 from mbs.spectral.orders import OrderTracks, angle_signal, order_peaks, order_spectra, track_orders

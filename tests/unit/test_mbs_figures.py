@@ -14,24 +14,24 @@ from matplotlib.colors import to_hex
 from ehdmaps.errors import InputError
 from mbs.analyses.film_limits import lowest_limits
 from mbs.analyses.reach import Fade, axes_outside, fade_of, share_below
-from mbs.assembly import assemble
 from mbs.bearings.bearing_force import BearingForce
 from mbs.commands import modes as modes_command
 from mbs.commands.common import film_course, film_warnings
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.commands.runup import _changes
-from mbs.equilibrium import equilibrium
 from mbs.linearised.linear import frequency_response
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.sweep import sweep
 from mbs.linearised.tracking import numbers
 from mbs.linearised.validity import FilmLimit
+from mbs.model.equilibrium import equilibrium
 from mbs.output.modes_plot import modes_figure
 from mbs.output.page import SHADE
 from mbs.output.response_plot import response_figure
 from mbs.output.run_plot import run_figure
 from mbs.output.sweep_plot import sweep_figure
-from mbs.scene_reader import read_scene
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import read_scene
 from mbs.transient.integration import Trajectory
 from tests.unit.mbs_cases import map_law
 

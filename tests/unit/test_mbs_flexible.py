@@ -13,7 +13,6 @@ from scipy.sparse.linalg import ArpackError
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
-from mbs.body import FREEDOMS, Frame
 from mbs.commands import reduce as command
 from mbs.errors import AnalysisError
 from mbs.flexible import held_body
@@ -35,7 +34,8 @@ from mbs.flexible.reduced_body import ReducedBody, to_body
 from mbs.flexible.reduced_file import read_reduced, write_reduced
 from mbs.flexible.reduction import reduce
 from mbs.flexible.spiders import Interface, nearest_node, nodes_in_plane, nodes_on_cylinder, spider
-from mbs.reading.flexible import read_flexible
+from mbs.model.body import FREEDOMS, Frame
+from mbs.scene.flexible import read_flexible
 from tests.unit.flexible_cases import DENSITY, SIZE, block, ends, rigid_motion
 
 ROUND_OFF = 1e-12

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mbs.assembly import assemble
-from mbs.body import rigid_body
-from mbs.elements import Load, Spring
-from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
-from mbs.free_motion import free_lines, free_motions
-from mbs.scene_reader import read_scene, shipped_systems
-from mbs.system import System
+from mbs.model.body import rigid_body
+from mbs.model.elements import Load, Spring
+from mbs.model.equilibrium import equilibrium
+from mbs.model.free_motion import free_lines, free_motions
+from mbs.model.system import System
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import read_scene, shipped_systems
 from tests.unit.test_mbs_system import MASS, OneSided, force, stiff
 
 

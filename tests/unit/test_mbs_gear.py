@@ -11,10 +11,10 @@ import pytest
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
-from mbs.elements import Operation
 from mbs.gears.gear import GearPair, contact_ratio, gear_mesh, pair_harmonics
 from mbs.gears.gear_kernel import TOUCH, flank_force
-from mbs.reading.gears import read_gears
+from mbs.model.elements import Operation
+from mbs.scene.gears import read_gears
 
 ALPHA = math.radians(20.0)
 PAIR = GearPair(

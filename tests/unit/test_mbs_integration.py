@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
-from mbs.body import Inertia, rigid_body
-from mbs.elements import ElementDefaults, Load, Spring
 from mbs.errors import AnalysisError
-from mbs.profiles import Harmonic, SpeedProfile
-from mbs.system import System
+from mbs.model.body import Inertia, rigid_body
+from mbs.model.elements import ElementDefaults, Load, Spring
+from mbs.model.profiles import Harmonic, SpeedProfile
+from mbs.model.system import System
 from mbs.transient.integration import Settings, integrate
 from tests.unit.test_mbs_system import MASS, OneSided, force, stiff
 

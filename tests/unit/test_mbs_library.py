@@ -61,7 +61,7 @@ name = "formula"
 structural_law = "iso16281"
 """
 
-EXAMPLES = ["mbs.assembly", *(f"mbs.analyses.{entry.name}" for entry in pkgutil.iter_modules(analyses.__path__))]
+EXAMPLES = ["mbs.scene.assembly", *(f"mbs.analyses.{entry.name}" for entry in pkgutil.iter_modules(analyses.__path__))]
 
 
 @pytest.fixture(scope="module")
@@ -120,7 +120,7 @@ def test_every_name_is_there(name):
 
 def test_names_stay_what_they_are_after_their_modules_are_loaded():
     code = (
-        "import mbs.analyses.statics, mbs.analyses.plan, mbs.cli, mbs.scene_reader, mbs.commands.sweep; import mbs; "
+        "import mbs.analyses.statics, mbs.analyses.plan, mbs.cli, mbs.scene.reader, mbs.commands.sweep; import mbs; "
         "print(all(callable(getattr(mbs, name)) for name in mbs.__all__))"
     )
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

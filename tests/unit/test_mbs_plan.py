@@ -15,10 +15,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.reader import parse_job
 from mbs import cli
 from mbs.analyses.planned_job import job_text
-from mbs.assembly import assemble
-from mbs.elements import Load
-from mbs.errors import AnalysisError
-from mbs.planning import (
+from mbs.analyses.planning import (
     LIGHT,
     LIGHTEST,
     film_room,
@@ -28,8 +25,11 @@ from mbs.planning import (
     same_contacts,
     speed_range,
 )
-from mbs.profiles import Course, Harmonic
-from mbs.scene_reader import parse_scene, read_scene
+from mbs.errors import AnalysisError
+from mbs.model.elements import Load
+from mbs.model.profiles import Course, Harmonic
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import parse_scene, read_scene
 
 TEXT = read_scene("nu308_rigid").text
 RPM = math.pi / 30.0

@@ -13,12 +13,12 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
-from mbs.body import Inertia, rigid_body
-from mbs.elements import ElementDefaults, Load, Operation, Port, Sensor, Spring
-from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
-from mbs.profiles import SpeedProfile
-from mbs.system import System
+from mbs.model.body import Inertia, rigid_body
+from mbs.model.elements import ElementDefaults, Load, Operation, Port, Sensor, Spring
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import SpeedProfile
+from mbs.model.system import System
 from mbs.transient.integration import integrate
 from mbs.transient.linear_part import LinearPart
 from mbs.transient.run import CHUNK, run

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
-from mbs.assembly import assemble
-from mbs.profiles import Course, Harmonic
-from mbs.scene_reader import parse_scene, read_scene, shipped_systems
+from mbs.model.profiles import Course, Harmonic
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import parse_scene, read_scene, shipped_systems
 
 SCENE = """
 schema = 1

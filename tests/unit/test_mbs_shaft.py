@@ -10,9 +10,6 @@ import pytest
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
-from mbs.body import FREEDOMS, Inertia, lever_arm, rigid_body
-from mbs.elements import Operation, Spring
-from mbs.equilibrium import equilibrium
 from mbs.flexible.beam import (
     CrossSection,
     element_gyroscopic,
@@ -26,8 +23,11 @@ from mbs.flexible.damping import modal_damping
 from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_parts import Disc, Section
 from mbs.linearised.modes import modes
-from mbs.reading.shaft import read_shaft
-from mbs.system import System
+from mbs.model.body import FREEDOMS, Inertia, lever_arm, rigid_body
+from mbs.model.elements import Operation, Spring
+from mbs.model.equilibrium import equilibrium
+from mbs.model.system import System
+from mbs.scene.shaft import read_shaft
 
 BENDING = ("y", "z", "theta_y", "theta_z")
 STEEL_BAR = CrossSection.annulus(0.04, 0.01, 210e9, 0.3, 7850.0)

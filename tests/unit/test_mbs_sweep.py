@@ -11,22 +11,22 @@ import pytest
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
-from mbs.assembly import assemble
-from mbs.body import Inertia, rigid_body
 from mbs.commands import sweep as command
 from mbs.commands.cases import load_cases
-from mbs.elements import ElementDefaults, Input, Operation, Port, Sensor, Spring
-from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
 from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep import SweepRange, sweep
 from mbs.linearised.sweep_point import along_load
 from mbs.linearised.tracking import Match, ModeSet, assurance, compose, match, tracks
+from mbs.model.body import Inertia, rigid_body
+from mbs.model.elements import ElementDefaults, Input, Operation, Port, Sensor, Spring
+from mbs.model.equilibrium import equilibrium
+from mbs.model.system import System
 from mbs.output.sweep_data import sweep_dataset
 from mbs.output.sweep_plot import sweep_figure
-from mbs.reading.sweep import read_sweep
-from mbs.scene_reader import read_scene
-from mbs.system import System
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import read_scene
+from mbs.scene.sweep import read_sweep
 
 RPM = math.pi / 30.0
 Y = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0])

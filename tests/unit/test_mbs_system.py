@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
-from mbs.body import Inertia, lever_arm, rigid_body
-from mbs.elements import ElementDefaults, Input, Load, Operation, Port, Sensor, Spring
-from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
 from mbs.linearised.linear import frequency_response, state_space, with_peaks
 from mbs.linearised.modes import modes, undamped_modes
-from mbs.profiles import Constant, Course, HalfSine, Harmonic, SpeedProfile
-from mbs.system import System
+from mbs.model.body import Inertia, lever_arm, rigid_body
+from mbs.model.elements import ElementDefaults, Input, Load, Operation, Port, Sensor, Spring
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import Constant, Course, HalfSine, Harmonic, SpeedProfile
+from mbs.model.system import System
 
 ROUND_OFF = 1e-12
 MASS = Inertia(2.0, 0.01, 0.02)

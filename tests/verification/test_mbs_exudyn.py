@@ -12,13 +12,13 @@ import math
 import numpy as np
 import pytest
 
-from mbs.assembly import assemble
-from mbs.elements import Load, Operation
-from mbs.equilibrium import equilibrium
 from mbs.linearised.modes import undamped_modes
-from mbs.profiles import Course, SpeedProfile
-from mbs.scene_reader import read_scene
-from mbs.system import System
+from mbs.model.elements import Load, Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import Course, SpeedProfile
+from mbs.model.system import System
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import read_scene
 from mbs.transient.integration import Settings, integrate
 
 exu = pytest.importorskip("exudyn", reason="Exudyn is a dependency of the tests alone, and has no wheel everywhere")

@@ -25,9 +25,6 @@ from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.body import FREEDOMS
-from mbs.elements import Load, Operation, Spring
-from mbs.equilibrium import equilibrium
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.reduced_body import to_body
 from mbs.flexible.reduction import reduce
@@ -35,8 +32,11 @@ from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_parts import Section
 from mbs.flexible.spiders import Interface
 from mbs.linearised.modes import modes, undamped_modes
-from mbs.profiles import Course, SpeedProfile
-from mbs.system import System
+from mbs.model.body import FREEDOMS
+from mbs.model.elements import Load, Operation, Spring
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import Course, SpeedProfile
+from mbs.model.system import System
 from mbs.transient.integration import Settings, integrate
 
 exu = pytest.importorskip("exudyn", reason="Exudyn is a dependency of the tests alone, and has no wheel everywhere")

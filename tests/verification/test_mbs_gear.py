@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from mbs.body import Inertia, rigid_body
-from mbs.elements import Load, Operation, Spring
-from mbs.equilibrium import equilibrium
 from mbs.gears.gear import GearPair, contact_ratio, gear_mesh, pair_harmonics
 from mbs.gears.gear_kernel import TOUCH
-from mbs.profiles import SpeedProfile
-from mbs.system import System
+from mbs.model.body import Inertia, rigid_body
+from mbs.model.elements import Load, Operation, Spring
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import SpeedProfile
+from mbs.model.system import System
 from mbs.transient.integration import Settings, integrate
 
 ALPHA = math.radians(20.0)

@@ -15,9 +15,6 @@ import pytest
 
 from ehdmaps.jobs import cli as ehdmaps_cli
 from ehdmaps.maps.emap import open_map
-from mbs.assembly import assemble
-from mbs.elements import Operation
-from mbs.equilibrium import equilibrium
 from mbs.linearised.linear import frequency_response, with_peaks
 from mbs.linearised.modes import modes, undamped_modes
 from mbs.linearised.steady import steady_system
@@ -25,8 +22,11 @@ from mbs.linearised.sweep import sweep
 from mbs.modal.estimation import estimate
 from mbs.modal.fit import identify
 from mbs.modal.hammer import HammerTest, linear_hits
-from mbs.profiles import SpeedProfile
-from mbs.scene_reader import read_scene
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import SpeedProfile
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import read_scene
 from mbs.spectral.campbell import run_up_spectra
 from mbs.spectral.run_signal import RunSignal
 from mbs.transient.integration import Settings

@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 from scipy.signal import csd
 
-from mbs.assembly import assemble
-from mbs.equilibrium import equilibrium
 from mbs.linearised.linear import frequency_response, state_space
 from mbs.linearised.modes import modes
 from mbs.modal.estimation import estimate, transfer
@@ -18,7 +16,9 @@ from mbs.modal.hammer import OVERSAMPLING, HammerTest, linear_hits, nonlinear_hi
 from mbs.modal.rational import rational_poles
 from mbs.modal.residues import laplace
 from mbs.modal.windows import needed_decay
-from mbs.scene_reader import read_scene
+from mbs.model.equilibrium import equilibrium
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import read_scene
 from tests.unit.modal_cases import (
     DAMPING,
     OMEGA,

@@ -13,12 +13,12 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.bearing_kernel import bearing_force
 from mbs.bearings.laws import hertz
-from mbs.body import Inertia, rigid_body
-from mbs.elements import Load, Operation, Sensor, Spring
-from mbs.equilibrium import equilibrium
 from mbs.gears.gear import GearPair, gear_mesh
-from mbs.profiles import Course, Harmonic, SpeedProfile
-from mbs.system import System
+from mbs.model.body import Inertia, rigid_body
+from mbs.model.elements import Load, Operation, Sensor, Spring
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import Course, Harmonic, SpeedProfile
+from mbs.model.system import System
 from mbs.transient import speed_tables
 from mbs.transient.integration import integrate
 from mbs.transient.run import run

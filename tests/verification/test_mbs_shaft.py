@@ -17,9 +17,6 @@ import pytest
 from scipy.linalg import eig, eigh, expm
 from scipy.optimize import brentq
 
-from mbs.body import Inertia, lever_arm
-from mbs.elements import Operation, Spring
-from mbs.equilibrium import equilibrium
 from mbs.flexible.beam import (
     CrossSection,
     element_gyroscopic,
@@ -32,7 +29,10 @@ from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_model import WAVE_ERROR
 from mbs.flexible.shaft_parts import Disc, Section
 from mbs.linearised.modes import modes
-from mbs.system import System
+from mbs.model.body import Inertia, lever_arm
+from mbs.model.elements import Operation, Spring
+from mbs.model.equilibrium import equilibrium
+from mbs.model.system import System
 
 E, NU, RHO = 210e9, 0.3, 7850.0
 PLANE = ("y", "theta_z")

@@ -12,17 +12,17 @@ import math
 import numpy as np
 import pytest
 
-from mbs.assembly import assemble
-from mbs.body import Inertia, rigid_body
-from mbs.elements import ElementDefaults, Input, Operation, Port, Sensor, Spring
-from mbs.equilibrium import equilibrium
 from mbs.linearised import crossings
 from mbs.linearised.linear import frequency_response, state_space
 from mbs.linearised.modal_response import TOLERANCE, checked_response, modal_response
 from mbs.linearised.modes import state_modes, undamped_modes
 from mbs.linearised.sweep import sweep
-from mbs.scene_reader import read_scene
-from mbs.system import System
+from mbs.model.body import Inertia, rigid_body
+from mbs.model.elements import ElementDefaults, Input, Operation, Port, Sensor, Spring
+from mbs.model.equilibrium import equilibrium
+from mbs.model.system import System
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import read_scene
 
 RPM = math.pi / 30.0
 MASS = 2.0

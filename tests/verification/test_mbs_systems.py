@@ -13,19 +13,19 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from mbs.assembly import assemble
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.roller_element import ring_matrices
-from mbs.elements import Input, Load, Operation, Sensor
-from mbs.equilibrium import equilibrium
 from mbs.linearised.linear import frequency_response, responses
 from mbs.linearised.modes import modes, undamped_modes
 from mbs.linearised.sweep import sweep
-from mbs.profiles import Harmonic, SpeedProfile
-from mbs.scene_reader import read_scene
-from mbs.system import System
+from mbs.model.elements import Input, Load, Operation, Sensor
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import Harmonic, SpeedProfile
+from mbs.model.system import System
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import read_scene
 from mbs.transient.integration import Settings, integrate
 
 RPM = math.pi / 30.0

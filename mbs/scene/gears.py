@@ -7,8 +7,8 @@ import math
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import LENGTH, STIFFNESS, Display, short
 from mbs.gears.gear import FEWEST_TEETH, MOST_HARMONICS, MOST_TEETH, GearPair
-from mbs.reading import fields
-from mbs.reading.fields import DEGREE, MICROMETRE
+from mbs.scene import fields
+from mbs.scene.fields import DEGREE, MICROMETRE
 
 _DAMPING = Display("N s/m")
 _WORDS_HARMONICS = f"a whole number from 0 to {MOST_HARMONICS}, or a list of at most as many numbers, parts of the mean"

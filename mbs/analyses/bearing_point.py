@@ -1,8 +1,8 @@
 """One bearing at an operating point: where its inner ring comes to rest, and what its contacts feel there.
 
 The outer ring is held, the inner one moves in the radial plane without tilting and turns at the given speed. Its
-equilibrium is that of `mbs.equilibrium`, with the ring as the only body: the potential of the contacts is convex, so
-that it is found from any load and clearance. The rollers' centrifugal load is left out.
+equilibrium is that of `mbs.model.equilibrium`, with the ring as the only body: the potential of the contacts is convex,
+so that it is found from any load and clearance. The rollers' centrifugal load is left out.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ from mbs.bearings.contact_report import (
 from mbs.bearings.films import FilmSource
 from mbs.bearings.laws import Law
 from mbs.bearings.roller_loads import RollerLoads
-from mbs.body import Inertia, rigid_body
-from mbs.elements import Load, Operation
-from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
-from mbs.system import System
+from mbs.model.body import Inertia, rigid_body
+from mbs.model.elements import Load, Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.model.system import System
 
 SHARE = 0.01
 """A roller counts as loaded if it carries more than this part of the highest roller load: films load all a little."""

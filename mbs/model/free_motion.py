@@ -12,8 +12,8 @@ import numpy as np
 import scipy.linalg as sl
 
 from ehdmaps.physics._values import FloatArray
-from mbs.equilibrium import Equilibrium
 from mbs.errors import AnalysisError
+from mbs.model.equilibrium import Equilibrium
 
 NOTHING = 1e-16
 """Stiffness over mass of a coordinate, as a part of the largest one, up to which it is round-off."""

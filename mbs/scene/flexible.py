@@ -13,7 +13,6 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import LENGTH, short
-from mbs.body import FREEDOMS, Body
 from mbs.flexible.calculix import check_deck, read_calculix
 from mbs.flexible.extent import extent
 from mbs.flexible.finite_elements import FiniteElementModel, IntArray
@@ -29,8 +28,9 @@ from mbs.flexible.reduced_body import ReducedBody, to_body
 from mbs.flexible.reduced_file import read_reduced
 from mbs.flexible.reduction import NEAREST, Point, reduce
 from mbs.flexible.spiders import KINDS, Interface, Kind, nodes_in_plane, nodes_on_cylinder
-from mbs.reading import fields
-from mbs.reading.fields import HERTZ
+from mbs.model.body import FREEDOMS, Body
+from mbs.scene import fields
+from mbs.scene.fields import HERTZ
 
 FORMATS = ("calculix", "matrix-market", "abaqus")
 

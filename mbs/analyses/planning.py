@@ -22,11 +22,11 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import film_from_moes, moes_groups
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.bearing_element import BearingElement
-from mbs.elements import Operation
-from mbs.equilibrium import equilibrium
 from mbs.errors import AnalysisError
-from mbs.profiles import Course, Harmonic, LoadProfile
-from mbs.system import System
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import Course, Harmonic, LoadProfile
+from mbs.model.system import System
 
 ANGLES = 12
 """Angles within one pitch of the rollers."""

@@ -17,18 +17,18 @@ from ehdmaps.jobs.axes import AxisRule, read_axis
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, short
-from mbs.body import FREEDOMS, Body, Inertia, rigid_body
-from mbs.elements import Input, Load, Sensor, Spring
-from mbs.profiles import Constant, Course, Harmonic, LoadProfile, SpeedProfile
-from mbs.reading import fields
-from mbs.reading.attached import read_attached
-from mbs.reading.campbell import read_campbell
-from mbs.reading.fields import DEGREE, FORCE, HERTZ, MICROMETRE, MILLISECOND, MOMENT, Built
-from mbs.reading.flexible import read_flexible
-from mbs.reading.gears import read_gears
-from mbs.reading.shaft import read_shaft
-from mbs.reading.sweep import read_sweep
-from mbs.scene import RunUp, Scene, SceneBearing
+from mbs.model.body import FREEDOMS, Body, Inertia, rigid_body
+from mbs.model.elements import Input, Load, Sensor, Spring
+from mbs.model.profiles import Constant, Course, Harmonic, LoadProfile, SpeedProfile
+from mbs.scene import fields
+from mbs.scene.attached import read_attached
+from mbs.scene.campbell import read_campbell
+from mbs.scene.fields import DEGREE, FORCE, HERTZ, MICROMETRE, MILLISECOND, MOMENT, Built
+from mbs.scene.flexible import read_flexible
+from mbs.scene.gears import read_gears
+from mbs.scene.scene import RunUp, Scene, SceneBearing
+from mbs.scene.shaft import read_shaft
+from mbs.scene.sweep import read_sweep
 from mbs.spectral.settings import CampbellSettings
 from mbs.transient.integration import Settings
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import RPM
 from mbs.linearised.sweep import MOST_SPEEDS, SweepRange
-from mbs.reading import fields
+from mbs.scene import fields
 
 
 def read_sweep(section: Table) -> SweepRange | None:

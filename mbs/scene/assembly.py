@@ -24,11 +24,11 @@ from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.bearings.roller_element import RollerElement, roller_body
-from mbs.body import CENTRE, Body
-from mbs.elements import GROUND, Element, Operation
 from mbs.gears.gear import GearMesh, GearPair, gear_mesh
-from mbs.scene import Scene, SceneBearing
-from mbs.system import System
+from mbs.model.body import CENTRE, Body
+from mbs.model.elements import GROUND, Element, Operation
+from mbs.model.system import System
+from mbs.scene.scene import Scene, SceneBearing
 
 _SAME = 1e-9
 _COMPARED = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")

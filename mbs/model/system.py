@@ -17,10 +17,10 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import closest
-from mbs.body import CENTRE, Body
-from mbs.elements import GROUND, Element, Load, Operation, Port, Spring
 from mbs.gears.gear import GearMesh
-from mbs.profiles import Constant, LoadProfile
+from mbs.model.body import CENTRE, Body
+from mbs.model.elements import GROUND, Element, Load, Operation, Port, Spring
+from mbs.model.profiles import Constant, LoadProfile
 
 COINCIDENT = 1e-6
 """How far two places that an element connects may lie apart [m]."""
@@ -219,7 +219,7 @@ class System:
             seen.add(name)
         problems += [
             f"{element.name!r}, outside_calls: missing; allowed: a count, or None without a map; an element inherits "
-            "that from mbs.elements.ElementDefaults, the force of a bearing without a map has outside_calls = 0"
+            "that from mbs.model.elements.ElementDefaults, the force of a bearing without a map has outside_calls = 0"
             for element in elements
             if not hasattr(element, "outside_calls")
         ]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import short
-from mbs.body import Body
 from mbs.flexible.attached import Attached, attach
-from mbs.reading import fields
+from mbs.model.body import Body
+from mbs.scene import fields
 
 
 def read_attached(section: Table, body: Body | None) -> Body | None:

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.physics._values import FloatArray
-from mbs.elements import Operation
 from mbs.errors import AnalysisError
-from mbs.system import System
+from mbs.model.elements import Operation
+from mbs.model.system import System
 
 FIRST_STEP = 5e-6
 """How far a coordinate moves at most in the first step [m or rad]; doubled while steps fall short."""

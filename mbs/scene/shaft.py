@@ -8,11 +8,11 @@ from collections.abc import Callable
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import LENGTH, PRESSURE, Display, short
-from mbs.body import FREEDOMS, Body, Inertia
 from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_parts import Disc, Section
-from mbs.reading import fields
-from mbs.reading.fields import HERTZ, Built
+from mbs.model.body import FREEDOMS, Body, Inertia
+from mbs.scene import fields
+from mbs.scene.fields import HERTZ, Built
 
 _DENSITY = Display("kg/m^3")
 _INERTIA = Display("kg m^2")

@@ -13,8 +13,8 @@ from ehdmaps.jobs.table import Table
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import LENGTH, Display, short
-from mbs.body import FREEDOMS, Inertia
-from mbs.elements import GROUND
+from mbs.model.body import FREEDOMS, Inertia
+from mbs.model.elements import GROUND
 
 FORCE = Display("N")
 MOMENT = Display("N m")

@@ -1,4 +1,4 @@
-"""A scene: what a scene file says, in SI. `mbs.scene_reader` reads it, `mbs.assembly` makes a system of it."""
+"""A scene: what a scene file says, in SI. `mbs.scene.reader` reads it, `mbs.scene.assembly` makes a system of it."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from pathlib import Path
 
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
-from mbs.body import Body
-from mbs.elements import Input, Load, Sensor, Spring
 from mbs.gears.gear import GearPair
 from mbs.linearised.sweep import SweepRange
-from mbs.profiles import SpeedProfile
+from mbs.model.body import Body
+from mbs.model.elements import Input, Load, Sensor, Spring
+from mbs.model.profiles import SpeedProfile
 from mbs.spectral.settings import CampbellSettings
 from mbs.transient.integration import Settings
 

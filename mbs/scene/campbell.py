@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import short
-from mbs.reading import fields
-from mbs.reading.fields import HERTZ, MILLISECOND
+from mbs.scene import fields
+from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.spectral.settings import HIGHEST, CampbellSettings
 
 LOWEST_HIGHEST, HIGHEST_HIGHEST = 1.0, 1e6

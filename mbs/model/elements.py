@@ -12,7 +12,7 @@ from typing import Literal, NamedTuple, Protocol
 import numpy as np
 
 from ehdmaps.physics._values import FloatArray
-from mbs.profiles import Constant, LoadProfile
+from mbs.model.profiles import Constant, LoadProfile
 
 GROUND = "ground"
 """The place that does not move."""

@@ -1,0 +1,1 @@
+"""A machine as bodies and what connects them: parts, prescribed courses, the system and its equilibrium."""

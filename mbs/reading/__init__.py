@@ -1,1 +1,0 @@
-"""Reading scene files, a kind of table a module."""
