@@ -22,6 +22,7 @@ films               published film formulas: rigid, Dowson-Higginson, Pan-Hamroc
 damping             published damping formulas: rolling film, squeeze film, Dietl
 peak                what the largest of sampled pressures lacks to the peak
 thermal             reduction of the film by inlet shear heating
+structure           film and solids together: approach, stiffness, damping
 solution            `FilmSolution`, `ContactSolution`, `Status`, the Protocol `ContactSolver` and its defaults
 closed_form         the solvers `hertz` and `formula`
 ==================  ====================================================================================

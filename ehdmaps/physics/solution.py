@@ -15,6 +15,7 @@ from typing import Protocol
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.structure import structured
 
 
 class Status(IntEnum):
@@ -90,7 +91,7 @@ class FilmSolution:
 
 @dataclass(frozen=True)
 class ContactSolution:
-    """One point of a map: approach, stiffness, damping and films of one contact, per unit length.
+    """One point of a map: films, approach, stiffness and damping of one contact, per unit length.
 
     Attributes
     ----------
@@ -103,6 +104,9 @@ class ContactSolution:
     film_offset_error, film_compliance_error, stiffness_error, damping_error : float
     central_film_error, minimum_film_error, max_pressure_error : float
         Estimated relative numerical errors.
+    loss_compliance_error : float
+        The same, positive where the error of the loss has the sign of that of the film compliance: the two can cancel
+        in the damping.
     frequency : float
         [Hz]; 0 is the low-frequency limit.
 
@@ -113,6 +117,8 @@ class ContactSolution:
     reason: str
     approach: float
     film_offset: float
+    film_compliance: float
+    loss_compliance: float
     stiffness: float
     damping: float
     central_film: float
@@ -120,6 +126,7 @@ class ContactSolution:
     max_pressure: float
     film_offset_error: float
     film_compliance_error: float
+    loss_compliance_error: float
     stiffness_error: float
     damping_error: float
     central_film_error: float
@@ -229,13 +236,7 @@ class ContactSolverDefaults:
 def contact_solution(
     film: FilmSolution, contact: LineContact, point: OperatingPoint, frequency: float = 0.0
 ) -> ContactSolution:
-    """Add the structural part to a film.
-
-    1/(k + i omega c) = d(delta_el)/dw + film_compliance - i omega loss_compliance; at omega = 0 its limit
-    k = 1/(dry + film compliance), c = loss_compliance k^2.
-
-    Errors are carried over to first order: 1/k has the absolute error of the film compliance, and c = loss k^2 has that
-    of the loss plus twice that of k, with their signs, and a twentieth of both magnitudes in case they cancel.
+    """Add the structural part to a film, see `ehdmaps.physics.structure`.
 
     Parameters
     ----------
@@ -248,30 +249,33 @@ def contact_solution(
     frequency : float
         Of the oscillation [Hz]; 0 is the low-frequency limit.
     """
-    dry = contact.structural_compliance(point.load)
-    compliance = dry + film.film_compliance
-    omega = 2.0 * math.pi * frequency
-    loss = film.loss_compliance
-    squared = compliance**2 + (omega * loss) ** 2
-    stiffness = compliance / squared
-    damping = loss / squared
-    stiffness_error = -film.film_compliance * film.film_compliance_error / compliance
-    loss_error = film.loss_compliance_error
-    damping_error = abs(loss_error + 2.0 * stiffness_error) + 0.05 * (abs(loss_error) + 2.0 * abs(stiffness_error))
+    solids = structured(
+        contact,
+        point.load,
+        film.film_offset,
+        film.film_compliance,
+        film.loss_compliance,
+        film.film_compliance_error,
+        film.loss_compliance_error,
+        omega=2.0 * math.pi * frequency,
+    )
     return ContactSolution(
         status=film.status,
         reason=film.reason,
-        approach=contact.structural_approach(point.load) - film.film_offset,
+        approach=solids.approach,
         film_offset=film.film_offset,
-        stiffness=stiffness,
-        damping=damping,
+        film_compliance=film.film_compliance,
+        loss_compliance=film.loss_compliance,
+        stiffness=solids.stiffness,
+        damping=solids.damping,
         central_film=film.central_film,
         minimum_film=film.minimum_film,
         max_pressure=film.max_pressure,
         film_offset_error=abs(film.film_offset_error),
         film_compliance_error=abs(film.film_compliance_error),
-        stiffness_error=abs(stiffness_error),
-        damping_error=damping_error,
+        loss_compliance_error=film.loss_compliance_error * math.copysign(1.0, film.film_compliance_error),
+        stiffness_error=solids.stiffness_error,
+        damping_error=solids.damping_error,
         central_film_error=film.central_film_error,
         minimum_film_error=film.minimum_film_error,
         max_pressure_error=film.max_pressure_error,

@@ -12,7 +12,7 @@ from ehdmaps.jobs.generate import Generated, generate
 from ehdmaps.jobs.law_check import unmet
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.summary import summary
-from ehdmaps.maps.schema import BACKBONE_GROUP
+from ehdmaps.maps.schema import BACKBONE
 
 OIL = (Path(__file__).parents[1] / "references" / "n1014_thin_oil.toml").read_text()
 TEXT = OIL.replace('"10 N/mm", "100 N/mm"', '"2 N/mm", "15 N/mm", "100 N/mm"') + "law_check = 40\n"
@@ -66,7 +66,7 @@ def test_without_backbone(tmp_path: Path) -> None:
     )
     assert generated.sweep.solved == 24
     assert ehdmaps.open_map(tmp_path / "bare.nc").backbone is None
-    assert BACKBONE_GROUP not in generated.dataset
+    assert BACKBONE not in generated.dataset
     assert not any(name.startswith("law_") for name in generated.dataset.attrs)
 
 
