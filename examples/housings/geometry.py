@@ -16,9 +16,9 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.units import LENGTH
+from examples.housings.designs import GearboxShape, Housing, PedestalShape, Place
+from examples.housings.mesh import Mesh
 from mbs.errors import AnalysisError
-from mbs.housings.designs import GearboxShape, Housing, PedestalShape, Place
-from mbs.housings.mesh import Mesh
 
 SMALLEST, LARGEST = 5e-3, 40e-3
 """Sizes of elements [m]: below, there are far too many; above, they no longer know the walls."""
