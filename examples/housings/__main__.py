@@ -17,7 +17,7 @@ def parser() -> argparse.ArgumentParser:
         prog="python -m examples.housings",
         description="Make a housing of a shipped system anew: gmsh meshes it, CalculiX gives stiffness and mass, and "
         "they are reduced to the bearing seats and the modes with the seats held.",
-        epilog="Needs gmsh (pip install 'ehdmaps[housings]') and CalculiX (ccx). Exit status: 0 done; 1 meshing or "
+        epilog='Needs gmsh (pip install "ehdmaps[housings]") and CalculiX (ccx). Exit status: 0 done; 1 meshing or '
         "solving failed; 2 bad input or a missing program, nothing written. Size and cutoff are those of the shipped "
         "file if left out.",
     )

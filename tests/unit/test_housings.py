@@ -199,7 +199,7 @@ def test_without_gmsh(monkeypatch, tmp_path, error):
     else:
         (tmp_path / "gmsh.py").write_text("raise OSError('libGLU.so.1: cannot open shared object file')")
         monkeypatch.syspath_prepend(tmp_path)
-    with pytest.raises(InputError, match=r"gmsh cannot be loaded .*pip install 'ehdmaps\[housings\]'.*libglu1-mesa"):
+    with pytest.raises(InputError, match=r'gmsh cannot be loaded .*pip install "ehdmaps\[housings\]".*libglu1-mesa'):
         geometry.load_gmsh()
 
 

@@ -17,6 +17,7 @@ ROOT = Path(__file__).parents[2]
 
 ALLOWED = {
     "ehdmaps.errors": set(),
+    "ehdmaps.extras": {"ehdmaps.errors"},
     "ehdmaps.units": {"ehdmaps.errors"},
     "ehdmaps.inputs": {"ehdmaps.errors"},
     "ehdmaps.outputs": {"ehdmaps.errors"},
@@ -27,10 +28,11 @@ ALLOWED = {
     "ehdmaps.physics": {"ehdmaps.errors"},
     "ehdmaps.ehl": {"ehdmaps.errors", "ehdmaps.physics"},
     "ehdmaps.maps": {"ehdmaps.errors", "ehdmaps.inputs", "ehdmaps.units", "ehdmaps.physics"},
-    "ehdmaps.openfoam": {"ehdmaps.errors", "ehdmaps.outputs", "ehdmaps.units", "ehdmaps.physics"},
+    "ehdmaps.openfoam": {"ehdmaps.errors", "ehdmaps.extras", "ehdmaps.outputs", "ehdmaps.units", "ehdmaps.physics"},
     "ehdmaps.jobs": {
         "ehdmaps",
         "ehdmaps.errors",
+        "ehdmaps.extras",
         "ehdmaps.inputs",
         "ehdmaps.interrupts",
         "ehdmaps.outputs",
@@ -44,6 +46,7 @@ ALLOWED = {
     },
     "mbs": {
         "ehdmaps.errors",
+        "ehdmaps.extras",
         "ehdmaps.inputs",
         "ehdmaps.outputs",
         "ehdmaps.program",
@@ -54,6 +57,7 @@ ALLOWED = {
     },
     "mbs.scene.scene": {
         "ehdmaps.errors",
+        "ehdmaps.extras",
         "ehdmaps.inputs",
         "ehdmaps.outputs",
         "ehdmaps.program",
@@ -67,6 +71,7 @@ ALLOWED = {
     "examples": {
         "ehdmaps",
         "ehdmaps.errors",
+        "ehdmaps.extras",
         "ehdmaps.outputs",
         "ehdmaps.program",
         "ehdmaps.units",
