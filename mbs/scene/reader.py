@@ -30,7 +30,7 @@ from mbs.scene.scene import RunUp, Scene, SceneBearing
 from mbs.scene.shaft import read_shaft
 from mbs.scene.sweep import read_sweep
 from mbs.spectral.settings import CampbellSettings
-from mbs.transient.integration import Settings
+from mbs.transient.settings import Settings
 
 LONGEST_FILE = 1_000_000
 """Bytes of a scene file."""

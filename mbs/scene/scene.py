@@ -13,7 +13,7 @@ from mbs.model.body import Body
 from mbs.model.elements import Input, Load, Sensor, Spring
 from mbs.model.profiles import SpeedProfile
 from mbs.spectral.settings import CampbellSettings
-from mbs.transient.integration import Settings
+from mbs.transient.settings import Settings
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,7 @@ from ehdmaps.physics._values import FloatArray
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
 from mbs.transient.run import record
-from mbs.transient.stepping import Settings
-
-__all__ = ["Settings", "Trajectory", "integrate"]
+from mbs.transient.settings import Settings
 
 
 @dataclass(frozen=True, eq=False)

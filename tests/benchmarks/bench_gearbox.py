@@ -49,7 +49,7 @@ from mbs.spectral.levels import Reference, level
 from mbs.spectral.run_signal import RunSignal
 from mbs.spectral.spectra import short_time_spectra
 from mbs.transient.run import Recording, run
-from mbs.transient.stepping import Settings
+from mbs.transient.settings import Settings
 
 RPM = math.pi / 30.0
 MIDDLE = 1500.0 * RPM

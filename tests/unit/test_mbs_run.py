@@ -24,8 +24,9 @@ from mbs.transient.linear_part import LinearPart
 from mbs.transient.run import CHUNK, run
 from mbs.transient.run_elements import is_known
 from mbs.transient.run_kernel import _expanded_times, _solve
+from mbs.transient.settings import Settings
 from mbs.transient.speed_tables import NODES, STEP, SpeedTables
-from mbs.transient.stepping import Method, Settings
+from mbs.transient.stepping import Method
 from tests.unit.mbs_cases import TEMPERATURE, map_law
 
 REST = SpeedProfile.constant(0.0)

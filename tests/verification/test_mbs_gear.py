@@ -16,7 +16,8 @@ from mbs.model.elements import Load, Operation, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
-from mbs.transient.integration import Settings, integrate
+from mbs.transient.integration import integrate
+from mbs.transient.settings import Settings
 
 ALPHA = math.radians(20.0)
 PAIR = GearPair(

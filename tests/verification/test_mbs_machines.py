@@ -29,8 +29,8 @@ from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
 from mbs.spectral.campbell import run_up_spectra
 from mbs.spectral.run_signal import RunSignal
-from mbs.transient.integration import Settings
 from mbs.transient.run import run
+from mbs.transient.settings import Settings
 
 RPM = math.pi / 30.0
 FROM, TO = 500.0 * RPM, 2500.0 * RPM

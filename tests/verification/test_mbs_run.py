@@ -24,8 +24,9 @@ from mbs.transient.integration import integrate
 from mbs.transient.run import run
 from mbs.transient.run_arrays import Films
 from mbs.transient.run_kernel import blend
+from mbs.transient.settings import Settings
 from mbs.transient.speed_tables import NODES, SpeedTables
-from mbs.transient.stepping import Method, Settings
+from mbs.transient.stepping import Method
 from tests.unit.mbs_cases import TEMPERATURE, map_law
 
 RPM = math.pi / 30.0
