@@ -365,12 +365,17 @@ def _lubricant(scene: Scene) -> Lubricant:
     return scene.lubricant
 
 
+def structure_words(emap: EHDMap) -> str:
+    """The structural law of a map as the end of a sentence; nothing where it is that of the dry law, ISO 16281."""
+    return "" if emap.structural_law == "iso16281" else f", structural law {emap.structural_law}"
+
+
 def _words(chosen: str, scene: Scene, emap: EHDMap | None) -> str:
     """The law, for people."""
     if chosen == "map" and emap is not None:
         solver = emap.dataset.attrs.get("solver", "")
         made_for = emap.bearing.title if emap.bearing else ""
-        return f"map of {made_for}, {emap.lubricant.title}, solver {solver}"
+        return f"map of {made_for}, {emap.lubricant.title}, solver {solver}{structure_words(emap)}"
     if chosen == "formula":
         return f"film formula moes, {_lubricant(scene).title}"
     name = constant_name(chosen)

@@ -18,14 +18,17 @@ from ehdmaps.jobs.plot import plot_map
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.report import holes
 from ehdmaps.jobs.summary import summary
-from ehdmaps.jobs.tasks import LONGEST_LINE, line_tasks, solver_version
+from ehdmaps.jobs.tasks import LONGEST_LINE, LineTask, line_tasks, solver_version
 from ehdmaps.jobs.tradeoff import Contestant, contestants, measure, table
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.validation import validate
+from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
+from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status, contact_solution
 
 TEXT = """
@@ -146,6 +149,14 @@ def test_the_key_holds_what_changes_the_numbers_and_nothing_else():
         replace(task, solver=Holey(version="2")),
     ]
     assert len({task.key, *(other.key for other in others)}) == 10
+
+
+def test_keys_of_a_solver_with_a_version_of_its_own_stay_what_they_are():
+    """What took days is taken over by the next version of ehdmaps: the key is that of the maps of schema 1."""
+    solver = Holey(slow=True, version="7")
+    contact = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[0]
+    task = LineTask(contact, Lubricant.named("FVA3"), (1e4, 2e4), 1.0, 313.15, solver)
+    assert task.key == "6b51b7f5cb74e33a3cf90e49454553e8cdc732b968e6395327c87cdac130eea8"
 
 
 def test_a_solver_s_own_version_counts_instead_of_the_sources():
