@@ -14,9 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ehdmaps.errors import InputError, SolverError
-from ehdmaps.openfoam.case import NO_PATH
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
-from ehdmaps.openfoam.installation import Installation, installation
+from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
 from ehdmaps.openfoam.parameters import FLOWS, SHEARS, Flow, Mesh, Parameters, Shear, Start
 from ehdmaps.openfoam.run import RunError
 from ehdmaps.physics.closed_form import THIN_FILM_LIMIT, HertzSolver
