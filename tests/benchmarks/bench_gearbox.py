@@ -44,12 +44,12 @@ from mbs.model.profiles import Course, SpeedProfile
 from mbs.model.system import System
 from mbs.scene.assembly import Model, assemble
 from mbs.scene.reader import parse_scene, read_scene
-from mbs.scene.scene import RunUp, Scene
+from mbs.scene.scene import Scene
+from mbs.settings import RunUp, Settings
 from mbs.spectral.levels import Reference, level
 from mbs.spectral.run_signal import RunSignal
 from mbs.spectral.spectra import short_time_spectra
 from mbs.transient.run import Recording, run
-from mbs.transient.stepping import Settings
 
 RPM = math.pi / 30.0
 MIDDLE = 1500.0 * RPM
