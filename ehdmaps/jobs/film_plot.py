@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.openfoam.grid_solver import GridSolution
 from ehdmaps.outputs import write_figure
 from ehdmaps.units import FILM, PRESSURE
@@ -22,8 +22,6 @@ ROW = (11.69, 3.6)
 RESOLUTION = 200
 _FONT: Any = {"font.size": 8.5, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6}
 _PLACES = (("inlet", "#1b6ca8"), ("centre", "#444444"), ("spike", "#c8102e"))
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -76,7 +74,7 @@ def plot_films(rows: Sequence[FilmRow], heading: str, output: Path) -> None:
         write_figure(figure, output, RESOLUTION)
 
 
-def places(x: Floats, pressure: Floats) -> dict[str, float]:
+def places(x: FloatArray, pressure: FloatArray) -> dict[str, float]:
     """Return where velocities are shown [m].
 
     The inlet is where the pressure first comes to a tenth of its largest; the spike is the last local maximum of the

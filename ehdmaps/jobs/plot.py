@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -18,6 +17,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocator
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.jobs.curves import curves, law_field
 from ehdmaps.jobs.report import fitted_pressure, plain, span
 from ehdmaps.maps import schema
@@ -75,7 +75,7 @@ class _Sheet:
         return self.emap.dataset
 
     @property
-    def speeds(self) -> npt.NDArray[np.float64]:
+    def speeds(self) -> FloatArray:
         """Entrainment speeds [m/s]."""
         return np.asarray(self.dataset["entrainment_speed"].values, dtype=np.float64)
 
@@ -237,7 +237,7 @@ def _curves(axes: Axes, sheet: _Sheet, name: str, display: Display, place: tuple
 
 def _dense(
     sheet: _Sheet, name: str, contact: int, temperature: int, speed: int
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]] | None:
+) -> tuple[FloatArray, FloatArray] | None:
     """Loads [N/m] and values [SI] between the solved points; None where nothing is known there."""
     u, axis = float(sheet.speeds[speed]), sheet.dataset["load"].values
     if sheet.field is None or name not in _OF_LAWS or u == 0.0 or axis.size == 1:
@@ -253,8 +253,8 @@ def _marks(
     here: xr.Dataset,
     name: str,
     index: int,
-    loads: npt.NDArray[np.float64],
-    curve: npt.NDArray[np.float64],
+    loads: FloatArray,
+    curve: FloatArray,
     colour: Any,
 ) -> None:
     """Mark the points of one curve that are no plain solutions."""
@@ -278,7 +278,7 @@ def _colour(sheet: _Sheet, index: int) -> Any:
     return mpl.colormaps["viridis"](sheet.colours(max(sheet.speeds[index], _lowest(sheet.speeds))))
 
 
-def _scales(axes: Axes, loads: npt.NDArray[np.float64], values: npt.NDArray[np.float64], name: str) -> None:
+def _scales(axes: Axes, loads: FloatArray, values: FloatArray, name: str) -> None:
     """Set log scales where there is something to show, and a quiet grid."""
     axes.set_xscale("log")
     if loads.size > 1:
@@ -297,7 +297,7 @@ def _scales(axes: Axes, loads: npt.NDArray[np.float64], values: npt.NDArray[np.f
     axes.tick_params(length=2.5, pad=1.5)
 
 
-def _approach_scale(axes: Axes, known: npt.NDArray[np.float64]) -> None:
+def _approach_scale(axes: Axes, known: FloatArray) -> None:
     """Logarithmic both ways from zero, linear about it."""
     axes.set_yscale("symlog", linthresh=LINEAR_APPROACH, linscale=0.6)
     axes.set_ylim(
@@ -310,7 +310,7 @@ def _approach_scale(axes: Axes, known: npt.NDArray[np.float64]) -> None:
     axes.axhline(0.0, color="0.6", lw=0.5, zorder=0)
 
 
-def _positive_scale(axes: Axes, positive: npt.NDArray[np.float64], name: str) -> None:
+def _positive_scale(axes: Axes, positive: FloatArray, name: str) -> None:
     """Logarithmic, with more numbers where there is less than two decades."""
     axes.set_yscale("log")
     # The film's tail at light load, and the law's floor in the valley, run over decades in which nobody reads.
@@ -443,7 +443,7 @@ def _drawn(text: str) -> str:
     return text.replace("um", "µm").replace("degC", "°C")
 
 
-def _lowest(speeds: npt.NDArray[np.float64]) -> float:
+def _lowest(speeds: FloatArray) -> float:
     """Return the lowest speed above zero."""
     positive = speeds[speeds > 0]
     return float(positive.min()) if positive.size else 1e-6

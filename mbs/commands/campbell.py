@@ -7,9 +7,9 @@ import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.figure import Figure
 
+from ehdmaps.arrays import BoolArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM, TEMPERATURE
 from mbs.analyses.campbell import MODE_SPEEDS, CampbellResult, LawRun, campbell, campbell_problems
@@ -107,7 +107,7 @@ def _reach(entry: LawRun) -> Reach:
     return Reach(at, lowest_limits(entry.case.model, at), float(speeds[_fading(entry)].max(initial=0.0)))
 
 
-def _fading(entry: LawRun) -> npt.NDArray[np.bool_]:
+def _fading(entry: LawRun) -> BoolArray:
     """Which windows reach below the map, where the film fades to the dry contact, shape (windows,)."""
     found, record = entry.spectra.campbell, entry.record
     fade = fade_of(entry.case.model)

@@ -9,11 +9,10 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
 from ehdmaps.units import quantity
 from mbs.commands.common import RESOLUTION
-from mbs.errors import AnalysisError
 from mbs.modal.estimation import Estimate, estimate
 from mbs.modal.fit import identify
 from mbs.modal.records import Responses

@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import FILM, PRESSURE
 from mbs.analyses.film_limits import film_limits, ring_motions
 from mbs.analyses.statics import statics

@@ -23,11 +23,11 @@ from typing import Any
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.extras import needs
 from ehdmaps.inputs import check_input
 from ehdmaps.outputs import MARK, Kind, has_mark, written_aside
-from ehdmaps.physics._values import FloatArray
 from mbs.modal.records import LONGEST, Channel, Hits, Measured, Responses
 
 UFF = Kind("a universal file of mbs", (), has_mark)

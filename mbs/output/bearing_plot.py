@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.units import PRESSURE, RPM
 from mbs.analyses.bearing_point import BearingPoint
 from mbs.bearings.contact_report import STATIC_LIMIT

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.linearised.validity import HIGHEST_RATIO
 from mbs.output.page import SHADE, shade_handle
 from mbs.spectral.campbell import RunUpSpectra

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray, response_unit
+from ehdmaps.arrays import ComplexArray, FloatArray
+from mbs.linearised.linear import response_unit
 from mbs.linearised.validity import HIGHEST_RATIO
 from mbs.output.page import COLOURS, grid, page, shade, shown
 from mbs.scene.assembly import Model

@@ -16,6 +16,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 ALLOWED = {
+    "ehdmaps.arrays": set(),
     "ehdmaps.errors": set(),
     "ehdmaps.extras": {"ehdmaps.errors"},
     "ehdmaps.units": {"ehdmaps.errors"},
@@ -25,12 +26,20 @@ ALLOWED = {
     "ehdmaps.version": {"ehdmaps.provenance"},
     "ehdmaps.interrupts": set(),
     "ehdmaps.program": {"ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.version"},
-    "ehdmaps.physics": {"ehdmaps.errors"},
-    "ehdmaps.ehl": {"ehdmaps.errors", "ehdmaps.physics"},
-    "ehdmaps.maps": {"ehdmaps.errors", "ehdmaps.inputs", "ehdmaps.units", "ehdmaps.physics"},
-    "ehdmaps.openfoam": {"ehdmaps.errors", "ehdmaps.extras", "ehdmaps.outputs", "ehdmaps.units", "ehdmaps.physics"},
+    "ehdmaps.physics": {"ehdmaps.arrays", "ehdmaps.errors"},
+    "ehdmaps.ehl": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.physics"},
+    "ehdmaps.maps": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.inputs", "ehdmaps.units", "ehdmaps.physics"},
+    "ehdmaps.openfoam": {
+        "ehdmaps.arrays",
+        "ehdmaps.errors",
+        "ehdmaps.extras",
+        "ehdmaps.outputs",
+        "ehdmaps.units",
+        "ehdmaps.physics",
+    },
     "ehdmaps.jobs": {
         "ehdmaps",
+        "ehdmaps.arrays",
         "ehdmaps.errors",
         "ehdmaps.extras",
         "ehdmaps.inputs",
@@ -45,6 +54,7 @@ ALLOWED = {
         "ehdmaps.maps",
     },
     "mbs": {
+        "ehdmaps.arrays",
         "ehdmaps.errors",
         "ehdmaps.extras",
         "ehdmaps.inputs",
@@ -56,6 +66,7 @@ ALLOWED = {
         "ehdmaps.maps",
     },
     "mbs.scene.scene": {
+        "ehdmaps.arrays",
         "ehdmaps.errors",
         "ehdmaps.extras",
         "ehdmaps.inputs",
@@ -70,6 +81,7 @@ ALLOWED = {
     },
     "examples": {
         "ehdmaps",
+        "ehdmaps.arrays",
         "ehdmaps.errors",
         "ehdmaps.extras",
         "ehdmaps.outputs",

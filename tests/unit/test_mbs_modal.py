@@ -9,8 +9,7 @@ import sys
 import numpy as np
 import pytest
 
-from ehdmaps.errors import DependencyError, InputError
-from mbs.errors import AnalysisError
+from ehdmaps.errors import AnalysisError, DependencyError, InputError
 from mbs.linearised.modes import Modes
 from mbs.modal.estimation import HitLimits, estimate, relative_deviation, transfer
 from mbs.modal.fit import identify
