@@ -15,9 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ehdmaps.arrays import FloatArray
 
 
 @dataclass(frozen=True)
@@ -36,10 +35,10 @@ class Grid:
         dx/ds half-way between the nodes [b].
     """
 
-    x: Array
-    step: Array
-    face: Array
-    face_step: Array
+    x: FloatArray
+    step: FloatArray
+    face: FloatArray
+    face_step: FloatArray
 
 
 @dataclass(frozen=True)
@@ -89,7 +88,7 @@ class Layout:
     inlet_edge: float
     blur: float
     core: float
-    terms: Array
+    terms: FloatArray
 
     @property
     def span(self) -> float:
@@ -142,7 +141,7 @@ def zone_width(film: float) -> float:
 
 
 @njit(cache=True)
-def _index(x: float, edge: float, blur: float, core: float, terms: Array) -> tuple[float, float]:
+def _index(x: float, edge: float, blur: float, core: float, terms: FloatArray) -> tuple[float, float]:
     """The uniform index s at x, and ds/dx."""
     left = math.hypot(x - edge, blur)
     right = math.hypot(x, blur)
@@ -156,7 +155,9 @@ def _index(x: float, edge: float, blur: float, core: float, terms: Array) -> tup
 
 
 @njit(cache=True)
-def _nodes(count: int, length: float, edge: float, blur: float, core: float, terms: Array) -> tuple[Array, Array]:
+def _nodes(
+    count: int, length: float, edge: float, blur: float, core: float, terms: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Invert s(x) at equal steps, from the exit inwards, by Newton steps kept inside a bracket."""
     first = _index(-length, edge, blur, core, terms)[0]
     last, slope = _index(0.0, edge, blur, core, terms)

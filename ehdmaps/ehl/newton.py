@@ -7,11 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.reynolds import LineProblem, film, residual, steepest_viscosity_step
-
-Array = NDArray[np.float64]
 
 LOG_VISCOSITY_STEP = 5.0
 """Largest change of ln eta in one step."""
@@ -22,14 +20,14 @@ CONVERGED, STAGNATED, DIVERGED = 0, 1, 2
 class NewtonResult(NamedTuple):
     """Unknowns, outcome (CONVERGED, STAGNATED or DIVERGED), Newton steps taken and size of the last step."""
 
-    unknowns: Array
+    unknowns: FloatArray
     outcome: int
     steps: int
     last_step: float
 
 
 @njit(cache=True)
-def solve_scaled(jacobian: Array, right_hand_side: Array) -> Array:
+def solve_scaled(jacobian: FloatArray, right_hand_side: FloatArray) -> FloatArray:
     """Solve a dense system after scaling each row by its largest entry; overwrites both arguments."""
     for i in range(jacobian.shape[0]):
         largest = 0.0
@@ -45,11 +43,11 @@ def solve_scaled(jacobian: Array, right_hand_side: Array) -> Array:
 @njit(cache=True)
 def newton(
     problem: LineProblem,
-    x: Array,
-    step: Array,
-    face_step: Array,
-    kernel: Array,
-    start: Array,
+    x: FloatArray,
+    step: FloatArray,
+    face_step: FloatArray,
+    kernel: FloatArray,
+    start: FloatArray,
     load: float,
     tolerance: float,
     most_steps: int,
@@ -120,7 +118,9 @@ def newton(
 
 
 @njit(cache=True)
-def hertz_start(x: Array, step: Array, kernel: Array, film_guess: float, exit_guess: float, load: float) -> Array:
+def hertz_start(
+    x: FloatArray, step: FloatArray, kernel: FloatArray, film_guess: float, exit_guess: float, load: float
+) -> FloatArray:
     """Cold start: Hertz pressure with its edges rounded by the film, and a film of about `film_guess` at the centre.
 
     Parameters

@@ -6,6 +6,7 @@ Nothing imports the examples.
 from __future__ import annotations
 
 import ast
+import re
 import shutil
 import subprocess
 import sys
@@ -147,6 +148,11 @@ def test_analyses_know_no_command_line(path: Path) -> None:
 def test_pyfoam_has_one_door() -> None:
     users = [path for path in FILES if any(name.partition(".")[0] == "PyFoam" for name in _imported(path))]
     assert users == [ROOT / "ehdmaps" / "openfoam" / "pyfoam.py"]
+
+
+def test_types_of_arrays_have_one_home() -> None:
+    own = re.compile(r"^\w+ = .*NDArray\[", re.MULTILINE)
+    assert [path for path in FILES if own.search(path.read_text())] == [ROOT / "ehdmaps" / "arrays.py"]
 
 
 def test_every_file_is_looked_at() -> None:
