@@ -17,7 +17,9 @@ from mbs.modal.estimation import Estimate, estimate
 from mbs.modal.fit import identify
 from mbs.modal.records import Responses
 from mbs.modal.result import Method, ModalFit, fit_dataset
-from mbs.modal.uff import UFF, Measurement, read_uff, write_uff
+from mbs.modal.uff import UFF, Measurement
+from mbs.modal.uff_reading import read_uff
+from mbs.modal.uff_writing import write_uff
 from mbs.modal.windows import needed_decay
 from mbs.output.modal_plot import fit_figure
 from mbs.output.results import RESULT, described, write_dataset

@@ -145,13 +145,20 @@ def test_analyses_know_no_command_line(path: Path) -> None:
     assert not [name for name in names if name.startswith(("mbs.commands", "mbs.cli", "matplotlib"))]
 
 
+@pytest.mark.parametrize("path", sorted((ROOT / "mbs" / "modal").glob("*.py")), ids=lambda p: p.stem)
+def test_modal_analysis_knows_no_machine(path: Path) -> None:
+    names = {name for name in _imported(path) if name.partition(".")[0] in ("mbs", "ehdmaps")}
+    known = {f"ehdmaps.{part}" for part in ("arrays", "errors", "extras", "inputs", "outputs", "units")}
+    assert [name for name in names if not name.startswith("mbs.modal.") and name not in known] == []
+
+
 def test_pyfoam_has_one_door() -> None:
     users = [path for path in FILES if any(name.partition(".")[0] == "PyFoam" for name in _imported(path))]
     assert users == [ROOT / "ehdmaps" / "openfoam" / "pyfoam.py"]
 
 
 def test_types_of_arrays_have_one_home() -> None:
-    own = re.compile(r"^\w+ = .*NDArray\[", re.MULTILINE)
+    own = re.compile(r"^\w+ = .*NDArray\[np\.", re.MULTILINE)
     assert [path for path in FILES if own.search(path.read_text())] == [ROOT / "ehdmaps" / "arrays.py"]
 
 

@@ -43,7 +43,7 @@ from mbs import (
     statics,
     sweep,
 )
-from mbs.modal.uff import read_uff
+from mbs.modal.uff_reading import read_uff
 
 JOB = """
 schema = 1
