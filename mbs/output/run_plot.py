@@ -9,8 +9,9 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ehdmaps.figures import COLOURS
 from ehdmaps.physics._values import FloatArray
-from mbs.output.page import COLOURS, grid, headed, shade, shade_handle, whole_numbers
+from mbs.output.page import grid, headed, shade, shade_handle, whole_numbers
 from mbs.scene.assembly import Model
 from mbs.transient.integration import Trajectory
 

@@ -19,6 +19,7 @@ ALLOWED = {
     "ehdmaps.errors": set(),
     "ehdmaps.extras": {"ehdmaps.errors"},
     "ehdmaps.units": {"ehdmaps.errors"},
+    "ehdmaps.figures": set(),
     "ehdmaps.inputs": {"ehdmaps.errors"},
     "ehdmaps.outputs": {"ehdmaps.errors"},
     "ehdmaps.provenance": set(),
@@ -33,6 +34,7 @@ ALLOWED = {
         "ehdmaps",
         "ehdmaps.errors",
         "ehdmaps.extras",
+        "ehdmaps.figures",
         "ehdmaps.inputs",
         "ehdmaps.interrupts",
         "ehdmaps.outputs",
@@ -47,6 +49,7 @@ ALLOWED = {
     "mbs": {
         "ehdmaps.errors",
         "ehdmaps.extras",
+        "ehdmaps.figures",
         "ehdmaps.inputs",
         "ehdmaps.outputs",
         "ehdmaps.program",
@@ -58,6 +61,7 @@ ALLOWED = {
     "mbs.scene.scene": {
         "ehdmaps.errors",
         "ehdmaps.extras",
+        "ehdmaps.figures",
         "ehdmaps.inputs",
         "ehdmaps.outputs",
         "ehdmaps.program",
