@@ -21,8 +21,8 @@ from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.bearing_kernel import bearing_force
 from mbs.bearings.kinematics import RingState, axial_rotation, relative_motion, spin
 from mbs.bearings.roller_contacts import RollerContacts
-from tests.unit.law_cases import CONTACTS, OIL, SMALL_FIELD, dataset_of
-from tests.unit.mbs_cases import AT, LAWS, PLANE, bearing, central_difference, force, map_law, single_law
+from tests.cases.bearings import AT, LAWS, PLANE, bearing, central_difference, force, map_law, single_law
+from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD, dataset_of
 
 POSE = np.array([0.0, 7e-6, 9e-6, 0.0, 1e-4, -2e-4])
 VELOCITY = np.array([0.0, 2e-4, -3e-4, 0.0, 1e-2, 2e-2])

@@ -21,7 +21,7 @@ from mbs.errors import AnalysisError
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
-from tests.unit.mbs_cases import map_law
+from tests.cases.bearings import map_law
 
 OIL = Lubricant.named("FVA3")
 WARM = 313.15

@@ -36,7 +36,7 @@ from mbs.flexible.reduction import reduce
 from mbs.flexible.spiders import Interface, nearest_node, nodes_in_plane, nodes_on_cylinder, spider
 from mbs.model.body import FREEDOMS, Frame
 from mbs.scene.flexible import read_flexible
-from tests.unit.flexible_cases import DENSITY, SIZE, block, ends, rigid_motion
+from tests.cases.flexible import DENSITY, SIZE, block, ends, rigid_motion
 
 ROUND_OFF = 1e-12
 

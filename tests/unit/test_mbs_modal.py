@@ -22,7 +22,7 @@ from mbs.modal.residues import assurance
 from mbs.modal.stabilisation import Criteria, stabilise
 from mbs.modal.uff import LARGEST, Measurement, read_uff, write_uff
 from mbs.modal.windows import exponential_window, force_window, needed_decay, pulse, without_window
-from tests.unit.modal_cases import POLES, REFERENCE, SENSORS, STEP, hits, measured
+from tests.cases.modal import POLES, REFERENCE, SENSORS, STEP, hits, measured
 
 
 def changed(entry, **keywords):

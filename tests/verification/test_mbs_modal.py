@@ -19,7 +19,7 @@ from mbs.modal.windows import needed_decay
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
-from tests.unit.modal_cases import (
+from tests.cases.modal import (
     DAMPING,
     OMEGA,
     ORDERS,
