@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
+import examples.housings.__main__ as housings
 import mbs.cli
-import mbs.housings.__main__ as housings
 from ehdmaps import errors, program
 from ehdmaps.jobs import cli
 from mbs.errors import AnalysisError
@@ -20,8 +20,8 @@ from tests.cases.interruptible import start
 from tests.cases.jobs import DRY
 
 ROOT = str(Path(errors.__file__).parents[1])
-PROGRAMS = {"ehdmaps": "ehdmaps.jobs.cli", "mbs": "mbs", "mbs.housings": "mbs.housings"}
-NOWHERE = {"ehdmaps": ["show", "none.nc"], "mbs": ["modes", "none.toml"], "mbs.housings": ["none"]}
+PROGRAMS = {"ehdmaps": "ehdmaps.jobs.cli", "mbs": "mbs", "examples.housings": "examples.housings"}
+NOWHERE = {"ehdmaps": ["show", "none.nc"], "mbs": ["modes", "none.toml"], "examples.housings": ["none"]}
 
 
 @pytest.fixture
@@ -168,7 +168,7 @@ def test_the_backend_of_a_notebook_is_no_matter_of_the_programs(folder, monkeypa
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_programs_know_their_version(name, capsys):
-    main = {"ehdmaps": cli.main, "mbs": mbs.cli.main, "mbs.housings": housings.main}[name]
+    main = {"ehdmaps": cli.main, "mbs": mbs.cli.main, "examples.housings": housings.main}[name]
     with pytest.raises(SystemExit) as end:
         main(["--version"])
     out = capsys.readouterr().out
