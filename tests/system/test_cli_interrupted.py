@@ -17,6 +17,8 @@ from ehdmaps.maps.emap import open_map
 from tests.cases.interruptible import start
 from tests.cases.jobs import map_job, spaced
 
+pytestmark = pytest.mark.slow  # each starts some processes
+
 JOB = map_job(
     spaced("1 N/mm", "1000 N/mm", 5),
     spaced("0.1 m/s", "10 m/s", 10),

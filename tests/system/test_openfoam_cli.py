@@ -121,6 +121,7 @@ def test_a_map_and_the_same_command_again(folder, done):
     assert not (folder.parent / "home").exists()
 
 
+@pytest.mark.slow
 def test_kill_9_of_a_running_solver_costs_nothing(folder):
     openfoam_fake.set_mode(build_of(folder), "patient 0.3")
     job = start(command("generate", "job.toml", "--workers", "2"), cwd=folder, stdout=subprocess.PIPE, text=True)
@@ -149,6 +150,7 @@ def test_failed_points_are_summed_up_and_tried_again_by_the_next_run(folder, don
     assert counts(done("generate", "job.toml", "--workers", "1", "--fresh").stdout) == (0, POINTS, 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("end", "workers"),
     [(signal.SIGINT, "1"), (signal.SIGINT, "2"), (signal.SIGKILL, "2")],
@@ -262,6 +264,7 @@ def test_check_names_what_is_missing_beside_other_problems(folder, done):
         assert "openfoam_cases/build" in done(*arguments, status=2).stderr
 
 
+@pytest.mark.slow
 def test_everything_else_works_without_openfoam(folder, done, monkeypatch):
     monkeypatch.setenv("EHDMAPS_OPENFOAM", str(folder / "none"))
     (folder / "job.toml").write_text(JOB.replace("[solver]", "[solver]\nbackbone = 'none'"))

@@ -86,9 +86,7 @@ class TestSystem:
         class Old:
             name, ports = "old", (Port("a"),)
 
-        with pytest.raises(
-            InputError, match=r"'old', outside_calls: missing; .*\.model\.elements\.ElementDefaults"
-        ):
+        with pytest.raises(InputError, match=r"'old', outside_calls: missing; .*\.model\.elements\.ElementDefaults"):
             System([rigid_body("a", [MASS], ["y"])], (), (), [Old()])
         with pytest.raises(InputError, match="bodies: got none"):
             System([])

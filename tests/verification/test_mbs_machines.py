@@ -141,6 +141,7 @@ class TestGearbox:
         np.testing.assert_allclose(levels[0], levels[1], atol=0.5)
 
 
+@pytest.mark.slow
 class TestFlexibleShaft:
     scene = read_scene("nu308_flexible")
 
@@ -176,7 +177,6 @@ class TestFlexibleShaft:
         assert np.all(found[1] > found[0])
         assert np.all(found[2] > found[1])
 
-    @pytest.mark.slow
     def test_no_force_jumps_in_the_run_up(self, emap):
         """A jump would be as large however short the steps are; here it falls with them."""
         model = assemble(self.scene, "map", emap)
