@@ -38,13 +38,11 @@ WIDE_AXES = (spaced("0.1 N/mm", "1000 N/mm", 13), spaced("0.05 m/s", "10 m/s", 6
 WIDE = map_job(*WIDE_AXES)
 """All loads and speeds of the shipped scenes, by the film formula."""
 
-FINE = map_job(
-    spaced("0.1 N/mm", "1000 N/mm", 25),
-    spaced("0.1 m/s", "5 m/s", 6),
-    '["30 degC", "40 degC", "50 degC", "60 degC"]',
-    solver="reynolds",
+FINE = (
+    map_job(spaced("0.1 N/mm", "1000 N/mm", 25), spaced("0.1 m/s", "5 m/s", 6), '["40 degC"]', solver="reynolds")
+    + "law_check = 0\n"
 )
-"""The shipped job of NU308 with fewer speeds and temperatures: what the machines of the pages need at 40 degC."""
+"""The shipped job of NU308 with fewer speeds and one temperature: what the machines of the pages need."""
 
 LINE = """
 schema = 1
