@@ -137,7 +137,8 @@ class FilmMemory:
         ends = _finite("delta", delta)
         if ends.shape != state.approach.shape:
             raise InputError(
-                f"film memory, delta: got the shape {ends.shape}; the state has {state.approach.shape}; they must be alike"
+                f"film memory, delta: got the shape {ends.shape}; the state has {state.approach.shape}; "
+                "they must be alike"
             )
         if not (isinstance(dt, int | float) and 0.0 < dt < math.inf):
             raise InputError(f"film memory, dt: got {dt!r} s; allowed: finite and > 0 s")
@@ -145,9 +146,9 @@ class FilmMemory:
         found = np.empty((4, flat.size))
         before, change = (np.ascontiguousarray(part).reshape(-1) for part in (state.approach, state.change))
         _advance_many(self._table, float(dt), state.step, flat, before, change, found)
-        w, tangent, approach, change = (row.reshape(ends.shape) for row in found)
+        w, tangent, approach, changed = (row.reshape(ends.shape) for row in found)
         self._check_load(w)
-        return w[()], tangent[()], FilmState(approach, change, float(dt))
+        return w[()], tangent[()], FilmState(approach, changed, float(dt))
 
     def _check_load(self, loads: FloatArray) -> None:
         """Count loads above the map, and raise where the law does."""

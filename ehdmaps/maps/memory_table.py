@@ -1,28 +1,26 @@
 """A contact whose film has a memory, as arrays at one speed and temperature.
 
-A film answers a change of load with a delay. Its state is xi, the approach at which it would be in equilibrium; the load
-of that equilibrium is p(xi). Approach and load w of the contact are
+A film answers a change of load with a delay. Its state is xi, the approach at which it would be in equilibrium; the
+load of that equilibrium is p(xi). Approach and load w of the contact are
 
     delta = a(w) + y(p),          w = x + sqrt(x^2 + p^2),    x = G',    dG/dxi = C = c k_s/(k_s - k).
 
 a is what answers at once: the structure, and the little by which oil that cannot leave the inlet stiffens it,
 da/dw = 1/k_s. y is what follows: y(p) = xi - a(p), so that at rest w = p and delta = xi, the law of the map. To first
-order w = p + x, and a small oscillation sees k + i omega c/(1 + i omega c/(k_s - k)): k and c of the map at low frequency,
-k_s at high frequency. w follows the exact load of rigid rollers that are squeezed while they roll (x + sqrt(x^2 + p^2)
-within 3 %), is never a tension, and rises with x.
+order w = p + x, and a small oscillation sees k + i omega c/(1 + i omega c/(k_s - k)): k and c of the map at low
+frequency, k_s at high frequency. w follows the exact load of rigid rollers that are squeezed while they roll
+(x + sqrt(x^2 + p^2) within 3 %), is never a tension, and rises with x.
 
-Why it is passive: a and y rise with their arguments (k_s > k > 0), and w - p has the sign of x, which is that of p'. So the
-work is w da + p dy + (w - p) dy: the first two are stored, the last one is never negative. Taken by backward Euler this
-holds for steps of any size.
+Why it is passive: a and y rise with their arguments (k_s > k > 0), and w - p has the sign of x, which is that of p'.
+So the work is w da + p dy + (w - p) dy: the first two are stored, the last one is never negative. Taken by backward
+Euler, or by any rate x with the sign of the change of G, this holds for steps of any size.
 
-The table has p, a(p) and G over xi in cells which are the binary digits of 1 + |z|, z = (xi - centre)/scale, and a over w in
-cells which are those of 1 + w/`LIGHTEST`: no logarithm is needed to find one. All are cubics through values and slopes
-that rise.
+The table has p, y and G over xi in cells which are the binary digits of 1 + |z|, z = (xi - centre)/scale, and a over w
+in cells which are those of 1 + w/`LIGHTEST`: no logarithm is needed to find one. All are cubics through values and
+slopes that rise.
 
-References
-----------
-The stiffness k_s of the locked film and its bound are fits to the linear response of the isothermal Newtonian line contact:
-see `LOCKED` and `LONGEST`.
+The stiffness k_s of the locked film and its bound are closed formulas, fitted to the linear response of the isothermal
+Newtonian line contact: see `LOCKED` and `LONGEST`.
 """
 
 from __future__ import annotations
@@ -39,8 +37,8 @@ from ehdmaps.maps.tables import HALF_SPACE, CountArray, Point
 from ehdmaps.physics._values import FloatArray
 
 LOCKED = 0.035
-"""Compliance that locked oil takes off a contact, in 4/E' for each ln(1 + 2 h R/b^2). Fitted, to be right within 10 % of the
-stiffness at any frequency up to 10 natural ones."""
+"""Compliance that locked oil takes off a contact, in 4/E' for each ln(1 + 2 h R/b^2). Fitted: the complex stiffness is
+right within 10 % up to ten natural frequencies."""
 
 LONGEST = 1.4
 """Longest relaxation time c/(k_s - k) in natural times sqrt(b^2 + 2 h R)/u. Fitted likewise."""
@@ -68,7 +66,7 @@ NODES, LOAD_NODES = _nodes(ROWS), _nodes(LOAD_ROWS)
 _LAST, _LAST_LOAD = float(np.nextafter(NODES[-1], 0.0)), float(np.nextafter(LOAD_NODES[-1], 0.0))
 _LEAST_DAMPING, _LEAST_FILM = 1e-12, 1e-9
 _STEPS = 60
-_EXACT = 1e-12
+_EXACT = 1e-13
 _NOTHING = 1e-60
 
 
@@ -79,7 +77,7 @@ class MemoryTable(NamedTuple):
     ----------
     cells : array (2 ROWS, 12)
         Cubics over the distance in scales from the end of a cell that is nearer to the centre: four coefficients of p
-        [N/m], of a(p) [m] and of G [N s/m2].
+        [N/m], of y [m] and of G [N s/m2].
     load_cells : array (LOAD_ROWS, 4)
         Cubics of a [m] over the distance from the lower end of a cell, in `LIGHTEST`.
     centre, inverse_scale : float
@@ -118,7 +116,7 @@ class Film(NamedTuple):
 
 @njit(cache=True, error_model="numpy")
 def structure_at(structure: FloatArray, load: float) -> tuple[float, float]:
-    """Structural approach [m] of contacts in series at a load [N/m], and its derivative; as in `ehdmaps.maps.kernel`."""
+    """Structural approach [m] of contacts in series at a load [N/m], and its derivative."""
     approach = compliance = 0.0
     if load > 0.0:
         for i in range(structure.shape[0]):
@@ -190,26 +188,28 @@ def fill_memory(
     centre, inverse = point.film * point.own.offset, point.own.inverse_scale
     z, xi = np.empty(size), np.empty(size)
     p, k, c = np.zeros(size), np.zeros(size), np.zeros(size)
-    sum_a, sum_g, by_a, by_c = np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size)
+    y, sum_g, by_y, by_c = np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size)
     beyond, slope_beyond = np.zeros(size), np.zeros(size)
     for i in range(size):
         z[i] = nodes[i - rows] - 1.0 if i >= rows else 1.0 - nodes[rows - i]
         xi[i] = centre + z[i] / inverse
         p[i], k[i], c[i] = evaluate_at(point, xi[i], 0.0, counts)
+        y[i], by_y[i] = xi[i], 1.0
         if p[i] > 0.0:
             dry, compliance = structure_at(point.structure, p[i])
             c[i] = max(c[i], _LEAST_DAMPING * k[i])
             stiff = locked_stiffness(film, xi[i], p[i], k[i], c[i], dry, compliance)
-            by_a[i] = k[i] / stiff
+            by_y[i] = 1.0 - k[i] / stiff
             # without film nothing is squeezed
-            by_c[i] = c[i] / (1.0 - by_a[i]) if by_a[i] < 1.0 - _LEAST_FILM else 0.0
+            by_c[i] = c[i] / by_y[i] if by_y[i] > _LEAST_FILM else 0.0
             slope_beyond[i] = 1.0 / stiff - compliance
             before = p[i - 1] if i > 0 else 0.0
             slope_before = slope_beyond[i - 1] if before > 0.0 else slope_beyond[i]
             last = beyond[i - 1] if i > 0 else 0.0
             beyond[i] = last + 0.5 * (slope_before + slope_beyond[i]) * (p[i] - before)
-            sum_a[i] = dry + beyond[i]
+            y[i] = xi[i] - dry - beyond[i]
         if i > 0:
+            y[i] = max(y[i], y[i - 1])  # it rises, but for rounding where the film hardly gives way
             sum_g[i] = sum_g[i - 1] + 0.5 * (by_c[i - 1] + by_c[i]) * (xi[i] - xi[i - 1])
     for side in range(2):
         for row in range(rows):
@@ -217,7 +217,7 @@ def fill_memory(
             h = z[far] - z[near]
             out = cells[side * rows + row]
             _cubic(p[near], p[far], k[near] / inverse, k[far] / inverse, h, out[0:4])
-            _cubic(sum_a[near], sum_a[far], by_a[near] / inverse, by_a[far] / inverse, h, out[4:8])
+            _cubic(y[near], y[far], by_y[near] / inverse, by_y[far] / inverse, h, out[4:8])
             _cubic(sum_g[near], sum_g[far], by_c[near] / inverse, by_c[far] / inverse, h, out[8:12])
     _fill_loads(point, p, beyond, slope_beyond, load_nodes, load_cells)
     return MemoryTable(cells, load_cells, centre, inverse, point.film * point.lift_off)
@@ -255,13 +255,23 @@ def state_cell(table: MemoryTable, xi: float) -> tuple[int, float]:
     a = a if a < _LAST else _LAST
     cell = np.uint64(np.float64(a).view(np.uint64) >> SHIFT)
     t = a - np.uint64(cell << SHIFT).view(np.float64)
-    row = np.int64(cell) - FIRST
+    row = int(np.int64(cell) - FIRST)
     return (row, t) if z >= 0.0 else (row + ROWS, -t)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def cubic_at(c: FloatArray, first: int, t: float) -> tuple[float, float]:
-    """Value and slope of a cubic."""
+    """Value and slope of a cubic.
+
+    Parameters
+    ----------
+    c : array
+        Coefficients of a cell.
+    first : int
+        Where those of this cubic begin.
+    t : float
+        Place in the cell.
+    """
     high = c[first + 3]
     bend = c[first + 2] + t * high
     mean = c[first + 1] + t * bend
@@ -274,7 +284,7 @@ def load_cell(load: float) -> tuple[int, float]:
     a = 1.0 + load / LIGHTEST
     a = a if a < _LAST_LOAD else _LAST_LOAD
     cell = np.uint64(np.float64(a).view(np.uint64) >> SHIFT)
-    return np.int64(cell) - FIRST, a - np.uint64(cell << SHIFT).view(np.float64)
+    return int(np.int64(cell) - FIRST), a - np.uint64(cell << SHIFT).view(np.float64)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
@@ -287,7 +297,15 @@ def approach_at(table: MemoryTable, load: float) -> tuple[float, float]:
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def load_of(p: float, dp: float, x: float, dx: float) -> tuple[float, float]:
-    """w = x + sqrt(x^2 + p^2), without cancellation, and its derivative where p and x have these slopes."""
+    """w = x + sqrt(x^2 + p^2), without cancellation, and its derivative.
+
+    Parameters
+    ----------
+    p, dp : float
+        Load of the equilibrium [N/m], and its derivative.
+    x, dx : float
+        Rate of squeezing G' [N/m], and its derivative.
+    """
     root = math.sqrt(x * x + p * p + _NOTHING)
     w = x + root if x >= 0.0 else p * p / (root - x)
     return w, (w * dx + p * dp) / root
@@ -295,13 +313,13 @@ def load_of(p: float, dp: float, x: float, dx: float) -> tuple[float, float]:
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def equilibrium_at(table: MemoryTable, xi: float) -> tuple[float, float, float, float, float, float]:
-    """p, a(p) and G of a state, each with its slope."""
+    """p, y and G of a state, each with its slope."""
     row, t = state_cell(table, xi)
     c, per = table.cells[row], table.inverse_scale
     p, dp = cubic_at(c, 0, t)
-    a, da = cubic_at(c, 4, t)
+    y, dy = cubic_at(c, 4, t)
     g, dg = cubic_at(c, 8, t)
-    return p, dp * per, a, da * per, g, dg * per
+    return p, dp * per, y, dy * per, g, dg * per
 
 
 class Step(NamedTuple):
@@ -312,8 +330,8 @@ class Step(NamedTuple):
     rate : float
         1/h [1/s].
     ahead, back : float
-        Weights of the change of G over this step and over the last one: (1 + 2 r)/(1 + r) and r^2/(1 + r) with the ratio
-        r of the steps for backward differences of second order; 1 and 0 for backward Euler.
+        Weights of the change of G over this step and over the last one: (1 + 2 r)/(1 + r) and r^2/(1 + r) with the
+        ratio r of the steps for backward differences of second order; 1 and 0 for backward Euler.
     """
 
     rate: float
@@ -338,8 +356,16 @@ def step_of(h: float, last: float) -> Step:
 def rate_of(step: Step, change: float, last: float) -> tuple[float, float]:
     """x = G' at the end of a step by the changes of G over it and over the last step, and dx/dG.
 
-    Backward differences of second order, but where the change falls below two thirds of the last one, at turning points,
-    the share of the last one fades with it. So x has the sign of the change, whatever the step, and rises with it.
+    Backward differences of second order, but where the change falls below two thirds of the last one, at turning
+    points, the share of the last one fades with it. So x has the sign of the change, whatever the step, and rises with
+    it.
+
+    Parameters
+    ----------
+    step : Step
+        How long.
+    change, last : float
+        Of G over this step and over the last one [N s/m2].
     """
     size = abs(last)
     t = 1.5 * abs(change) / size if size > 1.5 * abs(change) else 1.0
@@ -380,22 +406,25 @@ def advanced(
     left, right = table.lift_off, math.inf
     xi = start if start > left else left
     w = tangent = 0.0
+    before_last = math.inf
+    moved = math.inf
     for _ in range(_STEPS):
-        p, dp, a, da, g, dg = equilibrium_at(table, xi)
+        p, dp, y, dy, g, dg = equilibrium_at(table, xi)
         x, dx = rate_of(step, g - before, last)
         w, slope = load_of(p, dp, x, dx * dg)
         stretched, compliance = approach_at(table, w)
-        rise = compliance * slope + 1.0 - da
-        short = delta - (stretched + xi - a)
+        rise = compliance * slope + dy
+        short = delta - stretched - y
         tangent = slope / rise
         if short > 0.0:
             left = xi
         else:
             right = xi
         following = xi + short / rise
-        if not left <= following <= right:
+        # bisection where Newton's steps leave the bracket or do not shrink
+        if not (left <= following <= right and 2.0 * abs(following - xi) <= before_last):
             following = 0.5 * (left + right) if right < math.inf else max(delta, 2.0 * xi - left)
-        moved = abs(following - xi)
+        before_last, moved = moved, abs(following - xi)
         if moved * table.inverse_scale <= _EXACT * (1.0 + abs(xi - table.centre) * table.inverse_scale):
             break
         xi = following

@@ -1,8 +1,8 @@
 """Slices whose films have a memory, in compiled code: one time step of all slices of a bearing.
 
-The law is that of `ehdmaps.maps.memory_table`. Each slice carries parabolas of p, y = xi - a(p) and G around a state and of a
-around a load; they stand for the cubics of its cells, from which they differ in third order, and are read anew where the
-slice leaves their reach, and every `KEPT` steps. So Newton's method for the states is arithmetic alone, in vector
+The law is that of `ehdmaps.maps.memory_table`. Each slice carries parabolas of p, y and G around a state and of a
+around a load; they stand for the cubics of its cells, from which they differ in third order, and are read anew where
+the slice leaves their reach, and every `KEPT` steps. So Newton's method for the states is arithmetic alone, in vector
 instructions over all slices. A slice that leaves them within a step is solved from the table itself, with a bracket.
 
 A step is `begin`, `loads` as often as the system asks for them, and `commit`.
@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
 
 from ehdmaps.maps.lines import FAST
@@ -30,9 +29,9 @@ from ehdmaps.physics._values import FloatArray
 LATEST, BEFORE, CHANGE, FADE, LOAD, TRIAL, AROUND, REACH, LOADED, LOAD_REACH = range(10)
 P, Y, G, A = 10, 13, 16, 19
 MEMORY = 22
-"""Rows of the memory of the slices: states after the last two steps, change of G over the last one and 1.5 by its size, load
-after it; state of the trial; where the parabolas lie and how far they reach, in the state and in the load; parabolas. G
-counts from the last state."""
+"""Rows of the memory of the slices: states after the last two steps, change of G over the last one and 1.5 by its size,
+load after it; state of the trial; where the parabolas lie and how far they reach, in the state and in the load;
+parabolas. G counts from the last state."""
 
 KEPT = 8
 """Steps for which parabolas are kept at most: the law follows the speed."""
@@ -43,7 +42,8 @@ _PART = 2.0**-7
 _LOAD_PART = 2.0**-5
 _TOLERANCE = 3e-4
 _SMALL = 30.0
-"""A slice has its state when the last move changed its load by less than this part of it [N/m]: what is left is the square."""
+"""A slice has its state when the last move changed its load by less than `_TOLERANCE` of the load and this [N/m]: what
+is left is the square."""
 
 _ROUNDS = 12
 _LEAST = 1e-30
@@ -51,7 +51,17 @@ _LEAST = 1e-30
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def settle(table: MemoryTable, delta: FloatArray, memory: FloatArray) -> None:
-    """Films in equilibrium at approaches (n,), as at the start of a run; memory (MEMORY, n) is written."""
+    """Films in equilibrium, as at the start of a run.
+
+    Parameters
+    ----------
+    table : MemoryTable
+        The law.
+    delta : array (n,)
+        Approaches [m].
+    memory : array (MEMORY, n)
+        Of the slices; written.
+    """
     memory[:] = 0.0
     for i in range(delta.size):
         xi = max(delta[i], table.lift_off)
@@ -100,9 +110,9 @@ def _read(table: MemoryTable, memory: FloatArray, i: int) -> None:
     memory[P, i] = c[0] + t * (c[1] + t * (c[2] + t * c[3]))
     memory[P + 1, i] = (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])) * per
     memory[P + 2, i] = (c[2] + 3.0 * t * c[3]) * per * per
-    memory[Y, i] = xi - (c[4] + t * (c[5] + t * (c[6] + t * c[7])))
-    memory[Y + 1, i] = 1.0 - (c[5] + t * (2.0 * c[6] + 3.0 * t * c[7])) * per
-    memory[Y + 2, i] = -(c[6] + 3.0 * t * c[7]) * per * per
+    memory[Y, i] = c[4] + t * (c[5] + t * (c[6] + t * c[7]))
+    memory[Y + 1, i] = (c[5] + t * (2.0 * c[6] + 3.0 * t * c[7])) * per
+    memory[Y + 2, i] = (c[6] + 3.0 * t * c[7]) * per * per
     slope = (c[9] + t * (2.0 * c[10] + 3.0 * t * c[11])) * per
     bend = (c[10] + 3.0 * t * c[11]) * per * per
     ahead = xi - memory[LATEST, i]
@@ -179,7 +189,13 @@ def loads(
     for _ in range(_ROUNDS):
         if _round(step, memory, delta, load, tangent) == 0.0:
             break
-    trial, around, reach, loaded, load_reach = memory[TRIAL], memory[AROUND], memory[REACH], memory[LOADED], memory[LOAD_REACH]
+    trial, around, reach, loaded, load_reach = (
+        memory[TRIAL],
+        memory[AROUND],
+        memory[REACH],
+        memory[LOADED],
+        memory[LOAD_REACH],
+    )
     far = 0.0
     for i in range(delta.size):
         inside = (abs(trial[i] - around[i]) <= reach[i]) & (abs(load[i] - loaded[i]) <= load_reach[i])
@@ -195,7 +211,17 @@ def loads(
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def commit(table: MemoryTable, memory: FloatArray, load: FloatArray) -> None:
-    """The trial becomes the state: the step is made."""
+    """Make the step: the trial becomes the state.
+
+    Parameters
+    ----------
+    table : MemoryTable
+        The law.
+    memory : array (MEMORY, n)
+        Of the slices.
+    load : array (n,)
+        What `loads` found last [N/m].
+    """
     trial, around, reach = memory[TRIAL], memory[AROUND], memory[REACH]
     latest, before, change, fading = memory[LATEST], memory[BEFORE], memory[CHANGE], memory[FADE]
     g0, g1, g2 = memory[G], memory[G + 1], memory[G + 2]
