@@ -56,7 +56,7 @@ class LubricantState:
     compressible : bool
         Density after Dowson and Higginson if true, constant if false.
     fitted_pressure : float
-        Above this pressure [Pa] the viscosity law is extrapolated; inf if unknown.
+        Highest pressure [Pa] at which the viscosity law was fitted; it is extrapolated above; inf if unknown.
     """
 
     temperature: float
@@ -94,7 +94,7 @@ class Lubricant:
     Attributes
     ----------
     name : str
-        As in provenance and messages.
+        Name for provenance and messages.
     verified : bool
         Whether its numbers have a stated source (`named`), or are vouched for by the user (own oils).
     viscosity : ConstantViscosity, AstmViscosity or VogelViscosity
@@ -108,7 +108,8 @@ class Lubricant:
     density_law : {"dowson-higginson", "incompressible"}
         Density over pressure.
     fitted_pressure : float
-        Above this pressure [Pa] the viscosity law is extrapolated; `FITTED_PRESSURE` unless stated.
+        Highest pressure [Pa] at which the viscosity law was fitted; it is extrapolated above; `FITTED_PRESSURE` unless
+        stated.
     thermal_conductivity : float or None
         [W/(m K)].
     correlation : str or None
@@ -239,7 +240,7 @@ class Lubricant:
         fitted_pressure : float
             Reach of the viscosity data [Pa]; inf flags nothing.
         name : str
-            As in provenance and messages.
+            Name for provenance and messages.
 
         Raises
         ------
@@ -352,7 +353,7 @@ class Lubricant:
             Attributes of that law in SI; those of Barus' law and the law of FVA 3 are none beside the coefficient.
         density, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100, viscosity, viscosity_40, \
         viscosity_100, density_slope, density_law, fitted_pressure, name
-            As for `barus`; a law whose numbers give alpha takes no pressure_viscosity.
+            The same as for `barus`; a law whose numbers give alpha takes no pressure_viscosity.
 
         Raises
         ------
