@@ -120,7 +120,7 @@ class OpenFoamSolver(ContactSolverDefaults):
     tolerance : float
         Relative, of the balances.
     max_iterations : int
-        After which a run counts as stagnated.
+        Number of iterations after which a run counts as stagnated.
     starter : callable, optional
         Gives a start to each point; without one it starts from the dry contact.
     timeout : float
@@ -261,14 +261,14 @@ class OpenFoamSolver(ContactSolverDefaults):
         contact, lubricant, point
             What is solved.
         frequency : float
-            Of the response [Hz]; 0 is the low-frequency limit.
+            Frequency of the response [Hz]; 0 is the low-frequency limit.
         with_fields : bool
             Whether to read the fields of the fine grid.
 
         Returns
         -------
         film : FilmSolution
-            With status and cause where it failed.
+            Solution of the film, with status and cause where it failed.
         grid : GridSolution or None
             What the run on the fine grid gave; None where there is none.
         """
@@ -352,7 +352,7 @@ class OpenFoamSolver(ContactSolverDefaults):
         point : OperatingPoint
             Load, speed and temperature.
         frequency : float
-            Of the oscillation [Hz]; 0 is the low-frequency limit.
+            Frequency of the oscillation [Hz]; 0 is the low-frequency limit.
         """
         state = lubricant.at(point.temperature)
         guess = self.starter and self.starter(
@@ -404,13 +404,13 @@ class OpenFoamSolver(ContactSolverDefaults):
         Parameters
         ----------
         parameters : Parameters
-            Of the run.
+            Parameters of the run.
         name : str
-            Of the folder, if cases are kept.
+            Name of the folder, if cases are kept.
         with_fields : bool
             Whether to read the fields.
         end : float, optional
-            On the clock `time.monotonic`, after which it is stopped [s]; left out, it has the whole timeout.
+            Time on the clock `time.monotonic` after which the run is stopped [s]; left out, it has the whole timeout.
 
         Raises
         ------
