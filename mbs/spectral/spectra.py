@@ -57,7 +57,7 @@ class Spectra:
     Attributes
     ----------
     time, speeds : array, shape (windows,)
-        At the middle of each window [s], [rad/s].
+        Time [s] and speed [rad/s] at the middle of each window.
     frequencies : array, shape (lines,)
         [Hz].
     power : array, shape (windows, lines)
@@ -65,7 +65,7 @@ class Spectra:
     window : float
         Length of the windows [s].
     noise_bandwidth : float
-        Of a line [Hz]: white noise of density 1/Hz has this power in each line.
+        Noise bandwidth of a line [Hz]: white noise of density 1/Hz has this power in each line.
     """
 
     time: FloatArray
@@ -149,12 +149,12 @@ def without_mean(weights: FloatArray) -> Callable[[FloatArray], FloatArray]:
     Parameters
     ----------
     weights : array, shape (length,)
-        Of the window.
+        Weights of the window.
 
     Returns
     -------
     callable
-        From a part of the signal (..., length) to the part without its mean.
+        A function that takes a part of the signal (..., length) and returns it without its mean.
     """
     unit = weights / weights.sum()
 
