@@ -32,7 +32,7 @@ def response_figure(
     Parameters
     ----------
     model : Model
-        With its sensors and inputs.
+        Model with its sensors and inputs.
     frequencies : array, shape (frequencies,)
         [Hz].
     responses : array, shape (frequencies, sensors, inputs)
