@@ -113,7 +113,7 @@ def read_option(
     Parameters
     ----------
     option : str
-        Its name, such as "--highest".
+        Name of the option, such as "--highest".
     text : str or None
         What was given; None if it was left out.
     unit : str
@@ -166,7 +166,7 @@ def write(arguments: argparse.Namespace, dataset: xr.Dataset, figure: Figure | N
     Parameters
     ----------
     arguments : argparse.Namespace
-        With `output` and `plot`.
+        Arguments with `output` and `plot`.
     dataset : xarray.Dataset
         The result.
     figure : matplotlib.figure.Figure or None
