@@ -29,7 +29,7 @@ from mbs.scene.fields import MICROMETRE
 RESOLUTION = 150
 
 MORE_DAMPING = "films as a rule are stiffer and damp less than computed here"
-"""What is known of quicker motion."""
+"""What is known of motion above the low-frequency limit."""
 
 NO_LONGER_VALID = f"above it stiffness and damping of slow motion are no longer valid, {MORE_DAMPING}"
 
@@ -71,7 +71,7 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
 
 
 def film_warnings(limits: Sequence[FilmLimit], frequencies: Iterable[float]) -> list[str]:
-    """Lines on frequencies that are too quick for low-frequency films."""
+    """Lines on frequencies above the low-frequency limit of the films."""
     lines = []
     highest = max(frequencies, default=0.0)
     for limit in limits:

@@ -1,4 +1,4 @@
-"""Frequency responses from the modes of the state: as exact as solving at each frequency, and much quicker for many.
+"""Frequency responses from the modes of the state: as exact as solving at each frequency, and much faster for many.
 
     H(omega) = sum_k (c . r_k)(l_k . b)/(i omega - lambda_k)
 

@@ -189,7 +189,7 @@ def angle_signal(run: RunSignal, highest: float, lowest_speed: float | None = No
     elif run.rate < needed * (1.0 - 1e-6):
         problems.append(
             f"orders, sample rate: got {run.rate:.6g} Hz; allowed: at least {needed:.6g} Hz for a band up to "
-            f"{highest:.6g} Hz; record oftener or lower the highest frequency"
+            f"{highest:.6g} Hz; record more often or lower the highest frequency"
         )
     if not 0.0 < lowest < top:
         problems.append(

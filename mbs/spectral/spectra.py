@@ -174,7 +174,7 @@ def _band_problems(run: RunSignal, band: tuple[float, float]) -> list[str]:
     if run.rate < needed * (1.0 - 1e-6):
         return [
             f"spectra, sample rate: got {run.rate:.6g} Hz; allowed: at least {needed:.6g} Hz for a band up to "
-            f"{high:.6g} Hz; record every {1e3 / needed:.4g} ms or oftener, or lower the highest frequency to "
+            f"{high:.6g} Hz; record every {1e3 / needed:.4g} ms or more often, or lower the highest frequency to "
             f"{run.rate / LEAST_OVERSAMPLING:.5g} Hz"
         ]
     return []

@@ -311,8 +311,7 @@ def hammer_test(outputs: Sequence[Output]) -> list[Figure]:
     ]
     first = outputs[1].text.partition("p-LSCF")[0]
     fitted = [
-        (float(f), 100.0 * float(zeta))
-        for f, zeta in re.findall(rf"(?m)^ +\d+ +{NUMBER} +{NUMBER.replace('(', '(?:')} +{NUMBER} ", first)
+        (float(f), 100.0 * float(zeta)) for f, zeta in re.findall(rf"(?m)^ +\d+ +{NUMBER} +\S+ +{NUMBER} ", first)
     ]
     pairs = [(fit, min(eigenvalues, key=lambda each: abs(each[0] - fit[0]))) for fit in (fitted[0], fitted[-1])]
     (strong, strong_exact), (weak, weak_exact) = pairs
@@ -365,8 +364,50 @@ def formula_beside_films(outputs: Sequence[Output]) -> list[Figure]:
 
 
 def peaks_beside_modes(text: str, law: str) -> list[tuple[float, float]]:
-    """Frequencies of the strongest peaks along the orders and of the modes beside them, of a law."""
-    raise NotImplementedError
+    """Frequencies of the strongest peaks along the orders and of the modes beside them, of a law [Hz]."""
+    part = re.split(rf"(?m)^{law}: ", text)[1]
+    part = re.split(r"(?m)^\w", part.partition("\n")[2])[0]
+    rows = re.findall(rf"(?m)^ +{NUMBER} +{NUMBER} +{NUMBER} .* mode {NUMBER} Hz", part)
+    return [(float(row[2]), float(row[3])) for row in rows]
+
+
+def peaks_with_films(outputs: Sequence[Output]) -> list[Figure]:
+    """Peaks beside modes, with the Reynolds map."""
+    return [value for pair in peaks_beside_modes(outputs[0].text, "Reynolds map") for value in pair]
+
+
+def peaks_dry(outputs: Sequence[Output]) -> list[Figure]:
+    """The dry peak farthest from its mode, within 5 %; and how much a start moved by 10 nm changes single windows."""
+    farthest = max(peaks_beside_modes(outputs[0].text, "dry Hertz"), key=lambda pair: abs(pair[0] / pair[1] - 1.0))
+    apart = 100.0 * abs(farthest[0] / farthest[1] - 1.0)
+    dry = outputs[1].text.partition("law hertz: ")[2]
+    moved = re.search(r"(?m)^start moved by 10 nm (.*)$", dry)
+    assert moved is not None
+    values = [float(value) for value in re.findall(NUMBER, moved[1])]
+    return [Given("5") if 4.0 < apart < 5.0 else apart, *farthest, *given("10"), max(values[8], values[10], values[12])]
+
+
+def readme_of_the_gearbox(outputs: Sequence[Output]) -> list[Figure]:
+    """Levels with and without clearance; largest falls and rises over speed, by cage angle and clearance."""
+    levels, tight, clearances, *angles = (output.text for output in outputs)
+    median, low, high, _ = differences_at_speed(levels, "Reynolds map")
+    middle = one_case([clearances], "Reynolds map, 30 um")
+    cases = [middle, *(sweep_cases(text)[0] for text in angles)]
+    falls, rises = ([getattr(case, name)() for case in cases] for name in ("steepest", "highest_rise"))
+    return [
+        -median,
+        *given("5 95"),
+        -high,
+        significant(-low, 2),
+        *given("500 2500 40 30"),
+        -differences_at_speed(tight, "Reynolds map")[0],
+        -max(falls),
+        -min(falls),
+        -one_case([clearances], "Reynolds map, 20 um").steepest(),
+        *given("20"),
+        min(rises),
+        max(rises),
+    ]
 
 
 # --- benchmarks
@@ -460,6 +501,61 @@ def gearbox_runs(outputs: Sequence[Output]) -> list[Figure]:
     return found
 
 
+def periods(outputs: Sequence[Output]) -> list[Figure]:
+    """By how much periods at 5 kHz are too long [%]; error of the blended tables, as a part of the signal."""
+    text = outputs[0].text
+    rows = {
+        float(step): float(shift)
+        for step, shift in re.findall(rf"(?m)^ +{NUMBER} +0\.9 +\S+ +{NUMBER}%$", text.partition("period of a mode")[2])
+    }
+    blending = re.search(rf"largest difference of S1 {NUMBER} of", text)
+    assert blending is not None
+    return [*given("5"), rows[10.0], *given("10"), rows[20.0], *given("20"), significant(float(blending[1]), 1)]
+
+
+def cutoffs(outputs: Sequence[Output]) -> list[Figure]:
+    """The table of cut-offs of the housing."""
+    text = outputs[0].text.partition("cut-off of the housing beside")[2]
+    found: list[Figure] = given("2.5 5 5")
+    for cutoff in ("5", "6", "8"):
+        line = re.search(rf"(?m)^housing {cutoff} kHz: (\d+) +(.*)$", text)
+        shift = re.search(rf"(?m)^  housing {cutoff} kHz: (.*)$", text)
+        assert line is not None
+        assert shift is not None
+        step, *values = (float(value) for value in re.findall(NUMBER, line[2]))
+        # after step: processor, clock, Newton, three signals, and pairs to 1 kHz, 2.5 kHz, 5 kHz
+        found += [Given(cutoff), float(line[1]), Time(step), values[10], significant(values[11], 2)]
+        shifts = [float(value) for value in re.findall(NUMBER, shift[1])]
+        found += shifts if "missing" in shift[1] else shifts[-2:-1] if cutoff == "6" else shifts[-2:]
+    return found
+
+
+def speed_sweep(outputs: Sequence[Output]) -> list[Figure]:
+    """Cost and errors of a sweep; what slices and cage angles change."""
+    film, dry = outputs[0].text.split("\nlaw ")[1:]
+    seconds = re.search(rf"inputs: {NUMBER} s", film)
+    assert seconds is not None
+    response = max(float(each) for each in re.findall(rf"responses within {NUMBER} ", outputs[0].text))
+
+    def slices(text: str) -> dict[int, list[float]]:
+        rows = re.findall(rf"(?m)^ +(\d+): +{NUMBER}% +{NUMBER}% +{NUMBER}%$", text)
+        return {int(count): [float(value) for value in values] for count, *values in rows}
+
+    def angles(text: str) -> tuple[float, float]:
+        found = re.search(rf"f {NUMBER}% at most, {NUMBER}% in the median", text)
+        assert found is not None
+        return float(found[1]), float(found[2])
+
+    own, other = slices(film)[21], [slices(dry)[count] for count in (21, 41)]
+    k, f = (sorted(row[column] for row in other) for column in (0, 2))
+    (film_most, film_median), (dry_most, dry_median) = angles(film), angles(dry)
+    return [
+        *[*given("40 1000"), Time(float(seconds[1])), significant(response, 1), *given("21 161")],
+        *[*own, *k, *f],
+        *[film_most, dry_most, film_median, dry_median],
+    ]
+
+
 RECIPES: dict[str, Callable[[Sequence[Output]], list[Figure]]] = {
     recipe.__name__.replace("_", "-"): recipe
     for recipe in (
@@ -487,6 +583,12 @@ RECIPES: dict[str, Callable[[Sequence[Output]], list[Figure]]] = {
         solvers,
         show_of_a_map,
         gearbox_runs,
+        peaks_with_films,
+        peaks_dry,
+        readme_of_the_gearbox,
+        periods,
+        cutoffs,
+        speed_sweep,
     )
 }
 """Recipes that give figures in their order; beside them `printed[FROM:TO]`, lines of what one command prints."""
