@@ -1,4 +1,4 @@
-"""Where a linear analysis is not valid: loads that lift off, oscillations above the low-frequency limit of the films."""
+"""Where a linear analysis is not valid: contacts that lift off, motion above the low-frequency limit of the films."""
 
 from __future__ import annotations
 
