@@ -6,6 +6,7 @@ The period of m x'' = F - L w(x, x') after a push must be 2 pi/Im(s), s = -c/(2 
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -17,7 +18,7 @@ from ehdmaps.outputs import write_figure
 
 MASS, FORCE, SPEED, TEMPERATURE = 0.2, 1500.0, 2.0, 333.15
 bearing, oil = ehdmaps.BearingGeometry.named("NU308"), ehdmaps.Lubricant.named("FVA3")
-grid = {"loads": np.geomspace(1e3, 1e6, 13), "entrainment_speeds": [1.0, 2.0, 4.0], "temperatures": [TEMPERATURE]}
+grid: Any = {"loads": np.geomspace(1e3, 1e6, 13), "entrainment_speeds": [1.0, 2.0, 4.0], "temperatures": [TEMPERATURE]}
 job = ehdmaps.Job.build(bearing=bearing, lubricant=oil, **grid, solver_options={"density": 4.5})
 law, LENGTH = ehdmaps.EHDMap(ehdmaps.generate(job)).law("series").at(SPEED, TEMPERATURE), bearing.roller_length
 rest = brentq(lambda x: LENGTH * float(law(x, 0.0)[0]) - FORCE, 1e-6, 20e-6, xtol=1e-15)
@@ -29,8 +30,7 @@ begin, options = [0.0, 1e-6 * abs(s)], {"t_eval": times, "rtol": 1e-9, "atol": 1
 run = solve_ivp(
     lambda _, y: [y[1], (FORCE - LENGTH * float(law(rest + y[0], y[1])[0])) / MASS], times[[0, -1]], begin, **options
 )
-upwards = times[1:][np.diff(np.sign(run.y[0])) > 0.0]  # when it passes its rest position
-counted = np.diff(upwards)[-4:].mean()  # the first, larger swings are not quite linear
+counted = np.diff(times[1:][np.diff(np.sign(run.y[0])) > 0.0])[-4:].mean()  # the first, larger swings are not linear
 print(f"{1 / counted:.1f} Hz counted, {1 / period:.1f} Hz by k = {k:.4g} N/m and c = {c:.4g} N s/m of the law")
 assert abs(counted / period - 1.0) < 1e-3  # what is not linear in a swing of some tenths of a micrometre
 figure, axes = plt.subplots(figsize=(7.0, 3.0), layout="constrained")

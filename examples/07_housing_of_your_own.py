@@ -28,7 +28,7 @@ np.savetxt(FOLDER / "07_dofs.txt", np.column_stack([free // 3 + 1, free % 3 + 1]
 for name, matrix in (("stiffness", K), ("mass", M)):
     io.mmwrite(FOLDER / f"07_{name}.mtx", sparse.coo_array(matrix), symmetry="symmetric", precision=17)
 read = [read_matrix_market(FOLDER / f"07_{name}.mtx", FOLDER / "07_dofs.txt") for name in ("stiffness", "mass")]
-model = assemble_model(*read, NodePositions(np.arange(1, len(places) + 1), places))
+model = assemble_model(read[0], read[1], NodePositions(np.arange(1, len(places) + 1), places))
 end = places[-1] * (1.0, 0.5, 0.5)
 reduced = reduce(model, {"seat": Interface(end, nodes_in_plane(model, end, (1, 0, 0), 1e-6))}, cutoff=20e3)
 frequency = np.sqrt(linalg.eigh(reduced.stiffness, reduced.mass, eigvals_only=True)) / (2.0 * np.pi)

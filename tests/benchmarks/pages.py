@@ -47,7 +47,7 @@ MADE = {
     "nu308.nc": "ehdmaps generate nu308 -o nu308.nc",
     "n1014.nc": "ehdmaps generate n1014 -o n1014.nc",
     "cfd.nc": "ehdmaps generate nu308_openfoam -o cfd.nc",
-    "h12.nc": 'python -m mbs.housings gearbox_housing --cutoff "12 kHz" -o h12.nc',
+    "h12.nc": 'python -m examples.housings gearbox_housing --cutoff "12 kHz" -o h12.nc',
     "hits.uff": "mbs hammer n1014_testrig --map n1014.nc -o hits.uff",
 }
 """Files that commands read, and what makes them."""

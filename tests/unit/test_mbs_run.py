@@ -8,24 +8,24 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.errors import AnalysisError, InputError, OutsideMapError
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
-from mbs.errors import AnalysisError
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import ElementDefaults, Load, Operation, Port, Sensor, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
+from mbs.settings import Settings
 from mbs.transient.integration import integrate
 from mbs.transient.linear_part import LinearPart
 from mbs.transient.run import CHUNK, run
 from mbs.transient.run_elements import is_known
 from mbs.transient.run_kernel import _expanded_times, _solve
 from mbs.transient.speed_tables import NODES, STEP, SpeedTables
-from mbs.transient.stepping import Method, Settings
+from mbs.transient.stepping import Method
 from tests.unit.mbs_cases import TEMPERATURE, map_law
 
 REST = SpeedProfile.constant(0.0)

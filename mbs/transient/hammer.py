@@ -17,16 +17,16 @@ from scipy.fft import next_fast_len
 from scipy.linalg import expm
 from scipy.signal import firwin, upfirdn
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.linearised.linear import input_matrix, sensor_matrix, state_space
 from mbs.linearised.modes import Modes
 from mbs.modal.records import LONGEST, Channel, Hits, Measured
 from mbs.model.elements import Input, Sensor
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.profiles import Course, HalfSine, SpeedProfile
-from mbs.transient.integration import Settings, Trajectory, integrate
+from mbs.settings import Settings
+from mbs.transient.integration import Trajectory, integrate
 
 OVERSAMPLING = 16
 """Computed samples for each recorded one. What a half-sine has beyond half the rate of the computed samples folds back,
