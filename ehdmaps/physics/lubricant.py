@@ -241,8 +241,8 @@ class Lubricant:
         Parameters
         ----------
         roelands_z : float, optional
-            z. Without it, z = alpha p0/(ln eta0 + 9.67) at each temperature; without a pressure_viscosity, alpha
-            follows from z likewise; both hold as stated where both are given.
+            Exponent z. Without it, z = alpha p0/(ln eta0 + 9.67) at each temperature; without a pressure_viscosity,
+            alpha follows from z likewise; both hold as stated where both are given.
         **data
             The same as for `own`.
 

@@ -33,16 +33,7 @@ NO_NOUN = re.compile(
 )
 """How a description begins that says no more than a relation, as 'of a roller', or that is one word."""
 
-STILL = {
-    "mbs/bearings": 38,
-    "mbs/gears": 17,
-    "mbs/housings": 25,
-    "mbs/modal": 37,
-    "mbs/model": 18,
-    "mbs/scene": 21,
-    "mbs/transient": 28,
-    "ehdmaps/maps": 38,
-}
+STILL = {"ehdmaps/maps": 38, "mbs/model": 18, "mbs/scene": 21}
 """Descriptions without a noun that packages still have: may only fall."""
 
 
