@@ -79,7 +79,7 @@ def test_a_closed_stdout_is_told(folder):
 
 @pytest.mark.parametrize(
     ("name", "stderr"),
-    [("ehdmaps", "2>&-"), ("ehdmaps", "2>/dev/full"), ("mbs", "2>/dev/full"), ("mbs.housings", "2>&-")],
+    [("ehdmaps", "2>&-"), ("ehdmaps", "2>/dev/full"), ("mbs", "2>/dev/full"), ("examples.housings", "2>&-")],
 )
 def test_problems_that_nobody_can_read_keep_their_exit_status(folder, name, stderr):
     if stderr.endswith("full"):
