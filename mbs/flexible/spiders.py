@@ -16,9 +16,9 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.flexible.finite_elements import FiniteElementModel, IntArray, named
+from mbs.flexible.finite_elements import FiniteElementModel, named
 from mbs.model.body import FREEDOMS, lever_arm
 
 Kind = Literal["rigid", "averaging"]

@@ -14,8 +14,8 @@ import pytest
 import examples.housings.__main__ as housings
 import mbs.cli
 from ehdmaps import errors, program
+from ehdmaps.errors import AnalysisError
 from ehdmaps.jobs import cli
-from mbs.errors import AnalysisError
 from tests.cases.interruptible import start
 from tests.cases.jobs import DRY
 

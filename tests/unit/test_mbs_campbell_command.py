@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from mbs.errors import AnalysisError
+from ehdmaps.errors import AnalysisError
 from mbs.spectral.levels import difference_text
 from mbs.transient.run import run
 from tests.cases.run_up import refused

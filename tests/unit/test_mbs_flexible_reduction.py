@@ -7,8 +7,7 @@ import pytest
 from scipy import sparse
 from scipy.sparse.linalg import ArpackError
 
-from ehdmaps.errors import InputError
-from mbs.errors import AnalysisError
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.flexible import held_body
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.reduced_body import ReducedBody, to_body
