@@ -29,6 +29,7 @@ def test_thin_film(place: Place) -> None:
     assert not agrees(found), found.row()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", STRESSED, ids=str)
 def test_full_stress(place: Place) -> None:
     """Every point agrees with all stresses too."""
@@ -37,6 +38,7 @@ def test_full_stress(place: Place) -> None:
     assert not agrees(found), found.row()
 
 
+@pytest.mark.slow
 def test_error_estimate_explains_the_film() -> None:
     """What the CFD says of its own grid is what it differs by: a sixth of it at most is left unexplained."""
     left = [
