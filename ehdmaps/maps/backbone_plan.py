@@ -157,7 +157,7 @@ def zeta_span(
     reference : LineContact
         The reference contact.
     loads : sequence of float
-        Of the map [N/m]; only the lowest and the highest count.
+        Loads of the map [N/m]; only the lowest and the highest count.
     u, T : float
         Speed of the reference contact [m/s] and temperature [K].
     """

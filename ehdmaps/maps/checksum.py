@@ -27,7 +27,7 @@ def content_sha256(dataset: xr.Dataset, backbone: xr.Dataset | None) -> str:
     dataset : xarray.Dataset
         The map.
     backbone : xarray.Dataset or None
-        Its group of refinement lines.
+        Group of its refinement lines.
     """
     digest = hashlib.sha256()
     version = schema.version_of(dataset)
@@ -52,7 +52,7 @@ def check_content(dataset: xr.Dataset, backbone: xr.Dataset | None, where: str) 
     dataset : xr.Dataset
         The map.
     backbone : xr.Dataset or None
-        Its group of refinement lines, if it has one.
+        Group of its refinement lines, if it has one.
     where : str
         How messages call the map.
 

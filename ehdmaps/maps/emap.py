@@ -40,7 +40,7 @@ class EHDMap:
     Parameters
     ----------
     dataset : xarray.Dataset
-        As `ehdmaps.maps.schema` describes it, of any version.
+        Points as `ehdmaps.maps.schema` describes them, of any version.
     backbone : xarray.Dataset, optional
         The group of refinement lines of the law.
     where : str
@@ -80,7 +80,7 @@ class EHDMap:
         reference_depth : float, optional
             d* of half_space [m]; that of the map's contacts if left out. Those of a bearing have D/e.
         roller_length : float, optional
-            Of the whole roller, for iso16281 and palmgren [m]; that of the map's contacts if left out.
+            Length of the whole roller, for iso16281 and palmgren [m]; that of the map's contacts if left out.
 
         Raises
         ------
@@ -229,7 +229,7 @@ def open_map(path: str | PathLike[str], structural_law: StructuralLaw | None = N
     path : str or path
         The file.
     structural_law : {"iso16281", "palmgren", "half_space"}, optional
-        By which approach, stiffness and damping are derived from the films; that of the map's job if left out. A map of
+        Law by which approach, stiffness and damping are derived from the films; that of the map's job if left out. A map of
         a bare contact has the length of one law only: see `EHDMap.with_structure`.
 
     Raises

@@ -32,9 +32,9 @@ def read_json(text: str, attribute: str) -> Any:
     Parameters
     ----------
     text : str
-        Of the attribute.
+        Text of the attribute.
     attribute : str
-        Its name, for the message.
+        Name of the attribute, for the message.
 
     Raises
     ------

@@ -76,7 +76,7 @@ class Variable:
     Attributes
     ----------
     name, units, long_name : str
-        As in the file; units in UDUNITS form, "1" for a pure number.
+        Words as in the file; units in UDUNITS form, "1" for a pure number.
     dtype : str
         numpy type, or "str".
     required : bool
@@ -84,7 +84,7 @@ class Variable:
     flags : tuple of (int, str)
         CF flag values and meanings, where the variable is a flag.
     dims : tuple of str
-        Its dims; an axis has itself.
+        Names of its dims; an axis has itself.
     group : str
         `GRID` or `BACKBONE`.
     since : int
@@ -92,7 +92,7 @@ class Variable:
     derived_since : int, optional
         Version from which on it follows from the others by the structural law: a file may lack it then.
     limits : (float, float), optional
-        Of an axis of numbers: far outside of what a job may ask for; what lies beyond is damage, and would overflow
+        Limits of an axis of numbers: far outside of what a job may ask for; what lies beyond is damage, and would overflow
         somewhere.
     """
 

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps import schema
 from ehdmaps.maps.records import contacts_json
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.structure import Structured, structured
 
@@ -38,7 +38,7 @@ def derived(
     Parameters
     ----------
     contacts : sequence of LineContact
-        In the order of the first axis of the films.
+        Contacts in the order of the first axis of the films.
     loads : array
         w [N/m], that broadcasts to the films of one contact.
     films : mapping of str to array (contacts, ...)
@@ -56,7 +56,7 @@ def completed(dataset: xr.Dataset, contacts: Sequence[LineContact]) -> xr.Datase
     dataset : xarray.Dataset
         A valid map, of any version.
     contacts : sequence of LineContact
-        Its contacts.
+        Contacts of the map.
     """
     if schema.version_of(dataset) < _FILMS_SINCE:
         return dataset.assign(_typed(_films_of_old(dataset, contacts)))
@@ -96,7 +96,7 @@ def contradictions(dataset: xr.Dataset, contacts: Sequence[LineContact]) -> Iter
     dataset : xarray.Dataset
         A map whose variables are all of their shapes and types.
     contacts : sequence of LineContact
-        Its contacts.
+        Contacts of the map.
     """
     if schema.version_of(dataset) < _FILMS_SINCE:  # its films follow from what others derive: they cannot contradict
         yield from _load_problems(dataset, contacts)

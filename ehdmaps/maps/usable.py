@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
+from ehdmaps.arrays import BoolArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.backbone import FILMS
 from ehdmaps.maps.backbone_plan import zeta_span
@@ -23,8 +23,6 @@ from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 _SHOWN = 3
 _ROUND_OFF = 1e-9
 """Relative: what an axis of the backbone differs by from the axis of the map that it was laid for."""
-
-Mask = npt.NDArray[np.bool_]
 
 
 def check_grid(dataset: xr.Dataset, contacts: Sequence[LineContact]) -> None:
@@ -85,7 +83,7 @@ def check_backbone(
     group : xarray.Dataset
         Group "backbone" of a map.
     reference : LineContact
-        Its contact.
+        Contact of that group.
     contacts : sequence of LineContact
         Contacts that the law uses.
     lubricant : Lubricant
@@ -129,7 +127,7 @@ def _within(
     lubricant: Lubricant,
     loads: tuple[float, float],
     speeds: tuple[float, float],
-) -> Mask:
+) -> BoolArray:
     """Places of the backbone that are points within the map for one of the contacts."""
     zeta = group["zeta"].values
     found = np.zeros(group["status"].shape, bool)
@@ -142,7 +140,7 @@ def _within(
     return found
 
 
-def _lines(group: xr.Dataset, where: Mask) -> str:
+def _lines(group: xr.Dataset, where: BoolArray) -> str:
     """Name the first few lines of the backbone that have such points."""
     found = np.argwhere(where.any(axis=0))
     names = [
@@ -158,7 +156,7 @@ def _shape(chosen: xr.Dataset) -> tuple[int, ...]:
     return tuple(chosen.sizes[name] for name in DIMS)
 
 
-def _clusters(filled: Mask) -> Mask:
+def _clusters(filled: BoolArray) -> BoolArray:
     """Filled points with a filled neighbour along load, speed or temperature."""
     found = np.zeros_like(filled)
     for axis in (1, 2, 3):
@@ -190,7 +188,7 @@ def _unphysical(chosen: xr.Dataset, contacts: Sequence[LineContact]) -> list[str
     return problems
 
 
-def _places(chosen: xr.Dataset, where: Mask) -> str:
+def _places(chosen: xr.Dataset, where: BoolArray) -> str:
     """Name the first few points."""
     names = []
     for i, j, k, m in np.argwhere(where)[:_SHOWN]:

@@ -39,7 +39,7 @@ def validate(dataset: xr.Dataset, where: str = "map", backbone: xr.Dataset | Non
     where : str
         File name, for the message.
     backbone : xarray.Dataset, optional
-        Its group of refinement lines.
+        Group of its refinement lines.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def shape_problems(entry: Variable, dims: Sequence[str], shape: Sequence[int], k
     Parameters
     ----------
     entry : Variable
-        Of the table.
+        Row of the table.
     dims, shape : sequence
         Names and lengths of its dims, without that of the characters of a text.
     kind : str

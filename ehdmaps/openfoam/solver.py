@@ -10,13 +10,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
-from ehdmaps.openfoam.case import NO_PATH
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
-from ehdmaps.openfoam.installation import Installation, installation
+from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
 from ehdmaps.openfoam.parameters import FLOWS, SHEARS, Flow, Mesh, Parameters, Shear, Start
 from ehdmaps.openfoam.run import RunError
 from ehdmaps.physics.closed_form import THIN_FILM_LIMIT, HertzSolver
@@ -42,12 +39,12 @@ class Guess(Protocol):
     """What a start offers: a film, and where the columns of cells should stand."""
 
     @property
-    def x(self) -> NDArray[np.float64]:
+    def x(self) -> FloatArray:
         """Positions from the contact centre [m]."""
         ...
 
     @property
-    def pressure(self) -> NDArray[np.float64]:
+    def pressure(self) -> FloatArray:
         """Pressure there [Pa]."""
         ...
 
@@ -102,7 +99,7 @@ class OpenFoamSolver(ContactSolverDefaults):
     tolerance : float
         Relative, of the balances.
     max_iterations : int
-        After which a run counts as stagnated.
+        Number of iterations after which a run counts as stagnated.
     starter : callable, optional
         Gives a start to each point; without one it starts from the dry contact.
     timeout : float
@@ -243,14 +240,14 @@ class OpenFoamSolver(ContactSolverDefaults):
         contact, lubricant, point
             What is solved.
         frequency : float
-            Of the response [Hz]; 0 is the low-frequency limit.
+            Frequency of the response [Hz]; 0 is the low-frequency limit.
         with_fields : bool
             Whether to read the fields of the fine grid.
 
         Returns
         -------
         film : FilmSolution
-            With status and cause where it failed.
+            Solution of the film, with status and cause where it failed.
         grid : GridSolution or None
             What the run on the fine grid gave; None where there is none.
         """
@@ -298,7 +295,7 @@ class OpenFoamSolver(ContactSolverDefaults):
         point : OperatingPoint
             Load, speed and temperature.
         frequency : float
-            Of the oscillation [Hz]; 0 is the low-frequency limit.
+            Frequency of the oscillation [Hz]; 0 is the low-frequency limit.
         """
         state = lubricant.at(point.temperature)
         guess = self.starter and self.starter(

@@ -195,9 +195,9 @@ class ContactSolver(Protocol):
         entrainment_speed : float
             u [m/s].
         temperature : float
-            Of the oil supply [K].
+            Temperature of the oil supply [K].
         frequency : float
-            Of the small oscillation to which stiffness and damping belong [Hz]; 0 is the low-frequency limit.
+            Frequency of the small oscillation to which stiffness and damping belong [Hz]; 0 is the low-frequency limit.
         """
         ...
 
@@ -247,7 +247,7 @@ def contact_solution(
     point : OperatingPoint
         Load, speed and temperature of the film.
     frequency : float
-        Of the oscillation [Hz]; 0 is the low-frequency limit.
+        Frequency of the oscillation [Hz]; 0 is the low-frequency limit.
     """
     solids = structured(
         contact,

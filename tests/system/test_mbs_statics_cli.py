@@ -11,7 +11,8 @@ import xarray as xr
 from ehdmaps.jobs import cli as ehdmaps_cli
 from mbs import Bearing
 from mbs.scene.reader import read_scene
-from tests.system.test_mbs_cli import JOB, check_units, run
+from tests.cases.commands import check_units, run
+from tests.cases.jobs import WIDE
 
 STRAIGHT = ('profile = "iso"', 'profile = "straight"')
 FREE_RING = ('freedoms = ["y", "z"]\nposition = ["-70 mm"', 'freedoms = ["x", "y", "z"]\nposition = ["-70 mm"')
@@ -21,15 +22,6 @@ FREE_RING = ('freedoms = ["y", "z"]\nposition = ["-70 mm"', 'freedoms = ["x", "y
 def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-@pytest.fixture(scope="module")
-def formula_map(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("map")
-    (folder / "nu308.toml").write_text(JOB.format(bearing="NU308"))
-    path = str(folder / "nu308.nc")
-    assert ehdmaps_cli.main(["generate", str(folder / "nu308.toml"), "-o", path, "--workers", "1"]) in (0, 1)
-    return path
 
 
 def scene(here, *changes):
@@ -129,7 +121,7 @@ def test_a_load_on_what_is_free_is_no_equilibrium(here, capsys):
 
 def test_one_map_by_another_structural_law(here, capsys, formula_map):
     """--structure gives what a map gives whose job had that law, in `mbs statics`, `sweep` and `bearing`."""
-    (here / "half.toml").write_text(JOB.format(bearing="NU308").replace('"iso16281"', '"half_space"'))
+    (here / "half.toml").write_text(WIDE.replace('"iso16281"', '"half_space"'))
     assert ehdmaps_cli.main(["generate", "half.toml", "-o", "half.nc", "--workers", "1"]) in (0, 1)
     ways = {"iso": (formula_map,), "half": ("half.nc",), "chosen": (formula_map, "--structure", "half_space")}
     for name, (path, *options) in ways.items():

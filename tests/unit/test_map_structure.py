@@ -20,25 +20,13 @@ from ehdmaps.maps.structure import DERIVED, SAME
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.solution import FilmSolution, Status
-from tests.unit.law_cases import CONTACTS, LINE, dataset_of
+from tests.cases.jobs import map_job, spaced
+from tests.cases.laws import CONTACTS, LINE, dataset_of
 
 ROUND_OFF = 1e-12
 """Relative: of powers, and of a table that is compiled twice from films that differ in their last digits."""
 
-TEXT = """
-schema = 1
-[bearing]
-name = "NU308"
-[lubricant]
-name = "FVA3"
-[grid]
-load = { from = "1 N/mm", to = "100 N/mm", points = 7, spacing = "log" }
-entrainment_speed = ["0.5 m/s", "1 m/s", "2 m/s"]
-temperature = ["40 degC", "60 degC"]
-[solver]
-name = "formula"
-structural_law = "iso16281"
-"""
+TEXT = map_job(spaced("1 N/mm", "100 N/mm", 7), '["0.5 m/s", "1 m/s", "2 m/s"]', '["40 degC", "60 degC"]')
 
 
 class WithErrors(FormulaSolver):

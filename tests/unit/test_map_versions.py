@@ -16,7 +16,7 @@ from ehdmaps.jobs.cli import main
 from ehdmaps.maps import schema
 from ehdmaps.maps.checksum import check_content, content_sha256
 from ehdmaps.maps.emap import EHDMap, open_map
-from tests.unit.law_cases import dataset_of
+from tests.cases.laws import dataset_of
 
 DATA = Path(__file__).parents[1] / "data"
 OLD = DATA / "schema1.nc"
