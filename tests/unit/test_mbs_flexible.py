@@ -35,6 +35,7 @@ from mbs.flexible.reduced_file import read_reduced, write_reduced
 from mbs.flexible.reduction import reduce
 from mbs.flexible.spiders import Interface, nearest_node, nodes_in_plane, nodes_on_cylinder, spider
 from mbs.model.body import FREEDOMS, Frame
+from mbs.scene.bodies import build_body
 from mbs.scene.flexible import read_flexible
 from tests.unit.flexible_cases import DENSITY, SIZE, block, ends, rigid_motion
 
@@ -675,7 +676,7 @@ class TestReaders:
             read_mesh_nodes(tmp_path / "a.mdpa")
 
 
-def table(folder, **changes):
+def read_table(folder, **changes):
     values = {
         "matrices": {"format": "calculix", "stiffness": "b.sti", "mass": "b.mas", "dofs": "b.dof"},
         "mesh": "m.inp",
@@ -697,8 +698,18 @@ def table(folder, **changes):
     section = Table(
         {key: value for key, value in values.items() if value is not None}, "[[flexible]] housing", problems
     )
-    body = read_flexible(section, "housing", folder, [])
+    spec = read_flexible(section, "housing", folder)
     section.close(("name",))
+    return spec, problems
+
+
+def table(folder, **changes):
+    """The body of a table, with all problems of reading and of building it."""
+    spec, problems = read_table(folder, **changes)
+    try:
+        body = build_body(spec) if spec else None
+    except InputError as error:
+        return None, "\n".join([*problems, *error.problems])
     return body, "\n".join(problems)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
+from mbs.model.body import Inertia
 from mbs.model.profiles import Course, Harmonic
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import parse_scene, read_scene, shipped_systems
@@ -108,9 +109,9 @@ def test_a_scene_is_read():
     assert scene.lubricant is None
     shaft, ring = scene.bodies
     assert shaft.spin == 2.0
-    np.testing.assert_allclose(shaft.frames["end"].position, [0.06, 0.0, 0.0])
-    np.testing.assert_allclose(np.diag(shaft.mass), [2.0, 2.0, 0.02])
-    assert ring.mass[0, 0] == pytest.approx(7000.0 * math.pi / 4.0 * (0.09**2 - 0.08**2) * 0.02)
+    np.testing.assert_allclose([shaft.position[0], shaft.frames["end"][0]], [0.01, 0.05])
+    assert shaft.parts == (Inertia(2.0, 0.01, 0.02),)
+    assert sum(part.mass for part in ring.parts) == pytest.approx(7000.0 * math.pi / 4.0 * (0.09**2 - 0.08**2) * 0.02)
     np.testing.assert_allclose(np.diag(scene.springs[0].stiffness), [0, 1e6, 2e6, 0, 0, 0])
     np.testing.assert_allclose(np.diag(scene.springs[0].damping), [0, 5, 0, 0, 0, 0])
     np.testing.assert_allclose(scene.loads[0].force, [0, 100, 0, 0, 0, 1])
