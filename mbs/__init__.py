@@ -19,7 +19,7 @@ What is where, in the order of the data:
 ==================  ====================================================================================
 scene file          `scene`: reader -> specs -> scene -> assembly; `kinds`: the machine elements; `settings`
 the system          `model`: bodies, elements, what is prescribed; the system and its equilibrium
-what bodies are     `flexible` (beams, finite elements, reduction), `housings` (the shipped ones)
+what bodies are     `flexible` (beams, finite elements, reduction)
 what connects them  `bearings` (the bearing force), `gears`
 linear              `linearised` (modes, responses, over speed); `modal` (identified from hammer hits)
 in time             `transient` (method, compiled runs); `spectral` (levels over speed and order)
