@@ -403,7 +403,7 @@ def test_everything_about_places_is_said_at_once():
     """Bodies apart, a name twice, a spring and a sensor without a place, and a bearing of one body."""
     text = SCENE.replace('position = ["60 mm"', 'position = ["61 mm"').replace('name = "guide"', 'name = "mount"')
     text = text.replace('on = "shaft"\nstiffness', 'on = "shat"\nstiffness')
-    text = text.replace('against = "shaft:end"', 'against = "shaft:edn"')
+    text = text.replace('against = "shaft:end"', 'against = "shaft:ned"')
     more = '[[bearings]]\nname = "one"\ninner = "ring"\nouter = "ring:left"\ngeometry = { name = "NU308" }\n[laws.soft]'
     scene = parse_scene(text.replace("[laws.soft]", more), "test", "test.toml")
     with pytest.raises(InputError) as caught:
@@ -413,7 +413,7 @@ def test_everything_about_places_is_said_at_once():
         "element 'main': shaft:end and ring are 1 mm apart",
         "'mount': is there twice",
         "spring 'mount': got the body 'shat'",
-        "sensor 'S': got the frame 'edn'",
+        "sensor 'S': got the frame 'ned'",
         "bearing 'one': got the frame 'left' of 'ring'",
         "bearing 'one': got ring and ring:left; allowed: rings on two bodies",
     ):
