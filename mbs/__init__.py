@@ -35,6 +35,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from ehdmaps.errors import AnalysisError
+
 if TYPE_CHECKING:
     __version__: str
 
@@ -49,7 +51,6 @@ if TYPE_CHECKING:
     from mbs.analyses.sweep import SweepSettings, sweep
     from mbs.bearings.bearing import Bearing
     from mbs.bearings.bearing_force import BearingForce
-    from mbs.errors import AnalysisError
     from mbs.flexible.attached import Attached
     from mbs.flexible.plan import ReductionPlan
     from mbs.flexible.shaft_parts import Disc, Section
@@ -109,7 +110,6 @@ __all__ = [
 ]
 
 _HOMES = {
-    "AnalysisError": "errors",
     "Attached": "flexible.attached",
     "Bearing": "bearings.bearing",
     "BearingForce": "bearings.bearing_force",

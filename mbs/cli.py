@@ -8,8 +8,8 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
+from ehdmaps.errors import AnalysisError
 from ehdmaps.program import Parser, run
-from mbs.errors import AnalysisError
 
 _LAW = "hertz | formula | constant:NAME | map; default: map with --map, else hertz. NAME is a table [laws.NAME]"
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from mbs.model.profiles import SpeedProfile
 
 MOST_SPEEDS = 2000

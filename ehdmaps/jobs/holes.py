@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+from ehdmaps.arrays import BoolArray, FloatArray
 
 
 def isolated_holes(usable: BoolArray) -> tuple[BoolArray, BoolArray]:

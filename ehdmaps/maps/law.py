@@ -10,6 +10,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError, OutsideMapError
 from ehdmaps.maps import bulk, kernel
 from ehdmaps.maps.compilation import (
@@ -21,8 +22,7 @@ from ehdmaps.maps.compilation import (
 from ehdmaps.maps.dry import DryField
 from ehdmaps.maps.excursions import Axis, Excursion, Range
 from ehdmaps.maps.film_field import FilmField
-from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE, ApproachTable, CountArray, LawTable, Point
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE, ApproachTable, LawTable, Point
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 
@@ -95,7 +95,7 @@ class ContactLaw:
         self.load_range = field.load_range
         self.speed_range = field.speed_range
         self.temperature_range = field.temperature_range
-        self.counts: CountArray = np.zeros(4, dtype=np.int64)
+        self.counts: IntArray = np.zeros(4, dtype=np.int64)
         self._excursions: dict[tuple[str, str], Excursion] = {}
         self._lubricant = lubricant
         self._dry = field.dry
@@ -291,7 +291,7 @@ class ContactLaw:
                 f"allowed: 0 to below the highest mapped load {highest:.6g} N/m; check its sign and unit"
             )
 
-    def _settle(self, counts: CountArray, named: Mapping[str, FloatArray], flat: Sequence[FloatArray]) -> None:
+    def _settle(self, counts: IntArray, named: Mapping[str, FloatArray], flat: Sequence[FloatArray]) -> None:
         """Add up the counts of a call, and raise what they ask for."""
         if counts[NOT_FINITE]:
             _check_finite(named)
@@ -305,7 +305,7 @@ class ContactLaw:
                 + "\nmake a map that reaches there, or take a law with outside='clamp' or outside='asymptote'"
             )
 
-    def _noted(self, counts: CountArray, named: Mapping[str, FloatArray], flat: Sequence[FloatArray]) -> list[str]:
+    def _noted(self, counts: IntArray, named: Mapping[str, FloatArray], flat: Sequence[FloatArray]) -> list[str]:
         """Note what was outside, and say it; nothing but the extremes is worked out here, the counts are known."""
         problems = []
         if counts[LOAD]:
@@ -372,7 +372,7 @@ class LawAtPoint:
         return w, dw_ddelta, dw_drate
 
 
-def _evaluate_many(table: LawTable, flat: Sequence[FloatArray], forces: FloatArray, counts: CountArray) -> None:
+def _evaluate_many(table: LawTable, flat: Sequence[FloatArray], forces: FloatArray, counts: IntArray) -> None:
     """Evaluate flat arrays of approach, rate, speed, temperature and centrifugal load."""
     delta, rate, speed, temperature, centrifugal_load = flat
     bulk.evaluate_many(table, _workspace(table), delta, rate, speed, temperature, centrifugal_load, forces, counts)

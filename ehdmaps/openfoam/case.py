@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import os
-import re
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -15,9 +14,6 @@ from ehdmaps.errors import SolverError
 from ehdmaps.openfoam.run import RunError
 
 PARAMETER_FILE = Path("constant") / "ehlProperties"
-
-NO_PATH = re.compile(r"[\s\"']")
-"""Characters that OpenFOAM does not take in the path of a case."""
 
 _PARTS = ("system", "0", "constant")
 _RUNS = itertools.count()

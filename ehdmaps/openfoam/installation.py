@@ -14,7 +14,6 @@ from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.extras import lacking
-from ehdmaps.openfoam.case import NO_PATH
 from ehdmaps.outputs import cache_folder
 
 BUILD_COMMAND = "openfoam_cases/build"
@@ -27,6 +26,9 @@ DEBIAN = Path("/usr/share/openfoam")
 """Project folder of the distribution's package, which sets no environment of its own."""
 
 DEBIAN_ENVIRONMENT = {"WM_PROJECT_DIR": str(DEBIAN), "WM_PROJECT_VERSION": "v1912"}
+
+NO_PATH = re.compile(r"[\s\"']")
+"""Characters that OpenFOAM does not take in the path of a case."""
 
 _CLONE = Path(__file__).parents[2] / "openfoam_cases"
 _SHARED = Path(sysconfig.get_path("data")) / "share" / "ehdmaps"

@@ -12,8 +12,9 @@ from numbers import Real
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.lubricant import LubricantState
 
@@ -43,8 +44,8 @@ class Start:
         [m].
     """
 
-    x: NDArray[np.float64]
-    pressure: NDArray[np.float64]
+    x: FloatArray
+    pressure: FloatArray
     central_film: float
 
 

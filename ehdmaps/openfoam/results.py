@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import SolverError
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.physics.solution import Status
@@ -95,12 +95,12 @@ class FilmTable:
         1 where there is oil only.
     """
 
-    x: NDArray[np.float64]
-    pressure: NDArray[np.float64]
-    film: NDArray[np.float64]
-    flux: NDArray[np.float64]
-    density: NDArray[np.float64]
-    liquid_fraction: NDArray[np.float64]
+    x: FloatArray
+    pressure: FloatArray
+    film: FloatArray
+    flux: FloatArray
+    density: FloatArray
+    liquid_fraction: FloatArray
 
 
 def read_results(case: Path) -> Results:

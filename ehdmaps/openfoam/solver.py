@@ -10,13 +10,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
-from ehdmaps.openfoam.case import NO_PATH
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
-from ehdmaps.openfoam.installation import Installation, installation
+from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
 from ehdmaps.openfoam.parameters import FLOWS, SHEARS, Flow, Mesh, Parameters, Shear, Start
 from ehdmaps.openfoam.run import RunError
 from ehdmaps.physics.closed_form import THIN_FILM_LIMIT, HertzSolver
@@ -42,12 +39,12 @@ class Guess(Protocol):
     """What a start offers: a film, and where the columns of cells should stand."""
 
     @property
-    def x(self) -> NDArray[np.float64]:
+    def x(self) -> FloatArray:
         """Positions from the contact centre [m]."""
         ...
 
     @property
-    def pressure(self) -> NDArray[np.float64]:
+    def pressure(self) -> FloatArray:
         """Pressure there [Pa]."""
         ...
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ehdmaps.arrays import IntArray
 from ehdmaps.physics.solids import Material
-from examples.housings.mesh import IntArray, Mesh
+from examples.housings.mesh import Mesh
 
 _PER_LINE = 12
 """CalculiX takes up to 16 entries a line."""

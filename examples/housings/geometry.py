@@ -14,12 +14,11 @@ from types import ModuleType
 
 import numpy as np
 
-from ehdmaps.errors import DependencyError, InputError
+from ehdmaps.errors import AnalysisError, DependencyError, InputError
 from ehdmaps.extras import needs
 from ehdmaps.units import LENGTH
 from examples.housings.designs import GearboxShape, Housing, PedestalShape, Place
 from examples.housings.mesh import Mesh
-from mbs.errors import AnalysisError
 
 SMALLEST, LARGEST = 5e-3, 40e-3
 """Sizes of elements [m]: below, there are far too many; above, they no longer know the walls."""

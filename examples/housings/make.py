@@ -11,15 +11,14 @@ from pathlib import Path
 import numpy as np
 from scipy.linalg import eigh
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import LENGTH
 from ehdmaps.version import version
 from examples.housings import solve
 from examples.housings.designs import Housing, Seat
 from examples.housings.geometry import load_gmsh, mesh_housing
 from examples.housings.mesh import Mesh
-from mbs.errors import AnalysisError
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduction import reduce

@@ -10,12 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.solids import Material
 from examples.housings.deck import deck
-from examples.housings.mesh import IntArray, Mesh
-from mbs.errors import AnalysisError
+from examples.housings.mesh import Mesh
 from mbs.flexible.calculix import read_calculix
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.matrix_files import NodePositions

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.solids import reduced_modulus
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
@@ -30,7 +30,6 @@ from mbs.bearings.contact_report import (
 from mbs.bearings.films import FilmSource
 from mbs.bearings.laws import Law
 from mbs.bearings.roller_loads import RollerLoads
-from mbs.errors import AnalysisError
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import equilibrium

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import closest
 from mbs.analyses.case import Case, as_cases
 from mbs.analyses.progress import Progress, silent
-from mbs.errors import AnalysisError
 from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Operation, Sensor

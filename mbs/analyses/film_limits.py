@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.physics._values import FloatArray
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.linearised.validity import FilmLimit, film_limit

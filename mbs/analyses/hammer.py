@@ -12,11 +12,11 @@ from mbs.analyses.reach import calls_at
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import FilmLimit
-from mbs.modal.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
 from mbs.modal.records import Hits
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.outside_calls import calls_outside
 from mbs.scene.assembly import Model
+from mbs.transient.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
 
 HIGHEST = 5000.0
 """Highest frequency of a scene that names none [Hz]."""

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from mbs.analyses.film_limits import film_limits
 from mbs.analyses.reach import calls_at
-from mbs.linearised.linear import ComplexArray, StateSpace, frequency_response, state_space, with_peaks
+from mbs.linearised.linear import StateSpace, frequency_response, state_space, with_peaks
 from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import DynamicLoad, FilmLimit, dynamic_loads

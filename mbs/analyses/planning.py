@@ -15,14 +15,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import film_from_moes, moes_groups
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.bearing_element import BearingElement
-from mbs.errors import AnalysisError
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Course, Harmonic, LoadProfile

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import LOAD
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
@@ -36,7 +36,7 @@ class Fade:
     entrainment_speed: float
     source: str
 
-    def below(self, speeds: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+    def below(self, speeds: npt.ArrayLike) -> BoolArray:
         """Which speeds of the system [rad/s] lie in the fade; of the shape of `speeds`."""
         return np.asarray(np.abs(np.asarray(speeds, dtype=np.float64)) < self.speed)
 

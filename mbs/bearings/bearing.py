@@ -11,11 +11,11 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.solids import STEEL, Material
 
-FloatArray = npt.NDArray[np.float64]
 Profile = str | Callable[[FloatArray], npt.ArrayLike] | tuple[float, ...] | FloatArray
 
 MOST_SLICES = 100_000

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.roller_loads import RollerLoads

@@ -19,6 +19,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
 from mbs.bearings import slice_table as table
@@ -28,8 +29,6 @@ from mbs.bearings.kinematics import RingState
 from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.ring_forces import RingForces, ring_forces
 from mbs.bearings.roller_loads import RollerLoads
-
-FloatArray = npt.NDArray[np.float64]
 
 _ALIKE = 1e-6
 

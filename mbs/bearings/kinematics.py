@@ -12,9 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-
-FloatArray = npt.NDArray[np.float64]
 
 _ROTATION_ERROR = 1e-6
 

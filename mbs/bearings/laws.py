@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
@@ -27,8 +28,6 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import reduced_modulus
 from ehdmaps.physics.unilateral import unilateral_force
 from mbs.bearings.bearing import Bearing
-
-FloatArray = npt.NDArray[np.float64]
 
 _EXPONENT = 10.0 / 9.0
 

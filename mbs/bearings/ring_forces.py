@@ -12,11 +12,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from mbs.bearings.kinematics import RingState, axial_rotation, relative_motion
 
-FloatArray = npt.NDArray[np.float64]
 PoseForce = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
 
 _EYE = np.eye(3)

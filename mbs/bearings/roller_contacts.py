@@ -15,12 +15,11 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, OutsideMapError, SolverError
 from ehdmaps.maps.law import ContactLaw, LawAtPoint
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.laws import DryLaw, Law
-
-FloatArray = npt.NDArray[np.float64]
 
 _STEPS = 100
 _ALIKE = 1e-6

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.roller_contacts import RollerContacts

@@ -6,16 +6,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import RegularGridInterpolator
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.maps.emap import EHDMap
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_kernel import GAP, RATE, TILT, TILT_RATE
 from mbs.bearings.laws import unilateral_forces
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

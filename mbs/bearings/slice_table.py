@@ -10,16 +10,13 @@ differ from the law by some 1e-7 in load and 1e-5 in stiffness at most, a bearin
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.maps.bulk import evaluate_many_at
 from ehdmaps.maps.kernel import LOAD_TOLERANCE, collapse
 from ehdmaps.maps.lines import FAST, line_approach, line_state
-from ehdmaps.maps.tables import ApproachTable, CountArray, LawTable, Point
-
-FloatArray = npt.NDArray[np.float64]
-IndexArray = npt.NDArray[np.int64]
+from ehdmaps.maps.tables import ApproachTable, LawTable, Point
 
 _OCTAVES, _BITS = 14, 5
 ROWS = _OCTAVES << _BITS
@@ -45,7 +42,7 @@ _PROBE = 1e4
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def read_cells(cells: FloatArray, rows: IndexArray, places: FloatArray, states: FloatArray) -> None:
+def read_cells(cells: FloatArray, rows: IntArray, places: FloatArray, states: FloatArray) -> None:
     """Load, its slope, damping and its slope, into `states` (4, n), from rows (n,) and places in the cells (n,)."""
     w, dw, c, dc = states[0], states[1], states[2], states[3]
     for i in range(rows.size):
@@ -187,7 +184,7 @@ def tabulate_law(
     buffer: FloatArray,
     cells: FloatArray,
     numbers: FloatArray,
-    counts: CountArray,
+    counts: IntArray,
 ) -> bool:
     """Collapse a law at its conditions, and fill a table with it.
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.units import RPM
 from mbs.analyses.reach import fade_of, share_below
 from mbs.scene.assembly import Model

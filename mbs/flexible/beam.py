@@ -19,8 +19,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 
 _X = (0, 6)
 _THETA_X = (3, 9)

@@ -16,8 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ehdmaps.arrays import IntArray
 from ehdmaps.errors import InputError
-from mbs.flexible.finite_elements import FiniteElementModel, IntArray
+from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.matrix_files import NodePositions, assemble_model, checked_labels, read_triplets
 from mbs.flexible.number_table import check_file, read_numbers
 

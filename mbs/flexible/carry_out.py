@@ -6,12 +6,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import LENGTH
 from mbs.flexible.calculix import check_deck, read_calculix
 from mbs.flexible.extent import extent
-from mbs.flexible.finite_elements import FiniteElementModel, IntArray
+from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.matrix_files import assemble_model, read_abaqus_matrix, read_matrix_market, without_fixed
 from mbs.flexible.mesh import DECKS, read_mesh_nodes
 from mbs.flexible.plan import CylinderSurface, NodeList, PlannedInterface, ReductionPlan

@@ -7,8 +7,8 @@ import math
 import numpy as np
 from scipy.linalg import eigh
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 
 
 def modal_damping(mass: FloatArray, stiffness: FloatArray, ratio: float) -> FloatArray:

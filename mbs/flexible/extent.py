@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.plan import UNIT_SYSTEMS
 from mbs.model.body import lever_arm

@@ -9,13 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-
-IntArray = npt.NDArray[np.int64]
 
 MOST_FREEDOMS = 300_000
 """More degrees of freedom are refused: their factors fill tens of gigabytes."""

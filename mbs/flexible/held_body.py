@@ -15,11 +15,9 @@ import numpy as np
 from scipy import linalg, sparse
 from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh, splu
 
-from ehdmaps.errors import InputError
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.extras import needs
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.flexible.finite_elements import IntArray
 
 MOST_MODES = 300
 

@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy import io, sparse
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.flexible.finite_elements import MOST_FREEDOMS, FiniteElementModel, IntArray
+from mbs.flexible.finite_elements import MOST_FREEDOMS, FiniteElementModel
 from mbs.flexible.number_table import NumberTable, check_file, check_last_line, read_numbers
 from mbs.flexible.plan import UNIT_SYSTEMS
 

@@ -5,17 +5,13 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import check_input, first_bytes
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import short
-
-if TYPE_CHECKING:  # reading a scene looks at files without them
-    from mbs.flexible.finite_elements import IntArray
 
 LONGEST_FILE = 4_000_000_000
 """Bytes."""

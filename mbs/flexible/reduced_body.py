@@ -8,8 +8,8 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from mbs.flexible.damping import modal_damping
 from mbs.model.body import Body, Frame
 

@@ -15,10 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.flexible.finite_elements import FiniteElementModel, IntArray, named
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.errors import AnalysisError, InputError
+from mbs.flexible.finite_elements import FiniteElementModel, named
 from mbs.flexible.held_body import HeldBody
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.spiders import Interface, Spider, nearest_node, spider

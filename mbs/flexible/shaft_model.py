@@ -15,8 +15,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, eigh
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from mbs.flexible.beam import element_gyroscopic, element_mass, element_stiffness
 from mbs.flexible.shaft_layout import divide
 from mbs.flexible.shaft_parts import GROUPS, Disc, Section

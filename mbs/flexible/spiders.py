@@ -15,9 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.flexible.finite_elements import FiniteElementModel, IntArray, named
+from mbs.flexible.finite_elements import FiniteElementModel, named
 from mbs.flexible.plan import KINDS, Kind
 from mbs.model.body import FREEDOMS, lever_arm
 

@@ -16,8 +16,8 @@ from functools import cached_property
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_force
 from mbs.gears.pair import GearPair
 from mbs.model.elements import ElementDefaults, Operation, Port

@@ -14,7 +14,7 @@ import math
 
 from numba import njit
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.unilateral import Force, unilateral_force
 
 _unilateral_force = njit(error_model="numpy")(unilateral_force)

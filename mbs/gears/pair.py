@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 
 FEWEST_TEETH, MOST_TEETH = 5, 10_000
 MOST_HARMONICS = 50

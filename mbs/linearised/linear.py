@@ -10,13 +10,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.model.elements import Input, Quantity, Sensor
 from mbs.model.equilibrium import Equilibrium
-
-ComplexArray = npt.NDArray[np.complex128]
 
 _ORDER: dict[Quantity, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
 """How often a sensor differentiates."""

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.linearised.linear import ComplexArray, frequency_response, input_matrix, responses, sensor_matrix
+from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.errors import AnalysisError
+from mbs.linearised.linear import frequency_response, input_matrix, responses, sensor_matrix
 from mbs.linearised.modes import StateModes
 from mbs.model.elements import Input, Sensor
 from mbs.model.equilibrium import Equilibrium

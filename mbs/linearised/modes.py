@@ -9,15 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg import eigh
 
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.linearised.linear import ComplexArray
+from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
+from ehdmaps.errors import AnalysisError
 from mbs.model.equilibrium import Equilibrium
-
-IntArray = npt.NDArray[np.int64]
 
 FREE = 1e-6
 """Part of the highest undamped frequency below which a motion counts as free when states are scaled."""
@@ -101,7 +97,7 @@ class StateModes:
     eigenvalues: ComplexArray
     right: ComplexArray
     left: ComplexArray
-    oscillates: npt.NDArray[np.bool_]
+    oscillates: BoolArray
 
 
 def damping_ratio(eigenvalues: ComplexArray) -> FloatArray:

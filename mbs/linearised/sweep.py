@@ -15,13 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
+from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.linearised.crossings import straightened
-from mbs.linearised.linear import ComplexArray
 from mbs.linearised.modal_response import checked_response
-from mbs.linearised.modes import IntArray
 from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep_point import Along, Point, bearing_parts, bridge, first_order_shift, over_pitch, solve_modes
 from mbs.linearised.sweep_result import BearingSweep, ComplexSweep, ResponseSweep, Sweep, UndampedSweep

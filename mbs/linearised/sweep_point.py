@@ -8,11 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.roller_element import RollerElement, ring_matrices
-from mbs.linearised.linear import ComplexArray
-from mbs.linearised.modes import IntArray, StateModes, UndampedModes, energy_shares, state_modes, undamped_modes
+from mbs.linearised.modes import StateModes, UndampedModes, energy_shares, state_modes, undamped_modes
 from mbs.linearised.tracking import Match, ModeSet, compose, match
 from mbs.model.elements import Element, Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray
-from mbs.linearised.modes import IntArray, damping_ratio
+from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
+from mbs.linearised.modes import damping_ratio
 from mbs.model.elements import Input, Sensor
 
 

@@ -15,9 +15,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 from scipy.sparse.csgraph import connected_components
 
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray
-from mbs.linearised.modes import IntArray
+from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 
 SAME = 1e-6
 """Eigenvalues that differ by less than this part of their size, or a tenth of it of the largest one, are equal."""

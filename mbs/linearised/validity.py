@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.solids import reduced_modulus
 from mbs.bearings.bearing import Bearing

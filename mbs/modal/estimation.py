@@ -17,10 +17,8 @@ from typing import Literal
 
 import numpy as np
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.linearised.linear import ComplexArray
+from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.modal.records import Channel, Hits, Responses
 from mbs.modal.windows import exponential_window, force_window, pulse
 

@@ -8,11 +8,8 @@ import math
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.linearised.linear import ComplexArray
-from mbs.linearised.modes import IntArray
+from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.modal.estimation import relative_deviation
 from mbs.modal.lscf import lscf_poles
 from mbs.modal.rational import IMPROPER, rational_poles

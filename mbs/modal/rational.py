@@ -21,9 +21,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.linearised.linear import ComplexArray
+from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.errors import AnalysisError
 
 IMPROPER = 2
 """Powers of the numerators above those of a proper fraction."""

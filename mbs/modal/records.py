@@ -7,9 +7,8 @@ from typing import Literal
 
 import numpy as np
 
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray
 
 Measured = Literal["displacement", "velocity", "acceleration", "force", "unknown"]
 

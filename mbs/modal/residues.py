@@ -20,8 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 
 TERMS = 2
 """Residual terms, L and U."""

@@ -8,8 +8,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.modal.records import Responses
 from mbs.modal.residues import Parts, laplace, synthesise
 from mbs.modal.stabilisation import Candidate

@@ -11,9 +11,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray
 from mbs.modal.residues import assurance
 
 _GAP = 2

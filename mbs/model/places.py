@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.units import closest
 from mbs.model.body import CENTRE, Body, Frame
 from mbs.model.elements import GROUND

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, level
 

@@ -10,13 +10,13 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.outputs import MADE_AS, dataset_kind, written_aside
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.version import version
 from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.films import SIDES
 from mbs.bearings.roller_element import ring_matrices
-from mbs.linearised.linear import ComplexArray, StateSpace
+from mbs.linearised.linear import StateSpace
 from mbs.linearised.modes import Modes
 from mbs.model.body import FREEDOMS
 from mbs.model.elements import Input, Sensor

@@ -13,9 +13,10 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import read_text
 from ehdmaps.jobs import toml_text
-from ehdmaps.jobs.axes import TEMPERATURE_AXIS, AxisRule, read_axis
+from ehdmaps.jobs.axes import AxisRule, read_axis
 from ehdmaps.jobs.problem import read_lubricant
 from ehdmaps.jobs.table import Table
+from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, short
 from mbs.model.body import FREEDOMS, Inertia
 from mbs.model.elements import Input, Load, Sensor, Spring
@@ -34,7 +35,6 @@ LONGEST_FILE = 1_000_000
 """Bytes of a scene file."""
 
 _FREQUENCIES = AxisRule("frequencies", "Hz", 1e-3, 1e6, HERTZ)
-_TEMPERATURES = (TEMPERATURE_AXIS.low, TEMPERATURE_AXIS.high)
 _QUANTITIES = ("displacement", "velocity", "acceleration")
 
 
@@ -114,7 +114,7 @@ class _Reader:
         operation = top.table("operation", "[operation]", required="a table with speed and temperature")
         if operation:
             speed = operation.quantity("speed", "rad/s", 0.0, 1e5, RPM, required=True)
-            temperature = operation.quantity("temperature", "K", *_TEMPERATURES, TEMPERATURE, required=True)
+            temperature = operation.quantity("temperature", "K", *OIL_TEMPERATURES, TEMPERATURE, required=True)
             self._close(operation)
         section = top.table("lubricant", "[lubricant]")
         lubricant = read_lubricant(section) if section else None

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.axes import TEMPERATURE_AXIS
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from mbs.gears.pair import GearPair
 from mbs.model.elements import Input, Load, Sensor, Spring
 from mbs.scene.specs import BearingSpec, BodySpec, ElementSpec, FlexibleSpec
@@ -100,11 +100,9 @@ class Scene:
         problems = []
         if not math.isfinite(self.speed):
             problems.append(f"scene, speed: got {self.speed!r} rad/s; allowed: finite")
-        if not TEMPERATURE_AXIS.low <= self.temperature <= TEMPERATURE_AXIS.high:
-            problems.append(
-                f"scene, temperature: got {self.temperature!r} K; allowed: {TEMPERATURE_AXIS.low:g} to "
-                f"{TEMPERATURE_AXIS.high:g} K"
-            )
+        low, high = OIL_TEMPERATURES
+        if not low <= self.temperature <= high:
+            problems.append(f"scene, temperature: got {self.temperature!r} K; allowed: {low:g} to {high:g} K")
         if problems:
             raise InputError(problems)
 

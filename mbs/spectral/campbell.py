@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from mbs.settings import HIGHEST
 from mbs.spectral.levels import level
 from mbs.spectral.orders import (

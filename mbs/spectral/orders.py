@@ -23,9 +23,8 @@ from scipy.fft import next_fast_len
 from scipy.interpolate import make_interp_spline
 from scipy.signal import ShortTimeFFT, find_peaks, firwin, get_window, kaiserord, oaconvolve
 
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray
 from mbs.spectral.levels import level
 from mbs.spectral.run_signal import RPM, RunSignal
 from mbs.spectral.spectra import LEAST_OVERSAMPLING, MOST_WINDOWS, without_mean

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 
 RPM = 30.0 / np.pi
 

@@ -24,8 +24,8 @@ import numpy as np
 from scipy.fft import next_fast_len
 from scipy.signal import ShortTimeFFT, get_window
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from mbs.spectral.run_signal import RunSignal
 
 LINE_WIDTH = 1.44

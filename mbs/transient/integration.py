@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings

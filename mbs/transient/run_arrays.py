@@ -4,13 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
-from ehdmaps.maps.tables import CountArray
-from ehdmaps.physics._values import FloatArray
-
-IndexArray = npt.NDArray[np.int64]
+from ehdmaps.arrays import FloatArray, IntArray
 
 FIRST, FILM, ROLLERS, SLICES, AT_SLICES, AT_ANGLES, AT_CELLS, AT_ROLLERS = range(8)
 """Columns of the table of bearings: first of its ports, its film, numbers of rollers and slices, and where its part
@@ -96,16 +90,16 @@ class Elements(NamedTuple):
         As of `mesh_force`.
     """
 
-    bearings: IndexArray
+    bearings: IntArray
     bearing_numbers: FloatArray
     slices: FloatArray
     angles: FloatArray
     states: FloatArray
-    rows: IndexArray
+    rows: IntArray
     rollers: FloatArray
     sums: FloatArray
-    counts: CountArray
-    mesh_ports: IndexArray
+    counts: IntArray
+    mesh_ports: IntArray
     mesh_constants: FloatArray
     mesh_series: FloatArray
 
@@ -149,13 +143,13 @@ class Course(NamedTuple):
 
     speeds: FloatArray
     angles: FloatArray
-    nodes: IndexArray
+    nodes: IntArray
     weights: FloatArray
-    outside: IndexArray
+    outside: IntArray
     steady: FloatArray
     varying: FloatArray
     factors: FloatArray
-    rows: IndexArray
+    rows: IntArray
 
 
 class State(NamedTuple):
@@ -191,7 +185,7 @@ class Records(NamedTuple):
     """
 
     rows: FloatArray
-    orders: IndexArray
+    orders: IntArray
     outputs: FloatArray
     forces: FloatArray
     motions: FloatArray

@@ -9,7 +9,7 @@ from typing import TypeGuard
 import numpy as np
 import scipy.linalg
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.force_at_point import Work

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.model.elements import Operation
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.openfoam.fields import read_fields
 from ehdmaps.openfoam.installation import Installation, installation
 from ehdmaps.openfoam.parameters import Mesh
@@ -57,7 +57,7 @@ def _write(case: Path, name: str, kind: str, text: str) -> None:
     path.write_text(HEADER.format(kind=kind, name=path.name) + text)
 
 
-def _numbers(path: Path, width: int) -> NDArray[np.float64]:
+def _numbers(path: Path, width: int) -> FloatArray:
     """The list of numbers or vectors in a file of OpenFOAM."""
     found = re.search(r"\n(\d+)\s*\n\(\n", text := path.read_text())
     assert found is not None
@@ -65,11 +65,11 @@ def _numbers(path: Path, width: int) -> NDArray[np.float64]:
     return np.array(words[: int(found[1]) * width], dtype=float).reshape(-1, width)
 
 
-def _vectors(values: NDArray[np.float64]) -> str:
+def _vectors(values: FloatArray) -> str:
     return "(" + " ".join("({:.15g} {:.15g} {:.15g})".format(*value) for value in values) + ")"
 
 
-def _mesh(case: Path, solved: Path, columns: int, installed: Installation) -> NDArray[np.float64]:
+def _mesh(case: Path, solved: Path, columns: int, installed: Installation) -> FloatArray:
     """The first columns of a solved mesh; returns its points, shape (columns + 1, 2, rows + 1, 3)."""
     shutil.copytree(installed.template / "system", case / "system")
     _write(case, "constant/ehlProperties", "dictionary", f"columns {columns}; rows {ROWS};")
@@ -79,7 +79,7 @@ def _mesh(case: Path, solved: Path, columns: int, installed: Installation) -> ND
     return points
 
 
-def _wall_speeds(points: NDArray[np.float64], case: Path, patch: str, speed: float) -> str:
+def _wall_speeds(points: FloatArray, case: Path, patch: str, speed: float) -> str:
     """A surface that moves along itself, face by face in the order of its patch."""
     edge = points[:, 0, 0 if patch == "lower" else -1]
     along = np.diff(edge, axis=0)

@@ -17,7 +17,8 @@ from scipy import sparse
 from ehdmaps.jobs import cli as ehdmaps_cli
 from mbs import cli as mbs_cli
 from mbs.flexible.reduced_file import write_reduced
-from mbs.modal.uff import Measurement, write_uff
+from mbs.modal.uff import Measurement
+from mbs.modal.uff_writing import write_uff
 from tests.system import hostile_tables as tables
 from tests.system.hostile_tables import BODY, JOB, SCENE, Case
 from tests.unit.flexible_cases import block, ends

@@ -11,7 +11,7 @@ import xarray as xr
 
 from ehdmaps.outputs import MARK
 from mbs import cli
-from mbs.modal.uff import read_uff
+from mbs.modal.uff_reading import read_uff
 from mbs.scene.reader import read_scene
 from tests.unit.modal_cases import DAMPING, FREQUENCY, hits, measured
 
@@ -29,7 +29,8 @@ def run(capsys, *arguments):
 
 
 def write(path, **what):
-    from mbs.modal.uff import Measurement, write_uff
+    from mbs.modal.uff import Measurement
+    from mbs.modal.uff_writing import write_uff
 
     write_uff(path, Measurement("a case", what.get("hits", ()), what.get("responses")))
 

@@ -14,8 +14,8 @@ import pytest
 import examples.housings.__main__ as housings
 import mbs.cli
 from ehdmaps import errors, program
+from ehdmaps.errors import AnalysisError
 from ehdmaps.jobs import cli
-from mbs.errors import AnalysisError
 from tests.system.interruptible import start
 
 ROOT = str(Path(errors.__file__).parents[1])

@@ -12,10 +12,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs.table import Table
 from mbs.analyses.reach import Fade
-from mbs.errors import AnalysisError
 from mbs.model.elements import Sensor
 from mbs.output.campbell_data import campbell_dataset
 from mbs.output.campbell_plot import Overlay, Reach, campbell_figure

@@ -12,11 +12,10 @@ import pytest
 from scipy import io, sparse
 from scipy.sparse.linalg import ArpackError
 
-from ehdmaps.errors import DependencyError, InputError
+from ehdmaps.errors import AnalysisError, DependencyError, InputError
 from ehdmaps.jobs.table import Table
 from mbs import cli
 from mbs.commands import reduce as command
-from mbs.errors import AnalysisError
 from mbs.flexible import held_body
 from mbs.flexible.calculix import check_deck, read_calculix, read_dofs
 from mbs.flexible.extent import Extent, extent

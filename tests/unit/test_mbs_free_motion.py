@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mbs.errors import AnalysisError
+from ehdmaps.errors import AnalysisError
 from mbs.model.body import rigid_body
 from mbs.model.elements import Load, Spring
 from mbs.model.equilibrium import equilibrium

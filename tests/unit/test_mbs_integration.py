@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from ehdmaps.errors import InputError
-from mbs.errors import AnalysisError
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import ElementDefaults, Load, Spring
 from mbs.model.profiles import Harmonic, SpeedProfile

@@ -15,7 +15,7 @@ import pytest
 import xarray as xr
 
 import mbs
-from ehdmaps.errors import InputError, MapError
+from ehdmaps.errors import AnalysisError, InputError, MapError
 from ehdmaps.jobs import cli as jobs_cli
 from ehdmaps.maps.emap import open_map
 from ehdmaps.outputs import MADE_AS
@@ -43,8 +43,7 @@ from mbs import (
     statics,
     sweep,
 )
-from mbs.errors import AnalysisError
-from mbs.modal.uff import read_uff
+from mbs.modal.uff_reading import read_uff
 
 JOB = """
 schema = 1

@@ -11,7 +11,7 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs.reader import parse_job
 from mbs import cli
 from mbs.analyses.planned_job import job_text
@@ -25,7 +25,6 @@ from mbs.analyses.planning import (
     same_contacts,
     speed_range,
 )
-from mbs.errors import AnalysisError
 from mbs.model.elements import Load
 from mbs.model.profiles import Course, Harmonic
 from mbs.scene.assembly import assemble

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.errors import AnalysisError, InputError, OutsideMapError
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
-from mbs.errors import AnalysisError
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import ElementDefaults, Load, Operation, Port, Sensor, Spring
 from mbs.model.equilibrium import equilibrium

@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from ehdmaps.errors import InputError
-from mbs.errors import AnalysisError
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.linearised.linear import frequency_response, state_space, with_peaks
 from mbs.linearised.modes import modes, undamped_modes
 from mbs.model.body import Inertia, lever_arm, rigid_body

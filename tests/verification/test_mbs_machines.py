@@ -21,7 +21,6 @@ from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep import sweep
 from mbs.modal.estimation import estimate
 from mbs.modal.fit import identify
-from mbs.modal.hammer import HammerTest, linear_hits
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
@@ -31,6 +30,7 @@ from mbs.scene.reader import read_scene
 from mbs.settings import Settings
 from mbs.spectral.campbell import run_up_spectra
 from mbs.spectral.run_signal import RunSignal
+from mbs.transient.hammer import HammerTest, linear_hits
 from mbs.transient.run import run
 
 RPM = math.pi / 30.0

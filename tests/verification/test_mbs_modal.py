@@ -12,13 +12,13 @@ from mbs.linearised.linear import frequency_response, state_space
 from mbs.linearised.modes import modes
 from mbs.modal.estimation import estimate, transfer
 from mbs.modal.fit import identify
-from mbs.modal.hammer import OVERSAMPLING, HammerTest, linear_hits, nonlinear_hits, suggested_duration
 from mbs.modal.rational import rational_poles
 from mbs.modal.residues import laplace
 from mbs.modal.windows import needed_decay
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
+from mbs.transient.hammer import OVERSAMPLING, HammerTest, linear_hits, nonlinear_hits, suggested_duration
 from tests.unit.modal_cases import (
     DAMPING,
     OMEGA,

@@ -11,7 +11,7 @@ import pytest
 from scipy import linalg, sparse
 from scipy.sparse.linalg import spsolve
 
-from mbs.errors import AnalysisError
+from ehdmaps.errors import AnalysisError
 from mbs.flexible import held_body
 from mbs.flexible.calculix import read_calculix
 from mbs.flexible.extent import extent

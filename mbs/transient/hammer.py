@@ -17,9 +17,8 @@ from scipy.fft import next_fast_len
 from scipy.linalg import expm
 from scipy.signal import firwin, upfirdn
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.linearised.linear import input_matrix, sensor_matrix, state_space
 from mbs.linearised.modes import Modes
 from mbs.modal.records import LONGEST, Channel, Hits, Measured
