@@ -46,11 +46,11 @@ def job_text(
     Parameters
     ----------
     solids : BearingGeometry or LineContact
-        For [bearing] or [contact].
+        Geometry for [bearing] or [contact].
     material : Material
-        For [material].
+        Material for [material].
     lubricant : Lubricant
-        For [lubricant].
+        Oil for [lubricant].
     axes : sequence of three iterables of float
         Loads [N/m], entrainment speeds [m/s], temperatures [K].
     solver : mapping
@@ -93,9 +93,9 @@ def table_lines(name: str, table: Mapping[str, Entry | Sequence[str] | Mapping[s
     Parameters
     ----------
     name : str
-        Its name.
+        Name of the table.
     table : mapping
-        Its keys with their values.
+        Keys with their values.
     """
     return ["", f"[{name}]", *(f"{key} = {_toml(value)}" for key, value in table.items())]
 

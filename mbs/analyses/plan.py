@@ -91,7 +91,7 @@ def plan(scene: Scene, settings: PlanSettings | None = None, emap: EHDMap | None
     Parameters
     ----------
     scene : Scene
-        With bearings, and with a lubricant unless there is a map.
+        Scene with bearings, and with a lubricant unless there is a map.
     settings : PlanSettings, optional
         How the ranges are found.
     emap : EHDMap, optional
@@ -172,7 +172,7 @@ def needed_of(scene: Scene, model: Model, settings: PlanSettings, emap: EHDMap |
     scene : Scene
         What is planned for.
     model : Model
-        From `dry_model`.
+        The scene with dry contacts, from `dry_model`.
     settings : PlanSettings
         The same.
     emap : EHDMap, optional

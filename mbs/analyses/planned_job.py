@@ -28,7 +28,7 @@ def planned_job(scene: Scene, needed: Needed, name: str = "plan") -> Job:
     Parameters
     ----------
     scene : Scene
-        With a lubricant.
+        Scene with a lubricant.
     needed : Needed
         The ranges.
     name : str
@@ -51,7 +51,7 @@ def job_text(scene: Scene, needed: Needed) -> str:
     Parameters
     ----------
     scene : Scene
-        With a lubricant; geometry, oil and temperature are its own.
+        Scene with a lubricant; geometry, oil and temperature are its own.
     needed : Needed
         The ranges.
 

@@ -96,9 +96,9 @@ class PlannedInterface:
     Attributes
     ----------
     position : (float, float, float)
-        Its place [m].
+        Place of the interface [m].
     surface : NodeList, CylinderSurface or PlaneSurface
-        Where its nodes are.
+        Surface on which its nodes are.
     kind : {"rigid", "averaging"}
         Whether the nodes follow the place, or the place their mean.
     freedoms : tuple of str
@@ -124,7 +124,7 @@ class ReductionPlan:
     form : str
         One of FORMATS.
     stiffness, mass, mesh : Path
-        Files.
+        Files of the matrices and the mesh.
     dofs : Path or None
         File that says what the rows of the matrices are.
     units : str
@@ -132,9 +132,9 @@ class ReductionPlan:
     cutoff : float
         Highest frequency of the modes that are kept [Hz].
     interfaces : mapping of str to PlannedInterface
-        Where forces act, in the order of the coordinates.
+        Places where forces act, in the order of the coordinates.
     points : mapping of str to PlannedInterface, (float, float, float) or int
-        Where the body is observed.
+        Places where the body is observed.
     source : Path or None
         The file that says all this, if it is one of its own.
     """

@@ -38,7 +38,7 @@ def shaft_problems(
     Parameters
     ----------
     sections, discs : sequence
-        Parts.
+        Parts of the shaft.
     freedoms : sequence of str
         Freedoms that are kept.
     position : sequence of float, shape (3,)
@@ -46,13 +46,13 @@ def shaft_problems(
     frames : mapping of str to float
         Places along x [m].
     spin : float
-        As a multiple of the speed of the system.
+        Spin as a multiple of the speed of the system.
     largest_element : float or None
         [m].
     cutoff : float or None
         [Hz].
     damping_ratio : float
-        Of the modes.
+        Damping ratio of the modes.
     """
     problems = misfits(sections, discs, freedoms, frames)
     if not (len(position) == 3 and all(math.isfinite(value) for value in position)):
@@ -83,7 +83,7 @@ def divide(
     sections : sequence of Section
         Parts that fit together.
     places : sequence of float
-        Where there shall be nodes besides [m].
+        Further places of nodes [m].
     largest_element : float, optional
         [m].
     cutoff : float, optional
@@ -92,7 +92,7 @@ def divide(
     Returns
     -------
     nodes : list of float
-        Along x, rising [m].
+        Places along x, rising [m].
     sections : list of CrossSection
         What is between each node and the next.
 

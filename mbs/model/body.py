@@ -243,7 +243,7 @@ def rigid_problems(
     freedoms : sequence of str
         Names of FREEDOMS, each once.
     position : sequence of float, shape (3,)
-        Of the frame "centre" [m].
+        Position of the frame "centre" [m].
     frames : mapping of str to sequence of float, shape (3,)
         Further frames, from the position [m]; none called "centre".
     spin : float

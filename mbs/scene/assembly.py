@@ -38,9 +38,9 @@ class Model:
     law : str
         The law in words.
     bearings : tuple of BearingElement
-        In the order of the scene; where rollers are bodies, the same with massless rollers, to look at.
+        Bearings in the order of the scene; where rollers are bodies, with massless rollers, to look at.
     gears : tuple of GearMesh
-        In the order of the scene.
+        Gear meshes in the order of the scene.
     films : mapping of str to FilmSource
         What knows pressures and films of the contacts, by bearing.
     label : str
@@ -81,7 +81,7 @@ def assemble(
     law : str, optional
         hertz, formula, constant:NAME or map; map by default where there is one, else hertz.
     emap : EHDMap, str or Path, optional
-        For the law `map`: a map, or the path of its file.
+        Map of the law `map`, or the path of its file.
     clearance : float, optional
         Diametral clearance of all bearings [m], in place of the scene's.
 

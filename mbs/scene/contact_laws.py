@@ -50,7 +50,7 @@ class ContactLaws:
     chosen : str
         hertz, formula, constant:NAME or map.
     scene : Scene
-        With its oil and its constant laws.
+        Scene with its oil and its constant laws.
     emap : EHDMap or None
         The map of the law `map`.
     """

@@ -45,7 +45,7 @@ def read_flexible(section: Table, name: str, folder: Path | None) -> FlexibleSpe
     name : str
         Name of the body.
     folder : Path or None
-        Where relative paths begin; None for the folder of the shipped systems.
+        Folder in which relative paths begin; None for that of the shipped systems.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def read_reduction(
     section : Table
         Keys: `matrices`, `mesh`, `units`, `cutoff`, `interfaces`, `points`.
     folder : Path or None
-        Where relative paths begin; None for the folder of the shipped systems.
+        Folder in which relative paths begin; None for that of the shipped systems.
     required : str
         What a message says is missing where there are no matrices.
 

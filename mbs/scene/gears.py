@@ -27,7 +27,7 @@ def read_gears(section: Table, name: str) -> GearPair | None:
     section : Table
         The table; the caller closes it.
     name : str
-        Of the pair.
+        Name of the pair.
     """
     before = len(section.problems)
     on = fields.place(section, "on")

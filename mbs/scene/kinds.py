@@ -67,7 +67,7 @@ class ElementKind:
     Attributes
     ----------
     key : str
-        Its tables in a scene file begin with [[key]].
+        Key of its tables in a scene file, which begin with [[key]].
     word : str
         How messages call one of them.
     spec : type

@@ -74,13 +74,13 @@ def parse_scene(text: str, name: str, where: str, folder: Path | None = None) ->
     Parameters
     ----------
     text : str
-        TOML.
+        Text in TOML.
     name : str
         Name of the scene.
     where : str
         How messages call the file.
     folder : Path, optional
-        Where the files are that it names; without one it may name none.
+        Folder of the files that it names; without one it may name none.
 
     Raises
     ------

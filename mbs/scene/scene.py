@@ -28,7 +28,7 @@ class Scene:
     name : str
         Name of the file, or of the scene.
     title, text : str
-        Its own title (the name if left out), and the file itself (empty without one).
+        Title (the name if left out), and the text of the file (empty without one).
     speed : float
         Operating speed of the system [rad/s].
     temperature : float
@@ -44,7 +44,7 @@ class Scene:
     elements : tuple of BearingSpec, GearPair and others
         Machine elements, of the classes that `mbs.scene.kinds` lists.
     inputs, sensors : tuple
-        From where to where responses go.
+        Loads that a linear analysis varies, and motions that it gives.
     laws : dict of str to (float, float)
         Constant stiffness [N/m] and damping [N s/m] of each contact of a roller, by name.
     frequencies : tuple of float

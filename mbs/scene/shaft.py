@@ -26,7 +26,7 @@ def read_shaft(section: Table, name: str) -> ShaftSpec | None:
     section : Table
         One table of [[shafts]]; it is not closed here.
     name : str
-        Its name, read before.
+        Name of the shaft, read before.
 
     Returns
     -------

@@ -39,7 +39,7 @@ class RigidSpec:
     freedoms : tuple of str
         Some of x, y, z, theta_x, theta_y, theta_z; the others are held.
     position : (float, float, float)
-        Where its frame "centre" is [m].
+        Position of its frame "centre" [m].
     frames : mapping of str to (float, float, float)
         Further frames, from the position [m].
     spin : float
@@ -84,13 +84,13 @@ class ShaftSpec:
     discs : tuple of Disc
         Rigid parts.
     position : (float, float, float)
-        Where x = 0 of sections, discs and frames is [m].
+        Position of x = 0 of sections, discs and frames [m].
     spin : float
         Speed about x as a multiple of the system's.
     largest_element : float or None
         Length of an element [m]; None: as the cut-off needs it.
     damping_ratio : float
-        Of the modes of the free shaft at rest.
+        Damping ratio of the modes of the free shaft at rest.
 
     Raises
     ------
@@ -137,9 +137,9 @@ class FlexibleSpec:
     source : Path, ReductionPlan or ReducedBody
         A file of a reduced body; or matrices and how to reduce them; or a body that was reduced already.
     position : (float, float, float)
-        Where the origin of the finite elements is [m].
+        Position of the origin of the finite elements [m].
     damping_ratio : float
-        Of every mode of the free body.
+        Damping ratio of every mode of the free body.
     attached : tuple of Attached
         Rigid parts on its frames.
     """

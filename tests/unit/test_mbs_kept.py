@@ -16,7 +16,7 @@ from mbs.flexible.carry_out import carry_out
 from mbs.flexible.plan import PlaneSurface, PlannedInterface, ReductionPlan
 from mbs.scene.bodies import build_body
 from mbs.scene.specs import FlexibleSpec
-from tests.unit.flexible_cases import block
+from tests.cases.flexible import block
 
 
 @pytest.fixture
