@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.figures import COLOURS, WARNING, typeset
 from ehdmaps.openfoam.grid_solver import GridSolution
 from ehdmaps.outputs import write_figure
 from ehdmaps.units import FILM, PRESSURE
@@ -21,7 +22,7 @@ ROW = (11.69, 3.6)
 
 RESOLUTION = 200
 _FONT: Any = {"font.size": 8.5, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6}
-_PLACES = (("inlet", "#1b6ca8"), ("centre", "#444444"), ("spike", "#c8102e"))
+_PLACES = (("inlet", COLOURS[0]), ("centre", COLOURS[7]), ("spike", WARNING))
 
 
 @dataclass(frozen=True)
@@ -97,7 +98,7 @@ def _row(row: FilmRow, pressures: Axes, films: Axes, velocities: Axes) -> None:
     pressures.plot(x[window], PRESSURE.factor * table.pressure[window], color="black", lw=1.0)
     films.plot(x[window], FILM.factor * table.film[window], color="black", lw=1.0)
     films.set_ylim(bottom=0.0)
-    for axes, label in ((pressures, f"pressure, {PRESSURE.unit}"), (films, f"film, {FILM.unit.replace('um', 'µm')}")):
+    for axes, label in ((pressures, f"pressure, {PRESSURE.unit}"), (films, f"film, {typeset(FILM.unit)}")):
         axes.set_xlabel("x/b, from the contact centre")
         axes.set_ylabel(label)
         axes.grid(color="0.88", lw=0.4)

@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullLocator
 
+from ehdmaps.figures import typeset
 from ehdmaps.jobs.curves import law_field
 from ehdmaps.jobs.plot_curves import (
     ASYMPTOTE,
@@ -100,7 +101,7 @@ def _page(sheet: Sheet) -> Figure:
         for column, (name, label, display) in enumerate(_PANELS):
             axes = figure.add_subplot(grid[row, column])
             draw_curves(axes, sheet, name, display, (row, shown))
-            axes.set_ylabel(f"{label}, {_drawn(display.unit)}", labelpad=1)
+            axes.set_ylabel(f"{label}, {typeset(display.unit)}", labelpad=1)
             if row == 0:
                 axes.set_title(label, fontsize=8.5, fontweight="bold", pad=4)
             if row == contacts - 1:
@@ -157,11 +158,11 @@ def _small_multiples(figure: Figure, sheet: Sheet, temperatures: list[int], top:
             draw_curves(axes, sheet, name, display, (0, temperature), width=0.7)
             axes.tick_params(which="both", labelleft=column == 0, labelbottom=row == len(_SMALL) - 1)
             if row == 0:
-                heading = _drawn(TEMPERATURE.text(float(dataset["temperature"].values[temperature])))
+                heading = typeset(TEMPERATURE.text(float(dataset["temperature"].values[temperature])))
                 axes.set_title(heading, fontsize=7.5, pad=2.5)
             keep_corners_free(axes)
             if column == 0:
-                axes.set_ylabel(f"{label}\n{_drawn(display.unit)}", labelpad=2)
+                axes.set_ylabel(f"{label}\n{typeset(display.unit)}", labelpad=2)
             if row == len(_SMALL) - 1:
                 axes.set_xlabel(f"load, {LOAD.unit}", labelpad=1)
 
@@ -169,7 +170,7 @@ def _small_multiples(figure: Figure, sheet: Sheet, temperatures: list[int], top:
 def _heading(figure: Figure, emap: EHDMap, shown: int) -> None:
     """Write the title and, below it, what the page shows."""
     dataset, attributes = emap.dataset, emap.dataset.attrs
-    at = _drawn(TEMPERATURE.text(float(dataset["temperature"].values[shown])))
+    at = typeset(TEMPERATURE.text(float(dataset["temperature"].values[shown])))
     what = emap.bearing.title if emap.bearing else f"line contact, R = {emap.contacts[0].radius * 1e3:.4g} mm"
     estimated = "pressure-viscosity estimated" if emap.lubricant.estimated else "data not verified"
     unverified = "" if emap.lubricant.verified else f" ({estimated})"
@@ -181,7 +182,7 @@ def _heading(figure: Figure, emap: EHDMap, shown: int) -> None:
         f"Per unit length of contact, at {at} over load and entrainment speed.  "
         f"Solver {plain(attributes['solver'])}, structural law {plain(attributes['structural_law'])}.  "
         f"Mapped: {span(dataset['load'].values, LOAD)}, {span(dataset['entrainment_speed'].values, SPEED)}, "
-        f"{_drawn(span(dataset['temperature'].values, TEMPERATURE))}.",
+        f"{typeset(span(dataset['temperature'].values, TEMPERATURE))}.",
         8,
     )
 
@@ -237,7 +238,7 @@ def _limits(dataset: xr.Dataset) -> str:
     """Say which limit the points stand for that are one; their first words, where there are several."""
     reasons = dataset["reason"].values[dataset["status"].values == int(Status.ASYMPTOTE)]
     causes = sorted({plain(reason).split(":")[0] for reason in reasons if reason})
-    return _drawn("; ".join(causes[:2])) if causes else "a stated limit"
+    return typeset("; ".join(causes[:2])) if causes else "a stated limit"
 
 
 def _facts(dataset: xr.Dataset) -> str:
@@ -268,8 +269,3 @@ def _facts(dataset: xr.Dataset) -> str:
 def _contact_words(name: str) -> str:
     """Return how a contact is called in a heading."""
     return "Line contact" if name in schema.CONTACT_NAMES[1] else f"{name.capitalize()} contact"
-
-
-def _drawn(text: str) -> str:
-    """Return a unit with the letters that a terminal may lack."""
-    return text.replace("um", "µm").replace("degC", "°C")

@@ -13,6 +13,7 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocator
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.figures import WARNING
 from ehdmaps.jobs.curves import curves
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
@@ -30,11 +31,10 @@ CURVE_POINTS = 400
 LINEAR_APPROACH = 1.0
 """Approach [um] below which its axis is linear: it is negative where films are thicker than the bodies give way."""
 
-_BAD = "#c8102e"
 ASYMPTOTE: Any = {"marker": "^", "ms": 2.8, "mfc": "white", "mew": 0.6}
 BELOW: Any = {"marker": "v", "ms": 3.5}
-FILLED: Any = {"marker": "o", "ms": 4, "mfc": "none", "mec": _BAD, "mew": 0.9}
-LOST: Any = {"marker": "x", "ms": 4, "color": _BAD}
+FILLED: Any = {"marker": "o", "ms": 4, "mfc": "none", "mec": WARNING, "mew": 0.9}
+LOST: Any = {"marker": "x", "ms": 4, "color": WARNING}
 HATCH: Any = {"facecolor": "none", "edgecolor": "0.8", "hatch": "////", "lw": 0.0, "zorder": 0}
 
 

@@ -96,7 +96,10 @@ def fitted_pressure(dataset: xr.Dataset) -> str:
 
 
 def plain(text: object) -> str:
-    """Return a text without control characters, which a terminal would obey."""
+    """Return a foreign text as part of a line: what is not printable, line breaks too, is a question mark.
+
+    `ehdmaps.program.shown` looks after whole outputs, whose line breaks stay; figures and tables do not pass it.
+    """
     return "".join(character if character.isprintable() else "?" for character in str(text))
 
 

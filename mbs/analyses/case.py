@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from ehdmaps.errors import InputError
 from mbs.scene.assembly import Model
+from mbs.scene.fields import MICROMETRE
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +34,12 @@ class Case:
     clearance: float
     load_factor: float = 1.0
     start_angle: float | None = None
+
+
+def clearance_text(model: Model) -> str:
+    """The diametral clearances of all bearings in words, such as ``20 um``; empty without bearings."""
+    clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
+    return ", ".join(MICROMETRE.text(value) for value in clearances)
 
 
 def common_clearance(model: Model) -> float:

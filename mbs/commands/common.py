@@ -15,6 +15,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import Bar, Lines, progress
 from ehdmaps.outputs import write_figure
 from ehdmaps.units import RPM, TEMPERATURE, Display, quantity
+from mbs.analyses.case import clearance_text
 from mbs.analyses.film_limits import film_limits, ring_motions
 from mbs.analyses.reach import axes_outside
 from mbs.bearings.bearing_force import BearingForce
@@ -24,7 +25,6 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import write_dataset
 from mbs.scene.assembly import Model
-from mbs.scene.fields import MICROMETRE
 
 RESOLUTION = 150
 
@@ -60,12 +60,10 @@ class Told:
 
 def heading(model: Model, speed: float | None = None) -> list[str]:
     """What was analysed, and which of its numbers are assumptions."""
-    clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
-    shown = ", ".join(MICROMETRE.text(value) for value in clearances) or "none"
     at = "" if speed is None else f"{RPM.text(speed)}, "
     return [
         f"{model.scene.title}: law {model.law}",
-        f"  {at}{TEMPERATURE.text(model.scene.temperature)}, clearance {shown}; assumed: "
+        f"  {at}{TEMPERATURE.text(model.scene.temperature)}, clearance {clearance_text(model) or 'none'}; assumed: "
         + (f"{len(model.scene.assumed)} keys of the scene, marked there" if model.scene.assumed else "nothing"),
     ]
 

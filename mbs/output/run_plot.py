@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from mbs.output.page import COLOURS, grid, headed, shade, shade_handle, whole_numbers
+from ehdmaps.figures import COLOURS
+from mbs.output.page import grid, headed, shade, shade_handle, whole_numbers
 from mbs.scene.assembly import Model
 from mbs.transient.integration import Trajectory
 

@@ -19,6 +19,7 @@ def test_there_are_eight_and_the_page_names_them():
     assert all(f"`{path.name}`" in page for path in EXAMPLES)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_example(path, tmp_path, monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "Agg")

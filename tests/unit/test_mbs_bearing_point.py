@@ -20,7 +20,7 @@ from mbs.bearings.films import FormulaFilms
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
-from tests.unit.mbs_cases import map_law
+from tests.cases.bearings import map_law
 
 OIL = Lubricant.named("FVA3")
 WARM = 313.15

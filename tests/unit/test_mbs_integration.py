@@ -14,7 +14,7 @@ from mbs.model.profiles import Harmonic, SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
 from mbs.transient.integration import integrate
-from tests.unit.test_mbs_system import MASS, OneSided, force, stiff
+from tests.cases.elements import MASS, OneSided, force, stiff
 
 REST = SpeedProfile.constant(0.0)
 OMEGA = math.sqrt(5e4 / 2.0)

@@ -44,21 +44,11 @@ from mbs import (
     sweep,
 )
 from mbs.modal.uff_reading import read_uff
+from tests.cases.jobs import map_job
 
-JOB = """
-schema = 1
-[bearing]
-name = "NU308"
-[lubricant]
-name = "FVA3"
-[grid]
-load = ["1 N/mm", "10 N/mm", "100 N/mm", "400 N/mm"]
-entrainment_speed = ["0.1 m/s", "0.5 m/s", "2 m/s", "10 m/s"]
-temperature = ["40 degC"]
-[solver]
-name = "formula"
-structural_law = "iso16281"
-"""
+JOB = map_job(
+    '["1 N/mm", "10 N/mm", "100 N/mm", "400 N/mm"]', '["0.1 m/s", "0.5 m/s", "2 m/s", "10 m/s"]', '["40 degC"]'
+)
 
 EXAMPLES = ["mbs.scene.assembly", *(f"mbs.analyses.{entry.name}" for entry in pkgutil.iter_modules(analyses.__path__))]
 

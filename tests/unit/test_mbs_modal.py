@@ -21,7 +21,7 @@ from mbs.modal.uff import Measurement
 from mbs.modal.uff_reading import LARGEST, read_uff
 from mbs.modal.uff_writing import write_uff
 from mbs.modal.windows import exponential_window, force_window, needed_decay, pulse, without_window
-from tests.unit.modal_cases import POLES, REFERENCE, SENSORS, STEP, hits, measured
+from tests.cases.modal import POLES, REFERENCE, SENSORS, STEP, hits, measured
 
 
 def changed(entry, **keywords):

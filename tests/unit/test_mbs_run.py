@@ -26,7 +26,7 @@ from mbs.transient.run_elements import is_known
 from mbs.transient.run_kernel import _expanded_times, _solve
 from mbs.transient.speed_tables import NODES, STEP, SpeedTables
 from mbs.transient.stepping import Method
-from tests.unit.mbs_cases import TEMPERATURE, map_law
+from tests.cases.bearings import TEMPERATURE, map_law
 
 REST = SpeedProfile.constant(0.0)
 MASS = Inertia(2.0, 0.01, 0.02)

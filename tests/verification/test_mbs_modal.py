@@ -19,7 +19,7 @@ from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
 from mbs.transient.hammer import OVERSAMPLING, HammerTest, linear_hits, nonlinear_hits, suggested_duration
-from tests.unit.modal_cases import (
+from tests.cases.modal import (
     DAMPING,
     OMEGA,
     ORDERS,
