@@ -104,9 +104,9 @@ class Layout:
     film : float
         Film H for which it is laid [b^2/R].
     length : float
-        From the inlet end to the exit [b].
+        Distance from the inlet end to the exit [b].
     inlet_edge, blur, core : float
-        Where the Hertz zone starts, over which length its term is rounded [b], and its weight.
+        Start of the Hertz zone, length over which its term is rounded [b], and its weight.
     terms : ndarray, shape (3, k)
         Centres [b], widths [b] and weights of the asinh terms.
     """

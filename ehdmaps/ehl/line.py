@@ -69,7 +69,7 @@ class Resolution:
         own and the linearised grid follows it; M/100 times as much above M = 100, where the edge of the Hertz
         zone alone is that steep.
     shape : GridShape
-        Where the grid spends its cells.
+        Distribution of the grid's cells.
     """
 
     density: float = 6.5

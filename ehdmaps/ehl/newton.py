@@ -84,7 +84,7 @@ def newton(
     load : float
         Integral of the dimensionless pressure.
     tolerance : float
-        On the last full step: pressure relative to its maximum, film and exit relative to film and exit.
+        Bound of the last full step: pressure relative to its maximum, film and exit relative to film and exit.
     most_steps : int
         Steps after which the point counts as stagnated.
     """

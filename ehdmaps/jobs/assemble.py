@@ -58,7 +58,7 @@ def assemble(job: Job, solver: ContactSolver, tasks: Sequence[LineTask], results
     Returns
     -------
     xarray.Dataset
-        As the schema wants it, with provenance; isolated holes filled if the job says so.
+        The map as the schema wants it, with provenance; isolated holes filled if the job says so.
     """
     films = _films(job, tasks, results)
     holes_filled = np.zeros(job.shape, dtype=bool)

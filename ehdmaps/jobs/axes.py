@@ -26,7 +26,7 @@ class AxisRule:
     low, high : float
         Allowed values; wide enough for every bearing, tight enough to catch a wrong unit.
     display : Display
-        For messages.
+        Unit and format for messages.
     """
 
     key: str

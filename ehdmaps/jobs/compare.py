@@ -30,9 +30,9 @@ class Difference:
     Attributes
     ----------
     variable : str
-        Its name.
+        Name of the variable.
     median, high, largest : float
-        Of |B - A|/|A|: median, 95 % quantile, largest; NaN where no point can be compared.
+        Median, 95 % quantile and largest value of |B - A|/|A|; NaN where no point can be compared.
     place : mapping
         Contact, load [N/m], entrainment speed [m/s] and temperature [K] of the largest; empty where there is none.
     left_out : int

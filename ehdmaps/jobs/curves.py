@@ -54,7 +54,7 @@ def curves(
     Parameters
     ----------
     field : FilmField
-        With these contacts.
+        Films of these contacts.
     contacts : tuple of LineContact
         One, or those in series: compliances and loss compliances add.
     loads : ndarray, shape (n,)

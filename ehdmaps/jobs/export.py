@@ -57,7 +57,7 @@ def table(emap: EHDMap, chosen: Chosen, name: str) -> str:
     chosen : Chosen
         Curves within its ranges.
     name : str
-        Of the map file, for the comment.
+        Name of the map file, for the comment.
 
     Raises
     ------

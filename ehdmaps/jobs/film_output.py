@@ -45,7 +45,7 @@ class FilmOutputs:
         point : OperatingPoint
             Load, speed and temperature.
         frequency : float
-            Of the oscillation [Hz]; 0 is the low-frequency limit.
+            Frequency of the oscillation [Hz]; 0 is the low-frequency limit.
 
         Returns
         -------

@@ -32,13 +32,13 @@ class FilmRow:
     Attributes
     ----------
     title : str
-        Of the row.
+        Title of the row.
     half_width : float
         b [m].
     surface_speeds : tuple of float
-        Of the lower and the upper surface [m/s].
+        Speeds of the lower and the upper surface [m/s].
     grid : GridSolution
-        With its fields.
+        Solution on the grid, with its fields.
     """
 
     title: str
@@ -55,7 +55,7 @@ def plot_films(rows: Sequence[FilmRow], heading: str, output: Path) -> None:
     rows : sequence of FilmRow
         One a contact.
     heading : str
-        Of the page.
+        Heading of the page.
     output : Path
         The picture; its ending decides the format (png, pdf, svg).
 

@@ -35,7 +35,7 @@ def filled(values: FloatArray, holes: BoolArray, axis: int, coordinate: FloatArr
     Parameters
     ----------
     values : array
-        With NaN in the holes.
+        Values with NaN in the holes.
     holes : array of bool
         Points to fill; neither at an end of the axis.
     axis : int

@@ -38,7 +38,7 @@ def solve_points(
     Parameters
     ----------
     contacts : sequence of LineContact
-        With names apart.
+        Contacts with different names.
     lubricant : Lubricant
         The oil.
     points : xarray.Dataset
@@ -48,13 +48,13 @@ def solve_points(
     solver : ContactSolver
         What solves them; picklable where there is more than one worker.
     workers : int
-        Processes.
+        Number of processes.
 
     Returns
     -------
     xarray.Dataset
-        Over contact and the dims of the points: the variables of a map file. A point without a solution has NaN, a
-        status and a reason. Loads over a dim of their own are solved one from the other, as in a map.
+        A dataset over contact and the dims of the points: the variables of a map file. A point without a solution has
+        NaN, a status and a reason. Loads over a dim of their own are solved one from the other, as in a map.
 
     Raises
     ------

@@ -39,13 +39,13 @@ class Measured:
     Attributes
     ----------
     label : str
-        Of the contestant.
+        Name of the contestant.
     seconds_per_point : float
         Wall time on one core.
     solved : int
         Points with a usable status.
     errors : dict
-        By variable: relative errors at the points that it and the reference solved.
+        Relative errors by variable, at the points that it and the reference solved.
     """
 
     label: str
@@ -81,7 +81,7 @@ def measure(
     Parameters
     ----------
     job : Job
-        Its lines are sampled evenly.
+        Job whose lines are sampled evenly.
     lines : int
         How many.
     entries : sequence of Contestant

@@ -12,7 +12,7 @@ A bearing calls `collapse` once a time step and `evaluate_at` once a slice::
     for j in range(slices):
         w, dw_ddelta, dw_drate = evaluate_at(point, delta[j], rate[j], counts)
 
-or `ehdmaps.maps.bulk.evaluate_many_at` for all slices together, which is quicker still.
+or `ehdmaps.maps.bulk.evaluate_many_at` for all slices together, which is faster still.
 
 `counts` (int64, 4) is counted up at `LOAD`, `SPEED` or `TEMPERATURE` for arguments outside the map, whatever the
 policy of the law, and at `NOT_FINITE`; speed and temperature are then held at the edge, and above the held load

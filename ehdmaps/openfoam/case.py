@@ -31,7 +31,7 @@ def working_case(template: Path, parameters: str, name: str, keep: Path | None =
     parameters : str
         Text of the one file that differs.
     name : str
-        Of a kept folder; a number is added where it exists.
+        Name of a kept folder; a number is added where it exists.
     keep : Path, optional
         Folder for cases that are kept; None: the system's folder for temporary files, for failed ones only.
 

@@ -60,7 +60,7 @@ class FilmFields:
         Parameters
         ----------
         x : float
-            From the contact centre [m].
+            Distance from the contact centre [m].
         rows : int
             Cells across the film.
 

@@ -48,7 +48,7 @@ class Installation:
     build : str
         Record of the build: OpenFOAM version, compiler, hash of the sources.
     template_hash : str
-        Of the template's files.
+        Hash of the template's files.
     environment : tuple of (str, str)
         What the programs need besides the environment of this process.
     """

@@ -81,9 +81,9 @@ class Oscillation:
     frequency : float
         [Hz].
     amplitude : float
-        Over the central film.
+        Amplitude as a share of the central film.
     steps_per_cycle, cycles : int
-        Of the time integration.
+        Steps and cycles of the time integration.
     """
 
     frequency: float
@@ -105,13 +105,13 @@ class Parameters:
     load : float
         w [N/m].
     lower_speed, upper_speed : float
-        Of the surfaces [m/s].
+        Speeds of the surfaces [m/s].
     oil : LubricantState
-        At the temperature of the point.
+        State of the oil at the temperature of the point.
     cavitation_range : float
         Range of pressure over which liquid turns into the cavitated mixture [Pa].
     mesh : Mesh
-        Where the columns stand.
+        Positions of the columns.
     columns, rows : int
         Cells along and across the film.
     flow : {"thin_film", "full_stress"}
@@ -125,11 +125,11 @@ class Parameters:
     start : Start, optional
         None starts from the dry contact.
     frequencies : tuple of float
-        Of the linear response [Hz]; 0 is the low-frequency limit.
+        Frequencies of the linear response [Hz]; 0 is the low-frequency limit.
     oscillation : Oscillation, optional
         Oscillation in time, the independent check of the response.
     max_iterations : int
-        After which a run counts as stagnated.
+        Number of iterations after which a run counts as stagnated.
     tolerance : float
         Relative, of the balances.
     write_fields : bool

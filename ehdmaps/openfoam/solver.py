@@ -99,7 +99,7 @@ class OpenFoamSolver(ContactSolverDefaults):
     tolerance : float
         Relative, of the balances.
     max_iterations : int
-        After which a run counts as stagnated.
+        Number of iterations after which a run counts as stagnated.
     starter : callable, optional
         Gives a start to each point; without one it starts from the dry contact.
     timeout : float
@@ -240,14 +240,14 @@ class OpenFoamSolver(ContactSolverDefaults):
         contact, lubricant, point
             What is solved.
         frequency : float
-            Of the response [Hz]; 0 is the low-frequency limit.
+            Frequency of the response [Hz]; 0 is the low-frequency limit.
         with_fields : bool
             Whether to read the fields of the fine grid.
 
         Returns
         -------
         film : FilmSolution
-            With status and cause where it failed.
+            Solution of the film, with status and cause where it failed.
         grid : GridSolution or None
             What the run on the fine grid gave; None where there is none.
         """
@@ -295,7 +295,7 @@ class OpenFoamSolver(ContactSolverDefaults):
         point : OperatingPoint
             Load, speed and temperature.
         frequency : float
-            Of the oscillation [Hz]; 0 is the low-frequency limit.
+            Frequency of the oscillation [Hz]; 0 is the low-frequency limit.
         """
         state = lubricant.at(point.temperature)
         guess = self.starter and self.starter(

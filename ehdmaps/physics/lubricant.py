@@ -71,7 +71,7 @@ class LubricantState:
     compressible : bool
         Density after Dowson and Higginson if true, constant if false.
     fitted_pressure : float
-        Above this pressure [Pa] the viscosity law is extrapolated; inf if unknown.
+        Highest pressure [Pa] at which the viscosity law was fitted; it is extrapolated above; inf if unknown.
     """
 
     temperature: float
@@ -109,7 +109,7 @@ class Lubricant:
     Attributes
     ----------
     name : str
-        As in provenance and messages.
+        Name for provenance and messages.
     verified : bool
         Whether its numbers have a stated source (`named`), or are vouched for by the user (own oils).
     viscosity : ConstantViscosity, AstmViscosity or VogelViscosity
@@ -123,7 +123,8 @@ class Lubricant:
     density_law : {"dowson-higginson", "incompressible"}
         Density over pressure.
     fitted_pressure : float
-        Above this pressure [Pa] the viscosity law is extrapolated; `FITTED_PRESSURE` unless stated.
+        Highest pressure [Pa] at which the viscosity law was fitted; it is extrapolated above; `FITTED_PRESSURE` unless
+        stated.
     thermal_conductivity : float or None
         [W/(m K)].
     correlation : str or None
@@ -223,7 +224,7 @@ class Lubricant:
         Parameters
         ----------
         **data
-            As for `own`.
+            The same as for `own`.
 
         Examples
         --------
@@ -240,10 +241,10 @@ class Lubricant:
         Parameters
         ----------
         roelands_z : float, optional
-            z. Without it, z = alpha p0/(ln eta0 + 9.67) at each temperature; without a pressure_viscosity, alpha
-            follows from z likewise; both hold as stated where both are given.
+            Exponent z. Without it, z = alpha p0/(ln eta0 + 9.67) at each temperature; without a pressure_viscosity,
+            alpha follows from z likewise; both hold as stated where both are given.
         **data
-            As for `own`.
+            The same as for `own`.
 
         Examples
         --------
@@ -260,7 +261,7 @@ class Lubricant:
         Parameters
         ----------
         **data
-            As for `own`. 1/a is the pressure_viscosity, which has to be stated; b is that of FVA 3.
+            The same as for `own`. 1/a is the pressure_viscosity, which has to be stated; b is that of FVA 3.
 
         Examples
         --------
@@ -314,7 +315,7 @@ class Lubricant:
         fitted_pressure : float
             Reach of the viscosity data [Pa]; inf flags nothing.
         name : str
-            As in provenance and messages.
+            Name for provenance and messages.
 
         Raises
         ------

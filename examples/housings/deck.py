@@ -20,7 +20,7 @@ def deck(mesh: Mesh, material: Material, clamped: IntArray, count: int, matrices
     mesh : Mesh
         The solid; node n of the deck is row n - 1 of its positions.
     material : Material
-        Of all elements.
+        Material of all elements.
     clamped : array of int
         Indices of nodes whose three displacements are held; none for a free solid.
     count : int

@@ -49,7 +49,7 @@ def mesh_housing(housing: Housing, size: float) -> Mesh:
     housing : Housing
         What is meshed.
     size : float
-        Of the elements [m].
+        Size of the elements [m].
 
     Raises
     ------
@@ -73,7 +73,7 @@ def tetrahedra(
     draw : callable
         Draws one solid in gmsh's geometry kernel, in mm, and returns it.
     size : float
-        Of the elements [m], from `SMALLEST` to `LARGEST`.
+        Size of the elements [m], from `SMALLEST` to `LARGEST`.
     points : sequence of tuple of float
         Places on the surface where a node must lie [m].
     around : int
@@ -82,7 +82,7 @@ def tetrahedra(
     Returns
     -------
     Mesh
-        With curved edges at curved surfaces. The same for the same input and version of gmsh.
+        The mesh, with curved edges at curved surfaces. It is the same for the same input and version of gmsh.
 
     Raises
     ------

@@ -50,11 +50,11 @@ class Made:
     Attributes
     ----------
     mesh : Mesh
-        Of its solid.
+        Mesh of its solid.
     reduced : ReducedBody
-        With its provenance.
+        The reduced body, with its provenance.
     coordinates : int
-        Of the finite-element model, feet held.
+        Number of coordinates of the finite-element model, feet held.
     frequencies : array, shape (k,)
         Lowest of the housing with its feet held and its seats free, by CalculiX [Hz].
     reduced_frequencies : array, shape (k,)
@@ -84,11 +84,11 @@ def make(housing: Housing, size: float, cutoff: float, keep: Path | None = None)
     housing : Housing
         What is made.
     size : float
-        Of the elements [m].
+        Size of the elements [m].
     cutoff : float
         Modes with the seats held are kept up to here [Hz].
     keep : Path, optional
-        Where the files of CalculiX stay; they are deleted if left out.
+        Folder in which the files of CalculiX stay; they are deleted if left out.
 
     Raises
     ------

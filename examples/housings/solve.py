@@ -38,7 +38,7 @@ def matrices(mesh: Mesh, material: Material, clamped: IntArray, folder: Path) ->
     mesh : Mesh
         The solid; node n of the model is row n - 1 of its positions.
     material : Material
-        Of it.
+        Material of the mesh.
     clamped : array of int
         Indices of nodes that are held; their freedoms are not in the matrices.
     folder : Path
@@ -63,7 +63,7 @@ def own_frequencies(mesh: Mesh, material: Material, clamped: IntArray, count: in
     Parameters
     ----------
     mesh, material, clamped
-        As of `matrices`.
+        The same as for `matrices`.
     count : int
         Frequencies to find.
     folder : Path

@@ -53,7 +53,7 @@ class LawRun:
     record : Recording
         The run in time.
     spectra : RunUpSpectra
-        Its levels over speed, frequency and order.
+        Levels of the run over speed, frequency and order.
     modes : Sweep or None
         Modes of the linear system at some speeds of the run, if they were asked for.
     seconds : float
@@ -82,7 +82,7 @@ class CampbellResult:
     orders : tuple of (float, str)
         Orders that were followed, with their names.
     runs : tuple of LawRun
-        Of each law that came to the end.
+        Runs of the laws that came to the end.
     failed : tuple of str
         Why the others did not, each with its label.
     dataset : xarray.Dataset

@@ -66,9 +66,9 @@ def axes_outside(model: Model, speed: float, loads: Mapping[str, float] | None =
     Parameters
     ----------
     model : Model
-        With its temperature.
+        Model with its temperature.
     speed : float
-        Of the system [rad/s]; the highest one of a run.
+        Speed of the system [rad/s]; the highest one of a run.
     loads : mapping of str to float, optional
         Largest load of a slice [N/m] by bearing; of a run it is not recorded.
     """
@@ -89,9 +89,9 @@ def calls_at(model: Model, displacement: FloatArray, operation: Operation) -> di
     Parameters
     ----------
     model : Model
-        With its law.
+        Model with its law.
     displacement : array, shape (n,)
-        Of the coordinates [m or rad].
+        Displacement of the coordinates [m or rad].
     operation : Operation
         Speed and angle.
     """

@@ -49,7 +49,7 @@ class SweepResult:
     sweeps : tuple of Sweep
         One a case.
     outside : tuple of mapping of str to int
-        At how many speeds each bearing lies outside the map, one a case.
+        Number of speeds at which each bearing lies outside the map, one a case.
     dataset : xarray.Dataset
         What `mbs sweep -o` writes.
     """

@@ -286,7 +286,7 @@ def bearing_force(
     Returns
     -------
     int
-        Zero; 1 if some slice was above the mapped load; NOT_FINITE or TOO_FAR, with `out` left alone.
+        A code: zero; 1 if some slice was above the mapped load; NOT_FINITE or TOO_FAR, with `out` left alone.
     """
     wrong = _check(state, geometry)
     if wrong != 0:

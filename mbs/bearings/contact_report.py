@@ -135,7 +135,7 @@ def axes_left(law: Law, load: float, entrainment_speed: float, temperature: floa
     Parameters
     ----------
     law : Law
-        Of a map or formula; a dry law has no map.
+        Law of a map or formula; a dry law has no map.
     load, entrainment_speed, temperature : float
         Largest load of a slice [N/m], u [m/s], T [K].
     """
@@ -173,9 +173,9 @@ def heated(
     Parameters
     ----------
     contacts : BearingContacts
-        With their films.
+        Contacts with their films.
     oil : Lubricant or None
-        Its conductivity has to be known.
+        Oil, whose conductivity has to be known.
     modulus, entrainment_speed, temperature : float
         E' [Pa], u [m/s], T [K].
     """

@@ -170,7 +170,7 @@ class MapFilms:
     Attributes
     ----------
     emap : EHDMap
-        Of a bearing.
+        Map of a bearing.
 
     Raises
     ------

@@ -138,9 +138,9 @@ class ForceAtPoint:
         Parameters
         ----------
         pose : array_like
-            Of the inner ring in O, shape (6,) [m], [rad].
+            Pose of the inner ring in O, shape (6,) [m], [rad].
         velocity : array_like, optional
-            Its rate, shape (6,) [m/s], [rad/s]; at rest if left out.
+            Rate of the pose, shape (6,) [m/s], [rad/s]; at rest if left out.
         cage_angle : float
             Angle at which the cage stands [rad].
         """

@@ -23,7 +23,7 @@ class RollerLoads:
     Attributes
     ----------
     angle : array (Z,)
-        Where the rollers are in O, from y towards z, within -pi to pi [rad].
+        Angles of the rollers in O, from y towards z, within -pi to pi [rad].
     load : array (Z,)
         Load of each roller on the inner raceway [N].
     moment : array (Z,)
@@ -63,7 +63,7 @@ class RollerLoads:
         Parameters
         ----------
         emap : EHDMap
-            Of this bearing.
+            Map of this bearing.
         entrainment_speed, temperature, centrifugal_load : float
             u [m/s], T [K], q [N/m].
         variable : {"central_film", "minimum_film"}

@@ -74,16 +74,16 @@ def tabulate(point: Point, nodes: FloatArray, buffer: FloatArray, cells: FloatAr
     Parameters
     ----------
     point : Point
-        With the whole film.
+        Law at a point, with the whole film.
     nodes : array (ROWS + 1,)
         `NODES`.
     buffer : array (8, 2 ROWS + 1)
-        Scratch.
+        Scratch space.
     cells : array (2 ROWS, 8)
         Filled: four coefficients of w, four of c, over the distance from the end of the cell that is nearer to the
         centre, in scales.
     numbers : array (10,)
-        With HIGHEST; all that belongs to the table is filled.
+        Numbers of the table, with HIGHEST; all that belongs to the table is filled.
 
     Returns
     -------
@@ -193,11 +193,11 @@ def tabulate_law(
     law : tuple
         `law_arrays`.
     workspace : array (4, n, 8)
-        Of the law.
+        Workspace of the law.
     conditions : array (3,)
         u [m/s], T [K], q [N/m].
     nodes, buffer, cells, numbers
-        As of `tabulate`.
+        The same as for `tabulate`.
     counts : array (4,)
         int64, counted up outside the map.
 

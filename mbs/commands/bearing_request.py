@@ -63,9 +63,9 @@ class BearingRequest:
     loads : tuple of float
         Sizes of the load on the inner ring [N].
     direction : (float, float)
-        Its direction, y and z; a unit vector.
+        Direction of the load, y and z; a unit vector.
     speeds : tuple of float
-        Of the inner ring [rad/s].
+        Speeds of the inner ring [rad/s].
     temperature, roughness : float
         [K], [m].
     description : BearingDescription

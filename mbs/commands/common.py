@@ -29,7 +29,7 @@ from mbs.scene.assembly import Model
 RESOLUTION = 150
 
 MORE_DAMPING = "films as a rule are stiffer and damp less than computed here"
-"""What is known of quicker motion."""
+"""What is known of motion above the low-frequency limit."""
 
 NO_LONGER_VALID = f"above it stiffness and damping of slow motion are no longer valid, {MORE_DAMPING}"
 
@@ -69,7 +69,7 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
 
 
 def film_warnings(limits: Sequence[FilmLimit], frequencies: Iterable[float]) -> list[str]:
-    """Lines on frequencies that are too quick for low-frequency films."""
+    """Lines on frequencies above the low-frequency limit of the films."""
     lines = []
     highest = max(frequencies, default=0.0)
     for limit in limits:
@@ -111,7 +111,7 @@ def read_option(
     Parameters
     ----------
     option : str
-        Its name, such as "--highest".
+        Name of the option, such as "--highest".
     text : str or None
         What was given; None if it was left out.
     unit : str
@@ -164,7 +164,7 @@ def write(arguments: argparse.Namespace, dataset: xr.Dataset, figure: Figure | N
     Parameters
     ----------
     arguments : argparse.Namespace
-        With `output` and `plot`.
+        Arguments with `output` and `plot`.
     dataset : xarray.Dataset
         The result.
     figure : matplotlib.figure.Figure or None

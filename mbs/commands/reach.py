@@ -20,7 +20,7 @@ def fade_lines(model: Model, speeds: FloatArray, of: str = "the speeds") -> list
     model : Model
         The machine with its law.
     speeds : array, shape (n,)
-        Of the system [rad/s].
+        Speeds of the system [rad/s].
     of : str
         What the speeds are, in words.
     """

@@ -82,7 +82,7 @@ class CrossSection:
         youngs_modulus : float
             E [Pa].
         poisson_ratio : float
-            nu.
+            Poisson's ratio nu.
         density : float
             [kg/m3].
         """
@@ -246,7 +246,7 @@ def element_length(section: CrossSection, frequency: float, error: float) -> flo
     Parameters
     ----------
     section : CrossSection
-        Of the beam.
+        Cross section of the beam.
     frequency : float
         [Hz].
     error : float

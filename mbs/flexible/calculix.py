@@ -34,11 +34,11 @@ def read_calculix(
     Parameters
     ----------
     stiffness, mass, dofs : Path
-        job.sti, job.mas and job.dof of one run.
+        Files job.sti, job.mas and job.dof of one run.
     nodes : NodePositions
-        Of its mesh; see `mbs.flexible.mesh`.
+        Nodes of its mesh; see `mbs.flexible.mesh`.
     units : {"SI", "mm-t-s"}
-        Of deck and matrices.
+        Units of deck and matrices.
 
     Raises
     ------

@@ -36,9 +36,9 @@ class Extent:
     Attributes
     ----------
     mass : float
-        Without the share of fixed nodes [kg].
+        Mass without the share of fixed nodes [kg].
     centre : array, shape (3,)
-        Of that mass [m].
+        Centre of that mass [m].
     lower, upper : array, shape (3,)
         Corners of the box around all nodes of the mesh [m].
     """

@@ -39,7 +39,7 @@ class FiniteElementModel:
     numbers : array of int, shape (P,)
         Nodes whose position is known.
     positions : array, shape (P, 3)
-        Where they are [m].
+        Positions of the nodes [m].
 
     Raises
     ------

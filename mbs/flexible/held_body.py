@@ -49,9 +49,9 @@ class HeldBody:
     Parameters
     ----------
     stiffness, mass : sparse array, shape (N, N)
-        Without the degrees of freedom that are prescribed one by one.
+        Matrices without the degrees of freedom that are prescribed one by one.
     averages : array, shape (m, N)
-        B; no rows if there are no averages.
+        Matrix B; no rows if there are no averages.
     groups : array of int, shape (N,)
         Degrees of freedom with the same number belong to the same node; for the order of elimination.
     cutoff : float
@@ -110,9 +110,9 @@ class HeldBody:
         Parameters
         ----------
         force : array, shape (N, c)
-            In columns.
+            Forces, in columns.
         prescribed : array, shape (m, c)
-            p.
+            Prescribed displacements p, in columns.
 
         Returns
         -------
@@ -289,7 +289,7 @@ def elimination_order(matrix: sparse.csc_array, groups: IntArray) -> IntArray:
     Parameters
     ----------
     matrix : sparse array, shape (N, N)
-        Symmetric.
+        Symmetric matrix.
     groups : array of int, shape (N,)
         Degrees of freedom with the same number stay together.
 

@@ -67,7 +67,7 @@ def read_numbers(path: Path, columns: int, comment: str, delimiter: str | None =
     comment : str
         One character, with which lines begin that are passed over.
     delimiter : str, optional
-        Between numbers; blanks if left out.
+        Character between numbers; blanks if left out.
 
     Raises
     ------

@@ -53,9 +53,9 @@ def reduce(
     model : FiniteElementModel
         The body; free, or with feet that are fixed already.
     interfaces : mapping of str to Interface
-        Where forces act. With all of them held the body must not move.
+        Places where forces act. With all of them held the body must not move.
     points : mapping, optional
-        Where the body is observed only. At a node of a solid the rotations are not known: zero.
+        Places where the body is only observed. At a node of a solid the rotations are not known: zero.
     cutoff : float
         Highest frequency of the modes with all interfaces held [Hz].
     attributes : mapping of str to str, optional

@@ -87,7 +87,7 @@ class StateModes:
     eigenvalues : array, shape (2 n,)
         [1/s].
     right : array, shape (2 n, 2 n)
-        Columns; of size 1 where potential and kinetic energy measure the size.
+        Right eigenvectors in columns, of size 1 where potential and kinetic energy measure the size.
     left : array, shape (2 n, 2 n)
         Rows, with left @ right = 1.
     oscillates : array of bool, shape (2 n,)
@@ -112,7 +112,7 @@ def modes(balance: Equilibrium) -> Modes:
     Parameters
     ----------
     balance : Equilibrium
-        Where; the gyroscopic terms are those of its speed.
+        Equilibrium to linearise at; the gyroscopic terms are those of its speed.
 
     Raises
     ------
@@ -143,7 +143,7 @@ def undamped_modes(balance: Equilibrium) -> UndampedModes:
     Parameters
     ----------
     balance : Equilibrium
-        Where. Gyroscopic terms are left out.
+        Equilibrium to linearise at. Gyroscopic terms are left out.
 
     Raises
     ------
@@ -171,9 +171,9 @@ def state_modes(balance: Equilibrium, undamped: UndampedModes) -> StateModes:
     Parameters
     ----------
     balance : Equilibrium
-        Where; the gyroscopic terms are those of its speed.
+        Equilibrium to linearise at; the gyroscopic terms are those of its speed.
     undamped : UndampedModes
-        Of the same equilibrium.
+        Undamped modes of the same equilibrium.
     """
     n = balance.system.size
     phi = undamped.shapes
@@ -203,7 +203,7 @@ def energy_shares(balance: Equilibrium, shapes: ComplexArray | FloatArray) -> Fl
     Parameters
     ----------
     balance : Equilibrium
-        With the stiffness of each part.
+        Equilibrium, with the stiffness of each part.
     shapes : array, shape (n, modes)
         Real or complex displacements.
     """

@@ -59,9 +59,9 @@ def sweep(
     angle : float
         What the system has turned [rad]: where the cages stand.
     inputs, sensors : sequence
-        From where to where; no responses if left out.
+        Inputs and sensors of the responses; no responses if left out.
     frequencies : array, shape (frequencies,)
-        Of the responses [Hz].
+        Frequencies of the responses [Hz].
     cage_angles : int
         Angles within one pitch of the rollers over which stiffness and damping of the bearings are averaged; modes
         and responses are those of the first.

@@ -34,9 +34,9 @@ class Point:
     Attributes
     ----------
     balance : Equilibrium
-        Where.
+        Equilibrium at this speed.
     undamped : UndampedModes
-        Of mass and stiffness.
+        Modes of mass and stiffness.
     states : StateModes
         All eigenvalues of the state.
     shapes, damped : ModeSet
@@ -68,7 +68,7 @@ class Along:
     undamped, damped : Match
         Which modes continue which.
     logarithm : array, shape (n,)
-        Of the frequency of each undamped mode, its change by energy.
+        Logarithm of the frequency of each undamped mode, its change by energy.
     between : int
         Speeds that were put in between.
     """
@@ -181,7 +181,7 @@ def over_pitch(balance: Equilibrium, count: int) -> FloatArray:
     Parameters
     ----------
     balance : Equilibrium
-        At the first angle.
+        Equilibrium at the first angle.
     count : int
         How many angles; 1 for that of `balance` alone.
 

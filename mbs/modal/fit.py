@@ -52,11 +52,11 @@ def identify(
     Parameters
     ----------
     responses : Responses
-        With an exponential window or without; its decay is taken out of the poles.
+        Responses, with an exponential window or without; its decay is taken out of the poles.
     method : {"rfp", "lscf"}
         Rational fraction polynomials, or p-LSCF.
     band : (float, float), optional
-        From, to [Hz]; all if left out.
+        Limits of the band, from and to [Hz]; all if left out.
     order : int, optional
         Highest number of pole pairs, 1 to 100; 24 if left out, or what the lines allow.
     modes : int, optional

@@ -32,7 +32,7 @@ def lscf_poles(frequency: FloatArray, response: ComplexArray, orders: Sequence[i
     Parameters
     ----------
     frequency : array, shape (lines,)
-        Of the band, evenly spaced, > 0 [Hz].
+        Frequencies of the band, evenly spaced, > 0 [Hz].
     response : array of complex, shape (rows, lines)
         Any unit; rows are scaled to their rms.
     orders : sequence of int

@@ -58,11 +58,11 @@ def orthogonal_basis(s: ComplexArray, weight: FloatArray, degree: int) -> Basis:
     Parameters
     ----------
     s : array of complex, shape (lines,)
-        Points.
+        Points of the basis.
     weight : array, shape (lines,)
         Positive on more lines than the degree.
     degree : int
-        Highest.
+        Highest degree.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def roots(basis: Basis, coefficients: FloatArray) -> ComplexArray:
     Parameters
     ----------
     basis : Basis
-        Of the degree of the polynomial.
+        Basis of the degree of the polynomial.
     coefficients : array, shape (degree + 1,)
         The last one not zero.
     """
@@ -114,7 +114,7 @@ def rational_poles(
     Parameters
     ----------
     frequency : array, shape (lines,)
-        Of the band, > 0 [Hz].
+        Frequencies of the band, > 0 [Hz].
     response : array of complex, shape (rows, lines)
         Any unit.
     weight : array, shape (rows, lines)

@@ -91,7 +91,7 @@ def synthesise(s: ComplexArray, derivatives: tuple[int, ...], poles: ComplexArra
     poles : array of complex, shape (modes,)
         Those with positive imaginary part.
     parts : Parts
-        Residues.
+        Residues of the modes.
     """
     total = np.stack([contribution.sum(axis=0) for contribution in _contributions(s, poles, parts.residues)], axis=0)
     total = total + parts.below[:, None] / s**2 + parts.above[:, None]
@@ -109,9 +109,9 @@ def refine(
     Parameters
     ----------
     s, response, weight, derivatives
-        As of `fit_residues`.
+        The same as for `fit_residues`.
     poles : array of complex, shape (modes,)
-        To begin with.
+        Poles to begin with.
 
     Returns
     -------

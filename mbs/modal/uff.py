@@ -45,7 +45,7 @@ class Measurement:
     Attributes
     ----------
     title : str
-        Its description.
+        Title of the measurement.
     hits : tuple of Hits
         An entry a place hit; none if the file has no time records.
     responses : Responses or None

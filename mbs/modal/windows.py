@@ -29,7 +29,7 @@ def exponential_window(samples: int, step: float, decay: float) -> FloatArray:
     Parameters
     ----------
     samples : int
-        Of a record.
+        Number of samples of a record.
     step : float
         [s].
     decay : float
@@ -61,7 +61,7 @@ def without_window(poles: ComplexArray, decay: float) -> ComplexArray:
     Parameters
     ----------
     poles : array of complex
-        As identified [1/s].
+        Poles as identified [1/s].
     decay : float
         1/tau of the window [1/s].
     """
@@ -110,7 +110,7 @@ def needed_decay(response: FloatArray, step: float) -> float:
     Parameters
     ----------
     response : array, shape (..., samples)
-        Records.
+        Records of the responses.
     step : float
         [s].
 

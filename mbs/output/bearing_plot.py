@@ -38,7 +38,7 @@ def bearing_figure(description: BearingDescription, points: Points) -> Figure:
     description : BearingDescription
         What the points have in common.
     points : sequence of sequence of BearingPoint
-        By load, then by speed.
+        Points by load, then by speed.
     """
     if len(points) == 1 and len(points[0]) == 1:
         return _page(description, points[0][0], description.roughness)

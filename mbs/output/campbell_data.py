@@ -30,9 +30,9 @@ def campbell_dataset(
     laws : sequence of str
         Names of the contact laws.
     results : sequence of RunUpSpectra
-        Of each law, all of the same run, so that speeds, frequencies and orders are the same.
+        Spectra of each law, all of the same run, so that speeds, frequencies and orders are the same.
     reference : Reference
-        Of the levels.
+        Reference of the levels.
     sensor : str
         Whose signal it is.
 

@@ -100,13 +100,13 @@ def campbell_figure(
     Parameters
     ----------
     title : str
-        Heading.
+        Heading of the page.
     laws : sequence of str
         Names of the contact laws.
     results : sequence of RunUpSpectra
-        Of each law, of the same run.
+        Spectra of each law, of the same run.
     reference : Reference
-        Of the levels.
+        Reference of the levels.
     orders : sequence of (float, str)
         Lines to draw in, with their names.
     overlays : sequence of Overlay or None

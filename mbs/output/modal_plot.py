@@ -26,9 +26,9 @@ def fit_figure(title: str, fits: Sequence[ModalFit]) -> Figure:
     Parameters
     ----------
     title : str
-        Heading.
+        Heading of the page.
     fits : sequence of ModalFit
-        Of the same responses; the lines of the fit are those of the first one.
+        Fits of the same responses; the lines of the fit are those of the first one.
     """
     first = fits[0]
     figure = Figure(figsize=_SIZE, layout="constrained")

@@ -28,7 +28,7 @@ def statics_figure(
     model : Model
         The system.
     balance : Equilibrium
-        Its equilibrium.
+        Equilibrium of the model.
     contacts : sequence of BearingContacts
         Pressures and films of each bearing.
     warnings : sequence of str

@@ -33,7 +33,7 @@ def response_figure(
     Parameters
     ----------
     model : Model
-        With its sensors and inputs.
+        Model with its sensors and inputs.
     frequencies : array, shape (frequencies,)
         [Hz].
     responses : array, shape (frequencies, sensors, inputs)
@@ -78,7 +78,7 @@ def _phase(frequencies: FloatArray, response: ComplexArray) -> tuple[FloatArray,
 
 
 def _limit(axes: Sequence[Axes], limit: float) -> None:
-    """Shade what is too quick for low-frequency films, and say so in the first panel."""
+    """Shade frequencies above the low-frequency limit of the films, and say so in the first panel."""
     low, high = axes[0].get_xlim()
     if not limit < high:
         return

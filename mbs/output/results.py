@@ -130,9 +130,9 @@ def linear_dataset(
     frequencies : ndarray
         [Hz].
     inputs : sequence of Input
-        Where forces act.
+        Inputs, where forces act.
     sensors : sequence of Sensor
-        Where motion is measured.
+        Sensors, where motion is measured.
     """
     names = list(balance.system.coordinates)
     states = [*names, *(f"{name}.rate" for name in names)]

@@ -236,7 +236,7 @@ def sweep_dataset(
     clearances : sequence of float
         Diametral clearance [m].
     load_factors : sequence of float
-        By which the loads of the scene were multiplied.
+        Factors of the loads of the scene.
     """
     first = sweeps[0]
     modes = max(sweep.damped.eigenvalues.shape[1] for sweep in sweeps)

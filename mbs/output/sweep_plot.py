@@ -53,13 +53,13 @@ def sweep_figure(
     Parameters
     ----------
     title, words : str
-        Heading; the words are its second line.
+        Heading of the page; the words are its second line.
     sweeps : sequence of Sweep
-        At the same speeds.
+        Sweeps over the same speeds.
     labels : sequence of str
         What each is.
     limits : sequence of array, shape (speeds,)
-        Of each, the frequency at which omega b/u is 0.3 [Hz]; NaN for laws without films.
+        Frequency of each sweep at which omega b/u is 0.3 [Hz]; NaN for laws without films.
     below : float
         Speed below which the film fades to the dry contact: shaded [rad/s].
     """

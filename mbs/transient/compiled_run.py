@@ -33,13 +33,13 @@ class CompiledRun:
     Parameters
     ----------
     system : System
-        With elements that `mbs.transient.run_elements.is_known` knows.
+        System with elements that `mbs.transient.run_elements.is_known` knows.
     speed : SpeedProfile
         Prescribed speed.
     settings : Settings
         Method and steps.
     stepper : Stepper
-        At the beginning of the run; makes the steps that compiled code cannot.
+        Stepper at the beginning of the run; it makes the steps that compiled code cannot.
     outputs : array, shape (k, n)
         What is recorded of the coordinates.
     orders : array, shape (k,)
@@ -107,7 +107,7 @@ class CompiledRun:
         h : float
             Their length [s].
         rows : array, shape (k,)
-            Where to record; negative for not at all.
+            Rows to record in; negative for not at all.
 
         Returns
         -------

@@ -28,7 +28,7 @@ class LinearPart:
     physical : array, shape (n, n) or (0, n)
         Coordinates by the modes, where errors of steps are asked for.
     method : Method
-        Of the steps.
+        Method of the steps.
     """
 
     def __init__(

@@ -53,9 +53,9 @@ class Recording:
     time, speed, angle : array, shape (samples,)
         [s], [rad/s], [rad].
     signals : array, shape (samples, sensors)
-        Of the sensors [m or rad, per s, per s2].
+        Signals of the sensors [m or rad, per s, per s2].
     forces : tuple of array, shape (samples, m)
-        Of each element in its ports [N or N m].
+        Forces of each element in its ports [N or N m].
     motions : tuple of array, shape (samples, m)
         Displacement of the ports of each element [m or rad].
     steps, halved, iterations : int
@@ -115,7 +115,7 @@ def run(
     sensors : sequence of Sensor
         What to record.
     displacement, velocity : array, shape (n,), optional
-        At time zero; zero if left out.
+        Motion at time zero; zero if left out.
     progress : callable, optional
         Told the number of samples done: once for each, some at a time.
     compiled : bool

@@ -158,7 +158,7 @@ def blend(films: Films, film: int, node: int, weight: float) -> None:
     node : int
         The lower node.
     weight : float
-        Of the upper node, 0 to 1.
+        Weight of the upper node, 0 to 1.
     """
     if films.in_use[film, 0] == node and films.in_use[film, 1] == weight:
         return
@@ -313,7 +313,7 @@ def advance(
     state : State
         Overwritten after each step that is made.
     records : Records
-        Filled.
+        Records, which are filled.
     counters : array (1,), of int
         Newton iterations, counted up.
 

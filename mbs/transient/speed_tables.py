@@ -76,14 +76,14 @@ class SpeedTables:
         speeds : array (n,)
             [rad/s].
         nodes, weights : array (n,)
-            From `places`.
+            Nodes and weights from `places`.
         cells, numbers : array (NODES, rows, 8), (NODES, 10)
             Tables, kept from call to call.
 
         Returns
         -------
         slots : array (k,)
-            Where the tables of the first k speeds are.
+            Slots of the tables of the first k speeds.
         sound : array (k,)
             Whether tables hold the law there; else it must be called for each slice.
         outside : array (k,)

@@ -30,7 +30,9 @@ def made_map(reynolds_map, tmp_path):
 
 @pytest.mark.slow
 def test_script_prints_what_is_shown(made_map, monkeypatch, capsys):
-    found = re.search(r"```python\n([^`]*from mbs import[^`]*)```\n\nprints\n\n```\n([^`]*)```", PYTHON)
+    found = re.search(
+        r"```python\n([^`]*from mbs import[^`]*)```\n\nprints\n\n<!-- [^\n]* -->\n```\n([^`]*)```", PYTHON
+    )
     assert found is not None
     script, shown = found.groups()
     assert script.count("\n") <= 30
