@@ -91,11 +91,11 @@ def draw_curves(
     name : str
         The variable.
     display : Display
-        Its unit on the page.
+        Unit of the variable on the page.
     place : tuple of int
         Indices of contact and temperature.
     width : float
-        Of the curves [pt].
+        Width of the curves, as a share of that in the large panels.
     """
     contact, temperature = place
     dataset = sheet.dataset

@@ -30,9 +30,9 @@ class Variable:
     Attributes
     ----------
     name, units, long_name : str
-        As in the file.
+        Name, units and meaning, written to the file.
     dims : tuple of str
-        Its dims, the cases first.
+        Dims of the variable, the cases first.
     read : callable
         Takes it from the sweep of one case, in the order of the other dims.
     """
