@@ -24,8 +24,8 @@ oil, u = ehdmaps.Lubricant.named("FVA3"), bearing.geometry.entrainment_speed(SPE
 grid: Any = {"loads": np.geomspace(1e2, 1e6, 17), "entrainment_speeds": [0.8 * u, u, 1.25 * u], "temperatures": [T]}
 job = ehdmaps.Job.build(bearing=bearing.geometry, lubricant=oil, **grid, solver_options={"density": 4.5})
 emap, loads = ehdmaps.EHDMap(ehdmaps.generate(job)), np.geomspace(500.0, 10e3, 9)
-dry = hertz(bearing), DryContacts(bearing.geometry.contacts(bearing.material, "iso16281"))
-film = emap.law("series", outside="asymptote"), MapFilms(emap)
+dry: Any = hertz(bearing), DryContacts(bearing.geometry.contacts(bearing.material, "iso16281"))
+film: Any = emap.law("series", outside="asymptote"), MapFilms(emap)
 figure, (left, right) = plt.subplots(1, 2, figsize=(7.0, 3.0), layout="constrained")
 for name, (law, films) in {"dry": dry, "film": film}.items():
     points = [row[0] for row in bearing_points(bearing, law, films, [(0.0, f) for f in loads], [SPEED], T)]
