@@ -398,7 +398,22 @@ class LawAtPoint:
     @cached_property
     def memory(self) -> FilmMemory:
         """The law with films that need time, for steps in time."""
-        return FilmMemory(self)
+        return FilmMemory(self.point, self.law.contacts, self.entrainment_speed, self._check_loads)
+
+    def _check_loads(self, loads: FloatArray) -> None:
+        """Count loads above the map, and raise where the law does."""
+        above = int(np.count_nonzero(loads > self.point.highest_load * (1.0 + kernel.LOAD_TOLERANCE)))
+        if not above:
+            return
+        self.law.counts[LOAD] += above
+        self.law.note_outside("load", loads)
+        if self.law.outside == "error":
+            raise OutsideMapError(
+                f"film memory, load: got {float(np.max(loads)):.6g} N/m, above the map, which ends at "
+                f"{self.law.load_range[1]:.6g} N/m, at {self.entrainment_speed:.6g} m/s, {self.temperature:.6g} K "
+                f"({above} of {loads.size} points above)\nmake a map that reaches there, or take a law with "
+                "outside='clamp' or outside='asymptote'"
+            )
 
     def __call__(self, delta: npt.ArrayLike, rate: npt.ArrayLike) -> tuple[Any, Any, Any]:
         """Load and its derivatives; as calling the `ContactLaw`."""

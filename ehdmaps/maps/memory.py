@@ -13,22 +13,20 @@ The equations are in `ehdmaps.maps.memory_table`. `ContactLaw.advance` takes spe
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from numba import njit
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.errors import InputError
 from ehdmaps.maps import memory_table
-from ehdmaps.maps.kernel import LOAD_TOLERANCE
 from ehdmaps.maps.memory_table import Film, MemoryTable, advanced, equilibrium_at, fill_memory, step_of
-from ehdmaps.maps.tables import LOAD
-
-if TYPE_CHECKING:
-    from ehdmaps.maps.law import LawAtPoint
+from ehdmaps.maps.tables import Point
+from ehdmaps.physics.contact import LineContact
 
 _NO_LOAD = 1e-20
 
@@ -57,8 +55,14 @@ class FilmMemory:
 
     Parameters
     ----------
-    at : LawAtPoint
+    point : Point
         The law without memory: at rest both are alike, and at low frequency.
+    contacts : sequence of LineContact
+        What is in series.
+    entrainment_speed : float
+        u [m/s], of either sign.
+    check : callable
+        Is told the loads of each step [N/m]; it may raise for those above the map.
 
     Raises
     ------
@@ -66,26 +70,30 @@ class FilmMemory:
         With a centrifugal load: films with memory take none.
     """
 
-    def __init__(self, at: LawAtPoint) -> None:
-        if at.centrifugal_load != 0.0:
+    def __init__(
+        self,
+        point: Point,
+        contacts: Sequence[LineContact],
+        entrainment_speed: float,
+        check: Callable[[FloatArray], None],
+    ) -> None:
+        if point.centrifugal_load != 0.0:
             raise InputError(
-                f"film memory, centrifugal_load: got {at.centrifugal_load:.6g} N/m; allowed: 0; take the law without "
-                "memory for rollers with centrifugal load"
+                f"film memory, centrifugal_load: got {point.centrifugal_load:.6g} N/m; allowed: 0; take the law "
+                "without memory for rollers with centrifugal load"
             )
-        self._law, self._conditions = at.law, (at.entrainment_speed, at.temperature)
-        contacts = at.law.contacts
+        self._check = check
         film = Film(
             len(contacts),
             sum(contact.radius for contact in contacts) / len(contacts),
             contacts[0].reduced_modulus,
-            abs(at.entrainment_speed),
+            abs(entrainment_speed),
         )
         cells = np.zeros((2 * memory_table.ROWS, 12))
         load_cells = np.zeros((memory_table.LOAD_ROWS, 4))
         self._table = fill_memory(
-            at.point, film, memory_table.NODES, memory_table.LOAD_NODES, cells, load_cells, np.zeros(4, dtype=np.int64)
+            point, film, memory_table.NODES, memory_table.LOAD_NODES, cells, load_cells, np.zeros(4, dtype=np.int64)
         )
-        self._highest = at.point.highest_load * (1.0 + LOAD_TOLERANCE)
 
     @property
     def table(self) -> MemoryTable:
@@ -147,24 +155,8 @@ class FilmMemory:
         before, change = (np.ascontiguousarray(part).reshape(-1) for part in (state.approach, state.change))
         _advance_many(self._table, float(dt), state.step, flat, before, change, found)
         w, tangent, approach, changed = (row.reshape(ends.shape) for row in found)
-        self._check_load(w)
+        self._check(w)
         return w[()], tangent[()], FilmState(approach, changed, float(dt))
-
-    def _check_load(self, loads: FloatArray) -> None:
-        """Count loads above the map, and raise where the law does."""
-        above = int(np.count_nonzero(loads > self._highest))
-        if not above:
-            return
-        self._law.counts[LOAD] += above
-        self._law.note_outside("load", loads)
-        if self._law.outside == "error":
-            speed, temperature = self._conditions
-            raise OutsideMapError(
-                f"film memory, load: got {float(np.max(loads)):.6g} N/m, above the map, which ends at "
-                f"{self._law.load_range[1]:.6g} N/m, at {speed:.6g} m/s, {temperature:.6g} K ({above} of {loads.size} "
-                "points above)\nmake a map that reaches there, or take a law with outside='clamp' or "
-                "outside='asymptote'"
-            )
 
 
 @njit(cache=True, error_model="numpy")
