@@ -7,6 +7,7 @@ back the load that the point was solved for: its approach is the sum of the appr
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -25,7 +26,7 @@ bearing = ehdmaps.BearingGeometry(
 )
 oil = ehdmaps.Lubricant.roelands(viscosity_40=68e-6, viscosity_100=8.7e-6, pressure_viscosity=2e-8, density=870.0)
 loads, speeds, temperature = np.geomspace(1e3, 1e6, 10), [0.5, 1.0, 2.0, 4.0], 333.15
-grid = {"loads": loads, "entrainment_speeds": speeds, "temperatures": [temperature]}
+grid: Any = {"loads": loads, "entrainment_speeds": speeds, "temperatures": [temperature]}
 job = ehdmaps.Job.build(bearing=bearing, lubricant=oil, **grid, solver_options={"density": 4.5}, name="mine")
 made = ehdmaps.generate(job)  # with an output file it would go on after an interruption
 approach = made["approach"].sum("contact").values[:, 2, 0]

@@ -7,6 +7,7 @@ s = -c/(2 m) + i sqrt(k/m - (c/2m)^2) with k and c of the law itself: the period
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -18,10 +19,9 @@ from ehdmaps.outputs import write_figure
 
 MASS, FORCE, SPEED, TEMPERATURE = 0.2, 1500.0, 2.0, 333.15
 bearing, oil = ehdmaps.BearingGeometry.named("NU308"), ehdmaps.Lubricant.named("FVA3")
-grid = {"loads": np.geomspace(1e3, 1e6, 13), "entrainment_speeds": [1.0, 2.0, 4.0], "temperatures": [TEMPERATURE]}
+grid: Any = {"loads": np.geomspace(1e3, 1e6, 13), "entrainment_speeds": [1.0, 2.0, 4.0], "temperatures": [TEMPERATURE]}
 job = ehdmaps.Job.build(bearing=bearing, lubricant=oil, **grid, solver_options={"density": 4.5})
-law = ehdmaps.EHDMap(ehdmaps.generate(job)).law("series").at(SPEED, TEMPERATURE)
-LENGTH = bearing.roller_length
+law, LENGTH = ehdmaps.EHDMap(ehdmaps.generate(job)).law("series").at(SPEED, TEMPERATURE), bearing.roller_length
 rest = brentq(lambda x: LENGTH * float(law(x, 0.0)[0]) - FORCE, 1e-6, 20e-6, xtol=1e-15)
 k, c = (LENGTH * float(value) for value in law(rest, 0.0)[1:])
 s = np.sqrt(complex((c / (2 * MASS)) ** 2 - k / MASS)) - c / (2 * MASS)

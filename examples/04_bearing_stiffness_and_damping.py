@@ -5,9 +5,9 @@ The dry bearing without clearance is checked: the force of every contact goes wi
 the force of the whole bearing does too, and by Euler's theorem K delta/F = 10/9 at every load.
 """
 
-import math
 import sys
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -19,13 +19,13 @@ from mbs.analyses.bearing_point import bearing_points
 from mbs.bearings.films import DryContacts, MapFilms
 from mbs.bearings.laws import hertz
 
-T, SPEED = 333.15, 1500 * math.pi / 30
+T, SPEED = 333.15, 1500 * np.pi / 30
 bearing = Bearing(ehdmaps.BearingGeometry.named("NU308"), profile="straight")
 oil, u = ehdmaps.Lubricant.named("FVA3"), bearing.geometry.entrainment_speed(SPEED)
-grid = {"loads": np.geomspace(1e2, 1e6, 17), "entrainment_speeds": [0.8 * u, u, 1.25 * u], "temperatures": [T]}
+grid: Any = {"loads": np.geomspace(1e2, 1e6, 17), "entrainment_speeds": [0.8 * u, u, 1.25 * u], "temperatures": [T]}
 job = ehdmaps.Job.build(bearing=bearing.geometry, lubricant=oil, **grid, solver_options={"density": 4.5})
 emap, loads = ehdmaps.EHDMap(ehdmaps.generate(job)), np.geomspace(500.0, 10e3, 9)
-sources = {
+sources: dict[str, Any] = {
     "dry": (hertz(bearing), DryContacts(bearing.geometry.contacts(bearing.material, "iso16281"))),
     "film": (emap.law("series", outside="asymptote"), MapFilms(emap)),
 }

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from ehdmaps.outputs import write_figure
 from mbs import CampbellSettings, RunUp, assemble, campbell, read_scene
 from mbs.model.profiles import SpeedProfile
-from mbs.transient.integration import Settings
+from mbs.settings import Settings
 
 RPM = math.pi / 30
 course = RunUp(SpeedProfile.ramp(500 * RPM, 2000 * RPM, 1.0), 1.0, Settings(step=25e-6, sample=25e-6))

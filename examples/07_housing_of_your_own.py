@@ -32,7 +32,7 @@ for name, matrix in (("stiffness", K), ("mass", M)):
     file = FOLDER / f"07_{name}.mtx"
     io.mmwrite(file, sparse.coo_array(matrix), symmetry="symmetric", precision=17)
     read.append(read_matrix_market(file, FOLDER / "07_dofs.txt"))
-model = assemble_model(*read, NodePositions(np.arange(1, len(places) + 1), places))
+model = assemble_model(read[0], read[1], NodePositions(np.arange(1, len(places) + 1), places))
 end = places[-1] * (1.0, 0.5, 0.5)
 reduced = reduce(model, {"seat": Interface(end, nodes_in_plane(model, end, (1, 0, 0), 1e-6))}, cutoff=20e3)
 frequency = np.sqrt(linalg.eigh(reduced.stiffness, reduced.mass, eigvals_only=True)) / (2.0 * np.pi)

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehdmaps.openfoam.solver import GridSolution
+from ehdmaps.openfoam.grid_solver import GridSolution
 from ehdmaps.outputs import write_figure
 from ehdmaps.units import FILM, PRESSURE
 

@@ -30,7 +30,6 @@ from numba import njit
 from ehdmaps.maps.elementary import exp, log
 from ehdmaps.maps.lines import (
     FAST,
-    Force,
     State,
     collapsed_line,
     force_of,
@@ -51,6 +50,7 @@ from ehdmaps.maps.tables import (
     Point,
 )
 from ehdmaps.physics._values import FloatArray
+from ehdmaps.physics.unilateral import Force
 
 LOAD_TOLERANCE = 1e-3
 """Part of the highest load by which a load may pass it: the error of a table, not of a caller."""

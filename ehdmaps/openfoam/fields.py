@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ehdmaps.errors import SolverError
+from ehdmaps.extras import needs
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.outputs import FIELDS, MARK, written_aside
 
@@ -133,8 +134,11 @@ def write_fields(fields: FilmFields, path: Path) -> None:
     ------
     InputError
         If the file cannot be written, or something else stands there.
+    DependencyError
+        If meshio is not installed.
     """
-    import meshio
+    with needs("openfoam", "meshio", "fields of the film"):
+        import meshio
 
     mesh = meshio.Mesh(
         fields.points,

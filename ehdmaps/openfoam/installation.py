@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ehdmaps.errors import InputError
+from ehdmaps.extras import lacking
 from ehdmaps.openfoam.case import NO_PATH
 
 BUILD_COMMAND = "openfoam_cases/build"
@@ -92,7 +93,7 @@ def installation(environment: Mapping[str, str] | None = None) -> Installation:
     block_mesh = shutil.which("blockMesh", path=known.get("PATH"))
     template = next((cases / _CASE for cases in (folder, _CLONE, _SHARED) if (cases / _CASE / "system").is_dir()), None)
     extra = () if "WM_PROJECT_DIR" in known else tuple(DEBIAN_ENVIRONMENT.items())
-    problems = []
+    problems = list(lacking("openfoam", "PyFoam", "the solver 'openfoam'"))
     if block_mesh is None:
         problems.append(
             "OpenFOAM: blockMesh is not in PATH; the solver 'openfoam' needs OpenFOAM v1912; "

@@ -23,8 +23,9 @@ from time import time
 from typing import Any
 
 from ehdmaps.errors import SolverError
+from ehdmaps.extras import needs
 
-with warnings.catch_warnings():
+with needs("openfoam", "PyFoam", "the solver 'openfoam'"), warnings.catch_warnings():
     warnings.simplefilter("ignore")  # escape sequences in its regular expressions
     from PyFoam.Basics import PlyParser
     from PyFoam.Execution.BasicRunner import BasicRunner

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import shutil
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -15,12 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ehdmaps.errors import InputError, SolverError
-from ehdmaps.openfoam.case import NO_PATH, working_case
-from ehdmaps.openfoam.fields import FilmFields, read_fields
+from ehdmaps.openfoam.case import NO_PATH
+from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
 from ehdmaps.openfoam.installation import Installation, installation
 from ehdmaps.openfoam.parameters import FLOWS, SHEARS, Flow, Mesh, Parameters, Shear, Start
-from ehdmaps.openfoam.results import FilmTable, Results, read_film, read_results
-from ehdmaps.openfoam.run import KilledError, RunError, log_tail, run
+from ehdmaps.openfoam.run import RunError
 from ehdmaps.physics.closed_form import THIN_FILM_LIMIT, HertzSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import moes_central
@@ -41,12 +39,6 @@ from ehdmaps.physics.spectrum import neighbours, read_beside
 
 CAVITATION_RANGE = 1e-6
 """Pressure over which liquid turns into the cavitated mixture, over the largest of the film (about)."""
-
-MOVED_COLUMNS = 1.1
-"""Columns of a second try, over those asked for."""
-
-BETWEEN = 0.75
-"""Cells each way of a grid between the coarse one and the fine one, over those of the fine one."""
 
 PARAMETER_VERSION = 3
 """Raised when a change of this package changes numbers: results of another version are not taken over."""
@@ -90,16 +82,6 @@ class Guess(Protocol):
 
 Starter = Callable[[LineContact, Lubricant, float, float, float], Guess | None]
 """From contact, lubricant, load [N/m], entrainment speed [m/s], temperature [K] to a start; None where it has none."""
-
-
-@dataclass(frozen=True)
-class GridSolution:
-    """What one run gave; `note` says so where it took two tries."""
-
-    results: Results
-    film: FilmTable
-    fields: FilmFields | None
-    note: str = ""
 
 
 @dataclass(frozen=True)
@@ -321,10 +303,11 @@ class OpenFoamSolver(ContactSolverDefaults):
             fine = self.parameters(contact, lubricant, point, frequencies)
             halved = replace(fine, columns=fine.columns // 2, rows=fine.rows // 2)
             name = _case_name(contact, point)
-            coarse = self._stubborn(halved, name, False, end)
+            grids = GridSolver(self.installed, self.keep_cases)
+            coarse = grids.solve(halved, name, False, end)
             done = coarse.results.iterations
             stage = "fine grid"
-            grid = self._stubborn(fine, name, with_fields, end, _start(coarse))
+            grid = grids.solve(fine, name, with_fields, end, coarse.start)
         except InputError as error:
             return FilmSolution(Status.OUTSIDE_VALIDITY, str(error)), None, None
         except SolverError as error:
@@ -334,43 +317,6 @@ class OpenFoamSolver(ContactSolverDefaults):
                 status, iterations = error.status, done + error.iterations
             return FilmSolution(status, f"{stage}: {error}", iterations=iterations, solve_seconds=seconds), None, None
         return _film(contact, state, coarse, grid, time.perf_counter() - began), coarse, grid
-
-    def _stubborn(
-        self, parameters: Parameters, name: str, with_fields: bool, end: float, start: Start | None = None
-    ) -> GridSolution:
-        """Run one grid from `start`; where that stagnates over a grid between, from its own start, on other columns.
-
-        Behind a steep pressure spike, whether Newton's method converges depends on the positions of the columns, and
-        the spike of a grid twice as coarse may be too far from that of the fine one.
-        """
-        moved = _resized(parameters, MOVED_COLUMNS, 1.0)
-        tries: list[tuple[Parameters, ...]] = [(parameters,), (moved,)]
-        if start is not None:
-            begun = replace(parameters, start=start)
-            tries = [(begun,), (_resized(begun, BETWEEN, BETWEEN), parameters), *tries]
-        for attempt in tries:
-            try:
-                grid = self._in_turn(attempt, name, with_fields, end)
-            except RunError as error:
-                if error.status is not Status.STAGNATED or attempt is tries[-1]:
-                    raise
-                self._forget(error)
-            else:
-                note = "" if attempt is not tries[-1] else f"solved on {moved.columns} columns"
-                return replace(grid, note="; ".join(filter(None, [grid.note, note])))
-        raise AssertionError("unreachable: the last try returns or raises")
-
-    def _in_turn(self, grids: tuple[Parameters, ...], name: str, with_fields: bool, end: float) -> GridSolution:
-        """Run the last of some grids, from the solution of the one before if there is one."""
-        *before, last = grids
-        for grid in before:
-            last = replace(last, start=_start(self.run_case(grid, name, False, end)))
-        return self.run_case(last, name, with_fields, end)
-
-    def _forget(self, error: RunError) -> None:
-        """Remove the folder of a failed run after which another one follows, unless cases are kept."""
-        if self.keep_cases is None and error.case is not None:
-            shutil.rmtree(error.case, ignore_errors=True)
 
     def parameters(
         self,
@@ -434,84 +380,11 @@ class OpenFoamSolver(ContactSolverDefaults):
         half = 0.5 * self.slide_to_roll
         return entrainment_speed * (1.0 - half), entrainment_speed * (1.0 + half)
 
-    def run_case(
-        self, parameters: Parameters, name: str = "case", with_fields: bool = False, end: float | None = None
-    ) -> GridSolution:
-        """Run one case; one that was killed from outside is tried a second time.
-
-        Parameters
-        ----------
-        parameters : Parameters
-            Of the run.
-        name : str
-            Of the folder, if cases are kept.
-        with_fields : bool
-            Whether to read the fields.
-        end : float, optional
-            On the clock `time.monotonic`, after which it is stopped [s]; left out, it has the whole timeout.
-
-        Raises
-        ------
-        RunError
-            If it gives no converged solution.
-        SolverError
-            If no case can be made.
-        """
-        end = time.monotonic() + self.timeout if end is None else end
-        try:
-            return self._run_once(parameters, name, with_fields, end)
-        except KilledError as first:
-            self._forget(first)
-            try:
-                second = self._run_once(parameters, name, with_fields, end)
-            except KilledError as error:
-                raise RunError(f"killed twice: {error}", case=error.case) from error
-            # Its log is gone.
-            return replace(second, note=f"solved at the second try, the first {str(first).partition(';')[0]}")
-
-    def _run_once(self, parameters: Parameters, name: str, with_fields: bool, end: float) -> GridSolution:
-        """One run in a folder of its own."""
-        kept = self.keep_cases
-        text = replace(parameters, write_fields=with_fields or kept is not None).text()
-        folder = f"{name}_{parameters.columns}x{parameters.rows}"
-        environment = self.installed.full_environment()
-        with working_case(self.installed.template, text, folder, kept) as case:
-            run(self.installed.block_mesh, case, environment, end)
-            log = run(self.installed.solver, case, environment, end)
-            try:
-                results = read_results(case)
-                if results.status is Status.CONVERGED and len(results.frequencies) != len(parameters.frequencies):
-                    raise SolverError(
-                        f"{case / 'results'}: got responses at {results.frequencies} Hz; allowed: as asked"
-                    )
-                if results.status is Status.CONVERGED:
-                    return GridSolution(
-                        results, read_film(case, parameters.columns), read_fields(case) if with_fields else None
-                    )
-            except SolverError as error:
-                raise RunError(f"{error}; {log_tail(log)}") from error
-            message = f"ehlFoam {results.status.word}: {results.reason}; {log_tail(log)}"
-            raise RunError(message, results.status, results.iterations)
-
-
-def _start(grid: GridSolution) -> Start:
-    """What another grid starts from."""
-    return Start(grid.film.x, grid.film.pressure, grid.results.central_film)
-
 
 def _compliance(results: Results) -> NDArray[np.complex128]:
     """Complex film compliance at each frequency of a run [m2/N]."""
     omega = 2.0 * math.pi * np.array(results.frequencies)
     return np.asarray(np.array(results.film_compliance) - 1j * omega * np.array(results.loss_compliance))
-
-
-def _resized(parameters: Parameters, columns: float, rows: float) -> Parameters:
-    """The same on so many times the cells, even numbers of them."""
-    return replace(
-        parameters,
-        columns=2 * round(columns * parameters.columns / 2),
-        rows=max(2 * round(rows * parameters.rows / 2), 2),
-    )
 
 
 def _case_name(contact: LineContact, point: OperatingPoint) -> str:

@@ -24,11 +24,11 @@ from mbs.output.campbell_data import campbell_dataset
 from mbs.output.results import described
 from mbs.scene.assembly import Model, law_attributes
 from mbs.scene.fields import HERTZ
-from mbs.scene.scene import RunUp, Scene
+from mbs.scene.scene import Scene
+from mbs.settings import CampbellSettings, RunUp
 from mbs.spectral.campbell import RunUpSpectra, run_up_spectra
 from mbs.spectral.levels import Reference
 from mbs.spectral.run_signal import RunSignal
-from mbs.spectral.settings import CampbellSettings
 from mbs.spectral.spectra import LEAST_OVERSAMPLING
 from mbs.transient.run import Recording
 from mbs.transient.run import run as run_system

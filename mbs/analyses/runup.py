@@ -16,7 +16,7 @@ from mbs.model.equilibrium import equilibrium
 from mbs.model.outside_calls import calls_outside
 from mbs.output.results import described, run_dataset
 from mbs.scene.assembly import Model, law_attributes
-from mbs.scene.scene import RunUp
+from mbs.settings import RunUp
 from mbs.transient.integration import Trajectory, integrate
 
 

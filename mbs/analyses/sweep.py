@@ -13,13 +13,13 @@ from mbs.analyses.case import Case, as_cases
 from mbs.analyses.progress import Progress, silent
 from mbs.analyses.reach import calls_at
 from mbs.errors import AnalysisError
-from mbs.linearised.sweep import SweepRange
 from mbs.linearised.sweep import sweep as sweep_system
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Operation
 from mbs.output.results import described
 from mbs.output.sweep_data import sweep_dataset
 from mbs.scene.assembly import Model, law_attributes
+from mbs.settings import SweepRange
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from numba import njit
 
 from ehdmaps.maps.kernel import evaluate_at
-from ehdmaps.maps.lines import FAST
+from ehdmaps.maps.lines import FAST, unilateral_force
 from ehdmaps.maps.tables import LOAD, CountArray, Point
 from mbs.bearings.powers import power
 from mbs.bearings.slice_table import (
@@ -119,7 +119,7 @@ Sums = tuple[float, float, float, float, float, float, float, float, float]
 def _moderate_sums(
     positions: FloatArray, w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, motion: Motion, j: int
 ) -> Sums:
-    """Sums for slices that all have c rate >= -w/2; and a sum that is zero then alone."""
+    """Sums for slices that all have c rate >= -w/2, where the rule is linear; and a sum that is zero then alone."""
     w0 = w1 = k0 = k1 = k2 = c0 = c1 = c2 = 0.0
     lifting = 0.0  # a sum, because the compiler cannot put a minimum into vector instructions
     steady, tilting = motion
@@ -147,20 +147,13 @@ def _moderate_sums(
 def _lifting_sums(
     positions: FloatArray, w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, motion: Motion, j: int
 ) -> Sums:
-    """As `_moderate_sums`, for any rates: the branch of the law without tension is in it."""
+    """As `_moderate_sums`, for any rates, by the whole rule without tension."""
     w0 = w1 = k0 = k1 = k2 = c0 = c1 = c2 = 0.0
     steady, tilting = motion
     for i in range(positions.size):
         x = positions[i]
         rate = steady + x * tilting
-        at_rest, damping = w[j, i], c[j, i]
-        part = damping * rate
-        load, k = at_rest + part, dw[j, i] + dc[j, i] * rate
-        if part < -0.5 * at_rest:
-            ratio = at_rest / part
-            load = -0.25 * at_rest * ratio
-            k = 0.25 * ratio * (ratio * dc[j, i] * rate - 2.0 * dw[j, i])
-            damping = 0.25 * ratio * ratio * damping
+        load, k, damping = unilateral_force(w[j, i], dw[j, i], c[j, i], dc[j, i], rate)
         w0 += load
         w1 += load * x
         k0 += k
@@ -178,7 +171,7 @@ def _sum_slices(
 ) -> int:
     """Sums over the slices of each roller, into `sums` (Z, 8); returns how many rollers are above the mapped load.
 
-    w, w x, k, k x, k x^2, c, c x, c x^2 with the loads at the rate of each slice, see `ehdmaps.maps.lines.force_of`.
+    w, w x, k, k x, k x^2, c, c x, c x^2 with the loads at the rate of each slice, see `ehdmaps.physics.unilateral`.
     """
     slope = numbers[SLOPE]
     above = 0

@@ -3,8 +3,8 @@
 A law here means a roller between both raceways, over the total approach of both contacts. `single` makes the law of
 one of its two contacts, which are alike.
 
-The damping of all laws acts by one rule, which knows no tension: with x = c rate/w_s the load is w_s (1 + x) for
-x >= -1/2, and -w_s/(4 x) below. Laws with a constant c have a jump of the force at lift-off, while bodies approach.
+The damping of all laws acts by the rule of `ehdmaps.physics.unilateral`, which knows no tension. Laws with a constant c
+have a jump of the force at lift-off, while bodies approach.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
+from numba import njit
 
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.maps.grid_field import GridField
@@ -24,6 +25,7 @@ from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import reduced_modulus
+from ehdmaps.physics.unilateral import unilateral_force
 from mbs.bearings.bearing import Bearing
 
 FloatArray = npt.NDArray[np.float64]
@@ -97,16 +99,43 @@ class DryLaw:
         positive = np.where(loaded, delta, 1.0)
         slope = np.where(loaded, self.coefficient * self.exponent * positive ** (self.exponent - 1.0), 0.0)
         at_rest = slope * positive / self.exponent
-        part = np.where(loaded, self.damping * rate, 0.0)
-        moderate = part >= -0.5 * at_rest
-        ratio = np.where(moderate, 0.0, at_rest / np.where(moderate, 1.0, part))
-        load = np.where(moderate, at_rest + part, -0.25 * at_rest * ratio)
-        stiffness = np.where(moderate, slope, -0.5 * ratio * slope)
-        damping = np.where(loaded, np.where(moderate, 1.0, 0.25 * ratio**2) * self.damping, 0.0)
-        return load, stiffness, damping
+        damping = np.where(loaded, self.damping, 0.0)
+        return unilateral_forces(at_rest, slope, damping, np.zeros(delta.shape), rate)
 
 
 Law = DryLaw | ContactLaw
+
+_unilateral_force = njit(error_model="numpy")(unilateral_force)
+
+
+def unilateral_forces(
+    w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, rate: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """`ehdmaps.physics.unilateral.unilateral_force` of many contacts.
+
+    Parameters
+    ----------
+    w, dw, c, dc, rate : array
+        As there, of one shape.
+
+    Returns
+    -------
+    load, stiffness, damping : array
+        As there, of the same shape.
+    """
+    forces = np.empty((3, w.size))
+    _fill_forces(w.ravel(), dw.ravel(), c.ravel(), dc.ravel(), rate.ravel(), forces)
+    load, stiffness, damping = forces.reshape(3, *w.shape)
+    return load, stiffness, damping
+
+
+@njit(cache=True, error_model="numpy")
+def _fill_forces(
+    w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, rate: FloatArray, forces: FloatArray
+) -> None:
+    """Loads, stiffness and damping of contacts in motion, into `forces` (3, n)."""
+    for i in range(w.size):
+        forces[0, i], forces[1, i], forces[2, i] = _unilateral_force(w[i], dw[i], c[i], dc[i], rate[i])
 
 
 def hertz(bearing: Bearing, damping: float = 0.0) -> DryLaw:

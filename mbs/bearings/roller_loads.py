@@ -13,6 +13,7 @@ from ehdmaps.errors import InputError, MapError
 from ehdmaps.maps.emap import EHDMap
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_kernel import GAP, RATE, TILT, TILT_RATE
+from mbs.bearings.laws import unilateral_forces
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -131,10 +132,7 @@ def roller_loads(
     x, lost = slices
     approach = rollers[GAP][:, None] + x * rollers[TILT][:, None] - lost
     rate = rollers[RATE][:, None] + x * rollers[TILT_RATE][:, None]
-    at_rest, part = states[0], states[2] * rate
-    moderate = part >= -0.5 * at_rest
-    lifting = -0.25 * at_rest**2 / np.where(moderate, -1.0, part)
-    load = np.where(moderate, at_rest + part, lifting)
+    load, _, _ = unilateral_forces(states[0], states[1], states[2], states[3], rate)
     angle = cage_angle + 2.0 * math.pi * np.arange(count) / count
     return RollerLoads(
         angle=np.arctan2(np.sin(angle), np.cos(angle)),

@@ -25,10 +25,10 @@ from mbs.output.campbell_plot import MOST_LAWS, Overlay, Reach, campbell_figure
 from mbs.scene.assembly import Model
 from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.fields import HERTZ, MICROMETRE, MILLISECOND
+from mbs.settings import CampbellSettings
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, difference_text
 from mbs.spectral.orders import OrderPeak
-from mbs.spectral.settings import CampbellSettings
 
 _LEAST_SHARE = 0.05
 """Of the strain energy in bearings, of a mode that is drawn in."""

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.errors import InputError
+from ehdmaps.extras import lacking
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.units import quantity
 from mbs.analyses.hammer import HammerSettings, hammer
@@ -67,7 +68,7 @@ def _options(arguments: argparse.Namespace) -> tuple[float | None, float | None]
         problems.append(f"--plot: got {arguments.plot}, but records are not drawn; see `mbs modal-fit --plot`")
     if not arguments.output:
         problems.append("-o: missing; give the universal file that the records are written to, such as hits.uff")
-    problems += output_problems([Output("-o", arguments.output, UFF)])
+    problems += [*output_problems([Output("-o", arguments.output, UFF)]), *lacking("modal", "pyuff", "-o")]
     if problems:
         raise InputError(problems)
     return found[0], found[1]

@@ -16,6 +16,7 @@ from scipy import linalg, sparse
 from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh, splu
 
 from ehdmaps.errors import InputError
+from ehdmaps.extras import needs
 from ehdmaps.physics._values import FloatArray
 from mbs.errors import AnalysisError
 from mbs.flexible.finite_elements import IntArray
@@ -298,9 +299,15 @@ def elimination_order(matrix: sparse.csc_array, groups: IntArray) -> IntArray:
     -------
     array of int, shape (N,)
         Degrees of freedom, first to last.
+
+    Raises
+    ------
+    DependencyError
+        If pymetis is not installed.
     """
     # Only here: reduced files are read without it.
-    import pymetis
+    with needs("flexible", "pymetis", "reduction of a finite-element body"):
+        import pymetis
 
     _, group = np.unique(groups, return_inverse=True)
     size = matrix.shape[0]

@@ -26,7 +26,8 @@ from mbs.modal.records import LONGEST, Channel, Hits, Measured
 from mbs.model.elements import Input, Sensor
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.profiles import Course, HalfSine, SpeedProfile
-from mbs.transient.integration import Settings, Trajectory, integrate
+from mbs.settings import Settings
+from mbs.transient.integration import Trajectory, integrate
 
 OVERSAMPLING = 16
 """Computed samples for each recorded one. What a half-sine has beyond half the rate of the computed samples folds back,

@@ -24,10 +24,10 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.errors import InputError
+from ehdmaps.extras import needs
 from ehdmaps.inputs import check_input
 from ehdmaps.outputs import MARK, Kind, has_mark, written_aside
 from ehdmaps.physics._values import FloatArray
-from mbs.modal.lscf import INSTALL
 from mbs.modal.records import LONGEST, Channel, Hits, Measured, Responses
 
 UFF = Kind("a universal file of mbs", (), has_mark)
@@ -142,10 +142,8 @@ def write_uff(path: Path, measurement: Measurement) -> None:
 
 def _library() -> Any:
     """Return pyuff."""
-    try:
+    with needs("modal", "pyuff", "universal files"):
         import pyuff
-    except ImportError as error:
-        raise InputError(f"universal files: the library pyuff is missing ({error}); {INSTALL}") from error
     return pyuff
 
 

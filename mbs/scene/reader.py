@@ -26,11 +26,10 @@ from mbs.scene.campbell import read_campbell
 from mbs.scene.fields import DEGREE, FORCE, HERTZ, MICROMETRE, MILLISECOND, MOMENT, Built
 from mbs.scene.flexible import read_flexible
 from mbs.scene.gears import read_gears
-from mbs.scene.scene import RunUp, Scene, SceneBearing
+from mbs.scene.scene import Scene, SceneBearing
 from mbs.scene.shaft import read_shaft
 from mbs.scene.sweep import read_sweep
-from mbs.spectral.settings import CampbellSettings
-from mbs.transient.integration import Settings
+from mbs.settings import CampbellSettings, RunUp, Settings
 
 LONGEST_FILE = 1_000_000
 """Bytes of a scene file."""

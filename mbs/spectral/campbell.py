@@ -10,6 +10,7 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
+from mbs.settings import HIGHEST
 from mbs.spectral.levels import level
 from mbs.spectral.orders import (
     OrderPeak,
@@ -21,7 +22,6 @@ from mbs.spectral.orders import (
     track_orders,
 )
 from mbs.spectral.run_signal import RunSignal
-from mbs.spectral.settings import HIGHEST
 from mbs.spectral.spectra import LEAST_PERIODS, LINE_WIDTH, default_window, short_time_spectra
 
 _MEAN_LOBE = 2.0

@@ -17,12 +17,13 @@ from ehdmaps.physics._values import FloatArray
 from mbs.bearings import slice_table as table
 from mbs.model.profiles import LoadProfile, SpeedProfile
 from mbs.model.system import System
+from mbs.settings import Settings
 from mbs.transient.linear_part import LinearPart
 from mbs.transient.run_arrays import Course, Films, IndexArray, Numbers, Records, State
 from mbs.transient.run_elements import RunElements
 from mbs.transient.run_kernel import ABOVE, advance, observe
 from mbs.transient.speed_tables import NODES
-from mbs.transient.stepping import ITERATIONS, Method, Settings, Stepper
+from mbs.transient.stepping import ITERATIONS, Method, Stepper
 
 Marks = npt.NDArray[np.bool_]
 Places = Sequence[tuple[IndexArray, FloatArray]]

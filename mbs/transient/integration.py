@@ -12,10 +12,8 @@ from dataclasses import dataclass
 from ehdmaps.physics._values import FloatArray
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
+from mbs.settings import Settings
 from mbs.transient.run import record
-from mbs.transient.stepping import Settings
-
-__all__ = ["Settings", "Trajectory", "integrate"]
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,10 +25,11 @@ from mbs.model.elements import Sensor
 from mbs.model.outside_calls import calls_outside
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
+from mbs.settings import Settings
 from mbs.transient.compiled_run import CompiledRun
 from mbs.transient.run_arrays import IndexArray
 from mbs.transient.run_elements import is_known
-from mbs.transient.stepping import Settings, Stepper
+from mbs.transient.stepping import Stepper
 
 HALVINGS = 10
 """How often a step is halved at most, where Newton or the error estimate asks for it."""

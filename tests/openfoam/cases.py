@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import subprocess
+import time
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from ehdmaps.ehl.start import reynolds_start
-from ehdmaps.openfoam.installation import Installation
+from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
+from ehdmaps.openfoam.installation import Installation, installation
 from ehdmaps.openfoam.parameters import Flow, Parameters
 from ehdmaps.openfoam.results import Results
-from ehdmaps.openfoam.solver import GridSolution, OpenFoamSolver
+from ehdmaps.openfoam.solver import OpenFoamSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import load_and_speed
@@ -51,7 +53,7 @@ def parameters(
 
 def run(settings: Parameters, keep: Path | None = None) -> GridSolution:
     """Run one case; where `keep` is given its folder stays there, with its fields."""
-    return OpenFoamSolver(timeout=300.0, keep_cases=keep).run_case(settings)
+    return GridSolver(installation(), keep).run_case(settings, "case", False, time.monotonic() + 300.0)
 
 
 @cache

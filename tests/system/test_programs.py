@@ -11,16 +11,16 @@ from pathlib import Path
 
 import pytest
 
+import examples.housings.__main__ as housings
 import mbs.cli
-import mbs.housings.__main__ as housings
 from ehdmaps import errors, program
 from ehdmaps.jobs import cli
 from mbs.errors import AnalysisError
 from tests.system.interruptible import start
 
 ROOT = str(Path(errors.__file__).parents[1])
-PROGRAMS = {"ehdmaps": "ehdmaps.jobs.cli", "mbs": "mbs", "mbs.housings": "mbs.housings"}
-NOWHERE = {"ehdmaps": ["show", "none.nc"], "mbs": ["modes", "none.toml"], "mbs.housings": ["none"]}
+PROGRAMS = {"ehdmaps": "ehdmaps.jobs.cli", "mbs": "mbs", "examples.housings": "examples.housings"}
+NOWHERE = {"ehdmaps": ["show", "none.nc"], "mbs": ["modes", "none.toml"], "examples.housings": ["none"]}
 
 MAP = """
 schema = 1
@@ -179,7 +179,7 @@ def test_the_backend_of_a_notebook_is_no_matter_of_the_programs(folder, monkeypa
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_programs_know_their_version(name, capsys):
-    main = {"ehdmaps": cli.main, "mbs": mbs.cli.main, "mbs.housings": housings.main}[name]
+    main = {"ehdmaps": cli.main, "mbs": mbs.cli.main, "examples.housings": housings.main}[name]
     with pytest.raises(SystemExit) as end:
         main(["--version"])
     out = capsys.readouterr().out

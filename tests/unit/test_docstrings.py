@@ -11,7 +11,7 @@ from typing import NamedTuple
 import pytest
 
 ROOT = Path(__file__).parents[2]
-FILES = sorted([*ROOT.glob("ehdmaps/**/*.py"), *ROOT.glob("mbs/**/*.py")])
+FILES = sorted([*ROOT.glob("ehdmaps/**/*.py"), *ROOT.glob("mbs/**/*.py"), *ROOT.glob("examples/housings/*.py")])
 
 MANY = 3
 """Arguments from which on a public function has a section Parameters."""

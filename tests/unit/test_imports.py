@@ -1,4 +1,7 @@
-"""Imports run one way: errors <- physics <- (ehl | openfoam | maps) <- jobs; maps, physics <- mbs; jobs <- scenes."""
+"""Imports run one way: errors <- physics <- (ehl | openfoam | maps) <- jobs; maps, physics <- mbs; jobs <- scenes.
+
+Nothing imports the examples.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +17,7 @@ ROOT = Path(__file__).parents[2]
 
 ALLOWED = {
     "ehdmaps.errors": set(),
+    "ehdmaps.extras": {"ehdmaps.errors"},
     "ehdmaps.units": {"ehdmaps.errors"},
     "ehdmaps.inputs": {"ehdmaps.errors"},
     "ehdmaps.outputs": {"ehdmaps.errors"},
@@ -24,10 +28,11 @@ ALLOWED = {
     "ehdmaps.physics": {"ehdmaps.errors"},
     "ehdmaps.ehl": {"ehdmaps.errors", "ehdmaps.physics"},
     "ehdmaps.maps": {"ehdmaps.errors", "ehdmaps.inputs", "ehdmaps.units", "ehdmaps.physics"},
-    "ehdmaps.openfoam": {"ehdmaps.errors", "ehdmaps.outputs", "ehdmaps.units", "ehdmaps.physics"},
+    "ehdmaps.openfoam": {"ehdmaps.errors", "ehdmaps.extras", "ehdmaps.outputs", "ehdmaps.units", "ehdmaps.physics"},
     "ehdmaps.jobs": {
         "ehdmaps",
         "ehdmaps.errors",
+        "ehdmaps.extras",
         "ehdmaps.inputs",
         "ehdmaps.interrupts",
         "ehdmaps.outputs",
@@ -41,6 +46,7 @@ ALLOWED = {
     },
     "mbs": {
         "ehdmaps.errors",
+        "ehdmaps.extras",
         "ehdmaps.inputs",
         "ehdmaps.outputs",
         "ehdmaps.program",
@@ -51,6 +57,7 @@ ALLOWED = {
     },
     "mbs.scene.scene": {
         "ehdmaps.errors",
+        "ehdmaps.extras",
         "ehdmaps.inputs",
         "ehdmaps.outputs",
         "ehdmaps.program",
@@ -60,6 +67,18 @@ ALLOWED = {
         "ehdmaps.maps",
         "ehdmaps.jobs",
         "mbs",
+    },
+    "examples": {
+        "ehdmaps",
+        "ehdmaps.errors",
+        "ehdmaps.extras",
+        "ehdmaps.outputs",
+        "ehdmaps.program",
+        "ehdmaps.units",
+        "ehdmaps.version",
+        "ehdmaps.physics",
+        "mbs",
+        "mbs.scene.scene",
     },
 }
 """What each layer may import besides itself and other distributions. `ehdmaps` itself is the shop window of all."""
@@ -73,6 +92,8 @@ def _layer(module: str) -> str | None:
     parts = module.split(".")
     if parts[0] == "mbs":
         return "mbs.scene.scene" if len(parts) > 1 and parts[1] in SCENES else "mbs"
+    if parts[0] == "examples":
+        return "examples"
     if parts[0] != "ehdmaps":
         return None
     return ".".join(parts[:2])
@@ -89,7 +110,8 @@ def _imported(path: Path) -> set[str]:
     return modules
 
 
-FILES = sorted([*ROOT.glob("ehdmaps/*/**/*.py"), *ROOT.glob("ehdmaps/*.py"), *ROOT.glob("mbs/**/*.py")])
+ROOMS = ("ehdmaps", "mbs", "examples")
+FILES = sorted(path for room in ROOMS for path in ROOT.glob(f"{room}/**/*.py"))
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(ROOT)))
@@ -119,7 +141,7 @@ def test_every_file_is_looked_at() -> None:
     """What git tracks, exactly: a glob that loses a folder, or a file that was never committed, is found."""
     if not (ROOT / ".git").exists() or shutil.which("git") is None:
         pytest.skip("needs a clone and git")
-    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--deduplicate", "ehdmaps", "mbs"]
+    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--deduplicate", *ROOMS]
     listed = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout.split()
     tracked = {name for name in listed if name.endswith(".py") and (ROOT / name).exists()}
     assert {path.relative_to(ROOT).as_posix() for path in FILES} == tracked

@@ -20,11 +20,11 @@ from mbs.model.elements import Sensor
 from mbs.output.campbell_data import campbell_dataset
 from mbs.output.campbell_plot import Overlay, Reach, campbell_figure
 from mbs.scene.campbell import read_campbell
+from mbs.settings import CampbellSettings
 from mbs.spectral.campbell import campbell, run_up_spectra
 from mbs.spectral.levels import LOWEST, Reference, difference_text, level
 from mbs.spectral.orders import OrderTracks, angle_signal, order_peaks, order_spectra, track_orders
 from mbs.spectral.run_signal import RPM, RunSignal
-from mbs.spectral.settings import CampbellSettings
 from mbs.spectral.spectra import default_window, short_time_spectra
 from mbs.transient.run import run
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
+import sys
 
 import meshio
 import numpy as np
@@ -11,8 +12,9 @@ import pytest
 from scipy import io, sparse
 from scipy.sparse.linalg import ArpackError
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import DependencyError, InputError
 from ehdmaps.jobs.table import Table
+from mbs import cli
 from mbs.commands import reduce as command
 from mbs.errors import AnalysisError
 from mbs.flexible import held_body
@@ -674,6 +676,16 @@ class TestReaders:
         with pytest.raises(InputError, match=r"cannot be read as a mesh \(it did not end within 2 s\)"):
             read_mesh_nodes(tmp_path / "a.mdpa")
 
+    def test_without_meshio(self, tmp_path, monkeypatch):
+        (tmp_path / "meshio.py").write_text("raise ImportError('none here')")
+        monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+        (tmp_path / "a.vtk").write_text("nothing")
+        message = r'a\.vtk: reading this format: the package meshio .*\(none here\).*"ehdmaps\[flexible\]"'
+        with pytest.raises(DependencyError, match=message):
+            read_mesh_nodes(tmp_path / "a.vtk")
+        (tmp_path / "a.inp").write_text("*NODE\n1,0,0,0\n")
+        assert read_mesh_nodes(tmp_path / "a.inp").numbers.tolist() == [1]
+
 
 def table(folder, **changes):
     values = {
@@ -903,6 +915,14 @@ class TestExtent:
         assert re.search(r"centre of mass +100\.0000 +25\.0000 +20\.0000\n", text)
         assert re.search(r"box from +0\.0000 +0\.0000 +0\.0000\nbox to +200\.0000 +50\.0000 +40\.0000\n", text)
         assert "warning" not in text
+
+    def test_without_pymetis(self, files, monkeypatch, capsys):
+        folder, _ = files
+        (folder / "body.toml").write_text(BODY)
+        monkeypatch.setitem(sys.modules, "pymetis", None)
+        assert cli.main(["reduce", str(folder / "body.toml"), "-o", str(folder / "body.nc")]) == 2
+        assert 'pip install "ehdmaps[flexible]", or pip install pymetis' in capsys.readouterr().err
+        assert not (folder / "body.nc").exists()
 
     def test_units_left_out(self, files):
         """A deck in mm, tonne and s that is taken for SI: a thousandth of the mass, a thousand times the size."""

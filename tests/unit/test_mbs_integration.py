@@ -13,7 +13,8 @@ from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import ElementDefaults, Load, Spring
 from mbs.model.profiles import Harmonic, SpeedProfile
 from mbs.model.system import System
-from mbs.transient.integration import Settings, integrate
+from mbs.settings import Settings
+from mbs.transient.integration import integrate
 from tests.unit.test_mbs_system import MASS, OneSided, force, stiff
 
 REST = SpeedProfile.constant(0.0)

@@ -9,7 +9,7 @@ import sys
 import numpy as np
 import pytest
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import DependencyError, InputError
 from mbs.errors import AnalysisError
 from mbs.linearised.modes import Modes
 from mbs.modal.estimation import HitLimits, estimate, relative_deviation, transfer
@@ -311,9 +311,9 @@ def test_lscf_wants_lines_of_a_transform():
 def test_libraries_that_are_missing(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "sdypy.EMA", None)
     monkeypatch.setitem(sys.modules, "pyuff", None)
-    with pytest.raises(InputError, match=r"sdypy-EMA is missing .*install it"):
+    with pytest.raises(DependencyError, match=r"the package sdypy-EMA cannot be loaded .*ehdmaps\[modal\]"):
         identify(measured(), "lscf")
-    with pytest.raises(InputError, match=r"pyuff is missing .*install it"):
+    with pytest.raises(DependencyError, match=r"the package pyuff cannot be loaded .*ehdmaps\[modal\]"):
         read_uff(tmp_path / "a.uff")
 
 

@@ -19,13 +19,14 @@ from mbs.model.elements import ElementDefaults, Load, Operation, Port, Sensor, S
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
+from mbs.settings import Settings
 from mbs.transient.integration import integrate
 from mbs.transient.linear_part import LinearPart
 from mbs.transient.run import CHUNK, run
 from mbs.transient.run_elements import is_known
 from mbs.transient.run_kernel import _expanded_times, _solve
 from mbs.transient.speed_tables import NODES, STEP, SpeedTables
-from mbs.transient.stepping import Method, Settings
+from mbs.transient.stepping import Method
 from tests.unit.mbs_cases import TEMPERATURE, map_law
 
 REST = SpeedProfile.constant(0.0)

@@ -19,7 +19,8 @@ from mbs.model.profiles import Course, SpeedProfile
 from mbs.model.system import System
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
-from mbs.transient.integration import Settings, integrate
+from mbs.settings import Settings
+from mbs.transient.integration import integrate
 
 exu = pytest.importorskip("exudyn", reason="Exudyn is a dependency of the tests alone, and has no wheel everywhere")
 pytestmark = pytest.mark.filterwarnings("ignore")

@@ -37,7 +37,8 @@ from mbs.model.elements import Load, Operation, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Course, SpeedProfile
 from mbs.model.system import System
-from mbs.transient.integration import Settings, integrate
+from mbs.settings import Settings
+from mbs.transient.integration import integrate
 
 exu = pytest.importorskip("exudyn", reason="Exudyn is a dependency of the tests alone, and has no wheel everywhere")
 items, fem = pytest.importorskip("exudyn.utilities"), pytest.importorskip("exudyn.FEM")

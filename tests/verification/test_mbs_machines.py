@@ -27,9 +27,9 @@ from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
+from mbs.settings import Settings
 from mbs.spectral.campbell import run_up_spectra
 from mbs.spectral.run_signal import RunSignal
-from mbs.transient.integration import Settings
 from mbs.transient.run import run
 
 RPM = math.pi / 30.0

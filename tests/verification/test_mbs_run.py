@@ -13,19 +13,21 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.bearing_kernel import bearing_force
 from mbs.bearings.laws import hertz
-from mbs.gears.gear import GearPair, gear_mesh
+from mbs.gears.gear import gear_mesh
+from mbs.gears.pair import GearPair
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation, Sensor, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Course, Harmonic, SpeedProfile
 from mbs.model.system import System
+from mbs.settings import Settings
 from mbs.transient import speed_tables
 from mbs.transient.integration import integrate
 from mbs.transient.run import run
 from mbs.transient.run_arrays import Films
 from mbs.transient.run_kernel import blend
 from mbs.transient.speed_tables import NODES, SpeedTables
-from mbs.transient.stepping import Method, Settings
+from mbs.transient.stepping import Method
 from tests.unit.mbs_cases import TEMPERATURE, map_law
 
 RPM = math.pi / 30.0

@@ -26,7 +26,8 @@ from mbs.model.profiles import Harmonic, SpeedProfile
 from mbs.model.system import System
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
-from mbs.transient.integration import Settings, integrate
+from mbs.settings import Settings
+from mbs.transient.integration import integrate
 
 RPM = math.pi / 30.0
 NU308 = read_scene("nu308_rigid")

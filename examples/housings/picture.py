@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.colors import LightSource
 from matplotlib.figure import Figure
 
-from mbs.housings.designs import Housing, Place
-from mbs.housings.mesh import Mesh
+from examples.housings.designs import Housing, Place
+from examples.housings.mesh import Mesh
 
 _MM = 1e3
 _VIEWS = ((22.0, -55.0), (22.0, 125.0), (-25.0, -55.0))

@@ -1,4 +1,4 @@
-"""`python -m mbs.housings NAME`: make a shipped housing anew, or show how its mesh converges."""
+"""Make a shipped housing anew, or show how its mesh converges: `python -m examples.housings NAME`, in a clone."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from mbs.errors import AnalysisError
 def parser() -> argparse.ArgumentParser:
     """Return the parser."""
     found = Parser(
-        prog="python -m mbs.housings",
+        prog="python -m examples.housings",
         description="Make a housing of a shipped system anew: gmsh meshes it, CalculiX gives stiffness and mass, and "
         "they are reduced to the bearing seats and the modes with the seats held.",
-        epilog="Needs gmsh (pip install 'ehdmaps[housings]') and CalculiX (ccx). Exit status: 0 done; 1 meshing or "
+        epilog='Needs gmsh (pip install "ehdmaps[housings]") and CalculiX (ccx). Exit status: 0 done; 1 meshing or '
         "solving failed; 2 bad input or a missing program, nothing written. Size and cutoff are those of the shipped "
         "file if left out.",
     )
@@ -39,7 +39,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _command(arguments: argparse.Namespace) -> tuple[str, int]:
     """Load what makes housings, and do it."""
-    return importlib.import_module("mbs.housings.command").run(arguments), 0
+    return importlib.import_module("examples.housings.command").run(arguments), 0
 
 
 if __name__ == "__main__":

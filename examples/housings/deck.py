@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ehdmaps.physics.solids import Material
-from mbs.housings.mesh import IntArray, Mesh
+from examples.housings.mesh import IntArray, Mesh
 
 _PER_LINE = 12
 """CalculiX takes up to 16 entries a line."""

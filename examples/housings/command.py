@@ -1,4 +1,4 @@
-"""What `python -m mbs.housings` does with its arguments."""
+"""What `python -m examples.housings` does with its arguments."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from pathlib import Path
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
 from ehdmaps.units import LENGTH, quantity
+from examples.housings.designs import Housing, housing
+from examples.housings.geometry import check_size
+from examples.housings.make import Made, check_cutoff, make
+from examples.housings.picture import housing_figure
 from mbs.flexible.reduced_file import REDUCED, write_reduced
-from mbs.housings.designs import Housing, housing
-from mbs.housings.geometry import check_size
-from mbs.housings.make import Made, check_cutoff, make
-from mbs.housings.picture import housing_figure
 
 RESOLUTION = 120
 

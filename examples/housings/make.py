@@ -15,21 +15,24 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import LENGTH
 from ehdmaps.version import version
+from examples.housings import solve
+from examples.housings.designs import Housing, Seat
+from examples.housings.geometry import load_gmsh, mesh_housing
+from examples.housings.mesh import Mesh
 from mbs.errors import AnalysisError
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduction import reduce
 from mbs.flexible.spiders import Interface, nodes_on_cylinder
-from mbs.housings import solve
-from mbs.housings.designs import Housing, Seat
-from mbs.housings.geometry import load_gmsh, mesh_housing
-from mbs.housings.mesh import Mesh
 
 FREEDOMS = ("y", "z", "theta_y", "theta_z")
 """Of a seat: all that a cylindrical roller bearing passes on."""
 
 SHOWN = 10
 """Frequencies of the clamped housing that are found by CalculiX itself."""
+
+COMMAND = "python -m examples.housings"
+"""Makes a housing, from the root of a clone."""
 
 LOWEST_CUTOFF, HIGHEST_CUTOFF = 100.0, 30e3
 """Allowed cutoff [Hz]; above, the elements of the shipped sizes are longer than the waves."""
@@ -162,7 +165,7 @@ def _attributes(
     material = housing.material
     return {
         "title": housing.title,
-        "command": f'python -m mbs.housings {housing.name} --size "{LENGTH.text(size)}" --cutoff "{cutoff:.6g} Hz"',
+        "command": f'{COMMAND} {housing.name} --size "{LENGTH.text(size)}" --cutoff "{cutoff:.6g} Hz"',
         "versions": f"ehdmaps {version()}, gmsh {load_gmsh().__version__}, CalculiX {solve.version()}",
         "dimensions": f"assumed; m: {housing.shape}",
         "material": f"E {material.youngs_modulus / 1e9:.6g} GPa, nu {material.poisson_ratio:.6g}, density "

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import os
+import re
+import shlex
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -13,14 +15,18 @@ import pytest
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.solids import STEEL
+from examples.housings import __main__ as command_line
+from examples.housings import geometry, make, solve
+from examples.housings.deck import deck
+from examples.housings.designs import HOUSINGS, GearboxShape, housing
+from examples.housings.mesh import Mesh
+from examples.housings.picture import housing_figure
 from mbs.bearings.bearing import Bearing
 from mbs.errors import AnalysisError
-from mbs.housings import __main__ as command_line
-from mbs.housings import geometry, make, solve
-from mbs.housings.deck import deck
-from mbs.housings.designs import HOUSINGS, GearboxShape, housing
-from mbs.housings.mesh import Mesh
-from mbs.housings.picture import housing_figure
+
+ROOT = Path(__file__).parents[2]
+SCENES = ("gearbox", "n1014_testrig", "nu308_flexible")
+"""Shipped scenes with such a housing."""
 
 CORNERS = np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 5.0]])
 """A tetrahedron of volume 2*3*5/6 = 5 m3."""
@@ -193,7 +199,7 @@ def test_without_gmsh(monkeypatch, tmp_path, error):
     else:
         (tmp_path / "gmsh.py").write_text("raise OSError('libGLU.so.1: cannot open shared object file')")
         monkeypatch.syspath_prepend(tmp_path)
-    with pytest.raises(InputError, match=r"gmsh cannot be loaded .*pip install 'ehdmaps\[housings\]'.*libglu1-mesa"):
+    with pytest.raises(InputError, match=r'gmsh cannot be loaded .*pip install "ehdmaps\[housings\]".*libglu1-mesa'):
         geometry.load_gmsh()
 
 
@@ -263,7 +269,7 @@ def test_every_problem_of_the_arguments_at_once(capsys, tmp_path, monkeypatch):
     arguments = ["castle", "--size", "1 km", "--cutoff", "8", "-o", "none/a.nc", "--picture", "a.doc"]
     assert command_line.main(arguments) == 2
     shown = capsys.readouterr().err
-    assert shown.startswith("mbs.housings: 5 problems\n")
+    assert shown.startswith("examples.housings: 5 problems\n")
     for part in (
         "housing: got 'castle'",
         "--size: ",
@@ -316,3 +322,14 @@ def test_picture_names_seats_and_sensors():
     figure = housing_figure(chosen, one_element())
     shown = {text.get_text().strip() for panel in figure.axes for text in panel.texts}
     assert {*chosen.seats, *chosen.sensors} <= shown
+
+
+@pytest.mark.parametrize(
+    "page",
+    ["examples/README.md", "mbs/MACHINES.md", *(f"mbs/systems/{name}.toml" for name in SCENES)],
+)
+def test_commands_that_are_shown_are_understood(page):
+    text = (ROOT / page).read_text(encoding="utf-8")
+    shown = re.findall(r"`python -m examples\.housings\s([^`]*)`", text)
+    assert shown
+    assert all(command_line.parser().parse_args(shlex.split(words)).name in HOUSINGS for words in shown)

@@ -13,12 +13,12 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from ehdmaps.physics.solids import Material
+from examples.housings.deck import deck
+from examples.housings.mesh import IntArray, Mesh
 from mbs.errors import AnalysisError
 from mbs.flexible.calculix import read_calculix
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.matrix_files import NodePositions
-from mbs.housings.deck import deck
-from mbs.housings.mesh import IntArray, Mesh
 
 LONGEST_RUN = 600.0
 """Seconds after which CalculiX is stopped."""

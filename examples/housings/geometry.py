@@ -14,11 +14,12 @@ from types import ModuleType
 
 import numpy as np
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import DependencyError, InputError
+from ehdmaps.extras import needs
 from ehdmaps.units import LENGTH
+from examples.housings.designs import GearboxShape, Housing, PedestalShape, Place
+from examples.housings.mesh import Mesh
 from mbs.errors import AnalysisError
-from mbs.housings.designs import GearboxShape, Housing, PedestalShape, Place
-from mbs.housings.mesh import Mesh
 
 SMALLEST, LARGEST = 5e-3, 40e-3
 """Sizes of elements [m]: below, there are far too many; above, they no longer know the walls."""
@@ -132,16 +133,14 @@ def load_gmsh() -> ModuleType:
 
     Raises
     ------
-    InputError
+    DependencyError
         If it is not installed, or a library of the system that it needs is not.
     """
     try:
-        return importlib.import_module("gmsh")
-    except (ImportError, OSError) as error:
-        raise InputError(
-            f"gmsh cannot be loaded ({error}); drawing a housing needs it: pip install 'ehdmaps[housings]', and on "
-            f"Debian apt-get install {' '.join(DEBIAN_PACKAGES)}"
-        ) from error
+        with needs("housings", "gmsh", "drawing a housing"):
+            return importlib.import_module("gmsh")
+    except DependencyError as error:
+        raise DependencyError(f"{error}; on Debian also apt-get install {' '.join(DEBIAN_PACKAGES)}") from error
 
 
 @contextmanager

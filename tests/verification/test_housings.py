@@ -19,14 +19,14 @@ from scipy.sparse.linalg import eigsh, spsolve
 import mbs
 from ehdmaps.errors import InputError
 from ehdmaps.physics.solids import STEEL
+from examples.housings import __main__ as command_line
+from examples.housings import command, geometry, make, solve
+from examples.housings.designs import HOUSINGS, PedestalShape
 from mbs.flexible.calculix import read_calculix
 from mbs.flexible.matrix_files import NodePositions
 from mbs.flexible.reduced_file import read_reduced
 from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_parts import Section
-from mbs.housings import __main__ as command_line
-from mbs.housings import command, geometry, make, solve
-from mbs.housings.designs import HOUSINGS, PedestalShape
 
 SHIPPED = Path(mbs.__file__).parent / "systems"
 NONE = np.zeros(0, dtype=np.int64)
@@ -287,7 +287,9 @@ def test_command_makes_a_file(run):
     assert f"8 coordinates of the seats and {modes} modes up to 12000 Hz" in run.shown
     assert (run.folder / "housing.png").stat().st_size > 10_000
     reduced = read_reduced(run.folder / "housing.nc")
-    assert reduced.attributes["command"] == 'python -m mbs.housings nu308_housing --size "24 mm" --cutoff "12000 Hz"'
+    assert (
+        reduced.attributes["command"] == 'python -m examples.housings nu308_housing --size "24 mm" --cutoff "12000 Hz"'
+    )
     assert reduced.units.count("1") == modes == len(reduced.units) - 8
     assert np.array_equal(reduced.stiffness, run.made.reduced.stiffness)
     assert not [path.name for path in run.folder.iterdir() if path.name not in ("housing.nc", "housing.png", "kept")]
