@@ -74,6 +74,12 @@ class Results:
     oscillation_film_compliance: float | None = None
     oscillation_loss_compliance: float | None = None
 
+    @property
+    def complex_compliance(self) -> NDArray[np.complex128]:
+        """Film compliance - i omega loss compliance at each frequency, shape (k,) [m2/N]."""
+        omega = 2.0 * math.pi * np.array(self.frequencies)
+        return np.asarray(np.array(self.film_compliance) - 1j * omega * np.array(self.loss_compliance))
+
 
 @dataclass(frozen=True)
 class FilmTable:

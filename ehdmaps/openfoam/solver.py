@@ -248,7 +248,7 @@ class OpenFoamSolver(ContactSolverDefaults):
             return no_spectrum(film, frequencies)
         if coarse is None or fine is None:
             return slow_spectrum(film, frequencies)
-        found, rough = (_compliance(grid.results)[1:] for grid in (fine, coarse))
+        found, rough = (grid.results.complex_compliance[1:] for grid in (fine, coarse))
         index = index.reshape(frequencies.size, -1)
         errors = read_beside((rough - found) / 3.0, where, index, frequencies)
         return FilmSpectrum(film, frequencies, found[index[:, 0]], errors)
@@ -379,12 +379,6 @@ class OpenFoamSolver(ContactSolverDefaults):
         """Speeds of the lower and the upper surface [m/s]."""
         half = 0.5 * self.slide_to_roll
         return entrainment_speed * (1.0 - half), entrainment_speed * (1.0 + half)
-
-
-def _compliance(results: Results) -> NDArray[np.complex128]:
-    """Complex film compliance at each frequency of a run [m2/N]."""
-    omega = 2.0 * math.pi * np.array(results.frequencies)
-    return np.asarray(np.array(results.film_compliance) - 1j * omega * np.array(results.loss_compliance))
 
 
 def _case_name(contact: LineContact, point: OperatingPoint) -> str:

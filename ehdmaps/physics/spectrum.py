@@ -30,9 +30,9 @@ LOWEST_FREQUENCY, HIGHEST_FREQUENCY = 1e-3, 1e7
 MOST_FREQUENCIES = 2000
 """Frequencies of one response."""
 
-NEIGHBOUR = 1.6
-"""Ratio of a frequency to its neighbours: the difference of two grids changes sign over frequency, and its size where
-that happens is read beside it."""
+NEIGHBOUR = 2.0
+"""Ratio of a frequency to its neighbours, an octave: the difference of two grids changes sign over frequency, and its
+size where that happens is read beside it."""
 
 
 @dataclass(frozen=True)
