@@ -48,6 +48,8 @@ class Results:
         1/k - 1/k_dry at each frequency [m2/N].
     loss_compliance : tuple of float
         At each frequency [m2 s/N].
+    response_residual : tuple of float
+        What the Krylov space leaves of the equations at each frequency, relative to the response at rest.
     load_defect, flux_defect, outlet_defect, cell_continuity : float
         Relative defects of the balances: load, mass flux before and behind the rupture of the film, mass of the cells.
     seconds : float
@@ -66,6 +68,7 @@ class Results:
     frequencies: tuple[float, ...] = ()
     film_compliance: tuple[float, ...] = ()
     loss_compliance: tuple[float, ...] = ()
+    response_residual: tuple[float, ...] = ()
     load_defect: float = math.nan
     flux_defect: float = math.nan
     outlet_defect: float = math.nan
@@ -140,6 +143,7 @@ def read_results(case: Path) -> Results:
         frequencies=frequencies,
         film_compliance=_numbers(path, entries, "filmCompliance", len(frequencies)),
         loss_compliance=_numbers(path, entries, "lossCompliance", len(frequencies)),
+        response_residual=_numbers(path, entries, "responseResidual", len(frequencies)),
         load_defect=_number(path, entries, "loadDefect"),
         flux_defect=_number(path, entries, "fluxDefect"),
         outlet_defect=_number(path, entries, "outletDefect"),

@@ -78,6 +78,7 @@ entries = {
     "filmOffset": h * grid, "frequencies": listed(frequencies),
     "filmCompliance": listed([h * 0.1 / load * grid for _ in frequencies]),
     "lossCompliance": listed([1e-18 * grid / (1 + frequency) for frequency in frequencies]),
+    "responseResidual": listed([0.0 if frequency < 1e6 else 0.1 for frequency in frequencies]),
     "loadDefect": 1e-10, "fluxDefect": 1e-10, "outletDefect": 1e-4, "cellContinuity": 1e-8, "seconds": 0.1,
 }
 if status != "converged":
@@ -85,7 +86,7 @@ if status != "converged":
 if mode[0] == "nan":
     entries["filmOffset"] = "nan"
 if mode[0] == "no_response":
-    entries.update(frequencies="()", filmCompliance="()", lossCompliance="()")
+    entries.update(frequencies="()", filmCompliance="()", lossCompliance="()", responseResidual="()")
 if mode[0] == "thick":
     entries["filmOffset"] = 0.02 * R
 if mode[0] == "negative":

@@ -21,6 +21,7 @@ from ehdmaps.openfoam import installation as installed
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.openfoam.run import RunError, run
 from ehdmaps.openfoam.solver import OpenFoamSolver
+from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import Status
 from tests.unit import openfoam_fake
@@ -86,9 +87,17 @@ def test_many_frequencies_from_one_run_a_grid(fake):
     loss = -found.compliance.imag / (2.0 * np.pi * frequencies)
     assert loss == pytest.approx(slow.loss_compliance / np.array([10.0, 100.0, 1000.0]), rel=1e-12)
     # and the fake is of second order: a third of the difference is the error, with its sign
-    assert found.errors.shape == (3, 3)
+    assert found.errors.shape == (3, 5)
+    assert not found.errors[:, 3:].any()
     share = found.errors[:, 0].real / found.compliance.real
     assert share == pytest.approx(np.full(3, 4 / 400**2 + 1 / 16**2), rel=0.01)
+
+
+def test_what_the_krylov_space_leaves_is_an_error(fake):
+    found = OpenFoamSolver().film_spectrum(CONTACT, OIL, POINT, np.array([9.0, 5e6]))
+    at_rest = found.film.film_compliance + 4.0 * DRY_COMPLIANCE / CONTACT.reduced_modulus
+    assert np.abs(found.errors[:, 3]) == pytest.approx([0.0, 0.1 * at_rest], rel=1e-12)
+    assert np.abs(found.errors[:, 4]) == pytest.approx([0.0, 0.1 * at_rest], rel=1e-12)
 
 
 def test_a_spectrum_that_fails_has_its_cause(fake):
