@@ -34,6 +34,10 @@ class SolverError(EhdmapsError):
     """A contact solver gave up in a way it could not express as a status; the sweep records it as `failed`."""
 
 
+class AnalysisError(EhdmapsError):
+    """An analysis finds no result from input that is valid; the message says what to try."""
+
+
 class StoreError(EhdmapsError):
     """The store of solved points cannot be read, written or shared."""
 

@@ -43,7 +43,7 @@ def lacking(extra: str, package: str, purpose: str) -> tuple[str, ...]:
     Parameters
     ----------
     extra, package, purpose : str
-        As of `needs`; the package is imported by its name for pip.
+        The same as for `needs`; the package is imported by its name for pip.
     """
     try:
         with needs(extra, package, purpose):

@@ -35,6 +35,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from ehdmaps.errors import AnalysisError
+
 if TYPE_CHECKING:
     __version__: str
 
@@ -49,7 +51,6 @@ if TYPE_CHECKING:
     from mbs.analyses.sweep import SweepSettings, sweep
     from mbs.bearings.bearing import Bearing
     from mbs.bearings.bearing_force import BearingForce
-    from mbs.errors import AnalysisError
     from mbs.model.elements import Operation
     from mbs.scene.assembly import Model, assemble
     from mbs.scene.reader import parse_scene, read_scene, shipped_systems
@@ -86,7 +87,6 @@ __all__ = [
 ]
 
 _HOMES = {
-    "AnalysisError": "errors",
     "Bearing": "bearings.bearing",
     "BearingForce": "bearings.bearing_force",
     "CampbellSettings": "settings",

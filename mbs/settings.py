@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from mbs.model.profiles import SpeedProfile
 
 MOST_SPEEDS = 2000
@@ -32,7 +32,7 @@ class Settings:
     sample : float
         Time between recorded states [s]; a whole multiple of the step.
     spectral_radius : float
-        Of the highest frequencies, 0 to 1: 1 dissipates nothing, 0 all of it within a step.
+        Spectral radius at the highest frequencies, 0 to 1: 1 dissipates nothing, 0 all of it within a step.
     tolerance : float
         Largest error a step may make in a coordinate [m or rad], by estimate; steps are halved where it is larger.
         Infinite: steps are equal.

@@ -6,15 +6,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.ehl.line import GroupSolution, Resolution, linearised_profile, response_share
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.spectrum import film_compliances
 from ehdmaps.physics.spectrum import NEIGHBOUR, neighbours, read_beside
-
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 RESOLVED = 1.0 / 3.0
 """Phase a cell up to which a wave of film thickness is resolved by both grids [rad]."""
@@ -43,7 +40,7 @@ class GroupSpectrum(NamedTuple):
 
 
 def group_spectrum(
-    M: float, L: float, solution: GroupSolution, resolution: Resolution, frequencies: Array
+    M: float, L: float, solution: GroupSolution, resolution: Resolution, frequencies: FloatArray
 ) -> GroupSpectrum:
     """Film compliance of a solved point at some frequencies.
 
@@ -57,9 +54,9 @@ def group_spectrum(
     M, L : float
         Moes' load and lubricant parameters of the point.
     solution : GroupSolution
-        Converged.
+        Converged solution of the point.
     resolution : Resolution
-        Of the solve that gave it.
+        Settings of the solve that gave it.
     frequencies : ndarray, shape (k,)
         Omega = omega b/u, > 0.
     """

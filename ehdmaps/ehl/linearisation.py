@@ -16,15 +16,13 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid
 from ehdmaps.ehl.reynolds import LineProblem, residual, stored_mass, stored_mass_rate
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
-
-Array = NDArray[np.float64]
 
 
 class Neighbour(NamedTuple):
@@ -64,10 +62,10 @@ class Linearisation:
 
     problem: LineProblem
     grid: Grid
-    kernel: Array
-    unknowns: Array
-    matrix: Array
-    grid_mass: Array | None
+    kernel: FloatArray
+    unknowns: FloatArray
+    matrix: FloatArray
+    grid_mass: FloatArray | None
 
     @property
     def size(self) -> int:
@@ -80,24 +78,24 @@ class Linearisation:
         return self.unknowns.size - 1
 
     @property
-    def unit(self) -> Array:
+    def unit(self) -> FloatArray:
         """Right-hand side of a unit load, shape (size,)."""
         unit = np.zeros(self.size)
         unit[self.height] = 1.0
         return unit
 
     @cached_property
-    def _carried(self) -> Array:
+    def _carried(self) -> FloatArray:
         """Mass per length that a face which moves with the exit sweeps."""
         return stored_mass(self.problem, self.grid.x, self.grid.step, self.kernel, self.unknowns)[1]
 
     @cached_property
-    def _factors(self) -> tuple[Array, tuple[Array, Array]]:
+    def _factors(self) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
         """Scale of the rows, and LU factors of the scaled matrix."""
         scale = 1.0 / np.max(np.abs(self.matrix), axis=1)
         return scale, lu_factor(self.matrix * scale[:, None], overwrite_a=True, check_finite=False)
 
-    def storage(self, rate: Array) -> Array:
+    def storage(self, rate: FloatArray) -> FloatArray:
         """What the time derivative adds to the equations for a rate of the unknowns, both of shape (size,)."""
         size = self.unknowns.size
         n = size - 2
@@ -110,7 +108,7 @@ class Linearisation:
         added[n] = mass_rate[n]
         return added
 
-    def solve(self, right: Array) -> Array:
+    def solve(self, right: FloatArray) -> FloatArray:
         """Solve matrix z = right, both of shape (size,)."""
         scale, factors = self._factors
         return np.asarray(lu_solve(factors, scale * right, check_finite=False))
@@ -123,7 +121,12 @@ class Linearisation:
 
 
 def linearised(
-    problem: LineProblem, grid: Grid, kernel: Array, unknowns: Array, load: float, neighbour: Neighbour | None = None
+    problem: LineProblem,
+    grid: Grid,
+    kernel: FloatArray,
+    unknowns: FloatArray,
+    load: float,
+    neighbour: Neighbour | None = None,
 ) -> Linearisation:
     """The transient equations to first order about a converged solution.
 
@@ -149,7 +152,7 @@ def linearised(
     jacobian = np.empty((size, size))
     residual(problem, grid.x, grid.step, grid.face_step, kernel, unknowns, load, out, jacobian)
     matrix[:size, :size] = jacobian
-    grid_mass: Array | None = None
+    grid_mass: FloatArray | None = None
     if neighbour is not None:
         by_grid, grid_mass = _by_grid(problem, grid, kernel, unknowns, load, out, neighbour)
         matrix[:size, size] = by_grid
@@ -158,8 +161,14 @@ def linearised(
 
 
 def _by_grid(
-    problem: LineProblem, grid: Grid, kernel: Array, unknowns: Array, load: float, here: Array, neighbour: Neighbour
-) -> tuple[Array, Array]:
+    problem: LineProblem,
+    grid: Grid,
+    kernel: FloatArray,
+    unknowns: FloatArray,
+    load: float,
+    here: FloatArray,
+    neighbour: Neighbour,
+) -> tuple[FloatArray, FloatArray]:
     """Derivatives of the residual and of the stored mass (as moving faces see it) with respect to the spike's place."""
     moved, shift = neighbour.grid, neighbour.shift
     moved_kernel = log_kernel(moved.x, moved.step)
@@ -169,5 +178,5 @@ def _by_grid(
     mass, carried = stored_mass(problem, grid.x, grid.step, kernel, unknowns)
     moved_mass, _ = stored_mass(problem, moved.x, moved.step, moved_kernel, unknowns)
     face_shift = np.append(moved.face - grid.face, moved.x[-1] - grid.x[-1])
-    by_grid: Array = (there - here) / shift
+    by_grid: FloatArray = (there - here) / shift
     return by_grid, (moved_mass - mass - carried * face_shift) / shift

@@ -9,9 +9,7 @@ import math
 import time
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.frequency import group_spectrum
 from ehdmaps.ehl.grid import GridShape
 from ehdmaps.ehl.limits import SETTING_LIMITS
@@ -122,7 +120,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         return tuple(films)
 
     def film_spectrum(
-        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: NDArray[np.float64]
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: FloatArray
     ) -> FilmSpectrum:
         """Film of one point over frequency, from one solution; arguments as of `ContactSolver.film_spectrum`."""
         state = lubricant.at(point.temperature)

@@ -11,13 +11,10 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.ehl.linearisation import Linearisation
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
-
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 SMALL_RESIDUAL = 1e-13
 """Residual at which the space is large enough, relative to the static response."""
@@ -26,7 +23,7 @@ CHECK_EVERY = 3
 """Vectors that are added between two looks at the residual."""
 
 
-def film_compliances(linear: Linearisation, frequencies: Array) -> ComplexArray:
+def film_compliances(linear: Linearisation, frequencies: FloatArray) -> ComplexArray:
     """Complex film compliance S = -dH0/dW - ln(2)/pi; S = compliance - i Omega loss for slow motion.
 
     Parameters
@@ -39,7 +36,7 @@ def film_compliances(linear: Linearisation, frequencies: Array) -> ComplexArray:
     Returns
     -------
     ndarray, shape (k,)
-        In units of b/(p_H R).
+        Film compliances in units of b/(p_H R).
     """
     static = linear.solve(linear.unit)
     norm = float(np.linalg.norm(static))
@@ -61,7 +58,7 @@ def film_compliances(linear: Linearisation, frequencies: Array) -> ComplexArray:
     return np.asarray(-moved - DRY_COMPLIANCE)
 
 
-def _extend(linear: Linearisation, basis: Array, hessenberg: Array, count: int) -> None:
+def _extend(linear: Linearisation, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
     """Add T times the last vector to the basis, orthogonal to all before it; twice, for round-off."""
     found = linear.solve(linear.storage(basis[count]))
     for _ in range(2):
@@ -73,14 +70,14 @@ def _extend(linear: Linearisation, basis: Array, hessenberg: Array, count: int) 
     basis[count + 1] = found / max(length, np.finfo(float).tiny)
 
 
-def _residual(hessenberg: Array, count: int, frequency: float) -> float:
+def _residual(hessenberg: FloatArray, count: int, frequency: float) -> float:
     """What the space leaves of the equations at a frequency, relative to the static response."""
     last = abs(_reduced(hessenberg, count, frequency)[count - 1])
     return float(frequency * hessenberg[count, count - 1] * last)
 
 
 @njit(cache=True)
-def _projected(hessenberg: Array, count: int, heights: Array, frequencies: Array) -> ComplexArray:
+def _projected(hessenberg: FloatArray, count: int, heights: FloatArray, frequencies: FloatArray) -> ComplexArray:
     """H0 of the reduced equations at each frequency, for a start of length one."""
     found = np.empty(frequencies.size, dtype=np.complex128)
     for i in range(frequencies.size):
@@ -93,7 +90,7 @@ def _projected(hessenberg: Array, count: int, heights: Array, frequencies: Array
 
 
 @njit(cache=True)
-def _reduced(hessenberg: Array, count: int, frequency: float) -> ComplexArray:
+def _reduced(hessenberg: FloatArray, count: int, frequency: float) -> ComplexArray:
     """Solve (I + i Omega H) y = e_1 by elimination: a Hessenberg matrix has one entry a column to eliminate."""
     matrix = 1j * frequency * hessenberg[:count, :count]
     right = np.zeros(count, dtype=np.complex128)

@@ -16,13 +16,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.newton import LOG_VISCOSITY_STEP, solve_scaled
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import LineProblem, film, residual, steepest_viscosity_step, stored_mass, stored_mass_jacobian
-
-Array = NDArray[np.float64]
 
 MOST_STEPS = 30
 """Newton steps of one time step after which it counts as failed."""
@@ -36,14 +34,14 @@ class Motion(NamedTuple):
     height : ndarray, shape (k + 1,)
         H0 at the start and after each step [b^2/R], NaN from a step on that does not converge.
     newton_steps : int
-        Of all time steps together.
+        Newton steps of all time steps together.
     """
 
-    height: Array
+    height: FloatArray
     newton_steps: int
 
 
-def follow(profile: Profile, loads: Array, time_step: float, tolerance: float = 1e-9) -> Motion:
+def follow(profile: Profile, loads: FloatArray, time_step: float, tolerance: float = 1e-9) -> Motion:
     """Follow the film under loads at equal steps of time.
 
     Parameters
@@ -55,7 +53,7 @@ def follow(profile: Profile, loads: Array, time_step: float, tolerance: float = 
     time_step : float
         [b/u].
     tolerance : float
-        Of Newton's last step, relative to the largest pressure and to film and exit.
+        Size of Newton's last step, relative to the largest pressure and to film and exit.
     """
     grid = profile.grid
     height, newton_steps = _follow(
@@ -75,15 +73,15 @@ def follow(profile: Profile, loads: Array, time_step: float, tolerance: float = 
 @njit(cache=True)
 def _follow(
     problem: LineProblem,
-    x: Array,
-    step: Array,
-    face_step: Array,
-    kernel: Array,
-    steady: Array,
-    loads: Array,
+    x: FloatArray,
+    step: FloatArray,
+    face_step: FloatArray,
+    kernel: FloatArray,
+    steady: FloatArray,
+    loads: FloatArray,
     time_step: float,
     tolerance: float,
-) -> tuple[Array, int]:
+) -> tuple[FloatArray, int]:
     """H0 after each time step, and Newton steps taken."""
     n = steady.size - 2
     height = np.full(loads.size + 1, np.nan)
@@ -125,17 +123,17 @@ def _follow(
 @njit(cache=True)
 def _one_step(
     problem: LineProblem,
-    x: Array,
-    step: Array,
-    face_step: Array,
-    kernel: Array,
-    start: Array,
+    x: FloatArray,
+    step: FloatArray,
+    face_step: FloatArray,
+    kernel: FloatArray,
+    start: FloatArray,
     load: float,
     rate: float,
-    mass_before: Array,
+    mass_before: FloatArray,
     exit_before: float,
     tolerance: float,
-) -> tuple[Array, int]:
+) -> tuple[FloatArray, int]:
     """Newton for one time step: unknowns and steps taken, more than `MOST_STEPS` if it does not converge.
 
     The matrix lacks how the swept mass changes with the film, which is as small as the exit is slow.

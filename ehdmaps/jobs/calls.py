@@ -52,9 +52,9 @@ def generate(
     output : str or path, optional
         The map file.
     solver : str or ContactSolver, optional
-        In place of the job's: a name, for its default settings, or a solver.
+        Solver in place of the job's: a name, for its default settings, or a solver.
     workers : int or None
-        Processes; None for all cores. A script that uses more than one needs the usual
+        Number of processes; None for all cores. A script that uses more than one needs the usual
         ``if __name__ == "__main__":``.
     fresh : bool
         Drop the store of the output file first.
@@ -145,7 +145,7 @@ def solve(
     Returns
     -------
     ContactSolution
-        With a status: numbers are NaN where it is not usable.
+        The solution with its status: numbers are NaN where it is not usable.
 
     Raises
     ------
@@ -178,13 +178,13 @@ def solve_points(
     solver : str or ContactSolver
         Name of a solver with its default settings, or a solver.
     workers : int
-        Processes. A script that uses more than one needs the usual ``if __name__ == "__main__":``.
+        Number of processes. A script that uses more than one needs the usual ``if __name__ == "__main__":``.
 
     Returns
     -------
     xarray.Dataset
-        Over contact and the dims of the points: the variables of a map file. A point without a solution has NaN, a
-        status and a reason.
+        A dataset over contact and the dims of the points: the variables of a map file. A point without a solution has
+        NaN, a status and a reason.
 
     Raises
     ------
@@ -222,8 +222,8 @@ def frequency_response(
     Returns
     -------
     xarray.Dataset
-        Over contact and frequency, per unit length: `dynamic_stiffness` K = k + i omega c of film and solids, complex
-        [N/m2], its parts `stiffness` [N/m2] and `damping` [N s/m2], `film_compliance` S, complex [m2/N], and
+        Response over contact and frequency, per unit length: `dynamic_stiffness` K = k + i omega c of film and solids,
+        complex [N/m2], its parts `stiffness` [N/m2] and `damping` [N s/m2], `film_compliance` S, complex [m2/N], and
         `film_stiffness` 1/S, complex [N/m2], with 1/K = d(delta_el)/dw + S; estimated relative numerical errors;
         `omega_b_over_u`. Over contact: `slow_stiffness` and `slow_damping`, which a map has, `status` and `reason`. A
         contact without a solution has NaN.

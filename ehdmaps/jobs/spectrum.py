@@ -44,7 +44,7 @@ def spectrum_dataset(
     Parameters
     ----------
     contacts : sequence of LineContact
-        With names apart.
+        Contacts with names apart.
     lubricant : Lubricant
         The oil.
     point : OperatingPoint
@@ -57,7 +57,7 @@ def spectrum_dataset(
     Returns
     -------
     xarray.Dataset
-        Over contact and frequency. A contact without a solution has NaN, a status and a reason.
+        Response over contact and frequency. A contact without a solution has NaN, a status and a reason.
 
     Raises
     ------

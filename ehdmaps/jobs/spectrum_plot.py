@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.jobs.spectrum_report import spectrum_place
 from ehdmaps.outputs import write_figure
 from ehdmaps.physics.solution import Status
@@ -24,8 +24,6 @@ RESOLUTION = 200
 _FONT: Any = {"font.size": 8.5, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6}
 _LINE, _SLOW, _NEGATIVE = "#1b6ca8", "0.45", "#c8102e"
 _COMPLIANCE = Display("um mm/kN", 1e12)
-
-Floats = npt.NDArray[np.float64]
 
 
 def plot_spectrum(dataset: xr.Dataset, title: str, output: Path) -> None:
@@ -120,37 +118,37 @@ def _column(chosen: xr.Dataset, contact: str, panels: list[Axes]) -> None:
     _second_axis(real, frequency, chosen["omega_b_over_u"].values)
 
 
-def _banded(axes: Axes, frequency: Floats, values: Floats, error: Floats) -> None:
+def _banded(axes: Axes, frequency: FloatArray, values: FloatArray, error: FloatArray) -> None:
     """A curve with the band of its estimated numerical error."""
     axes.plot(frequency, values, color=_LINE, lw=1.2, label="at the frequency, with its estimated error")
     axes.fill_between(frequency, values * (1.0 - error), values * (1.0 + error), color=_LINE, alpha=0.25, lw=0.0)
 
 
-def _limits(low: Floats, high: Floats) -> tuple[float, float]:
+def _limits(low: FloatArray, high: FloatArray) -> tuple[float, float]:
     """Range of a panel that shows all of a band, and zero."""
     bottom, top = min(float(np.min(low)), 0.0), max(float(np.max(high)), 0.0)
     margin = 0.08 * (top - bottom or 1.0)
     return bottom - margin, top + margin
 
 
-def _first(fed: npt.NDArray[np.bool_]) -> int:
+def _first(fed: BoolArray) -> int:
     """Index of the first frequency that is fed."""
     return int(np.argmax(fed))
 
 
-def _bands(fed: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
+def _bands(fed: BoolArray) -> list[tuple[int, int]]:
     """First and last index of each run of frequencies."""
     steps = np.flatnonzero(np.diff(np.r_[False, fed, False].astype(int)))
     return [(int(first), int(last) - 1) for first, last in zip(steps[::2], steps[1::2], strict=True)]
 
 
-def _edges(frequency: Floats, first: int, last: int) -> tuple[float, float]:
+def _edges(frequency: FloatArray, first: int, last: int) -> tuple[float, float]:
     """Ends of a band, half-way to the frequencies beside it."""
     middles = np.sqrt(frequency[1:] * frequency[:-1])
     return float(np.r_[frequency[0], middles][first]), float(np.r_[middles, frequency[-1]][last])
 
 
-def _second_axis(axes: Axes, frequency: Floats, reduced: Floats) -> None:
+def _second_axis(axes: Axes, frequency: FloatArray, reduced: FloatArray) -> None:
     """Omega b/u above the panel; none at a standstill."""
     ratio = float(reduced[0] / frequency[0])
     if not np.isfinite(ratio):

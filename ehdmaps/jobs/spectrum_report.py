@@ -60,7 +60,7 @@ def spectrum_table(job: Job, dataset: xr.Dataset, length: float | None) -> str:
     dataset : xarray.Dataset
         See `ehdmaps.jobs.spectrum.spectrum_dataset`.
     length : float or None
-        Of a slice [m].
+        Length of a slice [m].
     """
     place = spectrum_place(dataset)
     if length is not None:

@@ -10,9 +10,9 @@ import math
 import numpy as np
 from numba import njit
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.elementary import exp, log
 from ehdmaps.maps.tables import COLDEST, ApproachTable, Line
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.physics.unilateral import Force
 from ehdmaps.physics.unilateral import unilateral_force as rule
 

@@ -63,13 +63,13 @@ class GridSolver:
         Parameters
         ----------
         parameters : Parameters
-            Of the run, with its own start.
+            Parameters of the run, with its own start.
         name : str
-            Of the folder, if cases are kept.
+            Name of the folder, if cases are kept.
         with_fields : bool
             Whether to read the fields.
         end : float
-            On the clock `time.monotonic`, after which a run is stopped [s].
+            Time on the clock `time.monotonic` after which a run is stopped [s].
         start : Start, optional
             What to start from first, such as the solution on a coarser grid.
 
@@ -103,13 +103,13 @@ class GridSolver:
         Parameters
         ----------
         parameters : Parameters
-            Of the run.
+            Parameters of the run.
         name : str
-            Of the folder, if cases are kept.
+            Name of the folder, if cases are kept.
         with_fields : bool
             Whether to read the fields.
         end : float
-            On the clock `time.monotonic`, after which it is stopped [s].
+            Time on the clock `time.monotonic` after which it is stopped [s].
 
         Raises
         ------

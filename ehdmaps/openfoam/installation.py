@@ -14,7 +14,6 @@ from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.extras import lacking
-from ehdmaps.openfoam.case import NO_PATH
 
 BUILD_COMMAND = "openfoam_cases/build"
 """Command in a clone of the project that installs what is needed and builds `ehlFoam`."""
@@ -26,6 +25,9 @@ DEBIAN = Path("/usr/share/openfoam")
 """Project folder of the distribution's package, which sets no environment of its own."""
 
 DEBIAN_ENVIRONMENT = {"WM_PROJECT_DIR": str(DEBIAN), "WM_PROJECT_VERSION": "v1912"}
+
+NO_PATH = re.compile(r"[\s\"']")
+"""Characters that OpenFOAM does not take in the path of a case."""
 
 _CLONE = Path(__file__).parents[2] / "openfoam_cases"
 _SHARED = Path(sysconfig.get_path("data")) / "share" / "ehdmaps"
@@ -46,7 +48,7 @@ class Installation:
     build : str
         Record of the build: OpenFOAM version, compiler, hash of the sources.
     template_hash : str
-        Of the template's files.
+        Hash of the template's files.
     environment : tuple of (str, str)
         What the programs need besides the environment of this process.
     """

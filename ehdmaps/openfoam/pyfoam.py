@@ -129,13 +129,13 @@ class Runner(BasicRunner):  # type: ignore[misc]
     command : sequence of str
         Program and arguments.
     name : str
-        Of the log, "log.NAME.logfile".
+        Name of the log, "log.NAME.logfile".
     case : Path
         The case folder, where the program runs.
     environment : mapping
-        Of the program.
+        Environment variables of the program.
     seconds : float
-        After which it is killed.
+        Time after which the program is killed [s].
 
     Raises
     ------

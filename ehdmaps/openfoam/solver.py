@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import Literal, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
-from ehdmaps.openfoam.case import NO_PATH
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
-from ehdmaps.openfoam.installation import Installation, installation
+from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
 from ehdmaps.openfoam.parameters import FLOWS, SHEARS, Flow, Mesh, Parameters, Shear, Start
 from ehdmaps.openfoam.run import RunError
 from ehdmaps.physics.closed_form import THIN_FILM_LIMIT, HertzSolver
@@ -50,12 +49,12 @@ class Guess(Protocol):
     """What a start offers: a film, and where the columns of cells should stand."""
 
     @property
-    def x(self) -> NDArray[np.float64]:
+    def x(self) -> FloatArray:
         """Positions from the contact centre [m]."""
         ...
 
     @property
-    def pressure(self) -> NDArray[np.float64]:
+    def pressure(self) -> FloatArray:
         """Pressure there [Pa]."""
         ...
 
@@ -110,7 +109,7 @@ class OpenFoamSolver(ContactSolverDefaults):
     tolerance : float
         Relative, of the balances.
     max_iterations : int
-        After which a run counts as stagnated.
+        Number of iterations after which a run counts as stagnated.
     starter : callable, optional
         Gives a start to each point; without one it starts from the dry contact.
     timeout : float
@@ -236,7 +235,7 @@ class OpenFoamSolver(ContactSolverDefaults):
         )
 
     def film_spectrum(
-        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: NDArray[np.float64]
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: FloatArray
     ) -> FilmSpectrum:
         """Film of one point over frequency, from one run a grid; arguments as of `ContactSolver.film_spectrum`.
 
@@ -276,7 +275,7 @@ class OpenFoamSolver(ContactSolverDefaults):
         Returns
         -------
         film : FilmSolution
-            With status and cause where it failed.
+            Solution of the film, with status and cause where it failed.
         grid : GridSolution or None
             What the run on the fine grid gave; None where there is none.
         """
@@ -340,7 +339,7 @@ class OpenFoamSolver(ContactSolverDefaults):
         point : OperatingPoint
             Load, speed and temperature.
         frequencies : tuple of float
-            Of small oscillations [Hz]; the low-frequency limit comes first in any case.
+            Frequencies of small oscillations [Hz]; the low-frequency limit comes first in any case.
         """
         state = lubricant.at(point.temperature)
         guess = self.starter and self.starter(

@@ -13,14 +13,11 @@ from enum import IntEnum
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
-
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 
 class Status(IntEnum):
@@ -101,7 +98,7 @@ class FilmSpectrum:
     Attributes
     ----------
     film : FilmSolution
-        In the limit of slow motion, with status and reason.
+        The film in the limit of slow motion, with status and reason.
     frequencies : ndarray, shape (k,)
         [Hz], > 0.
     compliance : ndarray, shape (k,)
@@ -113,7 +110,7 @@ class FilmSpectrum:
     """
 
     film: FilmSolution
-    frequencies: Array
+    frequencies: FloatArray
     compliance: ComplexArray
     errors: ComplexArray
 
@@ -214,12 +211,12 @@ class ContactSolver(Protocol):
         entrainment_speed : float
             u [m/s].
         temperature : float
-            Of the oil supply [K].
+            Temperature of the oil supply [K].
         """
         ...
 
     def film_spectrum(
-        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: Array
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: FloatArray
     ) -> FilmSpectrum:
         """Film of one point that oscillates a little, over frequency.
 
@@ -272,20 +269,20 @@ class ContactSolverDefaults:
         contact: LineContact,
         lubricant: Lubricant,
         point: OperatingPoint,
-        frequencies: Array,
+        frequencies: FloatArray,
     ) -> FilmSpectrum:
         """Film without a memory: the same film and loss compliance at each frequency; arguments as of `ContactSolver`.
 
         Parameters
         ----------
         contact, lubricant, point, frequencies
-            As of `ContactSolver.film_spectrum`.
+            The arguments of `ContactSolver.film_spectrum`.
         """
         (film,) = self.solve_line(contact, lubricant, (point.load,), point.entrainment_speed, point.temperature)
         return slow_spectrum(film, frequencies)
 
 
-def slow_spectrum(film: FilmSolution, frequencies: Array) -> FilmSpectrum:
+def slow_spectrum(film: FilmSolution, frequencies: FloatArray) -> FilmSpectrum:
     """Spectrum of a film whose film compliance and loss compliance do not depend on frequency.
 
     Parameters
@@ -306,13 +303,13 @@ def slow_spectrum(film: FilmSolution, frequencies: Array) -> FilmSpectrum:
     )
 
 
-def no_spectrum(film: FilmSolution, frequencies: Array) -> FilmSpectrum:
+def no_spectrum(film: FilmSolution, frequencies: FloatArray) -> FilmSpectrum:
     """Spectrum of a film that has no solution: NaN.
 
     Parameters
     ----------
     film : FilmSolution
-        With status and reason.
+        The film with its status and reason.
     frequencies : ndarray, shape (k,)
         [Hz].
     """

@@ -14,15 +14,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import ComplexArray, FloatArray, IndexArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolution, FilmSpectrum, contact_solution
-
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 LOWEST_FREQUENCY, HIGHEST_FREQUENCY = 1e-3, 1e7
 """Frequencies at which a response may be asked for [Hz]."""
@@ -42,7 +39,7 @@ class ContactSpectrum:
     Attributes
     ----------
     solution : ContactSolution
-        In the limit of slow motion, with status and reason.
+        The contact in the limit of slow motion, with status and reason.
     frequencies : ndarray, shape (k,)
         [Hz].
     film_compliance : ndarray, shape (k,)
@@ -56,13 +53,13 @@ class ContactSpectrum:
     """
 
     solution: ContactSolution
-    frequencies: Array
+    frequencies: FloatArray
     film_compliance: ComplexArray
     dynamic_stiffness: ComplexArray
-    film_compliance_error: Array
-    dynamic_stiffness_error: Array
-    stiffness_error: Array
-    damping_error: Array
+    film_compliance_error: FloatArray
+    dynamic_stiffness_error: FloatArray
+    stiffness_error: FloatArray
+    damping_error: FloatArray
 
     @property
     def film_stiffness(self) -> ComplexArray:
@@ -71,12 +68,12 @@ class ContactSpectrum:
             return np.asarray(1.0 / self.film_compliance)
 
     @property
-    def stiffness(self) -> Array:
+    def stiffness(self) -> FloatArray:
         """Stiffness k at each frequency, shape (k,) [N/m2]."""
         return np.asarray(self.dynamic_stiffness.real)
 
     @property
-    def damping(self) -> Array:
+    def damping(self) -> FloatArray:
         """Damping c at each frequency, shape (k,) [N s/m2]; negative where the contact feeds an oscillation."""
         return np.asarray(self.dynamic_stiffness.imag / (2.0 * math.pi * self.frequencies))
 
@@ -86,7 +83,7 @@ class ContactSpectrum:
         Parameters
         ----------
         index : int
-            Of the frequency.
+            Index of the frequency.
         """
         error = float(self.film_compliance_error[index] * abs(self.film_compliance[index]))
         real = abs(float(self.film_compliance[index].real))
@@ -100,7 +97,7 @@ class ContactSpectrum:
         )
 
 
-def checked_frequencies(frequencies: Sequence[float] | Array) -> Array:
+def checked_frequencies(frequencies: Sequence[float] | FloatArray) -> FloatArray:
     """Return frequencies as an array.
 
     Parameters
@@ -127,18 +124,20 @@ def checked_frequencies(frequencies: Sequence[float] | Array) -> Array:
     return values
 
 
-def neighbours(frequencies: Array) -> Array:
+def neighbours(frequencies: FloatArray) -> FloatArray:
     """Return where the difference of two grids is read for its error at each frequency, shape (k, 3).
 
     Parameters
     ----------
     frequencies : ndarray, shape (k,)
-        In any unit.
+        Frequencies in any unit.
     """
     return np.column_stack([frequencies, frequencies * NEIGHBOUR, frequencies / NEIGHBOUR])
 
 
-def read_beside(difference: ComplexArray, where: Array, index: NDArray[np.intp], frequencies: Array) -> ComplexArray:
+def read_beside(
+    difference: ComplexArray, where: FloatArray, index: IndexArray, frequencies: FloatArray
+) -> ComplexArray:
     """Return differences of film compliance at other frequencies as they would stand at each frequency, shape (k, m).
 
     The imaginary part goes with the frequency: what is carried over is the loss compliance.
@@ -152,7 +151,7 @@ def read_beside(difference: ComplexArray, where: Array, index: NDArray[np.intp],
     index : ndarray, shape (k, m)
         Which of them are read for each frequency.
     frequencies : ndarray, shape (k,)
-        Where they are to stand.
+        Frequencies at which they are to stand.
     """
     return np.asarray(difference.real[index] + 1j * (difference.imag / where)[index] * frequencies[:, None])
 
@@ -195,6 +194,6 @@ def contact_spectrum(spectrum: FilmSpectrum, contact: LineContact, point: Operat
         )
 
 
-def _relative(error: Array, value: Array) -> Array:
+def _relative(error: FloatArray, value: FloatArray) -> FloatArray:
     """An error over its value; no error of nothing is none."""
     return np.where(error == 0.0, 0.0, error / value)

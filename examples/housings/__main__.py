@@ -7,8 +7,8 @@ import importlib
 import sys
 from collections.abc import Sequence
 
+from ehdmaps.errors import AnalysisError
 from ehdmaps.program import Parser, run
-from mbs.errors import AnalysisError
 
 
 def parser() -> argparse.ArgumentParser:

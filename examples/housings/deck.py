@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ehdmaps.arrays import IntArray
 from ehdmaps.physics.solids import Material
-from examples.housings.mesh import IntArray, Mesh
+from examples.housings.mesh import Mesh
 
 _PER_LINE = 12
 """CalculiX takes up to 16 entries a line."""
@@ -19,7 +20,7 @@ def deck(mesh: Mesh, material: Material, clamped: IntArray, count: int, matrices
     mesh : Mesh
         The solid; node n of the deck is row n - 1 of its positions.
     material : Material
-        Of all elements.
+        Material of all elements.
     clamped : array of int
         Indices of nodes whose three displacements are held; none for a free solid.
     count : int

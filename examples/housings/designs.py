@@ -35,7 +35,7 @@ class Seat:
     centre : tuple of float
         [m].
     diameter, width : float
-        Of the outer ring [m].
+        Diameter and width of the outer ring [m].
     """
 
     centre: Place
@@ -50,17 +50,17 @@ class GearboxShape:
     Attributes
     ----------
     centre_distance : float
-        Between the shafts, along y.
+        Distance between the shafts, along y.
     span : float
-        Between the bearings of a shaft.
+        Distance between the bearings of a shaft.
     seat_diameter, seat_width : float
         Outer rings of the bearings; the bosses around the seats are as wide.
     boss_diameter : float
-        Outside of the bosses.
+        Outer diameter of the bosses.
     end_wall, side_wall, bottom, top : float
         Thickness of the walls.
     inner_y, inner_z : tuple of float
-        Inside of the box, from and to.
+        Limits of the inside of the box, from and to.
     foot_length, foot_reach, foot_height : float
         Feet along x, outwards from the side wall, and thickness.
     foot_below : float
@@ -114,15 +114,15 @@ class PedestalShape:
     Attributes
     ----------
     span : float
-        Between the seats, along x.
+        Distance between the seats, along x.
     seat_diameter, seat_width : float
         Outer rings of the bearings; the pedestals are as thick as the rings are wide.
     head_diameter : float
-        Outside of the pedestals around the seats.
+        Outer diameter of the pedestals around the seats.
     base_width : float
-        Of a pedestal along y where it stands on the plate; its flanks are tangents of the head.
+        Width of a pedestal along y at the plate; its flanks are tangents of the head.
     axis_height : float
-        Of the axis above the plate.
+        Height of the axis above the plate.
     plate_length, plate_width, plate_thickness : float
         Base plate along x, y, z.
     foot_size, foot_height : float
@@ -159,19 +159,19 @@ class Housing:
     Attributes
     ----------
     name : str
-        Of the file, without its ending.
+        Name of the file, without its ending.
     title : str
-        For figures and messages.
+        Title for figures and messages.
     shape : GearboxShape or PedestalShape
         Dimensions [m].
     material : Material
-        Of the whole.
+        Material of the whole housing.
     seats : mapping of str to Seat
         Interfaces of the reduced body.
     sensors : mapping of str to tuple of float
         Places on the surface that are observed [m].
     size : float
-        Of the elements of the shipped file [m].
+        Size of the elements of the shipped file [m].
     cutoff : float
         Modes with the seats held are kept up to here in the shipped file [Hz].
     """

@@ -14,12 +14,11 @@ from types import ModuleType
 
 import numpy as np
 
-from ehdmaps.errors import DependencyError, InputError
+from ehdmaps.errors import AnalysisError, DependencyError, InputError
 from ehdmaps.extras import needs
 from ehdmaps.units import LENGTH
 from examples.housings.designs import GearboxShape, Housing, PedestalShape, Place
 from examples.housings.mesh import Mesh
-from mbs.errors import AnalysisError
 
 SMALLEST, LARGEST = 5e-3, 40e-3
 """Sizes of elements [m]: below, there are far too many; above, they no longer know the walls."""
@@ -50,7 +49,7 @@ def mesh_housing(housing: Housing, size: float) -> Mesh:
     housing : Housing
         What is meshed.
     size : float
-        Of the elements [m].
+        Size of the elements [m].
 
     Raises
     ------
@@ -74,7 +73,7 @@ def tetrahedra(
     draw : callable
         Draws one solid in gmsh's geometry kernel, in mm, and returns it.
     size : float
-        Of the elements [m], from `SMALLEST` to `LARGEST`.
+        Size of the elements [m], from `SMALLEST` to `LARGEST`.
     points : sequence of tuple of float
         Places on the surface where a node must lie [m].
     around : int
@@ -83,7 +82,7 @@ def tetrahedra(
     Returns
     -------
     Mesh
-        With curved edges at curved surfaces. The same for the same input and version of gmsh.
+        The mesh, with curved edges at curved surfaces. It is the same for the same input and version of gmsh.
 
     Raises
     ------

@@ -11,15 +11,14 @@ from pathlib import Path
 import numpy as np
 from scipy.linalg import eigh
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import LENGTH
 from ehdmaps.version import version
 from examples.housings import solve
 from examples.housings.designs import Housing, Seat
 from examples.housings.geometry import load_gmsh, mesh_housing
 from examples.housings.mesh import Mesh
-from mbs.errors import AnalysisError
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduction import reduce
@@ -51,11 +50,11 @@ class Made:
     Attributes
     ----------
     mesh : Mesh
-        Of its solid.
+        Mesh of its solid.
     reduced : ReducedBody
-        With its provenance.
+        The reduced body, with its provenance.
     coordinates : int
-        Of the finite-element model, feet held.
+        Number of coordinates of the finite-element model, feet held.
     frequencies : array, shape (k,)
         Lowest of the housing with its feet held and its seats free, by CalculiX [Hz].
     reduced_frequencies : array, shape (k,)
@@ -85,11 +84,11 @@ def make(housing: Housing, size: float, cutoff: float, keep: Path | None = None)
     housing : Housing
         What is made.
     size : float
-        Of the elements [m].
+        Size of the elements [m].
     cutoff : float
         Modes with the seats held are kept up to here [Hz].
     keep : Path, optional
-        Where the files of CalculiX stay; they are deleted if left out.
+        Folder in which the files of CalculiX stay; they are deleted if left out.
 
     Raises
     ------

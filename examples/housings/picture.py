@@ -25,7 +25,7 @@ def housing_figure(housing: Housing, mesh: Mesh) -> Figure:
     housing : Housing
         Gives title, seats and sensors.
     mesh : Mesh
-        Of it.
+        Mesh of the housing.
     """
     figure = Figure(figsize=(15.0, 5.6), layout="constrained")
     figure.suptitle(f"{housing.title}: {len(mesh.elements)} second-order tetrahedra, {mesh.positions.size} coordinates")

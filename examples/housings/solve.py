@@ -10,12 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.solids import Material
 from examples.housings.deck import deck
-from examples.housings.mesh import IntArray, Mesh
-from mbs.errors import AnalysisError
+from examples.housings.mesh import Mesh
 from mbs.flexible.calculix import read_calculix
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.matrix_files import NodePositions
@@ -39,7 +38,7 @@ def matrices(mesh: Mesh, material: Material, clamped: IntArray, folder: Path) ->
     mesh : Mesh
         The solid; node n of the model is row n - 1 of its positions.
     material : Material
-        Of it.
+        Material of the mesh.
     clamped : array of int
         Indices of nodes that are held; their freedoms are not in the matrices.
     folder : Path
@@ -64,7 +63,7 @@ def own_frequencies(mesh: Mesh, material: Material, clamped: IntArray, count: in
     Parameters
     ----------
     mesh, material, clamped
-        As of `matrices`.
+        The same as for `matrices`.
     count : int
         Frequencies to find.
     folder : Path

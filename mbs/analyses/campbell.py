@@ -11,11 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import closest
 from mbs.analyses.case import Case, as_cases
 from mbs.analyses.progress import Progress, silent
-from mbs.errors import AnalysisError
 from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Operation, Sensor
@@ -54,7 +53,7 @@ class LawRun:
     record : Recording
         The run in time.
     spectra : RunUpSpectra
-        Its levels over speed, frequency and order.
+        Levels of the run over speed, frequency and order.
     modes : Sweep or None
         Modes of the linear system at some speeds of the run, if they were asked for.
     seconds : float
@@ -83,7 +82,7 @@ class CampbellResult:
     orders : tuple of (float, str)
         Orders that were followed, with their names.
     runs : tuple of LawRun
-        Of each law that came to the end.
+        Runs of the laws that came to the end.
     failed : tuple of str
         Why the others did not, each with its label.
     dataset : xarray.Dataset

@@ -19,6 +19,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
 from mbs.bearings import slice_table as table
@@ -28,8 +29,6 @@ from mbs.bearings.kinematics import RingState
 from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.ring_forces import RingForces, ring_forces
 from mbs.bearings.roller_loads import RollerLoads
-
-FloatArray = npt.NDArray[np.float64]
 
 _ALIKE = 1e-6
 
@@ -42,7 +41,7 @@ class BearingForce:
     bearing : Bearing
         Geometry, clearance, profile, slices.
     law : DryLaw or ContactLaw
-        From `mbs.bearings.laws`, or the law "series" of a map made for the same geometry.
+        Law from `mbs.bearings.laws`, or the law "series" of a map made for the same geometry.
     slices : int, optional
         Number of slices; that of the bearing if left out.
     outside : {"error", "clamp", "asymptote"}, optional
@@ -90,7 +89,7 @@ class BearingForce:
         temperature : float
             T [K].
         centrifugal_load : float
-            Of a roller, per unit length [N/m].
+            Centrifugal load of a roller, per unit length [N/m].
 
         Raises
         ------
@@ -114,13 +113,13 @@ class BearingForce:
         Parameters
         ----------
         pose, velocity : array (6,)
-            Of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
+            Pose and velocity of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
         cage_angle : float
             Angle of the first roller, from y towards z [rad]; see `Bearing.cage_angle`.
         entrainment_speed, temperature : float
             u [m/s] and T [K]; a map's law needs them, see `BearingGeometry.entrainment_speed`.
         centrifugal_load : float
-            Of a roller [N/m], see `Bearing.centrifugal_load`; for a map's law only.
+            Centrifugal load of a roller [N/m], see `Bearing.centrifugal_load`; for a map's law only.
 
         Returns
         -------
@@ -151,13 +150,13 @@ class BearingForce:
         Parameters
         ----------
         pose, velocity : array (6,)
-            Of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
+            Pose and velocity of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
         cage_angle : float
             Angle of the first roller, from y towards z [rad].
         entrainment_speed, temperature : float
             u [m/s] and T [K]; a map's law needs them.
         centrifugal_load : float
-            Of a roller [N/m]; for a map's law only.
+            Centrifugal load of a roller [N/m]; for a map's law only.
         """
         point = self._prepared(entrainment_speed, temperature, centrifugal_load)
         return point.rollers(pose, velocity, cage_angle)
@@ -179,9 +178,9 @@ class BearingForce:
         Parameters
         ----------
         inner, outer : RingState
-            Where the rings are and how they move.
+            Positions and velocities of the rings.
         cage_angle, entrainment_speed, temperature, centrifugal_load
-            As of a call.
+            The same as for a call.
         outer_spin, outer_spin_rate : float
             How far frame O lags behind the outer ring's body about its axis, because O does not spin [rad], [rad/s];
             zero for a ring that does not turn, see `mbs.bearings.kinematics.spin`.
@@ -206,13 +205,13 @@ class BearingForce:
         Parameters
         ----------
         pose, velocity : array (6,)
-            Of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
+            Pose and velocity of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
         angles : int
             Number of cage angles, evenly spaced over a pitch.
         entrainment_speed, temperature : float
             u [m/s] and T [K]; a map's law needs them.
         centrifugal_load : float
-            Of a roller [N/m]; for a map's law only.
+            Centrifugal load of a roller [N/m]; for a map's law only.
         """
         if not isinstance(angles, int) or angles < 1:
             raise InputError(f"bearing force, angles: got {angles!r}; allowed: a whole number >= 1")

@@ -10,12 +10,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.maps.kernel import evaluate_at
 from ehdmaps.maps.lines import FAST, unilateral_force
-from ehdmaps.maps.tables import LOAD, CountArray, Point
+from ehdmaps.maps.tables import LOAD, Point
 from mbs.bearings.powers import power
 from mbs.bearings.slice_table import (
     CELLS,
@@ -35,9 +35,6 @@ from mbs.bearings.slice_table import (
     SLOPE,
     read_cells,
 )
-
-FloatArray = npt.NDArray[np.float64]
-IndexArray = npt.NDArray[np.int64]
 
 NOT_FINITE, TOO_FAR = -1, -2
 """What `bearing_force` returns for values that are no finite numbers, and for poses beyond reason."""
@@ -70,7 +67,7 @@ def _place_rollers(state: FloatArray, geometry: FloatArray, angles: FloatArray, 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def _find_cells(
-    numbers: FloatArray, slices: FloatArray, rollers: FloatArray, rows: IndexArray, places: FloatArray
+    numbers: FloatArray, slices: FloatArray, rollers: FloatArray, rows: IntArray, places: FloatArray
 ) -> None:
     """Row of the table of each slice, and the place in the cell."""
     x, lost = slices[0], slices[1]
@@ -259,7 +256,7 @@ def bearing_force(
     angles: FloatArray,
     numbers: FloatArray,
     cells: FloatArray,
-    rows: IndexArray,
+    rows: IntArray,
     states: FloatArray,
     rollers: FloatArray,
     sums: FloatArray,
@@ -289,7 +286,7 @@ def bearing_force(
     Returns
     -------
     int
-        Zero; 1 if some slice was above the mapped load; NOT_FINITE or TOO_FAR, with `out` left alone.
+        A code: zero; 1 if some slice was above the mapped load; NOT_FINITE or TOO_FAR, with `out` left alone.
     """
     wrong = _check(state, geometry)
     if wrong != 0:
@@ -318,7 +315,7 @@ def bearing_force_of_point(
     states: FloatArray,
     rollers: FloatArray,
     sums: FloatArray,
-    counts: CountArray,
+    counts: IntArray,
     out: FloatArray,
 ) -> int:
     """`bearing_force` straight from a `Point`, for laws that no table fits; some ten times slower."""

@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
@@ -28,8 +29,6 @@ from ehdmaps.physics.solids import reduced_modulus
 from ehdmaps.physics.unilateral import unilateral_force
 from mbs.bearings.bearing import Bearing
 
-FloatArray = npt.NDArray[np.float64]
-
 _EXPONENT = 10.0 / 9.0
 
 
@@ -40,7 +39,7 @@ class DryLaw:
     Attributes
     ----------
     name : str
-        For messages and provenance.
+        Name for messages and provenance.
     kind : {"series", "single"}
         A roller between both raceways, or one contact.
     coefficient : float
@@ -116,12 +115,12 @@ def unilateral_forces(
     Parameters
     ----------
     w, dw, c, dc, rate : array
-        As there, of one shape.
+        The same quantities as there, of one shape.
 
     Returns
     -------
     load, stiffness, damping : array
-        As there, of the same shape.
+        The same quantities as there, of the same shape.
     """
     forces = np.empty((3, w.size))
     _fill_forces(w.ravel(), dw.ravel(), c.ravel(), dc.ravel(), rate.ravel(), forces)
@@ -144,7 +143,8 @@ def hertz(bearing: Bearing, damping: float = 0.0) -> DryLaw:
     Parameters
     ----------
     bearing : Bearing
-        Its roller length and material; other materials than steel scale the load by E'/E'_steel.
+        Bearing, of which roller length and material are taken; other materials than steel scale the load by
+        E'/E'_steel.
     damping : float
         Constant c of each contact of a roller [N s/m]; both are in series, so that c/2 acts between the rings.
 

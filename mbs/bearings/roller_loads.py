@@ -6,16 +6,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import RegularGridInterpolator
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.maps.emap import EHDMap
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_kernel import GAP, RATE, TILT, TILT_RATE
 from mbs.bearings.laws import unilateral_forces
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +23,7 @@ class RollerLoads:
     Attributes
     ----------
     angle : array (Z,)
-        Where the rollers are in O, from y towards z, within -pi to pi [rad].
+        Angles of the rollers in O, from y towards z, within -pi to pi [rad].
     load : array (Z,)
         Load of each roller on the inner raceway [N].
     moment : array (Z,)
@@ -65,7 +63,7 @@ class RollerLoads:
         Parameters
         ----------
         emap : EHDMap
-            Of this bearing.
+            Map of this bearing.
         entrainment_speed, temperature, centrifugal_load : float
             u [m/s], T [K], q [N/m].
         variable : {"central_film", "minimum_film"}

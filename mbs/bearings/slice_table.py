@@ -10,16 +10,13 @@ differ from the law by some 1e-7 in load and 1e-5 in stiffness at most, a bearin
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.maps.bulk import evaluate_many_at
 from ehdmaps.maps.kernel import LOAD_TOLERANCE, collapse
 from ehdmaps.maps.lines import FAST, line_approach, line_state
-from ehdmaps.maps.tables import ApproachTable, CountArray, LawTable, Point
-
-FloatArray = npt.NDArray[np.float64]
-IndexArray = npt.NDArray[np.int64]
+from ehdmaps.maps.tables import ApproachTable, LawTable, Point
 
 _OCTAVES, _BITS = 14, 5
 ROWS = _OCTAVES << _BITS
@@ -45,7 +42,7 @@ _PROBE = 1e4
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def read_cells(cells: FloatArray, rows: IndexArray, places: FloatArray, states: FloatArray) -> None:
+def read_cells(cells: FloatArray, rows: IntArray, places: FloatArray, states: FloatArray) -> None:
     """Load, its slope, damping and its slope, into `states` (4, n), from rows (n,) and places in the cells (n,)."""
     w, dw, c, dc = states[0], states[1], states[2], states[3]
     for i in range(rows.size):
@@ -77,16 +74,16 @@ def tabulate(point: Point, nodes: FloatArray, buffer: FloatArray, cells: FloatAr
     Parameters
     ----------
     point : Point
-        With the whole film.
+        Law at a point, with the whole film.
     nodes : array (ROWS + 1,)
         `NODES`.
     buffer : array (8, 2 ROWS + 1)
-        Scratch.
+        Scratch space.
     cells : array (2 ROWS, 8)
         Filled: four coefficients of w, four of c, over the distance from the end of the cell that is nearer to the
         centre, in scales.
     numbers : array (10,)
-        With HIGHEST; all that belongs to the table is filled.
+        Numbers of the table, with HIGHEST; all that belongs to the table is filled.
 
     Returns
     -------
@@ -187,7 +184,7 @@ def tabulate_law(
     buffer: FloatArray,
     cells: FloatArray,
     numbers: FloatArray,
-    counts: CountArray,
+    counts: IntArray,
 ) -> bool:
     """Collapse a law at its conditions, and fill a table with it.
 
@@ -196,11 +193,11 @@ def tabulate_law(
     law : tuple
         `law_arrays`.
     workspace : array (4, n, 8)
-        Of the law.
+        Workspace of the law.
     conditions : array (3,)
         u [m/s], T [K], q [N/m].
     nodes, buffer, cells, numbers
-        As of `tabulate`.
+        The same as for `tabulate`.
     counts : array (4,)
         int64, counted up outside the map.
 

@@ -15,9 +15,10 @@ from mbs.analyses.hammer import HammerSettings, hammer
 from mbs.commands.cases import load_model
 from mbs.commands.common import Told, film_warnings, heading, outside_at
 from mbs.linearised.modes import Modes
-from mbs.modal.hammer import HammerTest
-from mbs.modal.uff import UFF, Measurement, write_uff
+from mbs.modal.uff import UFF, Measurement
+from mbs.modal.uff_writing import write_uff
 from mbs.scene.fields import MILLISECOND
+from mbs.transient.hammer import HammerTest
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:

@@ -7,7 +7,7 @@ import argparse
 import numpy as np
 from matplotlib.figure import Figure
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.units import RPM
 from mbs.analyses.reach import Fade, axes_outside, fade_of
 from mbs.analyses.runup import runup

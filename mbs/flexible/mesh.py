@@ -14,9 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.extras import needs
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import short
 from mbs.flexible.matrix_files import NodePositions
 from mbs.flexible.number_table import check_file

@@ -16,8 +16,8 @@ from functools import cached_property
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_force
 from mbs.gears.pair import GearPair
 from mbs.model.elements import ElementDefaults, Operation, Port
@@ -79,7 +79,7 @@ class GearMesh(ElementDefaults):
         Parameters
         ----------
         displacement : ndarray
-            Of both ports, shape (12,) [m], [rad].
+            Displacements of both ports, shape (12,) [m], [rad].
         velocity : ndarray
             Their rates, shape (12,) [m/s], [rad/s].
         operation : Operation
@@ -124,9 +124,9 @@ def gear_mesh(
     pair : GearPair
         What meshes.
     position1, position2 : sequence of float, shape (3,)
-        Where the places are [m].
+        Positions of the places [m].
     spin1, spin2 : float
-        Of their bodies, as multiples of the system's speed.
+        Spins of their bodies, as multiples of the system's speed.
 
     Raises
     ------

@@ -14,7 +14,7 @@ import math
 
 from numba import njit
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.unilateral import Force, unilateral_force
 
 _unilateral_force = njit(error_model="numpy")(unilateral_force)
@@ -40,9 +40,9 @@ def flank_force(compression: float, rate: float, stiffness: float, damping: floa
     Parameters
     ----------
     compression : float
-        Of the mesh spring [m]; no force below 0.
+        Compression of the mesh spring [m]; no force below 0.
     rate : float
-        Of the compression [m/s].
+        Rate of the compression [m/s].
     stiffness : float
         [N/m].
     damping : float
@@ -68,13 +68,13 @@ def mesh_course(constants: FloatArray, series: FloatArray, angle: float, speed: 
     Parameters
     ----------
     constants : ndarray
-        Of the mesh, see `GearMesh.arrays`.
+        Constants of the mesh, see `GearMesh.arrays`.
     series : ndarray
         Fourier series of stiffness and error, see there.
     angle : float
-        Of the system [rad].
+        Angle of the system [rad].
     speed : float
-        Of the system [rad/s].
+        Speed of the system [rad/s].
     """
     phase = constants[TEETH] * angle + constants[PHASE]
     pace = constants[TEETH] * speed
@@ -103,9 +103,9 @@ def mesh_force(
     Parameters
     ----------
     constants, series : array (5,), (4, harmonics)
-        Of the mesh; see the names of the places above.
+        Constants and series of the mesh; see the names of the places above.
     angle, speed : float
-        Of the system [rad], [rad/s].
+        Angle and speed of the system [rad], [rad/s].
     motion, rate : array (2,)
         Compression of the driving and of the other flank without error and backlash [m], and its rate [m/s].
     out : array (2, 3)

@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 
 FEWEST_TEETH, MOST_TEETH = 5, 10_000
 MOST_HARMONICS = 50
@@ -23,11 +23,11 @@ def contact_ratio(teeth: tuple[int, int], pressure_angle: float, addendum: float
     Parameters
     ----------
     teeth : (int, int)
-        Of both gears.
+        Numbers of teeth of both gears.
     pressure_angle : float
         [rad].
     addendum : float
-        In modules.
+        Addendum in modules.
 
     Returns
     -------
@@ -92,11 +92,11 @@ class GearPair:
     Attributes
     ----------
     name : str
-        For messages and results.
+        Name for messages and results.
     on, against : str
         Places of the middles of both gears; a torque +x on the first drives the second by the driving flank.
     teeth : (int, int)
-        Of both gears.
+        Numbers of teeth of both gears.
     module : float
         [m].
     pressure_angle : float
@@ -108,11 +108,11 @@ class GearPair:
     backlash : float
         Play between the flanks along the line of action [m].
     damping : float
-        Along the line of action, while there is contact [N s/m].
+        Damping along the line of action, while there is contact [N s/m].
     harmonics : int or tuple of float
-        Of the varying stiffness: how many of `pair_harmonics`, or their amplitudes as parts of the mean.
+        Harmonics of the varying stiffness: how many of `pair_harmonics`, or their amplitudes as parts of the mean.
     harmonic_phases : tuple of float
-        Of the harmonics of the stiffness [rad]; zero if left out.
+        Phases of the harmonics of the stiffness [rad]; zero if left out.
     transmission_error : tuple of float
         Amplitudes of its harmonics along the line of action [m].
     transmission_error_phases : tuple of float

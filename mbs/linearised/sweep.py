@@ -15,13 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
+from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.linearised.crossings import straightened
-from mbs.linearised.linear import ComplexArray
 from mbs.linearised.modal_response import checked_response
-from mbs.linearised.modes import IntArray
 from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep_point import Along, Point, bearing_parts, bridge, first_order_shift, over_pitch, solve_modes
 from mbs.linearised.sweep_result import BearingSweep, ComplexSweep, ResponseSweep, Sweep, UndampedSweep
@@ -62,9 +59,9 @@ def sweep(
     angle : float
         What the system has turned [rad]: where the cages stand.
     inputs, sensors : sequence
-        From where to where; no responses if left out.
+        Inputs and sensors of the responses; no responses if left out.
     frequencies : array, shape (frequencies,)
-        Of the responses [Hz].
+        Frequencies of the responses [Hz].
     cage_angles : int
         Angles within one pitch of the rollers over which stiffness and damping of the bearings are averaged; modes
         and responses are those of the first.

@@ -18,11 +18,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ehdmaps.errors import InputError
+from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.extras import needs
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.linearised.linear import ComplexArray
 
 _UNEVEN = 1e-3
 """Largest change of the spacing of the lines, as a part of it."""
@@ -34,7 +32,7 @@ def lscf_poles(frequency: FloatArray, response: ComplexArray, orders: Sequence[i
     Parameters
     ----------
     frequency : array, shape (lines,)
-        Of the band, evenly spaced, > 0 [Hz].
+        Frequencies of the band, evenly spaced, > 0 [Hz].
     response : array of complex, shape (rows, lines)
         Any unit; rows are scaled to their rms.
     orders : sequence of int

@@ -10,23 +10,21 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from mbs.bearings import slice_table as table
 from mbs.model.profiles import LoadProfile, SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
 from mbs.transient.linear_part import LinearPart
-from mbs.transient.run_arrays import Course, Films, IndexArray, Numbers, Records, State
+from mbs.transient.run_arrays import Course, Films, Numbers, Records, State
 from mbs.transient.run_elements import RunElements
 from mbs.transient.run_kernel import ABOVE, advance, observe
 from mbs.transient.speed_tables import NODES
 from mbs.transient.stepping import ITERATIONS, Method, Stepper
 
-Marks = npt.NDArray[np.bool_]
-Places = Sequence[tuple[IndexArray, FloatArray]]
+Places = Sequence[tuple[IntArray, FloatArray]]
 
 
 class CompiledRun:
@@ -35,13 +33,13 @@ class CompiledRun:
     Parameters
     ----------
     system : System
-        With elements that `mbs.transient.run_elements.is_known` knows.
+        System with elements that `mbs.transient.run_elements.is_known` knows.
     speed : SpeedProfile
         Prescribed speed.
     settings : Settings
         Method and steps.
     stepper : Stepper
-        At the beginning of the run; makes the steps that compiled code cannot.
+        Stepper at the beginning of the run; it makes the steps that compiled code cannot.
     outputs : array, shape (k, n)
         What is recorded of the coordinates.
     orders : array, shape (k,)
@@ -59,7 +57,7 @@ class CompiledRun:
         settings: Settings,
         stepper: Stepper,
         outputs: FloatArray,
-        orders: IndexArray,
+        orders: IntArray,
         samples: int,
         states: bool,
     ) -> None:
@@ -99,7 +97,7 @@ class CompiledRun:
         """Newton iterations so far."""
         return self._stepper.iterations + int(self._counters[0])
 
-    def steps(self, times: FloatArray, h: float, rows: IndexArray) -> tuple[int, float]:
+    def steps(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
         """Make steps of length h [s] to the given times.
 
         Parameters
@@ -109,7 +107,7 @@ class CompiledRun:
         h : float
             Their length [s].
         rows : array, shape (k,)
-            Where to record; negative for not at all.
+            Rows to record in; negative for not at all.
 
         Returns
         -------
@@ -166,7 +164,7 @@ class CompiledRun:
 
     def _prepare(
         self, speeds: FloatArray, places: Places, done: int, reach: int
-    ) -> tuple[IndexArray, FloatArray, IndexArray, Marks]:
+    ) -> tuple[IntArray, FloatArray, IntArray, BoolArray]:
         """Tables for the next steps, at most `reach`: slots, weights, whether outside, and whether there are any."""
         part, found = slice(done, done + reach), []
         for index, (film, (nodes, weights)) in enumerate(zip(self._elements.films, places, strict=True)):
@@ -181,7 +179,7 @@ class CompiledRun:
             sound &= whole[:count]
         return slots, weights, outside, sound
 
-    def _uncompiled(self, times: FloatArray, h: float, rows: IndexArray) -> tuple[int, float]:
+    def _uncompiled(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
         """Make steps by the reference; as `steps`."""
         stepper = self._stepper
         stepper.q, stepper.v, stepper.acceleration, stepper.carried = (

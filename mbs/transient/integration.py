@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
@@ -25,9 +25,9 @@ class Trajectory:
     time, speed, angle : array, shape (samples,)
         [s], [rad/s], [rad].
     displacement, velocity, acceleration : array, shape (samples, n)
-        Of the coordinates [m or rad, per s, per s2].
+        Motion of the coordinates [m or rad, per s, per s2].
     forces : tuple of array, shape (samples, m)
-        Of each element in its ports [N or N m].
+        Forces of each element in its ports [N or N m].
     steps, halved, iterations : int
         Steps made, steps taken back, and Newton iterations in all.
     """
@@ -68,7 +68,7 @@ def integrate(
     settings : Settings
         Method and steps.
     displacement, velocity : array, shape (n,), optional
-        At time zero; zero if left out.
+        Motion at time zero; zero if left out.
     progress : callable, optional
         Told the number of samples done: once for each, some at a time.
     compiled : bool

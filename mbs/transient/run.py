@@ -18,16 +18,14 @@ from typing import Protocol
 
 import numpy as np
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.model.elements import Sensor
 from mbs.model.outside_calls import calls_outside
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
 from mbs.transient.compiled_run import CompiledRun
-from mbs.transient.run_arrays import IndexArray
 from mbs.transient.run_elements import is_known
 from mbs.transient.stepping import Stepper
 
@@ -55,9 +53,9 @@ class Recording:
     time, speed, angle : array, shape (samples,)
         [s], [rad/s], [rad].
     signals : array, shape (samples, sensors)
-        Of the sensors [m or rad, per s, per s2].
+        Signals of the sensors [m or rad, per s, per s2].
     forces : tuple of array, shape (samples, m)
-        Of each element in its ports [N or N m].
+        Forces of each element in its ports [N or N m].
     motions : tuple of array, shape (samples, m)
         Displacement of the ports of each element [m or rad].
     steps, halved, iterations : int
@@ -117,7 +115,7 @@ def run(
     sensors : sequence of Sensor
         What to record.
     displacement, velocity : array, shape (n,), optional
-        At time zero; zero if left out.
+        Motion at time zero; zero if left out.
     progress : callable, optional
         Told the number of samples done: once for each, some at a time.
     compiled : bool
@@ -187,7 +185,7 @@ class _Plan:
 
     samples: int
     rows: FloatArray
-    orders: IndexArray
+    orders: IntArray
     ports: FloatArray
     states: bool
 
@@ -220,7 +218,7 @@ class _Engine(Protocol):
         """Newton iterations so far."""
         ...
 
-    def steps(self, times: FloatArray, h: float, rows: IndexArray) -> tuple[int, float]:
+    def steps(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
         """Make steps of length h to the given times; how many were made, and the error of the last one tried."""
         ...
 
@@ -279,7 +277,7 @@ class _Reference:
         """Newton iterations so far."""
         return self._stepper.iterations
 
-    def steps(self, times: FloatArray, h: float, rows: IndexArray) -> tuple[int, float]:
+    def steps(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
         """Make steps."""
         error = 0.0
         for done, (time, row) in enumerate(zip(times.tolist(), rows.tolist(), strict=True)):

@@ -4,13 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
-from ehdmaps.maps.tables import CountArray
-from ehdmaps.physics._values import FloatArray
-
-IndexArray = npt.NDArray[np.int64]
+from ehdmaps.arrays import FloatArray, IntArray
 
 FIRST, FILM, ROLLERS, SLICES, AT_SLICES, AT_ANGLES, AT_CELLS, AT_ROLLERS = range(8)
 """Columns of the table of bearings: first of its ports, its film, numbers of rollers and slices, and where its part
@@ -32,7 +26,7 @@ class Linear(NamedTuple):
     inverse : array (3, n, n)
         Coefficients of L^-1 in powers of speed - reference.
     ports : array (m, n)
-        T.
+        Matrix T of the ports.
     reach : array (3, m, n)
         Transposed L^-1 T^T, likewise.
     receptance : array (3, m, m)
@@ -93,19 +87,19 @@ class Elements(NamedTuple):
     mesh_ports : array (meshes,), of int
         First port of each gear mesh.
     mesh_constants, mesh_series : array (meshes, 5), (meshes, 4, harmonics)
-        As of `mesh_force`.
+        The same as for `mesh_force`.
     """
 
-    bearings: IndexArray
+    bearings: IntArray
     bearing_numbers: FloatArray
     slices: FloatArray
     angles: FloatArray
     states: FloatArray
-    rows: IndexArray
+    rows: IntArray
     rollers: FloatArray
     sums: FloatArray
-    counts: CountArray
-    mesh_ports: IndexArray
+    counts: IntArray
+    mesh_ports: IntArray
     mesh_constants: FloatArray
     mesh_series: FloatArray
 
@@ -116,9 +110,9 @@ class Films(NamedTuple):
     Attributes
     ----------
     tables, numbers : array (films, nodes, rows, 8), (films, nodes, 10)
-        As of `mbs.bearings.slice_table`.
+        The same as in `mbs.bearings.slice_table`.
     cells, current : array (films, rows, 8), (films, 10)
-        In use.
+        Tables in use.
     in_use : array (films, 2)
         Node and weight of those.
     """
@@ -144,18 +138,18 @@ class Course(NamedTuple):
     steady, varying, factors : array (n,), (loads, n), (steps, loads)
         Loads, by mode.
     rows : array (steps,), of int
-        Where to record; negative for not at all.
+        Rows to record in; negative for not at all.
     """
 
     speeds: FloatArray
     angles: FloatArray
-    nodes: IndexArray
+    nodes: IntArray
     weights: FloatArray
-    outside: IndexArray
+    outside: IntArray
     steady: FloatArray
     varying: FloatArray
     factors: FloatArray
-    rows: IndexArray
+    rows: IntArray
 
 
 class State(NamedTuple):
@@ -166,7 +160,7 @@ class State(NamedTuple):
     motion : array (4, n)
         Displacement, velocity, acceleration and carried acceleration of the modes.
     forces : array (3, m)
-        Of the elements after the last steps, the latest first.
+        Forces of the elements after the last steps, the latest first.
     """
 
     motion: FloatArray
@@ -183,15 +177,15 @@ class Records(NamedTuple):
     orders : array (outputs,), of int
         Whether of their displacement, velocity or acceleration.
     outputs : array (samples, outputs)
-        Filled.
+        Outputs, filled row by row.
     forces : array (samples, m)
-        Filled.
+        Forces, filled row by row.
     motions : array (samples, 3, n)
-        Filled; of no samples where not asked for.
+        Motions, filled row by row; of no samples where not asked for.
     """
 
     rows: FloatArray
-    orders: IndexArray
+    orders: IntArray
     outputs: FloatArray
     forces: FloatArray
     motions: FloatArray

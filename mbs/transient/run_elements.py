@@ -9,7 +9,7 @@ from typing import TypeGuard
 import numpy as np
 import scipy.linalg
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.force_at_point import Work
@@ -33,14 +33,14 @@ class RunElements:
     Attributes
     ----------
     arrays : Elements
-        For compiled code.
+        Arrays for compiled code.
     expand : array, shape (felt, ports)
         What elements feel of their ports: four displacements of a bearing, two compressions of a gear mesh; and, on
         the other side, forces in the ports by those that the elements make.
     films : tuple of SpeedTables
         Laws, shared by bearings that have the same at the same speed.
     forces : tuple of BearingForce
-        Of the bearings, which count calls outside the map.
+        Forces of the bearings, which count calls outside the map.
     """
 
     arrays: Elements

@@ -22,9 +22,8 @@ import math
 import numpy as np
 from numba import njit
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.maps.lines import FAST
-from ehdmaps.maps.tables import CountArray
-from ehdmaps.physics._values import FloatArray
 from mbs.bearings.bearing_kernel import bearing_force
 from mbs.bearings.slice_table import CELLS, KIND, LIFT_OFF, SAFE_APPROACH
 from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_force
@@ -43,7 +42,6 @@ from mbs.transient.run_arrays import (
     Course,
     Elements,
     Films,
-    IndexArray,
     Linear,
     Numbers,
     Records,
@@ -160,7 +158,7 @@ def blend(films: Films, film: int, node: int, weight: float) -> None:
     node : int
         The lower node.
     weight : float
-        Of the upper node, 0 to 1.
+        Weight of the upper node, 0 to 1.
     """
     if films.in_use[film, 0] == node and films.in_use[film, 1] == weight:
         return
@@ -222,7 +220,7 @@ def _bearing(
 def _evaluate(
     elements: Elements,
     films: Films,
-    outside: IndexArray,
+    outside: IntArray,
     speed: float,
     angle: float,
     motion: FloatArray,
@@ -304,7 +302,7 @@ def advance(
     course: Course,
     state: State,
     records: Records,
-    counters: CountArray,
+    counters: IntArray,
 ) -> tuple[int, int, float]:
     """Make the steps of a course.
 
@@ -315,7 +313,7 @@ def advance(
     state : State
         Overwritten after each step that is made.
     records : Records
-        Filled.
+        Records, which are filled.
     counters : array (1,), of int
         Newton iterations, counted up.
 

@@ -31,7 +31,7 @@ from ehdmaps.physics.moes import load_and_speed
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.spectrum import contact_spectrum
-from tests.verification.ehl_cases import isoviscous_problem, roelands_problem
+from tests.cases.ehl import isoviscous_problem, roelands_problem
 from tests.verification.test_film_frequency import SOLIDS, TRANSIENT, oscillated
 
 CONTACT = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[0]

@@ -130,6 +130,14 @@ def test_what_needs_an_extra_names_it(tmp_path, monkeypatch, extra, package, pro
     assert [path.name for path in tmp_path.iterdir()] == ["hits.uff"]
 
 
+def test_all_that_openfoam_misses_is_named_at_once(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    monkeypatch.setenv("EHDMAPS_OPENFOAM", str(tmp_path / "none"))
+    told = run(tmp_path, "ehdmaps.jobs.cli", "generate", "nu308_openfoam").stderr
+    assert "needs more than is here: the solver 'openfoam': the package PyFoam cannot be loaded" in told
+    assert "needs more than is here: ehlFoam: there is no program" in told
+
+
 def test_extras_that_messages_name_exist():
     sources = [
         path.read_text(encoding="utf-8")

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.solids import STEEL
 from examples.housings import __main__ as command_line
 from examples.housings import geometry, make, solve
@@ -22,7 +22,6 @@ from examples.housings.designs import HOUSINGS, GearboxShape, housing
 from examples.housings.mesh import Mesh
 from examples.housings.picture import housing_figure
 from mbs.bearings.bearing import Bearing
-from mbs.errors import AnalysisError
 
 ROOT = Path(__file__).parents[2]
 SCENES = ("gearbox", "n1014_testrig", "nu308_flexible")

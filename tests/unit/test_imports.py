@@ -6,6 +6,7 @@ Nothing imports the examples.
 from __future__ import annotations
 
 import ast
+import re
 import shutil
 import subprocess
 import sys
@@ -16,23 +17,34 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 ALLOWED = {
+    "ehdmaps.arrays": set(),
     "ehdmaps.errors": set(),
     "ehdmaps.extras": {"ehdmaps.errors"},
     "ehdmaps.units": {"ehdmaps.errors"},
+    "ehdmaps.figures": set(),
     "ehdmaps.inputs": {"ehdmaps.errors"},
     "ehdmaps.outputs": {"ehdmaps.errors"},
     "ehdmaps.provenance": set(),
     "ehdmaps.version": {"ehdmaps.provenance"},
     "ehdmaps.interrupts": set(),
     "ehdmaps.program": {"ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.version"},
-    "ehdmaps.physics": {"ehdmaps.errors"},
-    "ehdmaps.ehl": {"ehdmaps.errors", "ehdmaps.physics"},
-    "ehdmaps.maps": {"ehdmaps.errors", "ehdmaps.inputs", "ehdmaps.units", "ehdmaps.physics"},
-    "ehdmaps.openfoam": {"ehdmaps.errors", "ehdmaps.extras", "ehdmaps.outputs", "ehdmaps.units", "ehdmaps.physics"},
-    "ehdmaps.jobs": {
-        "ehdmaps",
+    "ehdmaps.physics": {"ehdmaps.arrays", "ehdmaps.errors"},
+    "ehdmaps.ehl": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.physics"},
+    "ehdmaps.maps": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.inputs", "ehdmaps.units", "ehdmaps.physics"},
+    "ehdmaps.openfoam": {
+        "ehdmaps.arrays",
         "ehdmaps.errors",
         "ehdmaps.extras",
+        "ehdmaps.outputs",
+        "ehdmaps.units",
+        "ehdmaps.physics",
+    },
+    "ehdmaps.jobs": {
+        "ehdmaps",
+        "ehdmaps.arrays",
+        "ehdmaps.errors",
+        "ehdmaps.extras",
+        "ehdmaps.figures",
         "ehdmaps.inputs",
         "ehdmaps.interrupts",
         "ehdmaps.outputs",
@@ -45,8 +57,10 @@ ALLOWED = {
         "ehdmaps.maps",
     },
     "mbs": {
+        "ehdmaps.arrays",
         "ehdmaps.errors",
         "ehdmaps.extras",
+        "ehdmaps.figures",
         "ehdmaps.inputs",
         "ehdmaps.outputs",
         "ehdmaps.program",
@@ -56,8 +70,10 @@ ALLOWED = {
         "ehdmaps.maps",
     },
     "mbs.scene.scene": {
+        "ehdmaps.arrays",
         "ehdmaps.errors",
         "ehdmaps.extras",
+        "ehdmaps.figures",
         "ehdmaps.inputs",
         "ehdmaps.outputs",
         "ehdmaps.program",
@@ -70,6 +86,7 @@ ALLOWED = {
     },
     "examples": {
         "ehdmaps",
+        "ehdmaps.arrays",
         "ehdmaps.errors",
         "ehdmaps.extras",
         "ehdmaps.outputs",
@@ -132,9 +149,21 @@ def test_analyses_know_no_command_line(path: Path) -> None:
     assert not [name for name in names if name.startswith(("mbs.commands", "mbs.cli", "matplotlib"))]
 
 
+@pytest.mark.parametrize("path", sorted((ROOT / "mbs" / "modal").glob("*.py")), ids=lambda p: p.stem)
+def test_modal_analysis_knows_no_machine(path: Path) -> None:
+    names = {name for name in _imported(path) if name.partition(".")[0] in ("mbs", "ehdmaps")}
+    known = {f"ehdmaps.{part}" for part in ("arrays", "errors", "extras", "inputs", "outputs", "units")}
+    assert [name for name in names if not name.startswith("mbs.modal.") and name not in known] == []
+
+
 def test_pyfoam_has_one_door() -> None:
     users = [path for path in FILES if any(name.partition(".")[0] == "PyFoam" for name in _imported(path))]
     assert users == [ROOT / "ehdmaps" / "openfoam" / "pyfoam.py"]
+
+
+def test_types_of_arrays_have_one_home() -> None:
+    own = re.compile(r"^\w+ = .*NDArray\[np\.", re.MULTILINE)
+    assert [path for path in FILES if own.search(path.read_text())] == [ROOT / "ehdmaps" / "arrays.py"]
 
 
 def test_every_file_is_looked_at() -> None:

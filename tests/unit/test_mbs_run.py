@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.errors import AnalysisError, InputError, OutsideMapError
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
-from mbs.errors import AnalysisError
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import ElementDefaults, Load, Operation, Port, Sensor, Spring
 from mbs.model.equilibrium import equilibrium
@@ -27,7 +26,7 @@ from mbs.transient.run_elements import is_known
 from mbs.transient.run_kernel import _expanded_times, _solve
 from mbs.transient.speed_tables import NODES, STEP, SpeedTables
 from mbs.transient.stepping import Method
-from tests.unit.mbs_cases import TEMPERATURE, map_law
+from tests.cases.bearings import TEMPERATURE, map_law
 
 REST = SpeedProfile.constant(0.0)
 MASS = Inertia(2.0, 0.01, 0.02)

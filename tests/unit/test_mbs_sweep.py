@@ -9,11 +9,10 @@ import math
 import numpy as np
 import pytest
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs.table import Table
 from mbs.commands import sweep as command
 from mbs.commands.cases import load_cases
-from mbs.errors import AnalysisError
 from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_point import along_load

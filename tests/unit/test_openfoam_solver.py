@@ -24,7 +24,7 @@ from ehdmaps.openfoam.solver import OpenFoamSolver
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import Status
-from tests.unit import openfoam_fake
+from tests.cases import openfoam_fake
 
 JOB = read_job("nu308_openfoam")
 CONTACT, OIL = JOB.contacts[0], JOB.lubricant

@@ -14,7 +14,7 @@ from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import residual, stored_mass, stored_mass_rate
 from ehdmaps.ehl.spectrum import film_compliances
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
-from tests.verification.ehl_cases import roelands_problem, solved
+from tests.cases.ehl import roelands_problem, solved
 
 
 def _profile(result: GroupSolution) -> Profile:

@@ -26,8 +26,8 @@ from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import contact_solution
 from ehdmaps.physics.spectrum import contact_spectrum
-from tests.unit.law_cases import CONTACTS, OIL
-from tests.verification.ehl_cases import isoviscous_problem, roelands_problem, solved
+from tests.cases.ehl import isoviscous_problem, roelands_problem, solved
+from tests.cases.laws import CONTACTS, OIL
 
 SOLIDS = 1.75
 """Compliance of one contact of an NU308 between film and ring after ISO 16281, at 65 N/mm, in units of 4/E'."""

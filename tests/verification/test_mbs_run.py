@@ -28,7 +28,7 @@ from mbs.transient.run_arrays import Films
 from mbs.transient.run_kernel import blend
 from mbs.transient.speed_tables import NODES, SpeedTables
 from mbs.transient.stepping import Method
-from tests.unit.mbs_cases import TEMPERATURE, map_law
+from tests.cases.bearings import TEMPERATURE, map_law
 
 RPM = math.pi / 30.0
 TEETH = (21, 23)

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.axes import RING_SPEED_AXIS, SPEED_AXIS
@@ -23,13 +23,11 @@ from ehdmaps.jobs.spectrum import spectrum_dataset
 from ehdmaps.jobs.spectrum_report import spectrum_record, spectrum_table
 from ehdmaps.outputs import FIGURE, Output, check_outputs
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.operating_point import OIL_TEMPERATURES, OperatingPoint
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, Status, contact_solution
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES, contact_spectrum
 from ehdmaps.program import tell
 from ehdmaps.units import LENGTH, LOAD, RPM, SPEED, TEMPERATURE, Display, quantity, short
-
-FloatArray = NDArray[np.float64]
 
 _HERTZ = Display("Hz")
 
@@ -166,7 +164,7 @@ def _read(arguments: argparse.Namespace) -> _Request:
             f"--speed: got {arguments.speed!r:.60}; allowed: m/s, since the job has a bare contact; rpm are those of "
             "the inner ring of a bearing"
         )
-    temperature = read("--temperature", arguments.temperature, "K", 213.15, 573.15, TEMPERATURE)
+    temperature = read("--temperature", arguments.temperature, "K", *OIL_TEMPERATURES, TEMPERATURE)
     frequencies: FloatArray | None = None
     if arguments.frequencies is not None:
         frequencies = _frequencies(arguments, read, problems)

@@ -17,9 +17,8 @@ from scipy.fft import next_fast_len
 from scipy.linalg import expm
 from scipy.signal import firwin, upfirdn
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.linearised.linear import input_matrix, sensor_matrix, state_space
 from mbs.linearised.modes import Modes
 from mbs.modal.records import LONGEST, Channel, Hits, Measured
@@ -59,13 +58,13 @@ class HammerTest:
         Highest frequency of interest [Hz]: the sampling rate is 2.56 times it, and the pulse lasts one period of it,
         so that its spectrum is a third of its largest value there.
     duration : float
-        Of a record [s]; rounded up to a number of samples that transforms quickly.
+        Length of a record [s]; rounded up to a number of samples that transforms quickly.
     hits : int
-        At each place.
+        Number of hits at each place.
     noise : float
         Standard deviation of white noise on every channel, as a part of the peak of the channel in that hit.
     seed : int
-        Of the random heights and the noise.
+        Seed of the random heights and the noise.
     spread : float
         Heights lie evenly within this part of the amplitude of the input, either way.
 
@@ -131,7 +130,7 @@ def suggested_duration(found: Modes, highest: float) -> float:
     Parameters
     ----------
     found : Modes
-        Of the equilibrium.
+        Modes of the equilibrium.
     highest : float
         [Hz].
     """
@@ -150,11 +149,11 @@ def linear_hits(
     Parameters
     ----------
     balance : Equilibrium
-        Where it is linearised.
+        Equilibrium to linearise at.
     inputs, sensors : tuple
         Places hit and what is recorded.
     test : HammerTest
-        How.
+        Settings of the test.
 
     Raises
     ------
@@ -194,9 +193,9 @@ def nonlinear_hits(
     Parameters
     ----------
     balance : Equilibrium
-        Where each hit begins.
+        Equilibrium at which each hit begins.
     inputs, sensors, test
-        As of `linear_hits`.
+        The same as for `linear_hits`.
     progress : callable, optional
         Called after each hit.
 

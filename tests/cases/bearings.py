@@ -10,7 +10,7 @@ from ehdmaps.maps.law import ContactLaw
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
-from tests.unit.law_cases import CONTACTS, OIL, SMALL_FIELD
+from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
 SPEED, TEMPERATURE = 1.0, 330.0
 AT = {"entrainment_speed": SPEED, "temperature": TEMPERATURE}

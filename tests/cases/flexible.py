@@ -6,6 +6,7 @@ import functools
 
 import numpy as np
 import skfem
+from scipy import io, sparse
 from skfem.helpers import dot
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
@@ -62,3 +63,51 @@ def rigid_motion(model, about=(0.0, 0.0, 0.0)):
         motion[row, direction] = 1.0
         motion[row, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]][direction]
     return motion
+
+
+def spring(k=1e6, m=1.0):
+    """Two nodes with three displacements each, joined by springs along x, y, z."""
+    one = np.eye(3)
+    return {
+        "stiffness": sparse.csc_array(k * np.block([[one, -one], [-one, one]])),
+        "mass": sparse.csc_array(m * np.eye(6)),
+        "nodes": np.array([1, 1, 1, 2, 2, 2]),
+        "directions": np.array([0, 1, 2, 0, 1, 2]),
+        "numbers": np.array([1, 2]),
+        "positions": np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]]),
+    }
+
+
+def upper(matrix, labels=None):
+    """Lines of the upper half, as CalculiX writes them, or with labels as Abaqus does."""
+    rows, columns = np.nonzero(np.triu(matrix))
+    if labels is None:
+        return "".join(f"{i + 1} {j + 1}  {matrix[i, j]:.17e}\n" for i, j in zip(rows, columns, strict=True))
+    pairs = zip(rows, columns, strict=True)
+    return "".join(
+        f"{labels[i][0]},{labels[i][1]}, {labels[j][0]},{labels[j][1]}, {matrix[i, j]:.17e}\n" for i, j in pairs
+    )
+
+
+def written(folder):
+    """A block in the files of every format, in mm, tonne, s for Abaqus; nodes with numbers of their own."""
+    model = block(elements=(2, 1, 1))
+    labels = [(int(n) * 10, int(d) + 1) for n, d in zip(model.nodes, model.directions, strict=True)]
+    k, m = model.stiffness.toarray(), model.mass.toarray()
+    (folder / "b.sti").write_text(upper(k))
+    (folder / "b.mas").write_text(upper(m))
+    (folder / "b.dof").write_text("".join(f"{n}.{d}\n" for n, d in labels))
+    (folder / "dofs.txt").write_text("# node direction\n" + "".join(f"{n} {d}\n" for n, d in labels))
+    io.mmwrite(folder / "k.mtx", sparse.coo_array(k), symmetry="symmetric", precision=17)
+    io.mmwrite(folder / "m.mtx", sparse.coo_array(m), symmetry="general", precision=17)
+    (folder / "k_abaqus.mtx").write_text("** STIFFNESS\n" + upper(k / 1e3, labels))
+    (folder / "m_abaqus.mtx").write_text(upper(m / 1e3, labels))
+    for name, factor in (("m", 1.0), ("mm", 1e3)):
+        lines = [
+            f"{10 * n}, " + ", ".join(f"{factor * x:.17g}" for x in p)
+            for n, p in zip(model.numbers, model.positions, strict=True)
+        ]
+        (folder / f"{name}.inp").write_text(
+            "*HEADING\n*NODE, NSET=ALL\n" + "\n".join(lines) + "\n** a comment\n*ELEMENT, TYPE=C3D8\n1, 2, 3\n"
+        )
+    return folder, model
