@@ -24,6 +24,7 @@ damping             published damping formulas: rolling film, squeeze film, Diet
 peak                what the largest of sampled pressures lacks to the peak
 thermal             reduction of the film by inlet shear heating
 solution            `FilmSolution`, `ContactSolution`, `Status`, the Protocol `ContactSolver` and its defaults
+spectrum            film compliance and dynamic stiffness over frequency
 closed_form         the solvers `hertz` and `formula`
 ==================  ====================================================================================
 
