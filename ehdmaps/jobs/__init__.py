@@ -29,6 +29,8 @@ summary      what happened, in words
 opening      the map of a command, by the structural law that it names
 describe     what a map file holds, in words
 plot         what a map file holds, on one page
+plot_curves  one panel of that page
+plot_curves  one panel of that page
 film_output  files with the film itself, beside the numbers of one point
 film_plot    pressure, film and velocities of one point, on one page
 compare      differences between two maps

@@ -63,6 +63,12 @@ def parser() -> argparse.ArgumentParser:
     )
     solve.add_argument("--temperature", required=True, help='of the oil, such as "40 degC"')
     solve.add_argument("--frequency", help='of small oscillations, such as "1 kHz"; default: the low-frequency limit')
+    solve.add_argument(
+        "--frequencies",
+        nargs=3,
+        metavar=("FROM", "TO", "POINTS"),
+        help='response at many frequencies, spaced logarithmically: "10 Hz" "20 kHz" 60; with --plot as a picture',
+    )
     solve.add_argument("--solver", metavar="NAME", help=_SOLVER)
     solve.add_argument("--json", action="store_true", help="one object a contact, SI, per unit length")
     solve.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
@@ -70,7 +76,9 @@ def parser() -> argparse.ArgumentParser:
         "--fields", metavar="FILE", help="openfoam: fields of the film as .vtu or .xdmf, a file a contact"
     )
     solve.add_argument(
-        "--plot", metavar="FIG.png", help="openfoam: pressure, film and velocity profiles; also .pdf, .svg"
+        "--plot",
+        metavar="FIG.png",
+        help="with --frequencies: complex stiffness; else openfoam: pressure, film and velocity; also .pdf, .svg",
     )
 
     export = commands.add_parser("export", help="curves over load as a table (csv)")

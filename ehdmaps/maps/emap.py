@@ -229,8 +229,8 @@ def open_map(path: str | PathLike[str], structural_law: StructuralLaw | None = N
     path : str or path
         The file.
     structural_law : {"iso16281", "palmgren", "half_space"}, optional
-        Law by which approach, stiffness and damping are derived from the films; that of the map's job if left out. A map of
-        a bare contact has the length of one law only: see `EHDMap.with_structure`.
+        Law by which approach, stiffness and damping are derived from the films; that of the map's job if left out. A
+        map of a bare contact has the length of one law only: see `EHDMap.with_structure`.
 
     Raises
     ------

@@ -92,8 +92,8 @@ class Variable:
     derived_since : int, optional
         Version from which on it follows from the others by the structural law: a file may lack it then.
     limits : (float, float), optional
-        Limits of an axis of numbers: far outside of what a job may ask for; what lies beyond is damage, and would overflow
-        somewhere.
+        Limits of an axis of numbers: far outside of what a job may ask for; what lies beyond is damage, and would
+        overflow somewhere.
     """
 
     name: str

@@ -1,7 +1,7 @@
 """What a solver returns: the film of one contact at one operating point, and the contact made of film and solids.
 
-A solver knows the film only (`FilmSolution`). `contact_solution` adds the structural part, which is the same law for
-every solver, and gives the numbers of the map (`ContactSolution`).
+A solver knows the film only (`FilmSolution`, and over frequency `FilmSpectrum`). `contact_solution` adds the structural
+part, which is the same law for every solver, and gives the numbers of the map (`ContactSolution`).
 """
 
 from __future__ import annotations
@@ -12,6 +12,9 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Protocol
 
+import numpy as np
+
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
@@ -50,9 +53,9 @@ class FilmSolution:
     film_offset : float
         h_eff = dry minus lubricated approach at equal load [m].
     film_compliance : float
-        -d(h_eff)/dw = 1/k - 1/k_dry [m2/N]; at a frequency its real part.
+        -d(h_eff)/dw = 1/k - 1/k_dry [m2/N], in the limit of slow motion.
     loss_compliance : float
-        c/k^2 at low frequency, c/(k^2 + (omega c)^2) at omega [m2 s/N].
+        c/k^2 [m2 s/N], in the same limit.
     central_film, minimum_film : float
         h at the contact centre, smallest h [m].
     max_pressure : float
@@ -90,6 +93,30 @@ class FilmSolution:
 
 
 @dataclass(frozen=True)
+class FilmSpectrum:
+    """The film of one contact over frequency.
+
+    Attributes
+    ----------
+    film : FilmSolution
+        The film in the limit of slow motion, with status and reason.
+    frequencies : ndarray, shape (k,)
+        [Hz], > 0.
+    compliance : ndarray, shape (k,)
+        Film compliance S, complex [m2/N]: its imaginary part is minus omega times the loss compliance. NaN where the
+        film has no solution.
+    errors : ndarray, shape (k, m)
+        Estimates of the numerical error of S, complex and signed [m2/N]; of m estimates the one with the largest effect
+        counts.
+    """
+
+    film: FilmSolution
+    frequencies: FloatArray
+    compliance: ComplexArray
+    errors: ComplexArray
+
+
+@dataclass(frozen=True)
 class ContactSolution:
     """One point of a map: films, approach, stiffness and damping of one contact, per unit length.
 
@@ -98,7 +125,7 @@ class ContactSolution:
     approach : float
         delta_el(w) - h_eff [m], > 0 when the bodies come together.
     stiffness : float
-        k = dw/d(approach) [N/m2]; with `frequency` > 0 the real part of the dynamic stiffness.
+        k = dw/d(approach) [N/m2].
     damping : float
         c [N s/m2].
     film_offset_error, film_compliance_error, stiffness_error, damping_error : float
@@ -107,8 +134,6 @@ class ContactSolution:
     loss_compliance_error : float
         The same, positive where the error of the loss has the sign of that of the film compliance: the two can cancel
         in the damping.
-    frequency : float
-        [Hz]; 0 is the low-frequency limit.
 
     The other attributes are those of `FilmSolution`.
     """
@@ -135,7 +160,6 @@ class ContactSolution:
     iterations: int
     solve_seconds: float
     viscosity_extrapolated: bool
-    frequency: float = 0.0
 
 
 class ContactSolver(Protocol):
@@ -145,7 +169,7 @@ class ContactSolver(Protocol):
     line gives the same numbers, whatever was solved before.
 
     A solver has every member; a class that inherits from `ContactSolverDefaults` writes `name`, `solve_line` and
-    `settings` only.
+    `settings` only, and `film_spectrum` where its films have a memory.
     """
 
     @property
@@ -180,9 +204,8 @@ class ContactSolver(Protocol):
         loads: tuple[float, ...],
         entrainment_speed: float,
         temperature: float,
-        frequency: float = 0.0,
     ) -> tuple[FilmSolution, ...]:
-        """Films at each load [N/m], in the order given, at one speed [m/s], temperature [K] and frequency [Hz].
+        """Films at each load [N/m], in the order given, at one speed [m/s] and temperature [K].
 
         Parameters
         ----------
@@ -196,8 +219,24 @@ class ContactSolver(Protocol):
             u [m/s].
         temperature : float
             Temperature of the oil supply [K].
-        frequency : float
-            Frequency of the small oscillation to which stiffness and damping belong [Hz]; 0 is the low-frequency limit.
+        """
+        ...
+
+    def film_spectrum(
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: FloatArray
+    ) -> FilmSpectrum:
+        """Film of one point that oscillates a little, over frequency.
+
+        Parameters
+        ----------
+        contact : LineContact
+            The contact.
+        lubricant : Lubricant
+            The oil.
+        point : OperatingPoint
+            Load, speed and temperature.
+        frequencies : ndarray, shape (k,)
+            [Hz], > 0.
         """
         ...
 
@@ -232,11 +271,63 @@ class ContactSolverDefaults:
         """Its maps get no further attributes."""
         return {}
 
+    def film_spectrum(
+        self: ContactSolver,
+        contact: LineContact,
+        lubricant: Lubricant,
+        point: OperatingPoint,
+        frequencies: FloatArray,
+    ) -> FilmSpectrum:
+        """Film without a memory: the same film and loss compliance at each frequency; arguments as of `ContactSolver`.
 
-def contact_solution(
-    film: FilmSolution, contact: LineContact, point: OperatingPoint, frequency: float = 0.0
-) -> ContactSolution:
-    """Add the structural part to a film, see `ehdmaps.physics.structure`.
+        Parameters
+        ----------
+        contact, lubricant, point, frequencies
+            The arguments of `ContactSolver.film_spectrum`.
+        """
+        (film,) = self.solve_line(contact, lubricant, (point.load,), point.entrainment_speed, point.temperature)
+        return slow_spectrum(film, frequencies)
+
+
+def slow_spectrum(film: FilmSolution, frequencies: FloatArray) -> FilmSpectrum:
+    """Spectrum of a film whose film compliance and loss compliance do not depend on frequency.
+
+    Parameters
+    ----------
+    film : FilmSolution
+        The film.
+    frequencies : ndarray, shape (k,)
+        [Hz].
+    """
+    rate = 2j * math.pi * frequencies
+    error = film.film_compliance * film.film_compliance_error
+    lost = film.loss_compliance * film.loss_compliance_error
+    return FilmSpectrum(
+        film,
+        frequencies,
+        np.asarray(film.film_compliance - rate * film.loss_compliance, dtype=np.complex128),
+        np.asarray(error - rate * lost, dtype=np.complex128)[:, None],
+    )
+
+
+def no_spectrum(film: FilmSolution, frequencies: FloatArray) -> FilmSpectrum:
+    """Spectrum of a film that has no solution: NaN.
+
+    Parameters
+    ----------
+    film : FilmSolution
+        The film with its status and reason.
+    frequencies : ndarray, shape (k,)
+        [Hz].
+    """
+    nothing = np.full(frequencies.size, complex(math.nan, math.nan))
+    return FilmSpectrum(film, frequencies, nothing, nothing[:, None])
+
+
+def contact_solution(film: FilmSolution, contact: LineContact, point: OperatingPoint) -> ContactSolution:
+    """Add the structural part to a film, in the limit of slow motion.
+
+    See `ehdmaps.physics.structure`; for other frequencies `ehdmaps.physics.spectrum`.
 
     Parameters
     ----------
@@ -246,8 +337,6 @@ def contact_solution(
         The contact, with its structural law.
     point : OperatingPoint
         Load, speed and temperature of the film.
-    frequency : float
-        Frequency of the oscillation [Hz]; 0 is the low-frequency limit.
     """
     solids = structured(
         contact,
@@ -257,7 +346,6 @@ def contact_solution(
         film.loss_compliance,
         film.film_compliance_error,
         film.loss_compliance_error,
-        omega=2.0 * math.pi * frequency,
     )
     return ContactSolution(
         status=film.status,
@@ -282,5 +370,4 @@ def contact_solution(
         iterations=film.iterations,
         solve_seconds=film.solve_seconds,
         viscosity_extrapolated=film.viscosity_extrapolated,
-        frequency=frequency,
     )

@@ -1,8 +1,8 @@
 """A contact is a film between solids: approach, stiffness and damping from the film and the structural law.
 
-    approach = delta_el(w) - h_eff,    1/(k + i omega c) = d(delta_el)/dw + film compliance - i omega loss compliance
+    approach = delta_el(w) - h_eff,    1/k = d(delta_el)/dw + film compliance,    c = loss compliance k^2
 
-at omega = 0 with the limits k = 1/(d(delta_el)/dw + film compliance), c = loss compliance k^2.
+in the limit of slow motion; for other frequencies see `ehdmaps.physics.spectrum`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ class Structured(NamedTuple, Generic[Values]):
     approach : float or array
         delta_el(w) - h_eff [m], > 0 when the bodies come together.
     stiffness : float or array
-        k [N/m2]; at a frequency the real part of the dynamic stiffness.
+        k [N/m2].
     damping : float or array
         c [N s/m2].
     stiffness_error, damping_error : float or array
@@ -43,7 +43,6 @@ def structured(
     loss_compliance: Values,
     film_compliance_error: Values,
     loss_compliance_error: Values,
-    omega: float = 0.0,
 ) -> Structured[Values]:
     """Add the solids of a contact to its film.
 
@@ -59,22 +58,19 @@ def structured(
     film_offset : float or array
         h_eff [m].
     film_compliance : float or array
-        -d(h_eff)/dw [m2/N]; at a frequency its real part.
+        -d(h_eff)/dw [m2/N].
     loss_compliance : float or array
-        c/k^2 at low frequency, c/(k^2 + (omega c)^2) at omega [m2 s/N].
+        c/k^2 [m2 s/N].
     film_compliance_error, loss_compliance_error : float or array
         Estimated relative errors with their signs; only the sign of one against the other matters.
-    omega : float
-        Angular frequency [rad/s]; 0 is the low-frequency limit.
     """
     compliance = contact.structural_compliance(load) + film_compliance
-    squared = compliance**2 + (omega * loss_compliance) ** 2
     stiffness_error = -film_compliance * film_compliance_error / compliance
     both = abs(loss_compliance_error) + 2.0 * abs(stiffness_error)
     return Structured(
         approach=contact.structural_approach(load) - film_offset,
-        stiffness=compliance / squared,
-        damping=loss_compliance / squared,
+        stiffness=1.0 / compliance,
+        damping=loss_compliance / compliance**2,
         stiffness_error=abs(stiffness_error),
         damping_error=abs(loss_compliance_error + 2.0 * stiffness_error) + 0.05 * both,
     )

@@ -144,7 +144,7 @@ def hammer(model: Model, settings: HammerSettings | None = None, progress: Progr
 
 def _hit(model: Model, balance: Equilibrium, test: HammerTest, nonlinear: bool, tell: Progress) -> tuple[Hits, ...]:
     """Make the hits."""
-    inputs, sensors = model.scene.inputs, model.scene.sensors
+    inputs, sensors = tuple(model.scene.inputs), tuple(model.scene.sensors)
     if not nonlinear:
         return linear_hits(balance, inputs, sensors, test)
     done, total = 0, test.hits * len(inputs)

@@ -42,8 +42,8 @@ class Holey(ContactSolverDefaults):
     version: str | None = None
     name: str = "holey"
 
-    def solve_line(self, contact, lubricant, loads, entrainment_speed, temperature, frequency=0.0):
-        films = FormulaSolver().solve_line(contact, lubricant, loads, entrainment_speed, temperature, frequency)
+    def solve_line(self, contact, lubricant, loads, entrainment_speed, temperature):
+        films = FormulaSolver().solve_line(contact, lubricant, loads, entrainment_speed, temperature)
         return tuple(
             FilmSolution(Status.STAGNATED, f"step {load:g} too small", film_offset=1.0)
             if self._hit(load, entrainment_speed)

@@ -34,8 +34,8 @@ class WithErrors(FormulaSolver):
 
     wants_backbone = True
 
-    def solve_line(self, contact, lubricant, loads, entrainment_speed, temperature, frequency=0.0):
-        films = super().solve_line(contact, lubricant, loads, entrainment_speed, temperature, frequency)
+    def solve_line(self, contact, lubricant, loads, entrainment_speed, temperature):
+        films = super().solve_line(contact, lubricant, loads, entrainment_speed, temperature)
         sign = 1.0 if entrainment_speed > 1.0 else -1.0
         errors = {"film_offset_error": -1e-3, "film_compliance_error": 0.02 * sign, "loss_compliance_error": 0.03}
         return tuple(dataclasses.replace(film, **errors) for film in films)
@@ -171,8 +171,8 @@ class Lost(FormulaSolver):
     speed: float = 0.0
     loads: tuple[float, float] = (0.0, 0.0)
 
-    def solve_line(self, contact, lubricant, loads, entrainment_speed, temperature, frequency=0.0):
-        films = super().solve_line(contact, lubricant, loads, entrainment_speed, temperature, frequency)
+    def solve_line(self, contact, lubricant, loads, entrainment_speed, temperature):
+        films = super().solve_line(contact, lubricant, loads, entrainment_speed, temperature)
         here = abs(entrainment_speed / self.speed - 1.0) < 1e-9
         low, high = self.loads
         return tuple(
