@@ -76,18 +76,18 @@ def responses(oil: Lubricant, count: int) -> list[Response]:
 def over_frequency(count: int) -> None:
     """Print the table of complex stiffness, and its worst points."""
     print("complex stiffness up to omega T = 10, largest error of a contact [%]: median, largest of all contacts")
-    print(f"{'oil':<10s}{'contacts':>9s}{'memory':>14s}{'above 5 %':>11s}{'slow':>14s}{'dry':>16s}{'solver':>8s}")
+    print(f"{'oil':<10s}{'contacts':>9s}{'memory':>14s}{'above 5 %':>11s}{'slow':>14s}{'dry':>16s}{'solver':>9s}")
     worst = []
     for name, oil in OILS.items():
         found = responses(oil, count)
         cells = ""
-        for law, width in (("memory", 14), ("slow", 14), ("dry", 16)):
+        for law, width, digits in (("memory", 14, "1f"), ("slow", 14, "1f"), ("dry", 16, "3g")):
             values = [100.0 * getattr(each, law) for each in found]
-            cells += f"{f'{np.median(values):.1f} {max(values):.4g}':>{width}s}"
+            cells += f"{f'{np.median(values):.1f} {max(values):.{digits}}':>{width}s}"
             if law == "memory":
                 cells += f"{sum(value > 5.0 for value in values):11d}"
         stated = 100.0 * max(each.stated for each in found)
-        print(f"{name:<10s}{count:9d}{cells}{stated:8.2f}", flush=True)
+        print(f"{name:<10s}{count:9d}{cells}{stated:9.2f}", flush=True)
         worst += [(name, each) for each in sorted(found, key=lambda each: -each.memory)[:3]]
     print("worst points of the law with memory")
     for name, each in worst:
@@ -125,9 +125,9 @@ def over_time(parts: tuple[float, ...]) -> None:
             rows = [wrong for place, _, is_small, wrong in found if place.startswith(name) and is_small == small]
             title = f"{name}, {'courses' if small else 'larger amplitudes'}"
             cells = ""
-            for law, width in (("memory", 14), ("slow", 14), ("dry", 16)):
+            for law, width, digits in (("memory", 14, "1f"), ("slow", 14, "1f"), ("dry", 16, "3g")):
                 values = [100.0 * getattr(wrong, law) for wrong in rows]
-                cells += f"{f'{np.median(values):.1f} {max(values):.4g}':>{width}s}"
+                cells += f"{f'{np.median(values):.1f} {max(values):.{digits}}':>{width}s}"
                 if law == "memory":
                     cells += f"{sum(value > 5.0 for value in values):11d}"
             print(f"{title:<34s}{len(rows):8d}{cells}")
