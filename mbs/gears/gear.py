@@ -19,9 +19,12 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import FloatArray
 from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_force
-from mbs.model.elements import ElementDefaults, Operation, Port
+from mbs.model.elements import Excitation, Forces, Operation, Port
 
 FEWEST_TEETH, MOST_TEETH = 5, 10_000
+HARMONICS = 5
+"""Multiples of the meshing order that are worth following."""
+
 MOST_HARMONICS = 50
 LEAST_STIFFNESS = 0.01
 """Least of the varying stiffness, as a part of the mean."""
@@ -269,7 +272,7 @@ class GearPair:
 
 
 @dataclass(frozen=True, eq=False)
-class GearMesh(ElementDefaults):
+class GearMesh:
     """A gear pair in a system; make it by `gear_mesh`.
 
     Attributes
@@ -304,6 +307,11 @@ class GearMesh(ElementDefaults):
         """Tooth meshes for each turn of the system."""
         return abs(self.pair.teeth[0] * self.spin)
 
+    @property
+    def excitation(self) -> Excitation | None:
+        """The meshing of the teeth; None for gears that stand."""
+        return Excitation(self.order, HARMONICS, rank=2) if self.order > 0.0 else None
+
     def steady(self) -> GearMesh:
         """The mesh with its mean stiffness and without error, for linear analyses."""
         return replace(self, varying=False)
@@ -331,13 +339,11 @@ class GearMesh(ElementDefaults):
         mesh_force(*self.arrays, operation.angle, operation.speed, self.rows @ displacement, self.rows @ velocity, out)
         return out
 
-    def evaluate(
-        self, displacement: FloatArray, velocity: FloatArray, operation: Operation
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on both gears, stiffness and damping, see `Element.evaluate`."""
         flanks = self.flanks(displacement, velocity, operation)
         driving, other = self._squares
-        return (
+        return Forces(
             -flanks[:, FORCE] @ self.rows,
             flanks[0, SLOPE] * driving + flanks[1, SLOPE] * other,
             flanks[0, BY_RATE] * driving + flanks[1, BY_RATE] * other,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from ehdmaps.physics._values import FloatArray
 from mbs.linearised.linear import ComplexArray
@@ -155,6 +156,8 @@ class Sweep:
         Equilibrium [m or rad].
     forces : tuple of array, shape (speeds, m)
         Of each element in its ports [N or N m].
+    outside : dict of str to array of bool, shape (speeds,)
+        Whether each element lies outside its map at the equilibrium, by name.
     parts : tuple of str
         Flexible bodies, springs, elements.
     undamped, damped, bearings, responses
@@ -166,6 +169,7 @@ class Sweep:
     speeds: FloatArray
     displacement: FloatArray
     forces: tuple[FloatArray, ...]
+    outside: dict[str, npt.NDArray[np.bool_]]
     parts: tuple[str, ...]
     undamped: UndampedSweep
     damped: ComplexSweep

@@ -72,11 +72,6 @@ class Model:
         """The operating speed of the scene, at the start angles of its bearings."""
         return Operation(self.scene.speed)
 
-    @property
-    def outside_calls(self) -> dict[str, int]:
-        """Calls outside the map so far, by element; 0 for one without a map."""
-        return {connected.element.name: connected.element.outside_calls or 0 for connected in self.system.elements}
-
 
 def choose_law(name: str | None, emap: EHDMap | None) -> str:
     """The law that is meant: by default the map where there is one, else Hertz."""

@@ -12,7 +12,7 @@ from mbs.errors import AnalysisError
 from mbs.linearised.linear import frequency_response, state_space, with_peaks
 from mbs.linearised.modes import modes, undamped_modes
 from mbs.model.body import Inertia, lever_arm, rigid_body
-from mbs.model.elements import ElementDefaults, Input, Load, Operation, Port, Sensor, Spring
+from mbs.model.elements import ElementDefaults, Forces, Input, Load, Operation, Port, Sensor, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Constant, Course, HalfSine, Harmonic, SpeedProfile
 from mbs.model.system import System
@@ -41,7 +41,7 @@ class OneSided(ElementDefaults):
         depth = max(displacement[1] - self.gap, 0.0)
         f, K = np.zeros(6), np.zeros((6, 6))
         f[1], K[1, 1] = -self.k * depth**1.5, 1.5 * self.k * depth**0.5
-        return f, K, np.zeros((6, 6))
+        return Forces(f, K, np.zeros((6, 6)))
 
 
 class TestBody:
@@ -105,11 +105,11 @@ class TestSystem:
         assert "load 'l': got the frame 'tip' of 'a'; allowed: centre" in text
         assert "a and b are 100 mm apart; allowed: the same point" in text
 
-    def test_an_element_says_whether_it_counts(self):
+    def test_an_element_says_whether_it_excites(self):
         class Old:
             name, ports = "old", (Port("a"),)
 
-        with pytest.raises(InputError, match=r"'old', outside_calls: missing; .* mbs\.elements\.ElementDefaults"):
+        with pytest.raises(InputError, match=r"'old', excitation: missing; .* mbs\.model\.elements\.ElementDefaults"):
             System([rigid_body("a", [MASS], ["y"])], (), (), [Old()])
         with pytest.raises(InputError, match="bodies: got none"):
             System([])
@@ -130,7 +130,7 @@ class TestSystem:
         rigid = np.vstack([lever_arm(body.frames["centre"].position) for body in system.bodies])
         motion = rng.normal(size=12)
         connected = system.elements[0]
-        contact = connected.transform.T @ connected.evaluate(motion, motion, Operation())[0]
+        contact = connected.transform.T @ connected.evaluate(motion, motion, Operation()).force
         assert np.abs(contact).max() > 1e-3
         for forces in (system.stiffness @ motion, system.damping @ motion, system.loads(0.0), contact):
             np.testing.assert_allclose(rigid.T @ forces, 0.0, atol=1e-13 * max(np.abs(forces).max(), 1.0))
