@@ -3,9 +3,13 @@
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parent)]
 
-from ehdmaps import version as ehdmaps_version
+import gallery  # noqa: E402 - it and the package are found by the paths above
+
+from ehdmaps import version as ehdmaps_version  # noqa: E402
+
+gallery.make_gallery()
 
 project = "ehdmaps"
 author = "The ehdmaps developers"

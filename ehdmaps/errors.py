@@ -26,8 +26,16 @@ class InputError(EhdmapsError):
         super().__init__("\n".join(self.problems))
 
 
+class DependencyError(InputError):
+    """A package that an extra of the distribution installs is not there; the message names the extra."""
+
+
 class SolverError(EhdmapsError):
     """A contact solver gave up in a way it could not express as a status; the sweep records it as `failed`."""
+
+
+class AnalysisError(EhdmapsError):
+    """An analysis finds no result from input that is valid; the message says what to try."""
 
 
 class StoreError(EhdmapsError):

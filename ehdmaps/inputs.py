@@ -40,7 +40,7 @@ def check_input(path: str | Path, longest: int, allowed: str, advice: str = "", 
     Returns
     -------
     int
-        Its bytes.
+        Size of the file in bytes.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def first_bytes(path: str | Path, count: int, allowed: str, name: str = "") -> b
     count : int
         Bytes that are wanted; fewer come where it ends before.
     allowed, name : str
-        As for `check_input`.
+        The same as for `check_input`.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def read_text(path: str | Path, longest: int, allowed: str, advice: str = "", na
     Parameters
     ----------
     path, longest, allowed, advice, name
-        As for `check_input`.
+        The same as for `check_input`.
 
     Raises
     ------

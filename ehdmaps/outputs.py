@@ -38,7 +38,7 @@ class Kind:
     Attributes
     ----------
     name : str
-        In words, with its article, such as "a map of ehdmaps".
+        Name in words, with its article, such as "a map of ehdmaps".
     endings : tuple of str
         Endings that a name may have, in lower case; empty for any.
     ours : callable
@@ -59,7 +59,7 @@ class Output:
     option : str
         That names it, such as "--plot"; begins the messages.
     path : str or Path or None
-        As it was given; None if it was not.
+        Path as it was given; None if it was not.
     kind : Kind
         What it will be.
     """
@@ -165,7 +165,7 @@ def write_text(path: str | Path, text: str, kind: Kind) -> None:
     Parameters
     ----------
     path : str or Path
-        Where to.
+        File to write.
     text : str
         What to write.
     kind : Kind

@@ -69,11 +69,11 @@ def run(
     Parameters
     ----------
     parser : argparse.ArgumentParser
-        Of its arguments; messages begin with its name.
+        Parser of the program's arguments; messages begin with its name.
     work : callable
         Takes the arguments, gives the text for stdout and the exit status.
     argv : sequence of str, optional
-        Arguments; those of the process if left out, which ends after this then.
+        Arguments of the command line; those of the process if left out, which ends after this then.
     no_result : type or types of error
         That mean that valid input has no result: exit status 1 instead of 2.
 
@@ -108,9 +108,9 @@ def deliver(name: str, text: str, status: int) -> int:
     Parameters
     ----------
     name : str
-        Of the program, for the message.
+        Name of the program, for the message.
     text : str
-        Without its last newline; nothing is printed where it is empty.
+        Text without its last newline; nothing is printed where it is empty.
     status : int
         Exit status of the work.
 

@@ -30,9 +30,9 @@ def source_state(root: Path) -> str:
     Returns
     -------
     str
-        In a clone the commit: "g19eceb2715", with ".dirty" where a file that git tracks was changed. Elsewhere, and
-        where git is missing or refuses, a hash of the packages' Python files: "src.5d41402abc". Empty where there is
-        neither. Found once a process, in some 10 ms.
+        State of the sources. In a clone it is the commit: "g19eceb2715", with ".dirty" where a file that git tracks was
+        changed. Elsewhere, and where git is missing or refuses, a hash of the packages' Python files: "src.5d41402abc".
+        Empty where there is neither. Found once a process, in some 10 ms.
     """
     return _commit(root) or _hash(root)
 

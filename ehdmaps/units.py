@@ -170,7 +170,7 @@ class Display:
     Attributes
     ----------
     unit : str
-        As printed and as on a figure's axis.
+        Unit as printed and as on a figure's axis.
     factor, offset : float
         shown = SI * factor + offset.
     """

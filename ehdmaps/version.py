@@ -23,7 +23,7 @@ def version(package: str = NAME) -> str:
     Returns
     -------
     str
-        Of another package the version of its installation, or "not installed". Of ours number and state of the
+        The version. Of another package that of its installation, or "not installed". Of ours number and state of the
         sources: "0.1.0+g19eceb2715" in a clone, "0.1.0+g19eceb2715.dirty" where files differ from that commit,
         "0.1.0+src.5d41402abc" elsewhere (`ehdmaps.provenance`). The number is that of the project file in a clone,
         else that of the installation.

@@ -7,9 +7,10 @@ back the load that the point was solved for: its approach is the sum of the appr
 
 import sys
 from pathlib import Path
+from typing import Any
 
+import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.figure import Figure
 
 import ehdmaps
 from ehdmaps.outputs import write_figure
@@ -25,19 +26,15 @@ bearing = ehdmaps.BearingGeometry(
 )
 oil = ehdmaps.Lubricant.roelands(viscosity_40=68e-6, viscosity_100=8.7e-6, pressure_viscosity=2e-8, density=870.0)
 loads, speeds, temperature = np.geomspace(1e3, 1e6, 10), [0.5, 1.0, 2.0, 4.0], 333.15
-grid = {"loads": loads, "entrainment_speeds": speeds, "temperatures": [temperature]}
+grid: Any = {"loads": loads, "entrainment_speeds": speeds, "temperatures": [temperature]}
 job = ehdmaps.Job.build(bearing=bearing, lubricant=oil, **grid, solver_options={"density": 4.5}, name="mine")
 made = ehdmaps.generate(job)  # with an output file it would go on after an interruption
 approach = made["approach"].sum("contact").values[:, 2, 0]
-w, k, c = ehdmaps.EHDMap(made).law("series")(approach, 0.0, speeds[2], temperature)
+w, _, _ = ehdmaps.EHDMap(made).law("series")(approach, 0.0, speeds[2], temperature)
 assert np.allclose(w, loads, rtol=1e-4)  # what a smooth table loses of coarse points
 print(f"{made.attrs['title']}: {job.points} points; at {loads[5]:.4g} N/m the law gives {w[5]:.4g} N/m")
-
-figure = Figure(figsize=(7.0, 3.0), layout="constrained")
-left, right = figure.subplots(1, 2)
-left.loglog(loads, 1e6 * made["central_film"].sel(contact="inner")[..., 0], label=[f"{u:g} m/s" for u in speeds])
-left.legend()
-left.set(xlabel="load, N/m", ylabel="central film, um")
-right.loglog(loads, k)
-right.set(xlabel="load, N/m", ylabel="stiffness of a roller, N/m2")
+figure, axes = plt.subplots(figsize=(7.0, 3.0), layout="constrained")
+axes.loglog(loads, 1e6 * made["central_film"].sel(contact="inner")[..., 0], label=[f"{u:g} m/s" for u in speeds])
+axes.set(xlabel="load, N/m", ylabel="central film, um")
+axes.legend()
 write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "02_own_map.png", 120)

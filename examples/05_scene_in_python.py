@@ -12,7 +12,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 
 from ehdmaps.outputs import write_figure
-from mbs import assemble, modes, parse_scene
+from mbs import BearingForce, assemble, modes, parse_scene
 from mbs.analyses.bearing_point import bearing_point
 
 SCENE = """
@@ -31,9 +31,9 @@ cylinders = [{ from = "-15 cm", to = "15 cm", diameter = "4 cm" }, { from = "-2 
 frames = { left = ["-10 cm", "0 cm", "0 cm"], right = ["10 cm", "0 cm", "0 cm"] }
 """
 model = assemble(parse_scene(SCENE, "disc", "the scene"), clearance=-2e-6)  # preloaded a little
-found = modes(model).dataset["frequency"].values
-scene, bearing = model.scene, model.bearings[0]
-one = bearing_point(bearing.force, model.films["left"], (0.0, -150.0), scene.speed, scene.temperature)
+scene, force, found = model.scene, model.bearings[0].force, modes(model).dataset["frequency"].values
+assert isinstance(force, BearingForce)
+one = bearing_point(force, model.films["left"], (0.0, -150.0), scene.speed, scene.temperature)
 expected = math.sqrt(2.0 * one.stiffness[1, 1] / model.system.mass[0, 0]) / (2.0 * math.pi)
 bounce = min(found, key=lambda frequency: abs(frequency - expected))
 print(f"{found.round(2)} Hz; bounce {bounce:.4f} Hz, of one bearing and half the mass {expected:.4f} Hz")

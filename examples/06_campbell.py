@@ -16,10 +16,10 @@ from matplotlib.figure import Figure
 from ehdmaps.outputs import write_figure
 from mbs import CampbellSettings, RunUp, assemble, campbell, read_scene
 from mbs.model.profiles import SpeedProfile
-from mbs.transient.settings import Settings
+from mbs.settings import Settings
 
 RPM = math.pi / 30
-course = RunUp(SpeedProfile.ramp(500 * RPM, 2000 * RPM, 1.0), 1.0, Settings(step=25e-6, sample=25e-6))
+course = RunUp(SpeedProfile.ramp(500 * RPM, 2000 * RPM, 0.6), 0.6, Settings(step=25e-6, sample=25e-6))
 scene = dataclasses.replace(read_scene("nu308_rigid"), run_up=course)
 settings = CampbellSettings(sensor="approach", highest=1500.0)
 found = campbell(assemble(scene, clearance=20e-6), settings).dataset.isel(law=0)
@@ -34,7 +34,7 @@ figure = Figure(figsize=(7.0, 4.0), layout="constrained")
 axes = figure.subplots()
 rpm, top = found["speed"] / RPM, float(found["level"].max())
 image = axes.pcolormesh(rpm, found["frequency"], found["level"].T, vmin=top - 60.0, vmax=top, rasterized=True)
-axes.plot(rpm, passing * rpm / 60.0, "w--", linewidth=0.8)
+axes.plot(rpm, passing * rpm / 60.0, "k--", linewidth=0.8)
 axes.set(xlabel="speed, rpm", ylabel="frequency, Hz")
 figure.colorbar(image, label="level, dB")
 write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "06_campbell.png", 120)

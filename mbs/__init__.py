@@ -19,7 +19,7 @@ What is where, in the order of the data:
 ==================  ====================================================================================
 scene file          `scene`: reader -> scene -> assembly
 the system          `model`: bodies, elements, what is prescribed; the system and its equilibrium
-what bodies are     `flexible` (beams, finite elements, reduction), `housings` (the shipped ones)
+what bodies are     `flexible` (beams, finite elements, reduction)
 what connects them  `bearings` (the bearing force), `gears`
 linear              `linearised` (modes, responses, over speed); `modal` (identified from hammer hits)
 in time             `transient` (method, compiled runs); `spectral` (levels over speed and order)
@@ -35,6 +35,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from ehdmaps.errors import AnalysisError
+
 if TYPE_CHECKING:
     __version__: str
 
@@ -49,13 +51,11 @@ if TYPE_CHECKING:
     from mbs.analyses.sweep import SweepSettings, sweep
     from mbs.bearings.bearing import Bearing
     from mbs.bearings.bearing_force import BearingForce
-    from mbs.errors import AnalysisError
-    from mbs.linearised.sweep import SweepRange
     from mbs.model.elements import Operation
     from mbs.scene.assembly import Model, assemble
     from mbs.scene.reader import parse_scene, read_scene, shipped_systems
-    from mbs.scene.scene import RunUp, Scene
-    from mbs.spectral.settings import CampbellSettings
+    from mbs.scene.scene import Scene
+    from mbs.settings import CampbellSettings, RunUp, SweepRange
 
 __all__ = [
     "AnalysisError",
@@ -87,19 +87,18 @@ __all__ = [
 ]
 
 _HOMES = {
-    "AnalysisError": "errors",
     "Bearing": "bearings.bearing",
     "BearingForce": "bearings.bearing_force",
-    "CampbellSettings": "spectral.settings",
+    "CampbellSettings": "settings",
     "Case": "analyses.case",
     "HammerSettings": "analyses.hammer",
     "LsaSettings": "analyses.lsa",
     "Model": "scene.assembly",
     "Operation": "model.elements",
     "PlanSettings": "analyses.plan",
-    "RunUp": "scene.scene",
+    "RunUp": "settings",
     "Scene": "scene.scene",
-    "SweepRange": "linearised.sweep",
+    "SweepRange": "settings",
     "SweepSettings": "analyses.sweep",
     "assemble": "scene.assembly",
     "campbell": "analyses.campbell",

@@ -8,8 +8,8 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
+from ehdmaps.errors import AnalysisError
 from ehdmaps.program import Parser, run
-from mbs.errors import AnalysisError
 
 _LAW = "hertz | formula | constant:NAME | map; default: map with --map, else hertz. NAME is a table [laws.NAME]"
 
@@ -215,7 +215,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     argv : sequence of str, optional
-        Arguments; those of the process if left out.
+        Arguments of the command line; those of the process if left out.
 
     Returns
     -------

@@ -1,10 +1,85 @@
-"""Settings of all tests."""
+"""Settings of all tests, maps that several of them read, and the report of those that take long unmarked."""
 
 import os
+from collections.abc import Iterator
+from pathlib import Path
 
+import pytest
 from hypothesis import settings
+
+from tests.cases.jobs import FINE, WIDE_AXES, map_job
 
 # CI must not fail on an example that nobody has seen before; a developer wants to see new ones
 settings.register_profile("ci", derandomize=True, deadline=None)
 settings.register_profile("developer", deadline=None)
 settings.load_profile("ci" if os.environ.get("CI") else "developer")
+
+
+QUICK = 5.0
+"""Seconds of processor time that a test may take without the mark `slow`."""
+
+SPENT: dict[tuple[str, str], float] = {}
+"""Seconds of tests without the mark, by phase and name."""
+
+
+def processor_time() -> float:
+    """Seconds of this process and of those that it waited for."""
+    times = os.times()
+    return times.user + times.system + times.children_user + times.children_system
+
+
+def spend(item: pytest.Item, phase: str) -> Iterator[None]:
+    begin = processor_time()
+    yield
+    if item.get_closest_marker("slow") is None:
+        SPENT[phase, item.nodeid] = processor_time() - begin
+
+
+@pytest.hookimpl(hookwrapper=True, tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> Iterator[None]:
+    yield from spend(item, "setup")
+
+
+@pytest.hookimpl(hookwrapper=True, tryfirst=True)
+def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
+    yield from spend(item, "call")
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Name the tests that should be quicker or be marked; a report and no failure, for machines differ."""
+    over = sorted(((seconds, *test) for test, seconds in SPENT.items() if seconds > QUICK), reverse=True)
+    if over:
+        terminalreporter.section(f"not marked slow, and more than {QUICK:g} s of processor time")
+    for seconds, phase, name in over:
+        terminalreporter.write_line(f"{seconds:.1f} s {phase} {name}")
+
+
+def made_map(folder: Path, text: str, statuses: tuple[int, ...] = (0,)) -> str:
+    """Make the map of a job in a folder; status 1 is a point without a solution."""
+    from ehdmaps.jobs import cli
+
+    (folder / "job.toml").write_text(text)
+    path = str(folder / "map.nc")
+    assert cli.main(["generate", str(folder / "job.toml"), "-o", path, "--workers", "1"]) in statuses
+    return path
+
+
+@pytest.fixture(scope="session")
+def formula_maps(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """Files of small maps by the film formula, by the name of the bearing."""
+    return {
+        name: made_map(tmp_path_factory.mktemp(name), map_job(*WIDE_AXES, bearing=name), statuses=(0, 1))
+        for name in ("NU308", "N1014")
+    }
+
+
+@pytest.fixture(scope="session")
+def formula_map(formula_maps: dict[str, str]) -> str:
+    """File of the small map of NU308."""
+    return formula_maps["NU308"]
+
+
+@pytest.fixture(scope="session")
+def reynolds_map(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """File of a map of NU308 by the Reynolds equation, which takes some seconds of processor time."""
+    return made_map(tmp_path_factory.mktemp("reynolds"), FINE)

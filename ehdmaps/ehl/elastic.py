@@ -13,9 +13,8 @@ import math
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ehdmaps.arrays import FloatArray
 
 ZETA_PRIME_MINUS_TWO = -0.030448457058393270780
 """zeta'(-2) = -zeta(3)/(4 pi^2): weight of the second difference at the singular node."""
@@ -25,7 +24,7 @@ DRY_DATUM = -0.25 * (1.0 + 2.0 * math.log(2.0))
 
 
 @njit(cache=True)
-def log_kernel(x: Array, step: Array) -> Array:
+def log_kernel(x: FloatArray, step: FloatArray) -> FloatArray:
     """Matrix K with (K P)_i = (1/pi) Int P ln|x_i - S| dS.
 
     Parameters

@@ -15,9 +15,25 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ehdmaps.arrays import FloatArray
+
+RIGID_EXIT_SQUARED = 0.226
+"""X_exit^2/(2 H) of rigid surfaces and constant viscosity: c^2 with c = 0.475, the root of
+Int_-inf^c (x^2 - c^2)/(1 + x^2)^3 dx = 0, which is Reynolds' condition in a parabolic gap."""
+
+THIN_EXIT = 0.25
+"""How far the exit of a thin film lies behind Hertz' edge, in H^(2/3). With M from 3 to 200 solutions have 0.1 to
+0.45, the more the higher M and L are: it is a guess for the grid and for a cold start, since the exit is an unknown."""
+
+INLET_SHIFT, EXIT_SHIFT = 0.3, 0.45
+"""Centres of the finest cells, inside of the Hertz zone's edge and before the exit, in widths of those zones."""
+
+BLUR = 0.1
+"""Length over which the term of the Hertz zone is rounded at its ends, in the contact's own length."""
+
+LEAST_INLET = 6.0
+"""Inlet of a film without thickness [b]; `Resolution.inlet_length` comes to it."""
 
 
 @dataclass(frozen=True)
@@ -36,10 +52,10 @@ class Grid:
         dx/ds half-way between the nodes [b].
     """
 
-    x: Array
-    step: Array
-    face: Array
-    face_step: Array
+    x: FloatArray
+    step: FloatArray
+    face: FloatArray
+    face_step: FloatArray
 
 
 @dataclass(frozen=True)
@@ -52,7 +68,18 @@ class Spike:
 
 @dataclass(frozen=True)
 class GridShape:
-    """Where a grid spends its cells; dimensionless weights, the same for every operating point."""
+    """Where a grid spends its cells; dimensionless weights, the same for every operating point.
+
+    Weights and widths, as the lengths above, are a choice: they decide how many cells an error takes. What a grid is
+    worth is measured at every point, by the difference to a grid of half as many cells.
+
+    Attributes
+    ----------
+    inlet, exit, core, spike : float
+        Weights of the terms: cells in proportion.
+    inlet_width, exit_width : float
+        Widths within which cells are finest, in those of the zones.
+    """
 
     inlet: float = 1.0
     exit: float = 0.4
@@ -65,7 +92,7 @@ class GridShape:
 def thick_film_exit(film: float) -> float:
     """Exit coordinate X_exit of a film H [b^2/R]: near 1 for thin films, 0.475 sqrt(2H) for rigid surfaces."""
     thin = math.pow(film, 2 / 3)
-    return math.sqrt(1.0 + 0.226 * 2.0 * film) + 0.25 * thin / (1.0 + thin)
+    return math.sqrt(1.0 + RIGID_EXIT_SQUARED * 2.0 * film) + THIN_EXIT * thin / (1.0 + thin)
 
 
 @dataclass(frozen=True)
@@ -77,9 +104,9 @@ class Layout:
     film : float
         Film H for which it is laid [b^2/R].
     length : float
-        From the inlet end to the exit [b].
+        Distance from the inlet end to the exit [b].
     inlet_edge, blur, core : float
-        Where the Hertz zone starts, over which length its term is rounded [b], and its weight.
+        Start of the Hertz zone, length over which its term is rounded [b], and its weight.
     terms : ndarray, shape (3, k)
         Centres [b], widths [b] and weights of the asinh terms.
     """
@@ -89,7 +116,7 @@ class Layout:
     inlet_edge: float
     blur: float
     core: float
-    terms: Array
+    terms: FloatArray
 
     @property
     def span(self) -> float:
@@ -117,8 +144,10 @@ def lay_out(film: float, inlet_length: float, shape: GridShape = GridShape(), sp
     """
     film_length = math.sqrt(2.0 * film)
     zone = zone_width(film)
-    inlet_edge = -(thick_film_exit(film) + math.sqrt(1.0 + 0.25 * film_length**2))
-    centres = [inlet_edge + 0.3 * zone, -0.45 * zone]
+    # the pressure of a thick film rises over half of the film's length, that of a thin one at the edge of Hertz' zone
+    edge = math.sqrt(1.0 + (0.5 * film_length) ** 2)
+    inlet_edge = -(thick_film_exit(film) + edge)
+    centres = [inlet_edge + INLET_SHIFT * zone, -EXIT_SHIFT * zone]
     widths = [shape.inlet_width * zone, shape.exit_width * zone]
     weights = [shape.inlet, shape.exit]
     if spike is not None:
@@ -127,10 +156,10 @@ def lay_out(film: float, inlet_length: float, shape: GridShape = GridShape(), sp
         weights.append(shape.spike)
     return Layout(
         film=film,
-        length=-inlet_edge + 6.0 + inlet_length * film_length,
+        length=-inlet_edge + LEAST_INLET + inlet_length * film_length,
         inlet_edge=inlet_edge,
-        blur=0.1 * math.sqrt(1.0 + film_length**2),
-        core=shape.core / math.sqrt(1.0 + 0.25 * film_length**2),
+        blur=BLUR * math.sqrt(1.0 + film_length**2),
+        core=shape.core / edge,
         terms=np.array([centres, widths, weights]),
     )
 
@@ -142,7 +171,7 @@ def zone_width(film: float) -> float:
 
 
 @njit(cache=True)
-def _index(x: float, edge: float, blur: float, core: float, terms: Array) -> tuple[float, float]:
+def _index(x: float, edge: float, blur: float, core: float, terms: FloatArray) -> tuple[float, float]:
     """The uniform index s at x, and ds/dx."""
     left = math.hypot(x - edge, blur)
     right = math.hypot(x, blur)
@@ -156,7 +185,9 @@ def _index(x: float, edge: float, blur: float, core: float, terms: Array) -> tup
 
 
 @njit(cache=True)
-def _nodes(count: int, length: float, edge: float, blur: float, core: float, terms: Array) -> tuple[Array, Array]:
+def _nodes(
+    count: int, length: float, edge: float, blur: float, core: float, terms: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Invert s(x) at equal steps, from the exit inwards, by Newton steps kept inside a bracket."""
     first = _index(-length, edge, blur, core, terms)[0]
     last, slope = _index(0.0, edge, blur, core, terms)

@@ -9,8 +9,8 @@ import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid, GridShape, Layout, Spike, lay_out, thick_film_exit, zone_width
 from ehdmaps.ehl.linearisation import Neighbour, Response, film_response
@@ -20,8 +20,6 @@ from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.moes import valley_load_number
 from ehdmaps.physics.peak import peak_sampling_error
-
-Array = NDArray[np.float64]
 
 LOAD = 0.5 * math.pi
 """Int P dX of a pressure in units of p_H over lengths in units of b."""
@@ -71,7 +69,7 @@ class Resolution:
         own and the linearised grid follows it; M/100 times as much above M = 100, where the edge of the Hertz
         zone alone is that steep.
     shape : GridShape
-        Where the grid spends its cells.
+        Distribution of the grid's cells.
     """
 
     density: float = 6.5
@@ -180,7 +178,7 @@ def _converged(
     problem: LineProblem,
     layout: Layout,
     grid: Grid,
-    start: Array | None,
+    start: FloatArray | None,
     spike: Spike | None,
     tolerance: float,
 ) -> tuple[Profile | None, int, int]:

@@ -14,15 +14,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid
 from ehdmaps.ehl.reynolds import LineProblem, residual, stored_mass, stored_mass_rate
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
-
-Array = NDArray[np.float64]
 
 
 class Neighbour(NamedTuple):
@@ -43,8 +41,8 @@ class Response(NamedTuple):
 def film_response(
     problem: LineProblem,
     grid: Grid,
-    kernel: Array,
-    unknowns: Array,
+    kernel: FloatArray,
+    unknowns: FloatArray,
     load: float,
     neighbour: Neighbour | None = None,
     frequency: float = 0.0,
@@ -76,7 +74,7 @@ def film_response(
     jacobian = np.empty((size, size))
     residual(problem, grid.x, grid.step, grid.face_step, kernel, unknowns, load, out, jacobian)
     matrix[:size, :size] = jacobian
-    grid_mass: Array | None = None
+    grid_mass: FloatArray | None = None
     if neighbour is not None:
         by_grid, grid_mass = _by_grid(problem, grid, kernel, unknowns, load, out, neighbour)
         matrix[:size, size] = by_grid
@@ -85,7 +83,7 @@ def film_response(
     unit[n + 1] = 1.0
     _, carried = stored_mass(problem, grid.x, grid.step, kernel, unknowns)
 
-    def storage(rate: Array) -> Array:
+    def storage(rate: FloatArray) -> FloatArray:
         """What the time derivative adds to the residual for a rate of the unknowns (and of the spike)."""
         added = np.zeros(total)
         mass_rate = stored_mass_rate(problem, grid.x, grid.step, kernel, unknowns, rate[:size]) - carried * rate[n]
@@ -107,8 +105,14 @@ def film_response(
 
 
 def _by_grid(
-    problem: LineProblem, grid: Grid, kernel: Array, unknowns: Array, load: float, here: Array, neighbour: Neighbour
-) -> tuple[Array, Array]:
+    problem: LineProblem,
+    grid: Grid,
+    kernel: FloatArray,
+    unknowns: FloatArray,
+    load: float,
+    here: FloatArray,
+    neighbour: Neighbour,
+) -> tuple[FloatArray, FloatArray]:
     """Derivatives of the residual and of the stored mass (as moving faces see it) with respect to the spike's place."""
     moved, shift = neighbour.grid, neighbour.shift
     moved_kernel = log_kernel(moved.x, moved.step)
@@ -118,5 +122,5 @@ def _by_grid(
     mass, carried = stored_mass(problem, grid.x, grid.step, kernel, unknowns)
     moved_mass, _ = stored_mass(problem, moved.x, moved.step, moved_kernel, unknowns)
     face_shift = np.append(moved.face - grid.face, moved.x[-1] - grid.x[-1])
-    by_grid: Array = (there - here) / shift
+    by_grid: FloatArray = (there - here) / shift
     return by_grid, (moved_mass - mass - carried * face_shift) / shift

@@ -7,29 +7,44 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.reynolds import LineProblem, film, residual, steepest_viscosity_step
-
-Array = NDArray[np.float64]
 
 LOG_VISCOSITY_STEP = 5.0
 """Largest change of ln eta in one step."""
 
+EXIT_STEP = 0.3
+"""Largest change of the exit's coordinate in one step, of 1 + the coordinate [b]: the grid hangs on the exit."""
+
+LEAST_LEFT = 0.2
+"""Part of the smallest film that a step has to leave: the Poiseuille flux goes with the cube of the film."""
+
+MOST_HALVINGS = 15
+"""Halvings of a step in search of one that leaves a film."""
+
 CONVERGED, STAGNATED, DIVERGED = 0, 1, 2
+
+THICK_START = 0.3
+"""Film [b^2/R] above which the cold start is a hump, and no longer Hertz' pressure, which a film of the order of the
+dry deformation has lost. As the next two it is a choice: with others Newton finds the same solution in other steps."""
+
+START_ROUNDING, START_DECAY = 0.15, 0.6
+"""Where the inlet leaves Hertz' pressure inside of its edge, and the length of the exponential before, both in widths
+H^(2/3) of the inlet zone, over which the pressure of a thin film rises."""
 
 
 class NewtonResult(NamedTuple):
     """Unknowns, outcome (CONVERGED, STAGNATED or DIVERGED), Newton steps taken and size of the last step."""
 
-    unknowns: Array
+    unknowns: FloatArray
     outcome: int
     steps: int
     last_step: float
 
 
 @njit(cache=True)
-def solve_scaled(jacobian: Array, right_hand_side: Array) -> Array:
+def solve_scaled(jacobian: FloatArray, right_hand_side: FloatArray) -> FloatArray:
     """Solve a dense system after scaling each row by its largest entry; overwrites both arguments."""
     for i in range(jacobian.shape[0]):
         largest = 0.0
@@ -45,11 +60,11 @@ def solve_scaled(jacobian: Array, right_hand_side: Array) -> Array:
 @njit(cache=True)
 def newton(
     problem: LineProblem,
-    x: Array,
-    step: Array,
-    face_step: Array,
-    kernel: Array,
-    start: Array,
+    x: FloatArray,
+    step: FloatArray,
+    face_step: FloatArray,
+    kernel: FloatArray,
+    start: FloatArray,
     load: float,
     tolerance: float,
     most_steps: int,
@@ -69,7 +84,7 @@ def newton(
     load : float
         Integral of the dimensionless pressure.
     tolerance : float
-        On the last full step: pressure relative to its maximum, film and exit relative to film and exit.
+        Bound of the last full step: pressure relative to its maximum, film and exit relative to film and exit.
     most_steps : int
         Steps after which the point counts as stagnated.
     """
@@ -77,7 +92,7 @@ def newton(
     n = size - 2
     unknowns = start.copy()
     # a start interpolated from another grid can touch: lift it clear first
-    clearance = np.min(film(x, kernel, unknowns)) - 0.2 * unknowns[n - 1]
+    clearance = np.min(film(x, kernel, unknowns)) - LEAST_LEFT * unknowns[n - 1]
     if clearance < 0.0:
         unknowns[n + 1] -= clearance
     out = np.empty(size)
@@ -105,12 +120,12 @@ def newton(
         length = 1.0
         if thickening > LOG_VISCOSITY_STEP:
             length = LOG_VISCOSITY_STEP / thickening
-        length = min(length, 0.3 * (1.0 + abs(unknowns[n])) / max(abs(move[n]), 1e-300))
-        for _ in range(15):
+        length = min(length, EXIT_STEP * (1.0 + abs(unknowns[n])) / max(abs(move[n]), 1e-300))
+        for _ in range(MOST_HALVINGS):
             trial = unknowns + length * move
             if trial[n - 1] > 0.0:
                 gap = film(x, kernel, trial)
-                if np.min(gap) >= 0.2 * min(lowest, trial[n - 1]):
+                if np.min(gap) >= LEAST_LEFT * min(lowest, trial[n - 1]):
                     break
             length *= 0.5
         unknowns = unknowns + length * move
@@ -120,8 +135,13 @@ def newton(
 
 
 @njit(cache=True)
-def hertz_start(x: Array, step: Array, kernel: Array, film_guess: float, exit_guess: float, load: float) -> Array:
+def hertz_start(
+    x: FloatArray, step: FloatArray, kernel: FloatArray, film_guess: float, exit_guess: float, load: float
+) -> FloatArray:
     """Cold start: Hertz pressure with its edges rounded by the film, and a film of about `film_guess` at the centre.
+
+    The pressure of a thick film is a hump s^2/(1 + t^2)^(5/2), t = X/sqrt(1 + 2 H), with s the distance before the
+    exit in the same unit: P = dP/dX = 0 at the exit, and far upstream the P ~ |X|^-3 of a parabolic gap.
 
     Parameters
     ----------
@@ -140,19 +160,20 @@ def hertz_start(x: Array, step: Array, kernel: Array, film_guess: float, exit_gu
     """
     n = x.size - 1
     zone = film_guess ** (2 / 3)
-    rounding = 0.15 * zone
-    stretch = math.sqrt(1.0 + 2.0 * film_guess) if film_guess > 0.3 else 1.0
+    rounding = START_ROUNDING * zone
+    stretch = math.sqrt(1.0 + 2.0 * film_guess) if film_guess > THICK_START else 1.0
     pressure = np.zeros(n + 1)
     for i in range(1, n):
         place = exit_guess + x[i]
-        if film_guess > 0.3:
-            # thick film: a hump of the width of the film's own scale, with the inlet's cubic tail
+        if film_guess > THICK_START:
             t = place / stretch
             pressure[i] = max(0.0, -x[i] / stretch) ** 2 / (1.0 + t * t) ** 2.5
         elif place > 0.0:
             pressure[i] = math.sqrt(max(0.0, 1.0 - (place / exit_guess) ** 2))
         elif place < -1.0 + rounding:
-            pressure[i] = math.sqrt(2.0 * rounding) * math.exp((place + 1.0 - rounding) / (0.6 * zone + 1e-9))
+            # goes on from Hertz' sqrt(1 - X^2), which is nearly sqrt(2 rounding) there
+            decay = START_DECAY * zone + 1e-9
+            pressure[i] = math.sqrt(2.0 * rounding) * math.exp((place + 1.0 - rounding) / decay)
         else:
             pressure[i] = math.sqrt(max(0.0, 1.0 - place * place))
     pressure *= load / np.sum(step * pressure)

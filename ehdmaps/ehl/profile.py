@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.elastic import DRY_DATUM
 from ehdmaps.ehl.grid import Grid, Layout, Spike
 from ehdmaps.ehl.reynolds import LineProblem, film, node_pressure
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -21,8 +19,8 @@ class Profile:
     problem: LineProblem
     layout: Layout
     grid: Grid
-    kernel: Array
-    unknowns: Array
+    kernel: FloatArray
+    unknowns: FloatArray
     spike: Spike | None
 
     @property
@@ -31,17 +29,17 @@ class Profile:
         return self.grid.face.size
 
     @property
-    def pressure(self) -> Array:
+    def pressure(self) -> FloatArray:
         """P at the nodes, shape (n + 1,) [p_H]."""
         return np.asarray(node_pressure(self.unknowns))
 
     @property
-    def film(self) -> Array:
+    def film(self) -> FloatArray:
         """H at the nodes, shape (n + 1,) [b^2/R]."""
         return np.asarray(film(self.grid.x, self.kernel, self.unknowns))
 
     @property
-    def position(self) -> Array:
+    def position(self) -> FloatArray:
         """X of the nodes from the centre of the Hertz contact, shape (n + 1,) [b]."""
         return np.asarray(self.grid.x + self.unknowns[-2])
 
@@ -83,7 +81,7 @@ def films_of(profile: Profile) -> tuple[float, float]:
     return central, value - 0.5 * slope * slope / curvature if curvature > 0.0 else value
 
 
-def _parabola(x: Array, y: Array, i: int) -> tuple[float, float, float]:
+def _parabola(x: FloatArray, y: FloatArray, i: int) -> tuple[float, float, float]:
     """Value, slope and second derivative at node i of the parabola through nodes i-1, i, i+1."""
     left, right = x[i] - x[i - 1], x[i + 1] - x[i]
     down, up = (y[i] - y[i - 1]) / left, (y[i + 1] - y[i]) / right
@@ -91,7 +89,7 @@ def _parabola(x: Array, y: Array, i: int) -> tuple[float, float, float]:
     return float(y[i]), float((down * right + up * left) / (left + right)), float(curvature)
 
 
-def moved(profile: Profile, grid: Grid, by_index: bool) -> Array:
+def moved(profile: Profile, grid: Grid, by_index: bool) -> FloatArray:
     """Start on another grid from a solution nearby, at the same places or at the same share of the nodes.
 
     What differs from the Hertz pressure is interpolated.
@@ -115,7 +113,7 @@ def moved(profile: Profile, grid: Grid, by_index: bool) -> Array:
     return np.concatenate([np.maximum(pressure[1:-1], 0.0), profile.unknowns[-3:]])
 
 
-def refined(coarse: Profile, grid: Grid) -> Array:
+def refined(coarse: Profile, grid: Grid) -> FloatArray:
     """Start on the grid with twice the cells: old nodes stay, new ones by cubic interpolation in the index."""
     exit_at = coarse.unknowns[-2]
     old = coarse.pressure - _hertz(coarse.position)
@@ -130,6 +128,6 @@ def refined(coarse: Profile, grid: Grid) -> Array:
     return np.concatenate([np.maximum(pressure[1:-1], 0.0), coarse.unknowns[-3:]])
 
 
-def _hertz(position: Array) -> Array:
+def _hertz(position: FloatArray) -> FloatArray:
     """Pressure of the dry contact."""
     return np.sqrt(np.maximum(0.0, 1.0 - position * position))

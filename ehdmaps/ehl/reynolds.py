@@ -28,11 +28,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.isotherm import Isotherm, density, log_viscosity
-
-Array = NDArray[np.float64]
 
 FITTED_STEP = 1.0
 """Change of ln eta over three cells at which the fourth-order correction of the Poiseuille flux is faded by half."""
@@ -58,7 +56,12 @@ _log_viscosity, _density = njit(cache=True)(log_viscosity), njit(cache=True)(den
 
 @njit(cache=True)
 def oil(
-    problem: LineProblem, pressure: Array, log_eta: Array, log_eta_slope: Array, rho: Array, rho_slope: Array
+    problem: LineProblem,
+    pressure: FloatArray,
+    log_eta: FloatArray,
+    log_eta_slope: FloatArray,
+    rho: FloatArray,
+    rho_slope: FloatArray,
 ) -> None:
     """Fill ln eta, rho and their derivatives at each pressure; a negative trial pressure acts as zero on them."""
     for i in range(pressure.size):
@@ -71,7 +74,7 @@ def oil(
 
 
 @njit(cache=True)
-def steepest_viscosity_step(problem: LineProblem, unknowns: Array, move: Array) -> float:
+def steepest_viscosity_step(problem: LineProblem, unknowns: FloatArray, move: FloatArray) -> float:
     """Largest change of ln eta by a move of the unknowns, to first order."""
     largest = 0.0
     for i in range(unknowns.size - 3):
@@ -81,7 +84,7 @@ def steepest_viscosity_step(problem: LineProblem, unknowns: Array, move: Array) 
 
 
 @njit(cache=True)
-def node_pressure(unknowns: Array) -> Array:
+def node_pressure(unknowns: FloatArray) -> FloatArray:
     """Pressure at all nodes, shape (n + 1,), from the unknowns, shape (n + 2,)."""
     n = unknowns.size - 2
     pressure = np.zeros(n + 1)
@@ -90,16 +93,18 @@ def node_pressure(unknowns: Array) -> Array:
 
 
 @njit(cache=True)
-def film(x: Array, kernel: Array, unknowns: Array) -> Array:
+def film(x: FloatArray, kernel: FloatArray, unknowns: FloatArray) -> FloatArray:
     """Film H at all nodes, shape (n + 1,) [b^2/R]."""
     n = x.size - 1
     deflection = kernel @ node_pressure(unknowns)
-    gap: Array = unknowns[n + 1] + 0.5 * (unknowns[n] + x) ** 2 - deflection
+    gap: FloatArray = unknowns[n + 1] + 0.5 * (unknowns[n] + x) ** 2 - deflection
     return gap
 
 
 @njit(cache=True)
-def _cell_flow(log_eta: Array, slope: Array, pressure: Array) -> tuple[Array, Array, Array, Array]:
+def _cell_flow(
+    log_eta: FloatArray, slope: FloatArray, pressure: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Integral of dP/eta over each cell, its derivatives with respect to both end pressures, and the step of ln eta."""
     n = pressure.size - 1
     flow, left, right, jump = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
@@ -124,14 +129,14 @@ def _cell_flow(log_eta: Array, slope: Array, pressure: Array) -> tuple[Array, Ar
 @njit(cache=True)
 def residual(
     problem: LineProblem,
-    x: Array,
-    step: Array,
-    face_step: Array,
-    kernel: Array,
-    unknowns: Array,
+    x: FloatArray,
+    step: FloatArray,
+    face_step: FloatArray,
+    kernel: FloatArray,
+    unknowns: FloatArray,
     load: float,
-    out: Array,
-    jacobian: Array,
+    out: FloatArray,
+    jacobian: FloatArray,
 ) -> float:
     """Residual into `out`, shape (n + 2,), and the smallest H as value.
 
@@ -233,7 +238,9 @@ def residual(
 
 
 @njit(cache=True)
-def stored_mass(problem: LineProblem, x: Array, step: Array, kernel: Array, unknowns: Array) -> tuple[Array, Array]:
+def stored_mass(
+    problem: LineProblem, x: FloatArray, step: FloatArray, kernel: FloatArray, unknowns: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Minus the oil mass between each face and the exit, and the mass per length rho H carried through the face.
 
     Both have shape (n + 1,): faces 0 .. n-1, then the exit node.
@@ -247,7 +254,9 @@ def stored_mass(problem: LineProblem, x: Array, step: Array, kernel: Array, unkn
 
 
 @njit(cache=True)
-def stored_mass_rate(problem: LineProblem, x: Array, step: Array, kernel: Array, unknowns: Array, rate: Array) -> Array:
+def stored_mass_rate(
+    problem: LineProblem, x: FloatArray, step: FloatArray, kernel: FloatArray, unknowns: FloatArray, rate: FloatArray
+) -> FloatArray:
     """Derivative of `stored_mass`[0] for a rate of the unknowns, shape (n + 2,), on a grid that moves with the exit."""
     n = x.size - 1
     pressure = node_pressure(unknowns)
@@ -260,7 +269,7 @@ def stored_mass_rate(problem: LineProblem, x: Array, step: Array, kernel: Array,
 
 
 @njit(cache=True)
-def _accumulate(density: Array) -> Array:
+def _accumulate(density: FloatArray) -> FloatArray:
     """Minus the integral over s from each face (and from the exit: 0) to the exit; fourth order inside.
 
     Counted from the exit, where the film is thin: the inlet holds so much oil that its round-off would drown the rest.
@@ -277,7 +286,7 @@ def _accumulate(density: Array) -> Array:
 
 
 @njit(cache=True)
-def _carried(mass: Array) -> Array:
+def _carried(mass: FloatArray) -> FloatArray:
     """rho H at the faces, interpolated as in the wedge term, and at the exit node."""
     n = mass.size - 1
     carried = np.empty(n + 1)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.line import Resolution, solve_groups
 from ehdmaps.ehl.newton import CONVERGED
 from ehdmaps.ehl.profile import films_of
@@ -35,8 +33,8 @@ class ReynoldsStart:
         zero says that there is no spike.
     """
 
-    x: NDArray[np.float64]
-    pressure: NDArray[np.float64]
+    x: FloatArray
+    pressure: FloatArray
     central_film: float
     expected_film: float
     spike_position: float

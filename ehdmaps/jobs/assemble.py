@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from ehdmaps.arrays import BoolArray
 from ehdmaps.jobs.holes import filled, isolated_holes
 from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
@@ -57,7 +58,7 @@ def assemble(job: Job, solver: ContactSolver, tasks: Sequence[LineTask], results
     Returns
     -------
     xarray.Dataset
-        As the schema wants it, with provenance; isolated holes filled if the job says so.
+        The map as the schema wants it, with provenance; isolated holes filled if the job says so.
     """
     films = _films(job, tasks, results)
     holes_filled = np.zeros(job.shape, dtype=bool)
@@ -92,12 +93,12 @@ def only_usable(films: Mapping[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[
     return {name: array if name in _ALWAYS else np.where(usable, array, np.nan) for name, array in films.items()}
 
 
-def _usable(status: npt.NDArray[Any]) -> npt.NDArray[np.bool_]:
+def _usable(status: npt.NDArray[Any]) -> BoolArray:
     """Whether the numbers of a point may be used."""
     return np.isin(status, [int(known) for known in Status if known.usable])
 
 
-def _fill(job: Job, films: dict[str, npt.NDArray[Any]]) -> tuple[dict[str, npt.NDArray[Any]], npt.NDArray[np.bool_]]:
+def _fill(job: Job, films: dict[str, npt.NDArray[Any]]) -> tuple[dict[str, npt.NDArray[Any]], BoolArray]:
     """Fill isolated holes; their error estimates stay NaN, since nobody estimated them."""
     along_load, along_speed = isolated_holes(_usable(films["status"]))
     result = dict(films)

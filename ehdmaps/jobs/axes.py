@@ -8,6 +8,7 @@ from itertools import pairwise
 
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display, short
 
 MOST_VALUES = 100_000
@@ -25,7 +26,7 @@ class AxisRule:
     low, high : float
         Allowed values; wide enough for every bearing, tight enough to catch a wrong unit.
     display : Display
-        For messages.
+        Unit and format for messages.
     """
 
     key: str
@@ -38,7 +39,7 @@ class AxisRule:
 LOAD_AXIS = AxisRule("load", "N/m", 1.0, 1e7, LOAD)
 SPEED_AXIS = AxisRule("entrainment_speed", "m/s", 0.0, 200.0, SPEED)
 RING_SPEED_AXIS = AxisRule("inner_ring_speed", "rad/s", 0.0, 1e5, RPM)
-TEMPERATURE_AXIS = AxisRule("temperature", "K", 213.15, 573.15, TEMPERATURE)
+TEMPERATURE_AXIS = AxisRule("temperature", "K", *OIL_TEMPERATURES, TEMPERATURE)
 
 
 def read_speeds(grid: Table, bearing: BearingGeometry | None) -> tuple[float, ...] | None:

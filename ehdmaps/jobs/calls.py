@@ -48,9 +48,9 @@ def generate(
     output : str or path, optional
         The map file.
     solver : str or ContactSolver, optional
-        In place of the job's: a name, for its default settings, or a solver.
+        Solver in place of the job's: a name, for its default settings, or a solver.
     workers : int or None
-        Processes; None for all cores. A script that uses more than one needs the usual
+        Number of processes; None for all cores. A script that uses more than one needs the usual
         ``if __name__ == "__main__":``.
     fresh : bool
         Drop the store of the output file first.
@@ -141,7 +141,7 @@ def solve(
     Returns
     -------
     ContactSolution
-        With a status: numbers are NaN where it is not usable.
+        The solution with its status: numbers are NaN where it is not usable.
 
     Raises
     ------
@@ -174,13 +174,13 @@ def solve_points(
     solver : str or ContactSolver
         Name of a solver with its default settings, or a solver.
     workers : int
-        Processes. A script that uses more than one needs the usual ``if __name__ == "__main__":``.
+        Number of processes. A script that uses more than one needs the usual ``if __name__ == "__main__":``.
 
     Returns
     -------
     xarray.Dataset
-        Over contact and the dims of the points: the variables of a map file. A point without a solution has NaN, a
-        status and a reason.
+        A dataset over contact and the dims of the points: the variables of a map file. A point without a solution has
+        NaN, a status and a reason.
 
     Raises
     ------

@@ -95,7 +95,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     argv : sequence of str, optional
-        Arguments; those of the process if left out.
+        Arguments of the command line; those of the process if left out.
 
     Returns
     -------

@@ -7,16 +7,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.report import AXES, span
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.physics.solution import Status
 
 COMPARED = ("stiffness", "damping", "approach", "film_offset", "central_film", "minimum_film", "max_pressure")
-FloatArray = npt.NDArray[np.float64]
 
 _SAME_AXIS_VALUE = 1e-9
 """Relative: what two ways of writing one number differ by."""
@@ -31,9 +30,9 @@ class Difference:
     Attributes
     ----------
     variable : str
-        Its name.
+        Name of the variable.
     median, high, largest : float
-        Of |B - A|/|A|: median, 95 % quantile, largest; NaN where no point can be compared.
+        Median, 95 % quantile and largest value of |B - A|/|A|; NaN where no point can be compared.
     place : mapping
         Contact, load [N/m], entrainment speed [m/s] and temperature [K] of the largest; empty where there is none.
     left_out : int
@@ -149,7 +148,7 @@ def _without_label(dataset: xr.Dataset, name: str) -> object:
     return {key: value for key, value in record_from_json(text, name).items() if key != "label"}
 
 
-def _relative(a: FloatArray, b: FloatArray, usable: npt.NDArray[np.bool_]) -> FloatArray:
+def _relative(a: FloatArray, b: FloatArray, usable: BoolArray) -> FloatArray:
     """Return (b - a)/a where both are usable: not finite where a alone is zero, NaN elsewhere."""
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.where(a == b, 0.0, (b - a) / a)
@@ -173,7 +172,7 @@ def _place(place: Mapping[str, str | float]) -> str:
     return ", ".join([str(place["contact"]), *(display.text(float(place[name])) for name, display in AXES)])
 
 
-def _usable(dataset: xr.Dataset) -> npt.NDArray[np.bool_]:
+def _usable(dataset: xr.Dataset) -> BoolArray:
     """Whether a point was solved; filled ones were not."""
     return np.isin(dataset["status"].values, [int(status) for status in Status if status.usable])
 

@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.usable import check_backbone
 from ehdmaps.physics.contact import LineContact
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -30,11 +28,11 @@ class Curves:
         [N/m2], [N s/m2]; damping is not negative, as in contact laws.
     """
 
-    loads: Array
-    approach: Array
-    film_offset: Array
-    stiffness: Array
-    damping: Array
+    loads: FloatArray
+    approach: FloatArray
+    film_offset: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
 
 
 def law_field(emap: EHDMap) -> FilmField | None:
@@ -49,14 +47,14 @@ def law_field(emap: EHDMap) -> FilmField | None:
 
 
 def curves(
-    field: FilmField, contacts: tuple[LineContact, ...], loads: Array, speed: float, temperature: float
+    field: FilmField, contacts: tuple[LineContact, ...], loads: FloatArray, speed: float, temperature: float
 ) -> Curves:
     """Curves of contacts that carry the same load.
 
     Parameters
     ----------
     field : FilmField
-        With these contacts.
+        Films of these contacts.
     contacts : tuple of LineContact
         One, or those in series: compliances and loss compliances add.
     loads : ndarray, shape (n,)

@@ -42,7 +42,7 @@ def describe(emap: EHDMap, name: str) -> str:
     emap : EHDMap
         The map.
     name : str
-        Of the file.
+        Name of the file.
 
     Raises
     ------

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.jobs.curves import curves
 from ehdmaps.jobs.report import plain
 from ehdmaps.maps.emap import EHDMap
@@ -57,7 +57,7 @@ def table(emap: EHDMap, chosen: Chosen, name: str) -> str:
     chosen : Chosen
         Curves within its ranges.
     name : str
-        Of the map file, for the comment.
+        Name of the map file, for the comment.
 
     Raises
     ------
@@ -91,9 +91,7 @@ def _lines(emap: EHDMap, chosen: Chosen, name: str) -> Iterator[str]:
                 yield ",".join(f"{value:.10g}" for value in (speed, temperature, *row))
 
 
-def _film(
-    emap: EHDMap, film: str, contact: str, loads: npt.NDArray[np.float64], speed: float, temperature: float
-) -> npt.NDArray[np.float64]:
+def _film(emap: EHDMap, film: str, contact: str, loads: FloatArray, speed: float, temperature: float) -> FloatArray:
     """Film over load: between the map's points linear in the logarithms of film, load and speed, and in temperature."""
     dataset = emap.dataset.sel(contact=contact)
     moving = dataset["entrainment_speed"].values > 0.0
@@ -106,9 +104,7 @@ def _film(
     return np.asarray(np.exp(np.interp(np.log(loads), np.log(dataset["load"].values), at_point)))
 
 
-def _between(
-    values: npt.NDArray[np.float64], axis: npt.NDArray[np.float64], at: float, along: int
-) -> npt.NDArray[np.float64]:
+def _between(values: FloatArray, axis: FloatArray, at: float, along: int) -> FloatArray:
     """Linear interpolation at one place along one axis."""
     if axis.size == 1:
         return np.asarray(np.take(values, 0, along))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ehdmaps.errors import InputError
+from ehdmaps.extras import lacking
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
 from ehdmaps.outputs import FIELDS, FIGURE, Output, output_problems
@@ -44,7 +45,7 @@ class FilmOutputs:
         point : OperatingPoint
             Load, speed and temperature.
         frequency : float
-            Of the oscillation [Hz]; 0 is the low-frequency limit.
+            Frequency of the oscillation [Hz]; 0 is the low-frequency limit.
 
         Returns
         -------
@@ -101,7 +102,8 @@ def film_outputs(job: Job, fields: str | None, plot: str | None, read: str) -> F
     Raises
     ------
     InputError
-        If the solver has no fields, or a file may not be written; `read` is the file of the job.
+        If the solver has no fields, a file may not be written, or the package that writes fields is missing; `read` is
+        the file of the job.
     """
     problems = [
         f"{option}: the solver {job.solver!r} has no fields across the film; allowed: with --solver openfoam"
@@ -110,6 +112,7 @@ def film_outputs(job: Job, fields: str | None, plot: str | None, read: str) -> F
     ]
     files = [Output("--plot", plot, FIGURE)]
     if fields is not None:
+        problems += lacking("openfoam", "meshio", "--fields")
         contacts = [contact.name for contact in job.contacts]
         files += [Output("--fields", _fields_path(Path(fields), name, len(contacts)), FIELDS) for name in contacts]
     problems = problems or output_problems(files, [read])

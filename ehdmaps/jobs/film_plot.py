@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehdmaps.openfoam.solver import GridSolution
+from ehdmaps.arrays import FloatArray
+from ehdmaps.figures import COLOURS, WARNING, typeset
+from ehdmaps.openfoam.grid_solver import GridSolution
 from ehdmaps.outputs import write_figure
 from ehdmaps.units import FILM, PRESSURE
 
@@ -21,9 +22,7 @@ ROW = (11.69, 3.6)
 
 RESOLUTION = 200
 _FONT: Any = {"font.size": 8.5, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6}
-_PLACES = (("inlet", "#1b6ca8"), ("centre", "#444444"), ("spike", "#c8102e"))
-
-Floats = npt.NDArray[np.float64]
+_PLACES = (("inlet", COLOURS[0]), ("centre", COLOURS[7]), ("spike", WARNING))
 
 
 @dataclass(frozen=True)
@@ -33,13 +32,13 @@ class FilmRow:
     Attributes
     ----------
     title : str
-        Of the row.
+        Title of the row.
     half_width : float
         b [m].
     surface_speeds : tuple of float
-        Of the lower and the upper surface [m/s].
+        Speeds of the lower and the upper surface [m/s].
     grid : GridSolution
-        With its fields.
+        Solution on the grid, with its fields.
     """
 
     title: str
@@ -56,7 +55,7 @@ def plot_films(rows: Sequence[FilmRow], heading: str, output: Path) -> None:
     rows : sequence of FilmRow
         One a contact.
     heading : str
-        Of the page.
+        Heading of the page.
     output : Path
         The picture; its ending decides the format (png, pdf, svg).
 
@@ -76,7 +75,7 @@ def plot_films(rows: Sequence[FilmRow], heading: str, output: Path) -> None:
         write_figure(figure, output, RESOLUTION)
 
 
-def places(x: Floats, pressure: Floats) -> dict[str, float]:
+def places(x: FloatArray, pressure: FloatArray) -> dict[str, float]:
     """Return where velocities are shown [m].
 
     The inlet is where the pressure first comes to a tenth of its largest; the spike is the last local maximum of the
@@ -99,7 +98,7 @@ def _row(row: FilmRow, pressures: Axes, films: Axes, velocities: Axes) -> None:
     pressures.plot(x[window], PRESSURE.factor * table.pressure[window], color="black", lw=1.0)
     films.plot(x[window], FILM.factor * table.film[window], color="black", lw=1.0)
     films.set_ylim(bottom=0.0)
-    for axes, label in ((pressures, f"pressure, {PRESSURE.unit}"), (films, f"film, {FILM.unit.replace('um', 'µm')}")):
+    for axes, label in ((pressures, f"pressure, {PRESSURE.unit}"), (films, f"film, {typeset(FILM.unit)}")):
         axes.set_xlabel("x/b, from the contact centre")
         axes.set_ylabel(label)
         axes.grid(color="0.88", lw=0.4)

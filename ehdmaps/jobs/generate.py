@@ -33,7 +33,7 @@ class Generated:
     Attributes
     ----------
     dataset : xarray.Dataset
-        As written.
+        The map as it is written.
     backbone : xarray.Dataset or None
         The group of refinement lines, where there are some.
     sweep : SweepResult
@@ -62,7 +62,7 @@ def generate(
     output : Path
         The map file; its store stands beside it.
     workers : int, optional
-        Processes; all cores if left out. A script that uses more than one needs the usual
+        Number of processes; all cores if left out. A script that uses more than one needs the usual
         ``if __name__ == "__main__":``.
     fresh : bool
         Drop the store first.

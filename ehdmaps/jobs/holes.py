@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+from ehdmaps.arrays import BoolArray, FloatArray
 
 
 def isolated_holes(usable: BoolArray) -> tuple[BoolArray, BoolArray]:
@@ -37,7 +35,7 @@ def filled(values: FloatArray, holes: BoolArray, axis: int, coordinate: FloatArr
     Parameters
     ----------
     values : array
-        With NaN in the holes.
+        Values with NaN in the holes.
     holes : array of bool
         Points to fill; neither at an end of the axis.
     axis : int

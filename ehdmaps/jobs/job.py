@@ -37,7 +37,7 @@ class Job:
     bearing : BearingGeometry or None
         None for a bare [contact].
     contacts : tuple of LineContact
-        In the order of the contact axis.
+        Contacts in the order of the contact axis.
     lubricant : Lubricant
         The oil.
     loads : tuple of float
@@ -109,13 +109,13 @@ class Job:
         contact : LineContact, optional
             A bare line contact; it brings its material and structural law.
         material : Material
-            Of the bearing.
+            Material of the bearing.
         solver : str
             hertz, formula, reynolds or openfoam.
         solver_options : mapping, optional
             The solver's own keys, as in [solver].
         structural_law : {"iso16281", "palmgren", "half_space"}
-            Of the bearing's contacts.
+            Structural law of the bearing's contacts.
         fill, backbone, law_check
             See the attributes.
         name : str

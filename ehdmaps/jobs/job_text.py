@@ -39,11 +39,11 @@ def job_text(
     Parameters
     ----------
     solids : BearingGeometry or LineContact
-        For [bearing] or [contact].
+        Geometry for [bearing] or [contact].
     material : Material
-        For [material].
+        Material for [material].
     lubricant : Lubricant
-        For [lubricant].
+        Oil for [lubricant].
     axes : sequence of three iterables of float
         Loads [N/m], entrainment speeds [m/s], temperatures [K].
     solver : mapping

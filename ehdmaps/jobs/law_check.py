@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.store import Arrays
@@ -39,8 +39,6 @@ MOST_TRIES = 10
 """Draws per point in the valley: a map may hold a part of it, or none."""
 
 QUANTILES = (0.5, 0.95, 0.99, 1.0)
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -179,7 +177,7 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
     return record
 
 
-def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> Array:
+def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> FloatArray:
     """Relative errors of film compliance and damping, and whether each is within its bar; shape (n, 4)."""
     tasks = [task for task, _ in points]
     fresh = [_solution(task, arrays) for task, arrays in points]

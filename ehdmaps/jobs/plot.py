@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -18,6 +17,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocator
 
+from ehdmaps.arrays import FloatArray
+from ehdmaps.figures import WARNING, typeset
 from ehdmaps.jobs.curves import curves, law_field
 from ehdmaps.jobs.report import fitted_pressure, plain, span
 from ehdmaps.maps import schema
@@ -53,12 +54,11 @@ LINEAR_APPROACH = 1.0
 """Approach [um] below which its axis is linear: it is negative where films are thicker than the bodies give way."""
 
 _FONT: Any = {"font.size": 7.5, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6}
-_BAD = "#c8102e"
 _LOGARITHMIC = ("stiffness", "damping", "central_film", "minimum_film")
 _ASYMPTOTE: Any = {"marker": "^", "ms": 2.8, "mfc": "white", "mew": 0.6}
 _BELOW: Any = {"marker": "v", "ms": 3.5}
-_FILLED: Any = {"marker": "o", "ms": 4, "mfc": "none", "mec": _BAD, "mew": 0.9}
-_LOST: Any = {"marker": "x", "ms": 4, "color": _BAD}
+_FILLED: Any = {"marker": "o", "ms": 4, "mfc": "none", "mec": WARNING, "mew": 0.9}
+_LOST: Any = {"marker": "x", "ms": 4, "color": WARNING}
 _HATCH: Any = {"facecolor": "none", "edgecolor": "0.8", "hatch": "////", "lw": 0.0, "zorder": 0}
 
 
@@ -75,7 +75,7 @@ class _Sheet:
         return self.emap.dataset
 
     @property
-    def speeds(self) -> npt.NDArray[np.float64]:
+    def speeds(self) -> FloatArray:
         """Entrainment speeds [m/s]."""
         return np.asarray(self.dataset["entrainment_speed"].values, dtype=np.float64)
 
@@ -140,7 +140,7 @@ def _page(sheet: _Sheet) -> Figure:
         for column, (name, label, display) in enumerate(_PANELS):
             axes = figure.add_subplot(grid[row, column])
             _curves(axes, sheet, name, display, (row, shown))
-            axes.set_ylabel(f"{label}, {_drawn(display.unit)}", labelpad=1)
+            axes.set_ylabel(f"{label}, {typeset(display.unit)}", labelpad=1)
             if row == 0:
                 axes.set_title(label, fontsize=8.5, fontweight="bold", pad=4)
             if row == contacts - 1:
@@ -197,11 +197,11 @@ def _small_multiples(figure: Figure, sheet: _Sheet, temperatures: list[int], top
             _curves(axes, sheet, name, display, (0, temperature), width=0.7)
             axes.tick_params(which="both", labelleft=column == 0, labelbottom=row == len(_SMALL) - 1)
             if row == 0:
-                heading = _drawn(TEMPERATURE.text(float(dataset["temperature"].values[temperature])))
+                heading = typeset(TEMPERATURE.text(float(dataset["temperature"].values[temperature])))
                 axes.set_title(heading, fontsize=7.5, pad=2.5)
             _keep_corners_free(axes)
             if column == 0:
-                axes.set_ylabel(f"{label}\n{_drawn(display.unit)}", labelpad=2)
+                axes.set_ylabel(f"{label}\n{typeset(display.unit)}", labelpad=2)
             if row == len(_SMALL) - 1:
                 axes.set_xlabel(f"load, {LOAD.unit}", labelpad=1)
 
@@ -237,7 +237,7 @@ def _curves(axes: Axes, sheet: _Sheet, name: str, display: Display, place: tuple
 
 def _dense(
     sheet: _Sheet, name: str, contact: int, temperature: int, speed: int
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]] | None:
+) -> tuple[FloatArray, FloatArray] | None:
     """Loads [N/m] and values [SI] between the solved points; None where nothing is known there."""
     u, axis = float(sheet.speeds[speed]), sheet.dataset["load"].values
     if sheet.field is None or name not in _OF_LAWS or u == 0.0 or axis.size == 1:
@@ -253,8 +253,8 @@ def _marks(
     here: xr.Dataset,
     name: str,
     index: int,
-    loads: npt.NDArray[np.float64],
-    curve: npt.NDArray[np.float64],
+    loads: FloatArray,
+    curve: FloatArray,
     colour: Any,
 ) -> None:
     """Mark the points of one curve that are no plain solutions."""
@@ -278,7 +278,7 @@ def _colour(sheet: _Sheet, index: int) -> Any:
     return mpl.colormaps["viridis"](sheet.colours(max(sheet.speeds[index], _lowest(sheet.speeds))))
 
 
-def _scales(axes: Axes, loads: npt.NDArray[np.float64], values: npt.NDArray[np.float64], name: str) -> None:
+def _scales(axes: Axes, loads: FloatArray, values: FloatArray, name: str) -> None:
     """Set log scales where there is something to show, and a quiet grid."""
     axes.set_xscale("log")
     if loads.size > 1:
@@ -297,7 +297,7 @@ def _scales(axes: Axes, loads: npt.NDArray[np.float64], values: npt.NDArray[np.f
     axes.tick_params(length=2.5, pad=1.5)
 
 
-def _approach_scale(axes: Axes, known: npt.NDArray[np.float64]) -> None:
+def _approach_scale(axes: Axes, known: FloatArray) -> None:
     """Logarithmic both ways from zero, linear about it."""
     axes.set_yscale("symlog", linthresh=LINEAR_APPROACH, linscale=0.6)
     axes.set_ylim(
@@ -310,7 +310,7 @@ def _approach_scale(axes: Axes, known: npt.NDArray[np.float64]) -> None:
     axes.axhline(0.0, color="0.6", lw=0.5, zorder=0)
 
 
-def _positive_scale(axes: Axes, positive: npt.NDArray[np.float64], name: str) -> None:
+def _positive_scale(axes: Axes, positive: FloatArray, name: str) -> None:
     """Logarithmic, with more numbers where there is less than two decades."""
     axes.set_yscale("log")
     # The film's tail at light load, and the law's floor in the valley, run over decades in which nobody reads.
@@ -337,7 +337,7 @@ def _keep_corners_free(axes: Axes) -> None:
 def _heading(figure: Figure, emap: EHDMap, shown: int) -> None:
     """Write the title and, below it, what the page shows."""
     dataset, attributes = emap.dataset, emap.dataset.attrs
-    at = _drawn(TEMPERATURE.text(float(dataset["temperature"].values[shown])))
+    at = typeset(TEMPERATURE.text(float(dataset["temperature"].values[shown])))
     what = emap.bearing.title if emap.bearing else f"line contact, R = {emap.contacts[0].radius * 1e3:.4g} mm"
     estimated = "pressure-viscosity estimated" if emap.lubricant.estimated else "data not verified"
     unverified = "" if emap.lubricant.verified else f" ({estimated})"
@@ -349,7 +349,7 @@ def _heading(figure: Figure, emap: EHDMap, shown: int) -> None:
         f"Per unit length of contact, at {at} over load and entrainment speed.  "
         f"Solver {plain(attributes['solver'])}, structural law {plain(attributes['structural_law'])}.  "
         f"Mapped: {span(dataset['load'].values, LOAD)}, {span(dataset['entrainment_speed'].values, SPEED)}, "
-        f"{_drawn(span(dataset['temperature'].values, TEMPERATURE))}.",
+        f"{typeset(span(dataset['temperature'].values, TEMPERATURE))}.",
         8,
     )
 
@@ -405,7 +405,7 @@ def _limits(dataset: xr.Dataset) -> str:
     """Say which limit the points stand for that are one; their first words, where there are several."""
     reasons = dataset["reason"].values[dataset["status"].values == int(Status.ASYMPTOTE)]
     causes = sorted({plain(reason).split(":")[0] for reason in reasons if reason})
-    return _drawn("; ".join(causes[:2])) if causes else "a stated limit"
+    return typeset("; ".join(causes[:2])) if causes else "a stated limit"
 
 
 def _facts(dataset: xr.Dataset) -> str:
@@ -438,12 +438,7 @@ def _contact_words(name: str) -> str:
     return "Line contact" if name in schema.CONTACT_NAMES[1] else f"{name.capitalize()} contact"
 
 
-def _drawn(text: str) -> str:
-    """Return a unit with the letters that a terminal may lack."""
-    return text.replace("um", "µm").replace("degC", "°C")
-
-
-def _lowest(speeds: npt.NDArray[np.float64]) -> float:
+def _lowest(speeds: FloatArray) -> float:
     """Return the lowest speed above zero."""
     positive = speeds[speeds > 0]
     return float(positive.min()) if positive.size else 1e-6

@@ -100,11 +100,11 @@ def point_table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, 
     job : Job
         What the contacts belong to.
     records : list of dict
-        Of the contacts, see `point_record`.
+        Records of the contacts, see `point_record`.
     point : OperatingPoint
         Load, entrainment speed, temperature.
     length : float or None
-        Of a slice [m].
+        Length of a slice [m].
     """
     rows: list[tuple[str, str, list[Any]]] = list(_rows(records, length))
     law = job.contacts[0].structural_law

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.assemble import only_usable, package_versions, with_structure
 from ehdmaps.jobs.job import record_json
@@ -37,7 +38,7 @@ def solve_points(
     Parameters
     ----------
     contacts : sequence of LineContact
-        With names apart.
+        Contacts with different names.
     lubricant : Lubricant
         The oil.
     points : xarray.Dataset
@@ -47,13 +48,13 @@ def solve_points(
     solver : ContactSolver
         What solves them; picklable where there is more than one worker.
     workers : int
-        Processes.
+        Number of processes.
 
     Returns
     -------
     xarray.Dataset
-        Over contact and the dims of the points: the variables of a map file. A point without a solution has NaN, a
-        status and a reason. Loads over a dim of their own are solved one from the other, as in a map.
+        A dataset over contact and the dims of the points: the variables of a map file. A point without a solution has
+        NaN, a status and a reason. Loads over a dim of their own are solved one from the other, as in a map.
 
     Raises
     ------
@@ -88,10 +89,7 @@ def solve_points(
     )
 
 
-Array = npt.NDArray[np.float64]
-
-
-def _broadcast(points: xr.Dataset) -> tuple[tuple[Array, Array, Array], tuple[Hashable, ...]]:
+def _broadcast(points: xr.Dataset) -> tuple[tuple[FloatArray, FloatArray, FloatArray], tuple[Hashable, ...]]:
     """Load, speed and temperature of all points, of one shape, and the dims of that."""
     missing = [name for name in AXES if name not in points]
     if missing:
@@ -102,12 +100,14 @@ def _broadcast(points: xr.Dataset) -> tuple[tuple[Array, Array, Array], tuple[Ha
     return (_floats(load), _floats(speed), _floats(temperature)), load.dims
 
 
-def _floats(entry: xr.DataArray) -> Array:
+def _floats(entry: xr.DataArray) -> FloatArray:
     """The numbers of an array."""
     return np.asarray(entry.values, dtype=np.float64)
 
 
-def _check(contacts: Sequence[LineContact], lubricant: Lubricant, values: tuple[Array, Array, Array]) -> None:
+def _check(
+    contacts: Sequence[LineContact], lubricant: Lubricant, values: tuple[FloatArray, FloatArray, FloatArray]
+) -> None:
     """Refuse points outside of what solvers take, and temperatures at which the oil has no data."""
     names = [contact.name for contact in contacts]
     problems: list[str] = []
@@ -136,7 +136,7 @@ def _lines(points: xr.Dataset, dims: tuple[Hashable, ...], shape: tuple[int, ...
     return [row[start : start + longest] for row in rows for start in range(0, len(row), longest)]
 
 
-def _line(values: tuple[Array, Array, Array], line: list[int]) -> tuple[tuple[float, ...], float, float]:
+def _line(values: tuple[FloatArray, FloatArray, FloatArray], line: list[int]) -> tuple[tuple[float, ...], float, float]:
     """Loads, speed and temperature of a line."""
     load, speed, temperature = (value.ravel() for value in values)
     return tuple(load[line].tolist()), float(speed[line[0]]), float(temperature[line[0]])

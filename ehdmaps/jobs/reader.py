@@ -71,7 +71,7 @@ def parse_job(text: str, name: str, where: str, solver: str | None = None, to_ru
     Parameters
     ----------
     text : str
-        TOML.
+        Text of the job, in TOML.
     name : str
         Name of the job.
     where : str
@@ -79,7 +79,7 @@ def parse_job(text: str, name: str, where: str, solver: str | None = None, to_ru
     solver : str, optional
         Takes the place of the job's solver.
     to_run : bool
-        As for `read_job`.
+        The same as for `read_job`.
 
     Raises
     ------

@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.physics.solution import Status
 from ehdmaps.units import DAMPING, FILM, LOAD, PRESSURE, SPEED, STIFFNESS, TEMPERATURE, Display
@@ -61,7 +61,7 @@ def status_lines(dataset: xr.Dataset) -> Iterator[str]:
         yield f"  of the points without a solution {filled} are isolated and filled from their neighbours"
 
 
-def _corner(dataset: xr.Dataset, chosen: npt.NDArray[np.bool_]) -> str:
+def _corner(dataset: xr.Dataset, chosen: BoolArray) -> str:
     """Say in which ranges of the axes the chosen points lie."""
     index = np.nonzero(chosen.reshape(dataset["status"].shape))
     names = [str(dataset["contact"].values[i]) for i in np.unique(index[0])]
@@ -71,7 +71,7 @@ def _corner(dataset: xr.Dataset, chosen: npt.NDArray[np.bool_]) -> str:
     return f"{' and '.join(names)}, {', '.join(ranges)}"
 
 
-def span(values: npt.NDArray[np.float64], display: Display) -> str:
+def span(values: FloatArray, display: Display) -> str:
     """Return the range of an axis in words."""
     low, high = display.value(float(np.min(values))), display.value(float(np.max(values)))
     return f"{low:.4g} {display.unit}" if low == high else f"{low:.4g} to {high:.4g} {display.unit}"
@@ -96,7 +96,10 @@ def fitted_pressure(dataset: xr.Dataset) -> str:
 
 
 def plain(text: object) -> str:
-    """Return a text without control characters, which a terminal would obey."""
+    """Return a foreign text as part of a line: what is not printable, line breaks too, is a question mark.
+
+    `ehdmaps.program.shown` looks after whole outputs, whose line breaks stay; figures and tables do not pass it.
+    """
     return "".join(character if character.isprintable() else "?" for character in str(text))
 
 

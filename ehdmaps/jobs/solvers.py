@@ -79,7 +79,7 @@ class SolverEntry:
     Attributes
     ----------
     options : tuple
-        Its keys; a key that a job leaves out has the solver's own default.
+        Keys of the solver; a key that a job leaves out has the solver's own default.
     build : callable
         Makes the solver from the keys; imports it only then.
     missing : callable

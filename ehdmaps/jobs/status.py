@@ -94,9 +94,9 @@ class StatusFile:
     job : Job
         What is made.
     total : int
-        Points.
+        Number of points.
     workers : int
-        Processes.
+        Number of processes.
     """
 
     def __init__(self, output: Path, job: Job, total: int, workers: int) -> None:
@@ -139,7 +139,7 @@ class StatusFile:
         task : Task
             What was solved, or found in the store.
         arrays : Arrays
-            Its result.
+            Result of the task.
         now : bool
             True if it was solved now, False if the store had it.
         """

@@ -20,7 +20,7 @@ def summary(generated: Generated, output: Path) -> str:
     generated : Generated
         The finished map.
     output : Path
-        Where it stands.
+        File of the map.
     """
     return "\n".join(_lines(generated, output))
 

@@ -93,7 +93,7 @@ class Watch(Protocol):
         task : Task
             What was solved, or found in the store.
         arrays : Arrays
-            Its result.
+            Result of the task.
         now : bool
             True if it was solved now, False if the store had it.
         """
@@ -139,7 +139,7 @@ def sweep(
     store : Results
         An open `Store`, or `NoStore`.
     workers : int
-        Processes; 1 runs in this one.
+        Number of processes; 1 runs in this one.
     progress : Progress, optional
         Told about points.
     watches : sequence of Watch
@@ -148,7 +148,7 @@ def sweep(
     Returns
     -------
     SweepResult
-        With the arrays of every task.
+        The result with the arrays of every task.
 
     Raises
     ------

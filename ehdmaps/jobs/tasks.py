@@ -51,7 +51,7 @@ class LineTask:
     temperature : float
         [K].
     place : tuple of int
-        Where the line starts in the map: indices of contact, load, entrainment speed, temperature. Not in
+        Start of the line in the map: indices of contact, load, entrainment speed, temperature. Not in
         the key.
     """
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.tasks import LineTask, film_arrays, line_tasks
@@ -39,19 +39,19 @@ class Measured:
     Attributes
     ----------
     label : str
-        Of the contestant.
+        Name of the contestant.
     seconds_per_point : float
         Wall time on one core.
     solved : int
         Points with a usable status.
     errors : dict
-        By variable: relative errors at the points that it and the reference solved.
+        Relative errors by variable, at the points that it and the reference solved.
     """
 
     label: str
     seconds_per_point: float
     solved: int
-    errors: dict[str, npt.NDArray[np.float64]]
+    errors: dict[str, FloatArray]
 
 
 def contestants(job: Job) -> tuple[tuple[Contestant, ...], Contestant]:
@@ -81,7 +81,7 @@ def measure(
     Parameters
     ----------
     job : Job
-        Its lines are sampled evenly.
+        Job whose lines are sampled evenly.
     lines : int
         How many.
     entries : sequence of Contestant
@@ -150,7 +150,7 @@ def _sample(job: Job, lines: int) -> tuple[LineTask, ...]:
     return tuple(tasks[index] for index in sorted(order))
 
 
-def _solve(solver: ContactSolver, chosen: Sequence[LineTask]) -> tuple[dict[str, npt.NDArray[np.float64]], float]:
+def _solve(solver: ContactSolver, chosen: Sequence[LineTask]) -> tuple[dict[str, FloatArray], float]:
     """Return the films of all lines, and the time; a first solve that compiles is not in it."""
     first = chosen[0]
     solver.solve_line(first.contact, first.lubricant, first.loads[:1], first.entrainment_speed, first.temperature)
@@ -165,6 +165,6 @@ def _solve(solver: ContactSolver, chosen: Sequence[LineTask]) -> tuple[dict[str,
     return film_arrays(films), time.perf_counter() - begin
 
 
-def _usable(status: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+def _usable(status: FloatArray) -> BoolArray:
     """Whether points have a solution."""
     return np.isin(status, [int(known) for known in Status if known.usable])

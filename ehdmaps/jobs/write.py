@@ -19,7 +19,7 @@ def write_map(dataset: xr.Dataset, path: Path, groups: Mapping[str, xr.Dataset] 
     Parameters
     ----------
     dataset : xarray.Dataset
-        As `assemble` made it.
+        The map as `assemble` made it.
     path : Path
         The map file.
     groups : mapping, optional

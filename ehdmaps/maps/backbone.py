@@ -23,9 +23,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, PPoly
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.backbone_plan import NEIGHBOURS, VALLEY
 from ehdmaps.maps.film_field import lifted_loss
@@ -34,9 +34,6 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_number
-
-Array = NDArray[np.float64]
-IndexArray = NDArray[np.int64]
 
 HEAVY = 2.5
 """zeta above which the slope of the film offset comes from its values: steps are long there, and film compliance is so
@@ -61,10 +58,10 @@ class _OffsetLine:
 
     steep: CubicSpline
     integral: PPoly
-    bend: Array
+    bend: FloatArray
 
     @classmethod
-    def through(cls, zeta: Array, value: Array, slope: Array) -> _OffsetLine:
+    def through(cls, zeta: FloatArray, value: FloatArray, slope: FloatArray) -> _OffsetLine:
         """Line through the slopes at the nodes, exactly in the valley, and through the values on the average."""
         heavy = zeta > HEAVY
         if np.any(heavy):
@@ -74,20 +71,20 @@ class _OffsetLine:
         bend, *_ = np.linalg.lstsq(_bends(zeta, 0), value - integral(zeta), rcond=None)
         return cls(steep, integral, bend)
 
-    def value(self, zeta: Array) -> Array:
+    def value(self, zeta: FloatArray) -> FloatArray:
         """Value of ln(film offset)."""
         return np.asarray(self.integral(zeta) + _bends(zeta, 0) @ self.bend)
 
-    def slope(self, zeta: Array) -> Array:
+    def slope(self, zeta: FloatArray) -> FloatArray:
         """Its derivative."""
         return np.asarray(self.steep(zeta) + _bends(zeta, 1) @ self.bend)
 
-    def curvature(self, zeta: Array) -> Array:
+    def curvature(self, zeta: FloatArray) -> FloatArray:
         """Its second derivative."""
         return np.asarray(self.steep(zeta, 1) + _bends(zeta, 2) @ self.bend)
 
 
-def _bends(zeta: Array, order: int) -> Array:
+def _bends(zeta: FloatArray, order: int) -> FloatArray:
     """Derivatives of a constant, and of a square and a cube on either side of the valley; shape (n, 5)."""
     columns = [np.full_like(zeta, float(order == 0))]
     for away in (np.minimum(zeta - VALLEY[0], 0.0), np.maximum(zeta - VALLEY[1], 0.0)):
@@ -151,7 +148,9 @@ class BackboneField:
             ]
         )
 
-    def _line(self, nodes: int, zeta: Array, offset: Array, compliance: Array, loss: Array, j: int, k: int) -> Array:
+    def _line(
+        self, nodes: int, zeta: FloatArray, offset: FloatArray, compliance: FloatArray, loss: FloatArray, j: int, k: int
+    ) -> FloatArray:
         """One line on the common lattice, shape (nodes, 5), linear beyond the line's own ends."""
         speed, temperature = math.exp(self._log_speeds[j]), float(self._temperatures[k])
         solved = np.isfinite(offset) & np.isfinite(compliance) & np.isfinite(loss) & (offset > 0.0)
@@ -190,7 +189,9 @@ class BackboneField:
         film = radius * math.sqrt(moes_speed_number(speed, state.viscosity, radius, modulus))
         return float(unit), float(valley_load_number(L)), film
 
-    def films(self, contact: str, loads: Array, speeds: Array, temperatures: Array) -> tuple[Array, Array, Array]:
+    def films(
+        self, contact: str, loads: FloatArray, speeds: FloatArray, temperatures: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Film offset [m], film compliance [m2/N] and loss compliance [m2 s/N].
 
         Parameters
@@ -216,8 +217,14 @@ class BackboneField:
         return results[0], results[1], results[2]
 
     def _at(
-        self, contact: LineContact, loads: Array, speed: float, temperature: float, lines: IndexArray, weights: Array
-    ) -> Array:
+        self,
+        contact: LineContact,
+        loads: FloatArray,
+        speed: float,
+        temperature: float,
+        lines: IntArray,
+        weights: FloatArray,
+    ) -> FloatArray:
         """Films along loads at one speed and temperature, shape (3, n)."""
         unit, valley, scale = self._scales(contact, speed, temperature)
         mixed = np.empty((3, loads.size))
@@ -231,7 +238,7 @@ class BackboneField:
         return np.stack([offset, compliance, lifted_loss(loss, width, speed, total)])
 
 
-def _lagrange(nodes: Array, at: float) -> tuple[IndexArray, Array]:
+def _lagrange(nodes: FloatArray, at: float) -> tuple[IntArray, FloatArray]:
     """Indices and Lagrange weights of the nodes around `at`; linear through the end nodes beyond them."""
     count = min(NEIGHBOURS, nodes.size)
     if not nodes[0] <= at <= nodes[-1]:

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from ehdmaps.arrays import ByteArray, FloatArray, IntArray
 from ehdmaps.maps.elementary import log
 from ehdmaps.maps.kernel import collapse, evaluate_at, within_map
 from ehdmaps.maps.lines import (
@@ -26,13 +26,9 @@ from ehdmaps.maps.lines import (
     state_of,
     stretched,
 )
-from ehdmaps.maps.tables import COLDEST, NOT_FINITE, ApproachTable, CountArray, LawTable, Line, Point
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.maps.tables import COLDEST, NOT_FINITE, ApproachTable, LawTable, Line, Point
 
 _BLOCK = 256
-
-NodeArray = npt.NDArray[np.int64]
-MarkArray = npt.NDArray[np.uint8]
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -74,7 +70,7 @@ def _forces(
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def evaluate_many_at(point: Point, delta: FloatArray, rate: FloatArray, forces: FloatArray, counts: CountArray) -> None:
+def evaluate_many_at(point: Point, delta: FloatArray, rate: FloatArray, forces: FloatArray, counts: IntArray) -> None:
     """`kernel.evaluate_at` for arrays (n,), into `forces` (3, n)."""
     if point.film < 1.0 or point.centrifugal_load > 0.0:
         for i in range(delta.size):
@@ -99,7 +95,7 @@ def evaluate_many_at(point: Point, delta: FloatArray, rate: FloatArray, forces: 
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _speed_places(speeds: FloatArray, table: LawTable, nodes: NodeArray, weights: FloatArray) -> None:
+def _speed_places(speeds: FloatArray, table: LawTable, nodes: IntArray, weights: FloatArray) -> None:
     """Nearest nodes of speeds, and weights (3, n) of the splines there."""
     own: ApproachTable = table.own
     start, step, last = own.log_speed_start, own.log_speed_step, own.place.shape[0] - 3
@@ -113,7 +109,7 @@ def _speed_places(speeds: FloatArray, table: LawTable, nodes: NodeArray, weights
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _temperature_places(temperatures: FloatArray, own: ApproachTable, nodes: NodeArray, weights: FloatArray) -> None:
+def _temperature_places(temperatures: FloatArray, own: ApproachTable, nodes: IntArray, weights: FloatArray) -> None:
     """Nearest nodes of temperatures, and weights (3, n) of the splines there."""
     start, step, last = own.temperature_start, own.temperature_step, own.place.shape[1] - 3
     w0, w1, w2 = weights[0], weights[1], weights[2]
@@ -124,7 +120,7 @@ def _temperature_places(temperatures: FloatArray, own: ApproachTable, nodes: Nod
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _alignments(own: ApproachTable, count: int, nodes: NodeArray, weights: FloatArray, found: FloatArray) -> None:
+def _alignments(own: ApproachTable, count: int, nodes: IntArray, weights: FloatArray, found: FloatArray) -> None:
     """Offsets and inverse scales, into `found` (2, n); nodes (2, n) and weights (6, n) of speed and temperature."""
     sums = np.empty(2)
     i, j = nodes[0], nodes[1]
@@ -138,7 +134,7 @@ def _alignments(own: ApproachTable, count: int, nodes: NodeArray, weights: Float
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def _table_splines(
-    own: ApproachTable, places: FloatArray, nodes: NodeArray, weights: FloatArray, found: FloatArray
+    own: ApproachTable, places: FloatArray, nodes: IntArray, weights: FloatArray, found: FloatArray
 ) -> None:
     """Splines of a table and their slopes, into `found` (4, n); nodes and weights as in `_alignments`."""
     cells = own.coefficients.shape[2] // 2 - 3
@@ -162,7 +158,7 @@ def _others(
     temperature: FloatArray,
     centrifugal_load: FloatArray,
     roots: FloatArray,
-    others: MarkArray,
+    others: ByteArray,
 ) -> int:
     """Mark the points that the table alone does not answer, and count them."""
     count = 0
@@ -186,9 +182,9 @@ def _one_by_one(
     entrainment_speed: FloatArray,
     temperature: FloatArray,
     centrifugal_load: FloatArray,
-    others: MarkArray,
+    others: ByteArray,
     forces: FloatArray,
-    counts: CountArray,
+    counts: IntArray,
 ) -> None:
     """`kernel.evaluate` for the marked points; what stays the same from one to the next is collapsed once."""
     u, t, q = table.lowest_speed, table.lowest_temperature, 0.0
@@ -225,7 +221,7 @@ def evaluate_many(
     temperature: FloatArray,
     centrifugal_load: FloatArray,
     forces: FloatArray,
-    counts: CountArray,
+    counts: IntArray,
 ) -> None:
     """`kernel.evaluate` for arrays (n,), into `forces` (3, n)."""
     own: ApproachTable = table.own

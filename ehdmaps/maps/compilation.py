@@ -22,12 +22,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.splines import hermite, spline_coefficients
 from ehdmaps.maps.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.lubricant import Lubricant

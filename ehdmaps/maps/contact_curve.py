@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.tail import Tail
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.physics.contact import LineContact
 
 _SMALL_STEP = 1e-4

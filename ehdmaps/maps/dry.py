@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.film_field import FilmField
-from ehdmaps.physics._values import FloatArray
 
 _FILM = 1e-6
 

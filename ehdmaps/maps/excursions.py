@@ -7,8 +7,8 @@ from typing import Literal
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.kernel import EDGE_TOLERANCE, LOAD_TOLERANCE
-from ehdmaps.physics._values import FloatArray
 
 Axis = Literal["load", "entrainment_speed", "temperature"]
 Side = Literal["above", "below"]

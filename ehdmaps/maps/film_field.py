@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 
 LOSS_FLOOR = 1e-4
 """Smallest loss compliance of a field, as a share of b/(u k): a tenth of what the solver's damping is good to."""

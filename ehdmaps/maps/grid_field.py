@@ -16,12 +16,11 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
+from ehdmaps.arrays import FloatArray, IndexArray
 from ehdmaps.maps.film_field import lifted_loss
 from ehdmaps.maps.splines import hermite, spline_weights
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
@@ -29,9 +28,6 @@ from ehdmaps.physics.moes import moes_speed_number
 
 _STEP = 0.02
 _FORGOTTEN = 0.5
-
-
-NodeArray = npt.NDArray[np.intp]
 
 
 class Lines(NamedTuple):
@@ -193,7 +189,7 @@ class GridField:
         return lifted_loss(loss, width, speeds[:, None], compliance)
 
 
-def _trends(tables: FloatArray, ends: NodeArray, log_speeds: FloatArray) -> FloatArray:
+def _trends(tables: FloatArray, ends: IndexArray, log_speeds: FloatArray) -> FloatArray:
     """Change of the lines with ln u at the highest speed and constant M, (4, n, n_T).
 
     A parabola in ln M over the range of the line of the highest speed, constant beyond: what lies between two lines
@@ -228,7 +224,7 @@ def _along(place: FloatArray, start: float, values: FloatArray, slopes: FloatArr
     return value + _STEP * (x - inside) * slope, slope
 
 
-def _complete(tables: FloatArray, ends: NodeArray, rising: NodeArray) -> None:
+def _complete(tables: FloatArray, ends: IndexArray, rising: IndexArray) -> None:
     """Continue each line beyond its own loads in the shape of the next line that goes there.
 
     Of two lines the one with the larger speed number reaches lower M, the other one higher M. The shape is

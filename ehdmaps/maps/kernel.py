@@ -12,7 +12,7 @@ A bearing calls `collapse` once a time step and `evaluate_at` once a slice::
     for j in range(slices):
         w, dw_ddelta, dw_drate = evaluate_at(point, delta[j], rate[j], counts)
 
-or `ehdmaps.maps.bulk.evaluate_many_at` for all slices together, which is quicker still.
+or `ehdmaps.maps.bulk.evaluate_many_at` for all slices together, which is faster still.
 
 `counts` (int64, 4) is counted up at `LOAD`, `SPEED` or `TEMPERATURE` for arguments outside the map, whatever the
 policy of the law, and at `NOT_FINITE`; speed and temperature are then held at the edge, and above the held load
@@ -27,10 +27,10 @@ import math
 
 from numba import njit
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.maps.elementary import exp, log
 from ehdmaps.maps.lines import (
     FAST,
-    Force,
     State,
     collapsed_line,
     force_of,
@@ -40,17 +40,8 @@ from ehdmaps.maps.lines import (
     stretched,
     table_state,
 )
-from ehdmaps.maps.tables import (
-    HALF_SPACE,
-    LOAD,
-    NOT_FINITE,
-    SPEED,
-    TEMPERATURE,
-    CountArray,
-    LawTable,
-    Point,
-)
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.maps.tables import HALF_SPACE, LOAD, NOT_FINITE, SPEED, TEMPERATURE, LawTable, Point
+from ehdmaps.physics.unilateral import Force
 
 LOAD_TOLERANCE = 1e-3
 """Part of the highest load by which a load may pass it: the error of a table, not of a caller."""
@@ -203,7 +194,7 @@ def _held(point: Point, delta: float) -> State:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def evaluate_at(point: Point, delta: float, rate: float, counts: CountArray) -> Force:
+def evaluate_at(point: Point, delta: float, rate: float, counts: IntArray) -> Force:
     """Load and derivatives at a point of speed, temperature and centrifugal load.
 
     Parameters
@@ -237,9 +228,7 @@ def evaluate_at(point: Point, delta: float, rate: float, counts: CountArray) -> 
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def within_map(
-    table: LawTable, entrainment_speed: float, temperature: float, counts: CountArray
-) -> tuple[float, float]:
+def within_map(table: LawTable, entrainment_speed: float, temperature: float, counts: IntArray) -> tuple[float, float]:
     """Size of the speed, and temperature, held at the edges of the map and counted outside.
 
     Parameters
@@ -269,7 +258,7 @@ def collapse(
     entrainment_speed: float,
     temperature: float,
     centrifugal_load: float,
-    counts: CountArray,
+    counts: IntArray,
 ) -> Point:
     """Law at one speed, temperature and centrifugal load.
 
@@ -327,7 +316,7 @@ def _through_point(
     entrainment_speed: float,
     temperature: float,
     centrifugal_load: float,
-    counts: CountArray,
+    counts: IntArray,
 ) -> Force:
     """`evaluate` by way of `collapse`."""
     point = collapse(table, workspace, entrainment_speed, temperature, centrifugal_load, counts)
@@ -343,7 +332,7 @@ def evaluate(
     entrainment_speed: float,
     temperature: float,
     centrifugal_load: float,
-    counts: CountArray,
+    counts: IntArray,
 ) -> Force:
     """Load and derivatives; arguments and results as of `evaluate_at` and `collapse`.
 

@@ -10,6 +10,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError, OutsideMapError
 from ehdmaps.maps import bulk, kernel
 from ehdmaps.maps.compilation import (
@@ -21,8 +22,8 @@ from ehdmaps.maps.compilation import (
 from ehdmaps.maps.dry import DryField
 from ehdmaps.maps.excursions import Axis, Excursion, Range
 from ehdmaps.maps.film_field import FilmField
-from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE, ApproachTable, CountArray, LawTable, Point
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.maps.memory import FilmMemory, FilmState
+from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE, ApproachTable, LawTable, Point
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 
@@ -95,13 +96,14 @@ class ContactLaw:
         self.load_range = field.load_range
         self.speed_range = field.speed_range
         self.temperature_range = field.temperature_range
-        self.counts: CountArray = np.zeros(4, dtype=np.int64)
+        self.counts: IntArray = np.zeros(4, dtype=np.int64)
         self._excursions: dict[tuple[str, str], Excursion] = {}
         self._lubricant = lubricant
         self._dry = field.dry
         self._field = DryField(field) if field.dry else field
         self._resolution = resolution
         self._plain = self._law_table()
+        self._latest: LawAtPoint | None = None
 
     @cached_property
     def table(self) -> LawTable:
@@ -242,6 +244,42 @@ class ContactLaw:
         self._settle(counts, named, [])
         return LawAtPoint(u, T, q, point, self, bool(counts.any()))
 
+    def advance(
+        self, state: FilmState | None, delta: npt.ArrayLike, dt: float, entrainment_speed: float, temperature: float
+    ) -> tuple[Any, Any, FilmState]:
+        """A step in time with films that need time to follow; see `ehdmaps.maps.memory`.
+
+        Parameters
+        ----------
+        state : FilmState or None
+            At the beginning of the step; None for films in equilibrium at `delta`.
+        delta : float or array
+            Approach at its end [m].
+        dt : float
+            Its length [s], > 0.
+        entrainment_speed, temperature : float
+            u [m/s] and T [K] at its end; a change from call to call costs some tenths of a millisecond.
+
+        Returns
+        -------
+        w, dw_ddelta : float or array
+            Load [N/m] and its exact derivative by the approach at the end of the step [N/m2].
+        state : FilmState
+            At the end of the step.
+
+        Raises
+        ------
+        InputError, OutsideMapError
+            As `at` and `FilmMemory.advance` do.
+        """
+        if self._latest is None or (self._latest.entrainment_speed, self._latest.temperature) != (
+            entrainment_speed,
+            temperature,
+        ):
+            self._latest = self.at(entrainment_speed, temperature)
+        memory = self._latest.memory
+        return memory.advance(memory.settled(delta) if state is None else state, delta, dt)
+
     def _law_table(self) -> LawTable:
         """Everything but the single contacts of a series."""
         highest = self.load_range[1]
@@ -291,7 +329,7 @@ class ContactLaw:
                 f"allowed: 0 to below the highest mapped load {highest:.6g} N/m; check its sign and unit"
             )
 
-    def _settle(self, counts: CountArray, named: Mapping[str, FloatArray], flat: Sequence[FloatArray]) -> None:
+    def _settle(self, counts: IntArray, named: Mapping[str, FloatArray], flat: Sequence[FloatArray]) -> None:
         """Add up the counts of a call, and raise what they ask for."""
         if counts[NOT_FINITE]:
             _check_finite(named)
@@ -305,7 +343,7 @@ class ContactLaw:
                 + "\nmake a map that reaches there, or take a law with outside='clamp' or outside='asymptote'"
             )
 
-    def _noted(self, counts: CountArray, named: Mapping[str, FloatArray], flat: Sequence[FloatArray]) -> list[str]:
+    def _noted(self, counts: IntArray, named: Mapping[str, FloatArray], flat: Sequence[FloatArray]) -> list[str]:
         """Note what was outside, and say it; nothing but the extremes is worked out here, the counts are known."""
         problems = []
         if counts[LOAD]:
@@ -360,6 +398,26 @@ class LawAtPoint:
     law: ContactLaw
     outside: bool
 
+    @cached_property
+    def memory(self) -> FilmMemory:
+        """The law with films that need time, for steps in time."""
+        return FilmMemory(self.point, self.law.contacts, self.entrainment_speed, self._check_loads)
+
+    def _check_loads(self, loads: FloatArray) -> None:
+        """Count loads above the map, and raise where the law does."""
+        above = int(np.count_nonzero(loads > self.point.highest_load * (1.0 + kernel.LOAD_TOLERANCE)))
+        if not above:
+            return
+        self.law.counts[LOAD] += above
+        self.law.note_outside("load", loads)
+        if self.law.outside == "error":
+            raise OutsideMapError(
+                f"film memory, load: got {float(np.max(loads)):.6g} N/m, above the map, which ends at "
+                f"{self.law.load_range[1]:.6g} N/m, at {self.entrainment_speed:.6g} m/s, {self.temperature:.6g} K "
+                f"({above} of {loads.size} points above)\nmake a map that reaches there, or take a law with "
+                "outside='clamp' or outside='asymptote'"
+            )
+
     def __call__(self, delta: npt.ArrayLike, rate: npt.ArrayLike) -> tuple[Any, Any, Any]:
         """Load and its derivatives; as calling the `ContactLaw`."""
         return self.evaluate(delta, rate)[:3]
@@ -379,7 +437,7 @@ class LawAtPoint:
         return w, dw_ddelta, dw_drate, self.outside or bool(counts.any())
 
 
-def _evaluate_many(table: LawTable, flat: Sequence[FloatArray], forces: FloatArray, counts: CountArray) -> None:
+def _evaluate_many(table: LawTable, flat: Sequence[FloatArray], forces: FloatArray, counts: IntArray) -> None:
     """Evaluate flat arrays of approach, rate, speed, temperature and centrifugal load."""
     delta, rate, speed, temperature, centrifugal_load = flat
     bulk.evaluate_many(table, _workspace(table), delta, rate, speed, temperature, centrifugal_load, forces, counts)

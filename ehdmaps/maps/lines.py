@@ -10,12 +10,13 @@ import math
 import numpy as np
 from numba import njit
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.elementary import exp, log
 from ehdmaps.maps.tables import COLDEST, ApproachTable, Line
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.physics.unilateral import Force
+from ehdmaps.physics.unilateral import unilateral_force as rule
 
 State = tuple[float, float, float, float]
-Force = tuple[float, float, float]
 Triple = tuple[float, float, float]
 Quad = tuple[float, float, float, float]
 
@@ -23,6 +24,9 @@ FAST = {"contract", "reassoc", "nsz", "arcp"}
 """What the compiler may rearrange; NaN and infinity keep their meaning."""
 
 _STEPS = 100
+
+unilateral_force = njit(error_model="numpy", fastmath=FAST, forceinline=True)(rule)
+"""The rule without tension, compiled as the kernels are that it becomes a part of."""
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
@@ -97,16 +101,10 @@ def state_of(g: float, dg: float, log_ratio: float, dlog_ratio: float) -> State:
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
 def force_of(state: State, rate: float) -> Force:
-    """Force at a rate: w (1 + x) with x = c rate/w, -w/(4 x) below x = -1/2, and its derivatives."""
+    """Force of a state at a rate, and its derivatives, see `ehdmaps.physics.unilateral`."""
     w, dw, ratio, dc = state
-    x = ratio * rate
-    moderate = x >= -0.5
-    part = 1.0 + x if moderate else -0.25 / x
-    return (
-        w * part,
-        dw + dc * rate if moderate else part * (2.0 * dw - dc / ratio),
-        w * ratio if moderate else -w * part / rate,
-    )
+    force: Force = unilateral_force(w, dw, w * ratio, dc, rate)
+    return force
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-IndexArray = NDArray[np.int64]
+from ehdmaps.arrays import FloatArray, IntArray
 
 
 @njit(cache=True, error_model="numpy")
 def mix_lines(
-    lattice: Array, first: float, spacing: float, lines: IndexArray, weights: Array, zeta: Array, out: Array
+    lattice: FloatArray,
+    first: float,
+    spacing: float,
+    lines: IntArray,
+    weights: FloatArray,
+    zeta: FloatArray,
+    out: FloatArray,
 ) -> None:
     """Weighted sum of some lines at each zeta, by cubic Hermite on their common lattice, linear beyond its ends.
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 
 
 def spline_coefficients(values: FloatArray, axis: int, degree: int) -> FloatArray:

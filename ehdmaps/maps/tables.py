@@ -8,12 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
-from ehdmaps.physics._values import FloatArray
-
-CountArray = npt.NDArray[np.int64]
+from ehdmaps.arrays import FloatArray
 
 LOAD, SPEED, TEMPERATURE, NOT_FINITE = 0, 1, 2, 3
 """Places in an array of counts: calls outside by cause, and values that are no finite numbers."""

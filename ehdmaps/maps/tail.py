@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 
 THICK_FILM = 0.005
 """h/R at which the fade begins, unless the map itself reaches thicker films."""

@@ -6,9 +6,9 @@ Of a map with a backbone both are looked at: the backbone is what laws read, the
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
+from ehdmaps.arrays import BoolArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.schema import BACKBONE_DIMS, BACKBONE_VARIABLES, DIMS, NOT_NEEDED
 from ehdmaps.physics.solution import Status
@@ -16,8 +16,6 @@ from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 _NEEDED = ("film_offset", "stiffness", "damping")
 _SHOWN = 3
-
-Mask = npt.NDArray[np.bool_]
 
 
 def check_usable(dataset: xr.Dataset, contacts: tuple[str, ...]) -> None:
@@ -99,7 +97,7 @@ def check_backbone(group: xr.Dataset) -> None:
         raise MapError("\n".join(f"backbone of the map: has {problem}; generate the map again" for problem in problems))
 
 
-def _lines(group: xr.Dataset, where: Mask) -> str:
+def _lines(group: xr.Dataset, where: BoolArray) -> str:
     """Name the first few lines of the backbone that have such points."""
     found = np.argwhere(where.any(axis=0))
     names = [
@@ -115,7 +113,7 @@ def _shape(chosen: xr.Dataset) -> tuple[int, ...]:
     return tuple(chosen.sizes[name] for name in DIMS)
 
 
-def _clusters(filled: Mask) -> Mask:
+def _clusters(filled: BoolArray) -> BoolArray:
     """Filled points with a filled neighbour along load, speed or temperature."""
     found = np.zeros_like(filled)
     for axis in (1, 2, 3):
@@ -145,7 +143,7 @@ def _unphysical(chosen: xr.Dataset) -> list[str]:
     return problems
 
 
-def _places(chosen: xr.Dataset, where: Mask) -> str:
+def _places(chosen: xr.Dataset, where: BoolArray) -> str:
     """Name the first few points."""
     names = []
     for i, j, k, m in np.argwhere(where)[:_SHOWN]:

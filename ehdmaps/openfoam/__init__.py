@@ -9,6 +9,7 @@
 | `run` | one program in one case: time limit, crash, kill, last lines of its log |
 | `results` | what a run wrote: the dictionary `results`, the table `film.dat` |
 | `fields` | mesh and fields of the film by numpy; VTU or XDMF through meshio |
+| `grid_solver` | one grid of a point, in as many tries as it takes |
 | `solver` | `OpenFoamSolver`: coarse and fine grid of each point, error estimates, statuses |
 
 The solver itself is C++, in `openfoam_cases`. Nothing is imported here, so that ehdmaps works without OpenFOAM.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import os
-import re
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -15,9 +14,6 @@ from ehdmaps.errors import SolverError
 from ehdmaps.openfoam.run import RunError
 
 PARAMETER_FILE = Path("constant") / "ehlProperties"
-
-NO_PATH = re.compile(r"[\s\"']")
-"""Characters that OpenFOAM does not take in the path of a case."""
 
 _PARTS = ("system", "0", "constant")
 _RUNS = itertools.count()
@@ -35,7 +31,7 @@ def working_case(template: Path, parameters: str, name: str, keep: Path | None =
     parameters : str
         Text of the one file that differs.
     name : str
-        Of a kept folder; a number is added where it exists.
+        Name of a kept folder; a number is added where it exists.
     keep : Path, optional
         Folder for cases that are kept; None: the system's folder for temporary files, for failed ones only.
 

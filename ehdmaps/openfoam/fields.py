@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import SolverError
+from ehdmaps.extras import needs
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.outputs import FIELDS, MARK, written_aside
-
-Floats = NDArray[np.float64]
 
 TIME = "1"
 """Name of the folder with the solution."""
@@ -47,21 +46,21 @@ class FilmFields:
         1 where there is oil only.
     """
 
-    points: Floats
-    quads: NDArray[np.int64]
-    p: Floats
-    U: Floats
-    mu: Floats
-    rho: Floats
-    liquid_fraction: Floats
+    points: FloatArray
+    quads: IntArray
+    p: FloatArray
+    U: FloatArray
+    mu: FloatArray
+    rho: FloatArray
+    liquid_fraction: FloatArray
 
-    def velocity_profile(self, x: float, rows: int) -> tuple[Floats, Floats]:
+    def velocity_profile(self, x: float, rows: int) -> tuple[FloatArray, FloatArray]:
         """Velocity along the film in the column of cells nearest to a place.
 
         Parameters
         ----------
         x : float
-            From the contact centre [m].
+            Distance from the contact centre [m].
         rows : int
             Cells across the film.
 
@@ -133,8 +132,11 @@ def write_fields(fields: FilmFields, path: Path) -> None:
     ------
     InputError
         If the file cannot be written, or something else stands there.
+    DependencyError
+        If meshio is not installed.
     """
-    import meshio
+    with needs("openfoam", "meshio", "fields of the film"):
+        import meshio
 
     mesh = meshio.Mesh(
         fields.points,
@@ -149,7 +151,7 @@ def write_fields(fields: FilmFields, path: Path) -> None:
             file.write(f"<!-- {MARK} -->\n")
 
 
-def _list(path: Path, width: int) -> Floats:
+def _list(path: Path, width: int) -> FloatArray:
     """A list of numbers, vectors or faces, shape (n,) or (n, width)."""
     data = _ascii(path)
     head = _LIST.search(data)
@@ -158,7 +160,7 @@ def _list(path: Path, width: int) -> Floats:
     return _values(path, data[head.end() :], int(head[1]), width)
 
 
-def _field(path: Path, cells: int, width: int) -> Floats:
+def _field(path: Path, cells: int, width: int) -> FloatArray:
     """Values of a field in the cells, shape (cells,) or (cells, width)."""
     data = _ascii(path)
     head = _INTERNAL.search(data)
@@ -182,7 +184,7 @@ def _ascii(path: Path) -> bytes:
     return data
 
 
-def _values(path: Path, text: bytes, count: int, width: int) -> Floats:
+def _values(path: Path, text: bytes, count: int, width: int) -> FloatArray:
     """Numbers at the beginning of a text."""
     words = text.translate(_BRACKETS).split(None, count * width)[: count * width]
     try:

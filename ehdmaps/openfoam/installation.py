@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ehdmaps.errors import InputError
-from ehdmaps.openfoam.case import NO_PATH
+from ehdmaps.extras import lacking
 
 BUILD_COMMAND = "openfoam_cases/build"
 """Command in a clone of the project that installs what is needed and builds `ehlFoam`."""
@@ -25,6 +25,9 @@ DEBIAN = Path("/usr/share/openfoam")
 """Project folder of the distribution's package, which sets no environment of its own."""
 
 DEBIAN_ENVIRONMENT = {"WM_PROJECT_DIR": str(DEBIAN), "WM_PROJECT_VERSION": "v1912"}
+
+NO_PATH = re.compile(r"[\s\"']")
+"""Characters that OpenFOAM does not take in the path of a case."""
 
 _CLONE = Path(__file__).parents[2] / "openfoam_cases"
 _SHARED = Path(sysconfig.get_path("data")) / "share" / "ehdmaps"
@@ -45,7 +48,7 @@ class Installation:
     build : str
         Record of the build: OpenFOAM version, compiler, hash of the sources.
     template_hash : str
-        Of the template's files.
+        Hash of the template's files.
     environment : tuple of (str, str)
         What the programs need besides the environment of this process.
     """
@@ -92,7 +95,7 @@ def installation(environment: Mapping[str, str] | None = None) -> Installation:
     block_mesh = shutil.which("blockMesh", path=known.get("PATH"))
     template = next((cases / _CASE for cases in (folder, _CLONE, _SHARED) if (cases / _CASE / "system").is_dir()), None)
     extra = () if "WM_PROJECT_DIR" in known else tuple(DEBIAN_ENVIRONMENT.items())
-    problems = []
+    problems = list(lacking("openfoam", "PyFoam", "the solver 'openfoam'"))
     if block_mesh is None:
         problems.append(
             "OpenFOAM: blockMesh is not in PATH; the solver 'openfoam' needs OpenFOAM v1912; "

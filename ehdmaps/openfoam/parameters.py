@@ -12,8 +12,9 @@ from numbers import Real
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.lubricant import LubricantState
 
@@ -43,8 +44,8 @@ class Start:
         [m].
     """
 
-    x: NDArray[np.float64]
-    pressure: NDArray[np.float64]
+    x: FloatArray
+    pressure: FloatArray
     central_film: float
 
 
@@ -80,9 +81,9 @@ class Oscillation:
     frequency : float
         [Hz].
     amplitude : float
-        Over the central film.
+        Amplitude as a share of the central film.
     steps_per_cycle, cycles : int
-        Of the time integration.
+        Steps and cycles of the time integration.
     """
 
     frequency: float
@@ -104,13 +105,13 @@ class Parameters:
     load : float
         w [N/m].
     lower_speed, upper_speed : float
-        Of the surfaces [m/s].
+        Speeds of the surfaces [m/s].
     oil : LubricantState
-        At the temperature of the point.
+        State of the oil at the temperature of the point.
     cavitation_range : float
         Range of pressure over which liquid turns into the cavitated mixture [Pa].
     mesh : Mesh
-        Where the columns stand.
+        Positions of the columns.
     columns, rows : int
         Cells along and across the film.
     flow : {"thin_film", "full_stress"}
@@ -124,11 +125,11 @@ class Parameters:
     start : Start, optional
         None starts from the dry contact.
     frequencies : tuple of float
-        Of the linear response [Hz]; 0 is the low-frequency limit.
+        Frequencies of the linear response [Hz]; 0 is the low-frequency limit.
     oscillation : Oscillation, optional
         Oscillation in time, the independent check of the response.
     max_iterations : int
-        After which a run counts as stagnated.
+        Number of iterations after which a run counts as stagnated.
     tolerance : float
         Relative, of the balances.
     write_fields : bool

@@ -23,8 +23,9 @@ from time import time
 from typing import Any
 
 from ehdmaps.errors import SolverError
+from ehdmaps.extras import needs
 
-with warnings.catch_warnings():
+with needs("openfoam", "PyFoam", "the solver 'openfoam'"), warnings.catch_warnings():
     warnings.simplefilter("ignore")  # escape sequences in its regular expressions
     from PyFoam.Basics import PlyParser
     from PyFoam.Execution.BasicRunner import BasicRunner
@@ -128,13 +129,13 @@ class Runner(BasicRunner):  # type: ignore[misc]
     command : sequence of str
         Program and arguments.
     name : str
-        Of the log, "log.NAME.logfile".
+        Name of the log, "log.NAME.logfile".
     case : Path
         The case folder, where the program runs.
     environment : mapping
-        Of the program.
+        Environment variables of the program.
     seconds : float
-        After which it is killed.
+        Time after which the program is killed [s].
 
     Raises
     ------

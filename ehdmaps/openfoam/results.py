@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import SolverError
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.physics.solution import Status
@@ -37,23 +37,23 @@ class Results:
     status, reason
         How the run ended.
     iterations : int
-        Of the coupled solve.
+        Iterations of the coupled solve.
     central_film, minimum_film, film_offset : float
         [m].
     max_pressure : float
         [Pa].
     frequencies : tuple of float
-        Of the responses that follow [Hz].
+        Frequencies of the responses that follow [Hz].
     film_compliance : tuple of float
         1/k - 1/k_dry at each frequency [m2/N].
     loss_compliance : tuple of float
-        At each frequency [m2 s/N].
+        Loss compliance at each frequency [m2 s/N].
     load_defect, flux_defect, outlet_defect, cell_continuity : float
         Relative defects of the balances: load, mass flux before and behind the rupture of the film, mass of the cells.
     seconds : float
         Time of the run as it says itself.
     oscillation_film_compliance, oscillation_loss_compliance : float or None
-        From an oscillation in time, where one was asked for [m2/N], [m2 s/N].
+        Compliances from an oscillation in time, where one was asked for [m2/N], [m2 s/N].
     """
 
     status: Status
@@ -95,12 +95,12 @@ class FilmTable:
         1 where there is oil only.
     """
 
-    x: NDArray[np.float64]
-    pressure: NDArray[np.float64]
-    film: NDArray[np.float64]
-    flux: NDArray[np.float64]
-    density: NDArray[np.float64]
-    liquid_fraction: NDArray[np.float64]
+    x: FloatArray
+    pressure: FloatArray
+    film: FloatArray
+    flux: FloatArray
+    density: FloatArray
+    liquid_fraction: FloatArray
 
 
 def read_results(case: Path) -> Results:

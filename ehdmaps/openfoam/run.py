@@ -34,11 +34,11 @@ class RunError(SolverError):
     message : str
         What happened, the last lines of the log, and the log's path.
     status : Status
-        Of the point.
+        Status of the point.
     iterations : int
         Done until then.
     case : Path, optional
-        Its folder, where that is left.
+        Folder of the case, where that is left.
     """
 
     def __init__(
@@ -66,9 +66,9 @@ def run(program: Path, case: Path, environment: Mapping[str, str], end: float) -
     case : Path
         The case folder.
     environment : mapping
-        Of the program.
+        Environment variables of the program.
     end : float
-        On the clock `time.monotonic`, after which it is killed [s].
+        Time on the clock `time.monotonic` after which the program is killed [s].
 
     Returns
     -------

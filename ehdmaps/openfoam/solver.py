@@ -4,23 +4,18 @@ from __future__ import annotations
 
 import math
 import re
-import shutil
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
-from ehdmaps.openfoam.case import NO_PATH, working_case
-from ehdmaps.openfoam.fields import FilmFields, read_fields
-from ehdmaps.openfoam.installation import Installation, installation
+from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
+from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
 from ehdmaps.openfoam.parameters import FLOWS, SHEARS, Flow, Mesh, Parameters, Shear, Start
-from ehdmaps.openfoam.results import FilmTable, Results, read_film, read_results
-from ehdmaps.openfoam.run import KilledError, RunError, log_tail, run
+from ehdmaps.openfoam.run import RunError
 from ehdmaps.physics.closed_form import THIN_FILM_LIMIT, HertzSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import moes_central
@@ -34,12 +29,6 @@ from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status
 CAVITATION_RANGE = 1e-6
 """Pressure over which liquid turns into the cavitated mixture, over the largest of the film (about)."""
 
-MOVED_COLUMNS = 1.1
-"""Columns of a second try, over those asked for."""
-
-BETWEEN = 0.75
-"""Cells each way of a grid between the coarse one and the fine one, over those of the fine one."""
-
 PARAMETER_VERSION = 3
 """Raised when a change of this package changes numbers: results of another version are not taken over."""
 
@@ -50,12 +39,12 @@ class Guess(Protocol):
     """What a start offers: a film, and where the columns of cells should stand."""
 
     @property
-    def x(self) -> NDArray[np.float64]:
+    def x(self) -> FloatArray:
         """Positions from the contact centre [m]."""
         ...
 
     @property
-    def pressure(self) -> NDArray[np.float64]:
+    def pressure(self) -> FloatArray:
         """Pressure there [Pa]."""
         ...
 
@@ -85,16 +74,6 @@ Starter = Callable[[LineContact, Lubricant, float, float, float], Guess | None]
 
 
 @dataclass(frozen=True)
-class GridSolution:
-    """What one run gave; `note` says so where it took two tries."""
-
-    results: Results
-    film: FilmTable
-    fields: FilmFields | None
-    note: str = ""
-
-
-@dataclass(frozen=True)
 class OpenFoamSolver(ContactSolverDefaults):
     """Film-resolved line contact with elastic surfaces; a point costs seconds.
 
@@ -120,7 +99,7 @@ class OpenFoamSolver(ContactSolverDefaults):
     tolerance : float
         Relative, of the balances.
     max_iterations : int
-        After which a run counts as stagnated.
+        Number of iterations after which a run counts as stagnated.
     starter : callable, optional
         Gives a start to each point; without one it starts from the dry contact.
     timeout : float
@@ -261,14 +240,14 @@ class OpenFoamSolver(ContactSolverDefaults):
         contact, lubricant, point
             What is solved.
         frequency : float
-            Of the response [Hz]; 0 is the low-frequency limit.
+            Frequency of the response [Hz]; 0 is the low-frequency limit.
         with_fields : bool
             Whether to read the fields of the fine grid.
 
         Returns
         -------
         film : FilmSolution
-            With status and cause where it failed.
+            Solution of the film, with status and cause where it failed.
         grid : GridSolution or None
             What the run on the fine grid gave; None where there is none.
         """
@@ -287,10 +266,11 @@ class OpenFoamSolver(ContactSolverDefaults):
             fine = self.parameters(contact, lubricant, point, frequency)
             halved = replace(fine, columns=fine.columns // 2, rows=fine.rows // 2)
             name = _case_name(contact, point)
-            coarse = self._stubborn(halved, name, False, end)
+            grids = GridSolver(self.installed, self.keep_cases)
+            coarse = grids.solve(halved, name, False, end)
             done = coarse.results.iterations
             stage = "fine grid"
-            grid = self._stubborn(fine, name, with_fields, end, _start(coarse))
+            grid = grids.solve(fine, name, with_fields, end, coarse.start)
         except InputError as error:
             return FilmSolution(Status.OUTSIDE_VALIDITY, str(error)), None
         except SolverError as error:
@@ -300,43 +280,6 @@ class OpenFoamSolver(ContactSolverDefaults):
                 status, iterations = error.status, done + error.iterations
             return FilmSolution(status, f"{stage}: {error}", iterations=iterations, solve_seconds=seconds), None
         return _film(contact, state, coarse, grid, time.perf_counter() - began), grid
-
-    def _stubborn(
-        self, parameters: Parameters, name: str, with_fields: bool, end: float, start: Start | None = None
-    ) -> GridSolution:
-        """Run one grid from `start`; where that stagnates over a grid between, from its own start, on other columns.
-
-        Behind a steep pressure spike, whether Newton's method converges depends on the positions of the columns, and
-        the spike of a grid twice as coarse may be too far from that of the fine one.
-        """
-        moved = _resized(parameters, MOVED_COLUMNS, 1.0)
-        tries: list[tuple[Parameters, ...]] = [(parameters,), (moved,)]
-        if start is not None:
-            begun = replace(parameters, start=start)
-            tries = [(begun,), (_resized(begun, BETWEEN, BETWEEN), parameters), *tries]
-        for attempt in tries:
-            try:
-                grid = self._in_turn(attempt, name, with_fields, end)
-            except RunError as error:
-                if error.status is not Status.STAGNATED or attempt is tries[-1]:
-                    raise
-                self._forget(error)
-            else:
-                note = "" if attempt is not tries[-1] else f"solved on {moved.columns} columns"
-                return replace(grid, note="; ".join(filter(None, [grid.note, note])))
-        raise AssertionError("unreachable: the last try returns or raises")
-
-    def _in_turn(self, grids: tuple[Parameters, ...], name: str, with_fields: bool, end: float) -> GridSolution:
-        """Run the last of some grids, from the solution of the one before if there is one."""
-        *before, last = grids
-        for grid in before:
-            last = replace(last, start=_start(self.run_case(grid, name, False, end)))
-        return self.run_case(last, name, with_fields, end)
-
-    def _forget(self, error: RunError) -> None:
-        """Remove the folder of a failed run after which another one follows, unless cases are kept."""
-        if self.keep_cases is None and error.case is not None:
-            shutil.rmtree(error.case, ignore_errors=True)
 
     def parameters(
         self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequency: float = 0.0
@@ -352,7 +295,7 @@ class OpenFoamSolver(ContactSolverDefaults):
         point : OperatingPoint
             Load, speed and temperature.
         frequency : float
-            Of the oscillation [Hz]; 0 is the low-frequency limit.
+            Frequency of the oscillation [Hz]; 0 is the low-frequency limit.
         """
         state = lubricant.at(point.temperature)
         guess = self.starter and self.starter(
@@ -395,79 +338,6 @@ class OpenFoamSolver(ContactSolverDefaults):
         """Speeds of the lower and the upper surface [m/s]."""
         half = 0.5 * self.slide_to_roll
         return entrainment_speed * (1.0 - half), entrainment_speed * (1.0 + half)
-
-    def run_case(
-        self, parameters: Parameters, name: str = "case", with_fields: bool = False, end: float | None = None
-    ) -> GridSolution:
-        """Run one case; one that was killed from outside is tried a second time.
-
-        Parameters
-        ----------
-        parameters : Parameters
-            Of the run.
-        name : str
-            Of the folder, if cases are kept.
-        with_fields : bool
-            Whether to read the fields.
-        end : float, optional
-            On the clock `time.monotonic`, after which it is stopped [s]; left out, it has the whole timeout.
-
-        Raises
-        ------
-        RunError
-            If it gives no converged solution.
-        SolverError
-            If no case can be made.
-        """
-        end = time.monotonic() + self.timeout if end is None else end
-        try:
-            return self._run_once(parameters, name, with_fields, end)
-        except KilledError as first:
-            self._forget(first)
-            try:
-                second = self._run_once(parameters, name, with_fields, end)
-            except KilledError as error:
-                raise RunError(f"killed twice: {error}", case=error.case) from error
-            # Its log is gone.
-            return replace(second, note=f"solved at the second try, the first {str(first).partition(';')[0]}")
-
-    def _run_once(self, parameters: Parameters, name: str, with_fields: bool, end: float) -> GridSolution:
-        """One run in a folder of its own."""
-        kept = self.keep_cases
-        text = replace(parameters, write_fields=with_fields or kept is not None).text()
-        folder = f"{name}_{parameters.columns}x{parameters.rows}"
-        environment = self.installed.full_environment()
-        with working_case(self.installed.template, text, folder, kept) as case:
-            run(self.installed.block_mesh, case, environment, end)
-            log = run(self.installed.solver, case, environment, end)
-            try:
-                results = read_results(case)
-                if results.status is Status.CONVERGED and len(results.frequencies) != len(parameters.frequencies):
-                    raise SolverError(
-                        f"{case / 'results'}: got responses at {results.frequencies} Hz; allowed: as asked"
-                    )
-                if results.status is Status.CONVERGED:
-                    return GridSolution(
-                        results, read_film(case, parameters.columns), read_fields(case) if with_fields else None
-                    )
-            except SolverError as error:
-                raise RunError(f"{error}; {log_tail(log)}") from error
-            message = f"ehlFoam {results.status.word}: {results.reason}; {log_tail(log)}"
-            raise RunError(message, results.status, results.iterations)
-
-
-def _start(grid: GridSolution) -> Start:
-    """What another grid starts from."""
-    return Start(grid.film.x, grid.film.pressure, grid.results.central_film)
-
-
-def _resized(parameters: Parameters, columns: float, rows: float) -> Parameters:
-    """The same on so many times the cells, even numbers of them."""
-    return replace(
-        parameters,
-        columns=2 * round(columns * parameters.columns / 2),
-        rows=max(2 * round(rows * parameters.rows / 2), 2),
-    )
 
 
 def _case_name(contact: LineContact, point: OperatingPoint) -> str:

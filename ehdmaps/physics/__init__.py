@@ -19,6 +19,7 @@ hertz               dry line contact: half-width, pressure, gap, compliance
 moes                dimensionless groups and back: M and L; U, W and G
 sensitivity         what an error of alpha makes of the film
 films               published film formulas: rigid, Dowson-Higginson, Pan-Hamrock, Moes
+unilateral          how damping acts in a contact that cannot pull; what kernels compile
 damping             published damping formulas: rolling film, squeeze film, Dietl
 peak                what the largest of sampled pressures lacks to the peak
 thermal             reduction of the film by inlet shear heating

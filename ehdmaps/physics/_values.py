@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from ehdmaps.arrays import FloatArray
+
 Values = TypeVar("Values", float, FloatArray)
 
 

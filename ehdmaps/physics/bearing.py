@@ -19,7 +19,7 @@ class BearingGeometry:
     Attributes
     ----------
     name : str
-        As in provenance and messages.
+        Name for provenance and messages.
     inner_raceway_diameter, outer_raceway_diameter : float
         Nominal raceway diameters [m].
     roller_diameter, roller_length : float

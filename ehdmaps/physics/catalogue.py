@@ -126,7 +126,7 @@ def estimate(designation: str, basic_static_rating: float | None = None) -> Bear
     Returns
     -------
     BearingGeometry
-        With `estimated` set; clearance zero.
+        The bearing with `estimated` set; clearance zero.
 
     Raises
     ------

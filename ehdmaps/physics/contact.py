@@ -23,11 +23,11 @@ class LineContact:
     radius : float
         Reduced radius R [m].
     material : Material
-        Of both bodies.
+        Material of both bodies.
     structural_law : {"iso16281", "palmgren", "half_space"}
         Law of the elastic part of the approach, see `ehdmaps.physics.approach`.
     roller_length : float, optional
-        Of the whole roller [m]; iso16281 and palmgren need it.
+        Length of the whole roller [m]; iso16281 and palmgren need it.
     reference_depth : float, optional
         d* [m]; half_space needs it.
 

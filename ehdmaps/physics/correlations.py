@@ -25,7 +25,7 @@ class Correlation:
     Attributes
     ----------
     name : str
-        As in a job file.
+        Name in a job file.
     authors : str
         Whose it is.
     error : str
@@ -137,7 +137,8 @@ def estimate(name: str, viscosity: float, density: float, slope: float) -> float
     density : float
         [kg/m3].
     slope : float
-        Of ASTM D341, see `so_klaus`; any where the correlation does not need it.
+        Slope of the viscosity-temperature line of ASTM D341, see `so_klaus`; any where the correlation does not need
+        it.
 
     Raises
     ------

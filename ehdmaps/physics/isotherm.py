@@ -145,7 +145,7 @@ class PressureViscosity(_OverPressure):
     pressure_viscosity : float
         alpha = d ln eta/dp at p = 0 [1/Pa], >= 0.
     exponent : float
-        z.
+        Exponent z of the law.
     pressure_scale : float
         p_c [Pa], > 0; inf is allowed with z = 1.
 

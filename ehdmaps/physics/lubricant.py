@@ -8,8 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from types import MappingProxyType
-from typing import Any, Literal
+from typing import Any, Literal, Required, TypedDict, Unpack
 
 import numpy as np
 
@@ -39,6 +38,22 @@ FITTED_PRESSURE = 0.6e9
 """Pressure [Pa] above which viscosity counts as extrapolated where nobody stated a range; our assumption."""
 
 
+class OilData(TypedDict, total=False):
+    """What is stated of an own oil, whatever its law over pressure; explained at `Lubricant.own`."""
+
+    density: Required[float]
+    pressure_viscosity: float | str | None
+    pressure_viscosity_40: float | None
+    pressure_viscosity_100: float | None
+    viscosity: float | None
+    viscosity_40: float | None
+    viscosity_100: float | None
+    density_slope: float
+    density_law: DensityLaw
+    fitted_pressure: float
+    name: str
+
+
 @dataclass(frozen=True)
 class LubricantState:
     """An oil at one temperature: all that an isothermal solver needs.
@@ -56,7 +71,7 @@ class LubricantState:
     compressible : bool
         Density after Dowson and Higginson if true, constant if false.
     fitted_pressure : float
-        Above this pressure [Pa] the viscosity law is extrapolated; inf if unknown.
+        Highest pressure [Pa] at which the viscosity law was fitted; it is extrapolated above; inf if unknown.
     """
 
     temperature: float
@@ -89,12 +104,12 @@ class Lubricant:
     """An oil as laws over temperature; comparable, and equal oils give equal numbers.
 
     Make one by `named`; or by hand with `barus`, `roelands` or `fva3` (called after their law over pressure), or with
-    `of_law` for any law over pressure.
+    `own` for any law over pressure.
 
     Attributes
     ----------
     name : str
-        As in provenance and messages.
+        Name for provenance and messages.
     verified : bool
         Whether its numbers have a stated source (`named`), or are vouched for by the user (own oils).
     viscosity : ConstantViscosity, AstmViscosity or VogelViscosity
@@ -108,7 +123,8 @@ class Lubricant:
     density_law : {"dowson-higginson", "incompressible"}
         Density over pressure.
     fitted_pressure : float
-        Above this pressure [Pa] the viscosity law is extrapolated; `FITTED_PRESSURE` unless stated.
+        Highest pressure [Pa] at which the viscosity law was fitted; it is extrapolated above; `FITTED_PRESSURE` unless
+        stated.
     thermal_conductivity : float or None
         [W/(m K)].
     correlation : str or None
@@ -202,49 +218,13 @@ class Lubricant:
             ) from None
 
     @classmethod
-    def barus(
-        cls,
-        *,
-        density: float,
-        pressure_viscosity: float | str | None = None,
-        pressure_viscosity_40: float | None = None,
-        pressure_viscosity_100: float | None = None,
-        viscosity: float | None = None,
-        viscosity_40: float | None = None,
-        viscosity_100: float | None = None,
-        density_slope: float = 0.0,
-        density_law: DensityLaw = "dowson-higginson",
-        fitted_pressure: float = FITTED_PRESSURE,
-        name: str = "own oil",
-    ) -> Lubricant:
+    def barus(cls, **data: Unpack[OilData]) -> Lubricant:
         """An oil with Barus' law, eta = eta0 exp(alpha p).
 
         Parameters
         ----------
-        density : float
-            rho0 at 15 degC [kg/m3].
-        pressure_viscosity : float or str, optional
-            alpha [1/Pa], constant, or the name of a correlation that estimates it (`CORRELATIONS`); or both of the
-            next two.
-        pressure_viscosity_40, pressure_viscosity_100 : float, optional
-            alpha at 40 and 100 degC [1/Pa]; ln alpha is linear in temperature.
-        viscosity : float, optional
-            eta0 [Pa s], constant; or both of the next two.
-        viscosity_40, viscosity_100 : float, optional
-            Kinematic viscosities at 40 and 100 degC [m2/s], joined by ASTM D341.
-        density_slope : float
-            d rho0/dT [kg/(m3 K)].
-        density_law : {"dowson-higginson", "incompressible"}
-            Density over pressure.
-        fitted_pressure : float
-            Reach of the viscosity data [Pa]; inf flags nothing.
-        name : str
-            As in provenance and messages.
-
-        Raises
-        ------
-        InputError
-            With every value that is missing, doubly given or out of its limits.
+        **data
+            The same as for `own`.
 
         Examples
         --------
@@ -252,33 +232,19 @@ class Lubricant:
         >>> round(oil.at(313.15).viscosity_at(50e6), 4)
         0.2718
         """
-        stated = Stated(
-            viscosity, viscosity_40, viscosity_100, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100
-        )
-        return cls._own(name, "barus", stated, density, density_slope, density_law, fitted_pressure)
+        return cls.own("barus", {}, **data)
 
     @classmethod
-    def roelands(
-        cls,
-        *,
-        density: float,
-        roelands_z: float | None = None,
-        pressure_viscosity: float | str | None = None,
-        pressure_viscosity_40: float | None = None,
-        pressure_viscosity_100: float | None = None,
-        viscosity: float | None = None,
-        viscosity_40: float | None = None,
-        viscosity_100: float | None = None,
-        density_slope: float = 0.0,
-        density_law: DensityLaw = "dowson-higginson",
-        fitted_pressure: float = FITTED_PRESSURE,
-        name: str = "own oil",
-    ) -> Lubricant:
+    def roelands(cls, *, roelands_z: float | None = None, **data: Unpack[OilData]) -> Lubricant:
         """An oil with Roelands' law, p0 = 1.96e8 Pa.
 
-        Without roelands_z, z = alpha p0/(ln eta0 + 9.67) at each temperature; without a pressure_viscosity,
-        alpha follows from z likewise; both hold as stated where both are given.
-        The other parameters and errors are those of `barus`.
+        Parameters
+        ----------
+        roelands_z : float, optional
+            Exponent z. Without it, z = alpha p0/(ln eta0 + 9.67) at each temperature; without a pressure_viscosity,
+            alpha follows from z likewise; both hold as stated where both are given.
+        **data
+            The same as for `own`.
 
         Examples
         --------
@@ -286,32 +252,16 @@ class Lubricant:
         >>> round(oil.at(313.15).pressure_viscosity.exponent, 4)
         0.5165
         """
-        stated = Stated(
-            viscosity, viscosity_40, viscosity_100, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100
-        )
-        numbers = {} if roelands_z is None else {"exponent": roelands_z}
-        return cls._own(name, "roelands", stated, density, density_slope, density_law, fitted_pressure, numbers)
+        return cls.own("roelands", {} if roelands_z is None else {"exponent": roelands_z}, **data)
 
     @classmethod
-    def fva3(
-        cls,
-        *,
-        density: float,
-        pressure_viscosity: float | str | None = None,
-        pressure_viscosity_40: float | None = None,
-        pressure_viscosity_100: float | None = None,
-        viscosity: float | None = None,
-        viscosity_40: float | None = None,
-        viscosity_100: float | None = None,
-        density_slope: float = 0.0,
-        density_law: DensityLaw = "dowson-higginson",
-        fitted_pressure: float = FITTED_PRESSURE,
-        name: str = "own oil",
-    ) -> Lubricant:
+    def fva3(cls, **data: Unpack[OilData]) -> Lubricant:
         """An own oil with the law p/(a + b p) and the coefficients of FVA 3 over pressure.
 
-        1/a is the pressure_viscosity, which has to be stated as for `barus`; b is that of FVA 3.
-        The other parameters and errors are those of `barus`.
+        Parameters
+        ----------
+        **data
+            The same as for `own`. 1/a is the pressure_viscosity, which has to be stated; b is that of FVA 3.
 
         Examples
         --------
@@ -319,10 +269,7 @@ class Lubricant:
         >>> round(oil.at(313.15).viscosity_at(0.5e9), 1)
         267.9
         """
-        stated = Stated(
-            viscosity, viscosity_40, viscosity_100, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100
-        )
-        return cls._own(name, "fva3", stated, density, density_slope, density_law, fitted_pressure)
+        return cls.own("fva3", {}, **data)
 
     @classmethod
     def own(
@@ -342,7 +289,7 @@ class Lubricant:
         fitted_pressure: float = FITTED_PRESSURE,
         name: str = "own oil",
     ) -> Lubricant:
-        """An oil with any law over pressure.
+        """An oil with any law over pressure; its user vouches for it, but not for an estimate.
 
         Parameters
         ----------
@@ -350,9 +297,25 @@ class Lubricant:
             One of `PRESSURE_LAWS`.
         numbers : mapping of str to float
             Attributes of that law in SI; those of Barus' law and the law of FVA 3 are none beside the coefficient.
-        density, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100, viscosity, viscosity_40, \
-        viscosity_100, density_slope, density_law, fitted_pressure, name
-            As for `barus`; a law whose numbers give alpha takes no pressure_viscosity.
+        density : float
+            rho0 at 15 degC [kg/m3].
+        pressure_viscosity : float or str, optional
+            alpha [1/Pa], constant, or the name of a correlation that estimates it (`CORRELATIONS`); or both of the
+            next two. None of them with a law whose numbers give alpha.
+        pressure_viscosity_40, pressure_viscosity_100 : float, optional
+            alpha at 40 and 100 degC [1/Pa]; ln alpha is linear in temperature.
+        viscosity : float, optional
+            eta0 [Pa s], constant; or both of the next two.
+        viscosity_40, viscosity_100 : float, optional
+            Kinematic viscosities at 40 and 100 degC [m2/s], joined by ASTM D341.
+        density_slope : float
+            d rho0/dT [kg/(m3 K)].
+        density_law : {"dowson-higginson", "incompressible"}
+            Density over pressure.
+        fitted_pressure : float
+            Reach of the viscosity data [Pa]; inf flags nothing.
+        name : str
+            Name for provenance and messages.
 
         Raises
         ------
@@ -370,29 +333,14 @@ class Lubricant:
         stated = Stated(
             viscosity, viscosity_40, viscosity_100, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100
         )
-        return cls._own(name, viscosity_law, stated, density, density_slope, density_law, fitted_pressure, numbers)
-
-    @classmethod
-    def _own(
-        cls,
-        name: str,
-        word: str,
-        stated: Stated,
-        density: float,
-        slope: float,
-        density_law: DensityLaw,
-        fitted_pressure: float,
-        numbers: Mapping[str, float] = MappingProxyType({}),
-    ) -> Lubricant:
-        """An own oil; its user vouches for it, but not for an estimate."""
-        laws = own_laws(name, word, stated, density, slope, numbers)
+        laws = own_laws(name, viscosity_law, stated, density, density_slope, numbers)
         return cls(
             name=name,
             verified=laws.correlation is None,
             viscosity=laws.viscosity,
             pressure_viscosity=laws.pressure_viscosity,
             density_15=density,
-            density_slope=slope,
+            density_slope=density_slope,
             density_law=density_law,
             fitted_pressure=fitted_pressure,
             correlation=laws.correlation,

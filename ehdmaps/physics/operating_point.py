@@ -7,6 +7,10 @@ from dataclasses import dataclass
 
 from ehdmaps.errors import InputError
 
+OIL_TEMPERATURES = (213.15, 573.15)
+"""Lowest and highest temperature that an input may give to an oil, -60 and 300 degC [K]: a number beyond stands in
+the wrong unit. The laws of an oil break down earlier, and say so."""
+
 
 @dataclass(frozen=True)
 class OperatingPoint:

@@ -41,13 +41,13 @@ def own_laws(
     Parameters
     ----------
     name : str
-        Of the oil, for messages.
+        Name of the oil, for messages.
     word : str
         Law over pressure, one of `PRESSURE_LAWS`.
     stated : Stated
-        In SI.
+        Stated numbers in SI.
     density, density_slope : float
-        At 15 degC [kg/m3], and over temperature [kg/(m3 K)].
+        Density at 15 degC [kg/m3], and over temperature [kg/(m3 K)].
     numbers : mapping of str to float
         Attributes of that law, beside the pressure-viscosity coefficient.
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from ehdmaps.arrays import FloatArray
 
 
-def peak_sampling_error(position: Array, pressure: Array, cusp: bool) -> float:
+def peak_sampling_error(position: FloatArray, pressure: FloatArray, cusp: bool) -> float:
     """Share of the largest sampled pressure by which the peak between the places may rise above it.
 
     Parameters

@@ -188,9 +188,9 @@ class ContactSolver(Protocol):
         entrainment_speed : float
             u [m/s].
         temperature : float
-            Of the oil supply [K].
+            Temperature of the oil supply [K].
         frequency : float
-            Of the small oscillation to which stiffness and damping belong [Hz]; 0 is the low-frequency limit.
+            Frequency of the small oscillation to which stiffness and damping belong [Hz]; 0 is the low-frequency limit.
         """
         ...
 
@@ -246,7 +246,7 @@ def contact_solution(
     point : OperatingPoint
         Load, speed and temperature of the film.
     frequency : float
-        Of the oscillation [Hz]; 0 is the low-frequency limit.
+        Frequency of the oscillation [Hz]; 0 is the low-frequency limit.
     """
     dry = contact.structural_compliance(point.load)
     compliance = dry + film.film_compliance

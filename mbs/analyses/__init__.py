@@ -1,6 +1,6 @@
 """The analyses of a scene, callable without files: a model goes in, a result with its dataset comes out.
 
-The modules in the order in which a machine is looked at:
+The modules in the order in which a machine is examined:
 
 =============  ====================================================================================
 statics        equilibrium, pressures and films, stiffness and damping of the bearings

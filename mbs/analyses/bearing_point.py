@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.solids import reduced_modulus
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
@@ -30,7 +30,6 @@ from mbs.bearings.contact_report import (
 from mbs.bearings.films import FilmSource
 from mbs.bearings.laws import Law
 from mbs.bearings.roller_loads import RollerLoads
-from mbs.errors import AnalysisError
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import equilibrium
@@ -53,21 +52,21 @@ class BearingPoint:
     bearing : Bearing
         Geometry, clearance, profile, slices.
     load : array, shape (2,)
-        On the inner ring, y and z [N].
+        Load on the inner ring, y and z [N].
     speed : float
-        Of the inner ring [rad/s].
+        Speed of the inner ring [rad/s].
     entrainment_speed, temperature : float
         u [m/s], T [K].
     displacement : array, shape (2,)
-        Of the inner ring against the outer one, y and z [m].
+        Displacement of the inner ring against the outer one, y and z [m].
     stiffness, damping : array, shape (2, 2)
-        Of the bearing in y and z [N/m], [N s/m].
+        Stiffness and damping of the bearing in y and z [N/m], [N s/m].
     rollers : RollerLoads
         Loads of rollers and slices.
     contacts : BearingContacts
         Pressures and films of all slices.
     problems : tuple of str
-        Where the point is outside of what the laws hold for.
+        Limits of the laws that the point exceeds, in words.
     notes : tuple of str
         What else should be known about it.
     """
@@ -130,20 +129,20 @@ def bearing_points(
     bearing : Bearing
         Geometry, clearance, profile, slices.
     law : Law
-        Of a roller between both raceways, see `mbs.bearings.laws`.
+        Law of a roller between both raceways, see `mbs.bearings.laws`.
     films : FilmSource
         Pressures and films, see `mbs.bearings.films`.
     loads : iterable of (float, float)
-        On the inner ring, y and z [N].
+        Loads on the inner ring, y and z [N].
     speeds : sequence of float
-        Of the inner ring [rad/s].
+        Speeds of the inner ring [rad/s].
     temperature : float
-        Of the oil [K].
+        Temperature of the oil [K].
 
     Returns
     -------
     list of list of BearingPoint
-        By load, then by speed.
+        The points, by load, then by speed.
 
     Raises
     ------

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import closest
 from mbs.analyses.case import Case, as_cases
 from mbs.analyses.progress import Progress, silent
-from mbs.errors import AnalysisError
 from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Operation, Sensor
@@ -24,11 +23,11 @@ from mbs.output.campbell_data import campbell_dataset
 from mbs.output.results import described
 from mbs.scene.assembly import Model, law_attributes
 from mbs.scene.fields import HERTZ
-from mbs.scene.scene import RunUp, Scene
+from mbs.scene.scene import Scene
+from mbs.settings import CampbellSettings, RunUp
 from mbs.spectral.campbell import RunUpSpectra, run_up_spectra
 from mbs.spectral.levels import Reference
 from mbs.spectral.run_signal import RunSignal
-from mbs.spectral.settings import CampbellSettings
 from mbs.spectral.spectra import LEAST_OVERSAMPLING
 from mbs.transient.run import Recording
 from mbs.transient.run import run as run_system
@@ -51,7 +50,7 @@ class LawRun:
     record : Recording
         The run in time.
     spectra : RunUpSpectra
-        Its levels over speed, frequency and order.
+        Levels of the run over speed, frequency and order.
     modes : Sweep or None
         Modes of the linear system at some speeds of the run, if they were asked for.
     seconds : float
@@ -80,7 +79,7 @@ class CampbellResult:
     orders : tuple of (float, str)
         Orders that were followed, with their names.
     runs : tuple of LawRun
-        Of each law that came to the end.
+        Runs of the laws that came to the end.
     failed : tuple of str
         Why the others did not, each with its label.
     dataset : xarray.Dataset

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from ehdmaps.errors import InputError
 from mbs.scene.assembly import Model
+from mbs.scene.fields import MICROMETRE
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,15 +18,15 @@ class Case:
     Attributes
     ----------
     label : str
-        In what it differs from the others; its law if nothing does.
+        Difference from the other cases; the law if there is none.
     model : Model
         Scene with its law, clearance and loads.
     clearance : float
         Diametral clearance [m]; NaN if the bearings have not all the same.
     load_factor : float
-        By which all loads of the scene were multiplied.
+        Factor of all loads of the scene.
     start_angle : float or None
-        At which all cages start instead of the scene's angles [rad].
+        Angle at which all cages start instead of the scene's angles [rad].
     """
 
     label: str
@@ -33,6 +34,12 @@ class Case:
     clearance: float
     load_factor: float = 1.0
     start_angle: float | None = None
+
+
+def clearance_text(model: Model) -> str:
+    """The diametral clearances of all bearings in words, such as ``20 um``; empty without bearings."""
+    clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
+    return ", ".join(MICROMETRE.text(value) for value in clearances)
 
 
 def common_clearance(model: Model) -> float:
@@ -47,7 +54,7 @@ def as_cases(models: Model | Case | Sequence[Model | Case]) -> tuple[Case, ...]:
     Parameters
     ----------
     models : Model, Case, or a sequence of them
-        At least one. Models of one law that differ in something else have to be cases, each with a label.
+        Models, at least one. Those of one law that differ in something else have to be cases, each with a label.
 
     Raises
     ------

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.usable import check_usable
-from ehdmaps.physics._values import FloatArray
 from mbs.analyses import planning
 from mbs.analyses.planning import Needed
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.physics._values import FloatArray
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.linearised.validity import FilmLimit, film_limit
@@ -22,7 +22,7 @@ def film_limits(model: Model, displacement: FloatArray, operation: Operation) ->
     model : Model
         The machine with its law.
     displacement : array, shape (n,)
-        Of all coordinates at the equilibrium.
+        Displacement of all coordinates at the equilibrium.
     operation : Operation
         Speed and angle of the system.
     """
@@ -47,11 +47,11 @@ def lowest_limits(model: Model, speeds: FloatArray, displacements: FloatArray | 
     Parameters
     ----------
     model : Model
-        With its law.
+        Model with its law.
     speeds : array, shape (speeds,)
         [rad/s].
     displacements : array, shape (speeds, n), optional
-        Equilibria; they are found if left out.
+        Displacements at the equilibria; they are found if left out.
 
     Returns
     -------

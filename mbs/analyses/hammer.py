@@ -11,10 +11,10 @@ from mbs.analyses.progress import Progress, silent
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import FilmLimit
-from mbs.modal.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
 from mbs.modal.records import Hits
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.scene.assembly import Model
+from mbs.transient.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
 
 HIGHEST = 5000.0
 """Highest frequency of a scene that names none [Hz]."""
@@ -29,13 +29,13 @@ class HammerSettings:
     highest : float or None
         Highest frequency of interest [Hz]; None for that of [linear] in the scene, else `HIGHEST`.
     duration : float or None
-        Of a record [s]; None for as long as the slowest mode needs to decay.
+        Length of a record [s]; None for as long as the slowest mode needs to decay.
     hits : int
-        At each input of the scene.
+        Number of hits at each input of the scene.
     noise : float
         Standard deviation over the peak of a channel.
     seed : int
-        Of heights and noise.
+        Seed of heights and noise.
     nonlinear : bool
         Whether the nonlinear system is integrated for each hit, instead of the one linearised at the equilibrium.
     """
@@ -57,9 +57,9 @@ class HammerResult:
     model : Model
         Scene with its law.
     balance : Equilibrium
-        Where the system is hit, gear meshes with their mean stiffness.
+        Equilibrium at which the system is hit, gear meshes with their mean stiffness.
     modes : Modes
-        Of the same system linearised there: what a test should find.
+        Modes of the same system linearised there: what a test should find.
     test : HammerTest
         How the test was made.
     hits : tuple of Hits

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from mbs.analyses.film_limits import film_limits
-from mbs.linearised.linear import ComplexArray, StateSpace, frequency_response, state_space, with_peaks
+from mbs.linearised.linear import StateSpace, frequency_response, state_space, with_peaks
 from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import DynamicLoad, FilmLimit, dynamic_loads
@@ -27,7 +27,8 @@ class LsaSettings:
     Attributes
     ----------
     frequencies : tuple of float or None
-        Of the responses [Hz]; None for those of [linear] in the scene. More are added around lightly damped modes.
+        Frequencies of the responses [Hz]; None for those of [linear] in the scene. More are added around lightly damped
+        modes.
     operation : Operation or None
         Speed, angle and time of the loads; None for the operating speed of the scene.
     """
@@ -45,15 +46,15 @@ class LsaResult:
     model : Model
         Scene with its law.
     balance : Equilibrium
-        Where the system was linearised, gear meshes with their mean stiffness.
+        Equilibrium at which the system was linearised, gear meshes with their mean stiffness.
     space : StateSpace
-        From the inputs of the scene to its sensors.
+        State space from the inputs of the scene to its sensors.
     asked : int
         How many frequencies were asked for; the others are around lightly damped modes.
     frequencies : array, shape (frequencies,)
         [Hz].
     responses : array of complex, shape (frequencies, sensors, inputs)
-        In the unit of the sensor's quantity, per N or N m.
+        Responses in the unit of the sensor's quantity, per N or N m.
     limits : tuple of FilmLimit
         Up to which frequency the films of each bearing follow; empty for laws without films.
     lifting : tuple of DynamicLoad

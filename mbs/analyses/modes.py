@@ -26,7 +26,7 @@ class ModesResult:
     model : Model
         Scene with its law.
     balance : Equilibrium
-        Where the system was linearised, gear meshes with their mean stiffness.
+        Equilibrium at which the system was linearised, gear meshes with their mean stiffness.
     modes : Modes
         Eigenvalues, shapes and strain-energy shares.
     limits : tuple of FilmLimit

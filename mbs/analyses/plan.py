@@ -92,7 +92,7 @@ def plan(scene: Scene, settings: PlanSettings | None = None, emap: EHDMap | None
     Parameters
     ----------
     scene : Scene
-        With bearings, and with a lubricant unless there is a map.
+        Scene with bearings, and with a lubricant unless there is a map.
     settings : PlanSettings, optional
         How the ranges are found.
     emap : EHDMap, optional

@@ -25,7 +25,7 @@ def job_text(scene: Scene, needed: Needed) -> str:
     Parameters
     ----------
     scene : Scene
-        With a lubricant; geometry, oil and temperature are copied from its text.
+        Scene with a lubricant; geometry, oil and temperature are copied from its text.
     needed : Needed
         The ranges.
     """

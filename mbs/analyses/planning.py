@@ -15,14 +15,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import film_from_moes, moes_groups
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.bearing_element import BearingElement
-from mbs.errors import AnalysisError
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Course, Harmonic, LoadProfile
@@ -68,7 +67,7 @@ class Needed:
     entrainment_speed : (float, float)
         Lowest and highest [m/s].
     temperature : float
-        Of the oil [K].
+        Temperature of the oil [K].
     static_load : float
         Largest load of a slice at rest, centrifugal load included [N/m].
     film_room : float
@@ -140,11 +139,11 @@ def largest_loads(system: System, bearings: Sequence[BearingElement], speed: flo
     Parameters
     ----------
     system : System
-        With dry contact laws.
+        System with dry contact laws.
     bearings : sequence of BearingElement
         Those of the system.
     speed : float
-        Of the system [rad/s].
+        Speed of the system [rad/s].
 
     Raises
     ------
@@ -182,11 +181,11 @@ def film_room(
     Parameters
     ----------
     geometry : BearingGeometry
-        Of steel.
+        Geometry of the bearing, which is of steel.
     lubricant : Lubricant
         The oil.
     load : float
-        Per unit length [N/m], > 0.
+        Load per unit length [N/m], > 0.
     entrainment_speed : float
         [m/s], > 0.
     temperature : float
@@ -220,9 +219,9 @@ def needed_ranges(
     bearings : sequence of BearingElement
         Those of the system.
     static_loads : sequence of float
-        Of each bearing, from `largest_loads` and the centrifugal load [N/m].
+        Largest load of each bearing, from `largest_loads` and the centrifugal load [N/m].
     rooms : sequence of float
-        Of each bearing, from `film_room` [m].
+        Room of the films of each bearing, from `film_room` [m].
     speeds : (float, float)
         Lowest and highest speed of the system [rad/s].
     margin : float

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import LOAD
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
@@ -35,7 +35,7 @@ class Fade:
     entrainment_speed: float
     source: str
 
-    def below(self, speeds: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+    def below(self, speeds: npt.ArrayLike) -> BoolArray:
         """Which speeds of the system [rad/s] lie in the fade; of the shape of `speeds`."""
         return np.asarray(np.abs(np.asarray(speeds, dtype=np.float64)) < self.speed)
 
@@ -65,9 +65,9 @@ def axes_outside(model: Model, speed: float, loads: Mapping[str, float] | None =
     Parameters
     ----------
     model : Model
-        With its temperature.
+        Model with its temperature.
     speed : float
-        Of the system [rad/s]; the highest one of a run.
+        Speed of the system [rad/s]; the highest one of a run.
     loads : mapping of str to float, optional
         Largest load of a slice [N/m] by bearing; of a run it is not recorded.
     """

@@ -14,7 +14,7 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.output.results import described, run_dataset
 from mbs.scene.assembly import Model, law_attributes
-from mbs.scene.scene import RunUp
+from mbs.settings import RunUp
 from mbs.transient.run import WITH_STATES, Recording
 from mbs.transient.run import run as run_system
 

@@ -8,16 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.analyses.case import Case, as_cases
 from mbs.analyses.progress import Progress, silent
-from mbs.errors import AnalysisError
-from mbs.linearised.sweep import SweepRange
 from mbs.linearised.sweep import sweep as sweep_system
 from mbs.linearised.sweep_result import Sweep
 from mbs.output.results import described
 from mbs.output.sweep_data import sweep_dataset
 from mbs.scene.assembly import Model, law_attributes
+from mbs.settings import SweepRange
 
 
 @dataclass(frozen=True)
@@ -48,7 +47,7 @@ class SweepResult:
     sweeps : tuple of Sweep
         One a case.
     outside : tuple of mapping of str to int
-        At how many speeds each bearing lies outside the map, one a case.
+        Number of speeds at which each bearing lies outside the map, one a case.
     dataset : xarray.Dataset
         What `mbs sweep -o` writes.
     """

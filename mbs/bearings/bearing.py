@@ -11,11 +11,11 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.solids import STEEL, Material
 
-FloatArray = npt.NDArray[np.float64]
 Profile = str | Callable[[FloatArray], npt.ArrayLike] | tuple[float, ...] | FloatArray
 
 MOST_SLICES = 100_000
@@ -70,7 +70,7 @@ class Bearing:
     slices : int
         Number of slices of equal length of a roller. Statics want 30 or more.
     material : Material
-        Its density gives the rollers their centrifugal load.
+        Material of the bearing; its density gives the rollers their centrifugal load.
 
     Raises
     ------
@@ -106,7 +106,7 @@ class Bearing:
         clearance : float
             Diametral clearance P_d [m], < 0 for a preloaded bearing.
         profile, slices
-            As of the class.
+            The same as for the class.
         """
         if isinstance(clearance, bool) or not isinstance(clearance, int | float | np.floating | np.integer):
             raise InputError(f"bearing, clearance: got {clearance!r}; allowed: a number of metres")

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.maps.lines import FAST
-from ehdmaps.physics._values import FloatArray
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
@@ -18,7 +18,7 @@ from mbs.bearings.bearing_kernel import RingMotion, Shape, Work, bearing_force, 
 from mbs.bearings.force_at_point import Arrays
 from mbs.bearings.slice_table import CELLS, LawNumbers, PreparedLaw, law_numbers, store_numbers
 from mbs.bearings.speed_tables import NODES, SpeedTables
-from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, IndexArray, Kind, Marks, Member, Moment
+from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
 from mbs.model.elements import Element
 
 FELT = np.array([1, 2, 4, 5])
@@ -56,9 +56,9 @@ class Course(NamedTuple):
         Whether speed or temperature lie outside the map.
     """
 
-    nodes: IndexArray
+    nodes: IntArray
     weights: FloatArray
-    outside: IndexArray
+    outside: IntArray
 
 
 class Bearings(NamedTuple):
@@ -86,11 +86,11 @@ class Bearings(NamedTuple):
         Where on them the steps are.
     """
 
-    firsts: IndexArray
-    places: IndexArray
-    films_of: IndexArray
-    rollers: IndexArray
-    slices: IndexArray
+    firsts: IntArray
+    places: IntArray
+    films_of: IntArray
+    rollers: IntArray
+    slices: IntArray
     start_angles: FloatArray
     cage_rates: FloatArray
     sizes: FloatArray
@@ -98,7 +98,7 @@ class Bearings(NamedTuple):
     profiles: FloatArray
     cos: FloatArray
     sin: FloatArray
-    rows: IndexArray
+    rows: IntArray
     states: FloatArray
     films: Films
     course: Course
@@ -248,7 +248,7 @@ class BearingBlock:
                 shared[key] = len(self._films)
                 self._films.append(SpeedTables(force, element.temperature, (by_speed, centrifugal)))
             films_of.append(shared[key])
-        self._places: list[tuple[IndexArray, FloatArray]] = []
+        self._places: list[tuple[IntArray, FloatArray]] = []
         self._speeds = np.zeros(0)
         self._arrays = _arrays(members, films_of, self._films)
 
@@ -257,7 +257,7 @@ class BearingBlock:
         self._speeds = speeds
         self._places = [film.places(speeds) for film in self._films]
 
-    def prepare(self, first: int, last: int) -> tuple[Bearings, Marks]:
+    def prepare(self, first: int, last: int) -> tuple[Bearings, BoolArray]:
         """Make the tables of the next steps, as many as are held at once.
 
         Parameters
@@ -296,7 +296,7 @@ def _padded(rows: Sequence[FloatArray]) -> FloatArray:
     return padded
 
 
-def _whole(numbers: Iterable[int]) -> IndexArray:
+def _whole(numbers: Iterable[int]) -> IntArray:
     """Whole numbers as an array."""
     return np.array(list(numbers), dtype=np.int64)
 

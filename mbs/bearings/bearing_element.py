@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.roller_loads import RollerLoads
@@ -48,7 +48,7 @@ class BearingElement(RingElement):
     Attributes
     ----------
     name : str
-        For messages and results.
+        Name for messages and results.
     inner, outer : str
         Places at the middle of the bearing.
     bearing : Bearing
@@ -56,7 +56,7 @@ class BearingElement(RingElement):
     force : RingForce
         The force.
     temperature : float
-        Of the oil [K].
+        Temperature of the oil [K].
     inner_spin, outer_spin : float
         Speeds of the rings as multiples of the system's.
     start_angle : float

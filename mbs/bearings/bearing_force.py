@@ -29,8 +29,6 @@ from mbs.bearings.ring_forces import RingForces, ring_forces
 from mbs.bearings.roller_loads import RollerLoads
 from mbs.model.elements import Forces
 
-FloatArray = npt.NDArray[np.float64]
-
 _ALIKE = 1e-6
 
 
@@ -42,7 +40,7 @@ class BearingForce:
     bearing : Bearing
         Geometry, clearance, profile, slices.
     law : DryLaw or ContactLaw
-        From `mbs.bearings.laws`, or the law "series" of a map made for the same geometry.
+        Law from `mbs.bearings.laws`, or the law "series" of a map made for the same geometry.
     slices : int, optional
         Number of slices; that of the bearing if left out.
     outside : {"error", "clamp", "asymptote"}, optional
@@ -84,7 +82,7 @@ class BearingForce:
         temperature : float
             T [K].
         centrifugal_load : float
-            Of a roller, per unit length [N/m].
+            Centrifugal load of a roller, per unit length [N/m].
 
         Raises
         ------
@@ -108,13 +106,13 @@ class BearingForce:
         Parameters
         ----------
         pose, velocity : array (6,)
-            Of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
+            Pose and velocity of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
         cage_angle : float
             Angle of the first roller, from y towards z [rad]; see `Bearing.cage_angle`.
         entrainment_speed, temperature : float
             u [m/s] and T [K]; a map's law needs them, see `BearingGeometry.entrainment_speed`.
         centrifugal_load : float
-            Of a roller [N/m], see `Bearing.centrifugal_load`; for a map's law only.
+            Centrifugal load of a roller [N/m], see `Bearing.centrifugal_load`; for a map's law only.
 
         Returns
         -------
@@ -170,13 +168,13 @@ class BearingForce:
         Parameters
         ----------
         pose, velocity : array (6,)
-            Of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
+            Pose and velocity of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
         cage_angle : float
             Angle of the first roller, from y towards z [rad].
         entrainment_speed, temperature : float
             u [m/s] and T [K]; a map's law needs them.
         centrifugal_load : float
-            Of a roller [N/m]; for a map's law only.
+            Centrifugal load of a roller [N/m]; for a map's law only.
         """
         point = self._prepared(entrainment_speed, temperature, centrifugal_load)
         return point.rollers(pose, velocity, cage_angle)
@@ -198,9 +196,9 @@ class BearingForce:
         Parameters
         ----------
         inner, outer : RingState
-            Where the rings are and how they move.
+            Positions and velocities of the rings.
         cage_angle, entrainment_speed, temperature, centrifugal_load
-            As of a call.
+            The same as for a call.
         outer_spin, outer_spin_rate : float
             How far frame O lags behind the outer ring's body about its axis, because O does not spin [rad], [rad/s];
             zero for a ring that does not turn, see `mbs.bearings.kinematics.spin`.
@@ -225,13 +223,13 @@ class BearingForce:
         Parameters
         ----------
         pose, velocity : array (6,)
-            Of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
+            Pose and velocity of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
         angles : int
             Number of cage angles, evenly spaced over a pitch.
         entrainment_speed, temperature : float
             u [m/s] and T [K]; a map's law needs them.
         centrifugal_load : float
-            Of a roller [N/m]; for a map's law only.
+            Centrifugal load of a roller [N/m]; for a map's law only.
         """
         if not isinstance(angles, int) or angles < 1:
             raise InputError(f"bearing force, angles: got {angles!r}; allowed: a whole number >= 1")

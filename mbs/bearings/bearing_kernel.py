@@ -12,12 +12,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.maps.kernel import evaluate_at
-from ehdmaps.maps.lines import FAST
-from ehdmaps.maps.tables import LOAD, CountArray, Point
+from ehdmaps.maps.lines import FAST, unilateral_force
+from ehdmaps.maps.tables import LOAD, Point
 from mbs.bearings.powers import power
 from mbs.bearings.slice_table import (
     CELLS,
@@ -31,9 +31,6 @@ from mbs.bearings.slice_table import (
     law_numbers,
     read_cells,
 )
-
-FloatArray = npt.NDArray[np.float64]
-IndexArray = npt.NDArray[np.int64]
 
 NOT_FINITE, TOO_FAR = -1, -2
 """What `bearing_force` returns for values that are no finite numbers, and for poses beyond reason."""
@@ -144,7 +141,7 @@ class Work(NamedTuple):
         Load w, dw/d approach, damping c, dc/d approach; the derivatives to be multiplied by `LawNumbers.slope`.
     """
 
-    rows: IndexArray
+    rows: IntArray
     states: FloatArray
 
 
@@ -182,7 +179,7 @@ def _roller(motion: RingMotion, shape: Shape, j: int) -> Roller:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _find_cells(motion: RingMotion, shape: Shape, numbers: LawNumbers, rows: IndexArray, places: FloatArray) -> None:
+def _find_cells(motion: RingMotion, shape: Shape, numbers: LawNumbers, rows: IntArray, places: FloatArray) -> None:
     """Row of the table of each slice, and the place in the cell."""
     x, lost = shape.positions, shape.profile
     inverse = numbers.inverse_scale
@@ -231,7 +228,7 @@ Sums = tuple[float, float, float, float, float, float, float, float, float]
 def _moderate_sums(
     positions: FloatArray, w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, motion: Motion, j: int
 ) -> Sums:
-    """Sums for slices that all have c rate >= -w/2; and a sum that is zero then alone."""
+    """Sums for slices that all have c rate >= -w/2, where the rule is linear; and a sum that is zero then alone."""
     w0 = w1 = k0 = k1 = k2 = c0 = c1 = c2 = 0.0
     lifting = 0.0  # a sum, because the compiler cannot put a minimum into vector instructions
     steady, tilting = motion
@@ -259,20 +256,13 @@ def _moderate_sums(
 def _lifting_sums(
     positions: FloatArray, w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, motion: Motion, j: int
 ) -> Sums:
-    """As `_moderate_sums`, for any rates: the branch of the law without tension is in it."""
+    """As `_moderate_sums`, for any rates, by the whole rule without tension."""
     w0 = w1 = k0 = k1 = k2 = c0 = c1 = c2 = 0.0
     steady, tilting = motion
     for i in range(positions.size):
         x = positions[i]
         rate = steady + x * tilting
-        at_rest, damping = w[j, i], c[j, i]
-        part = damping * rate
-        load, k = at_rest + part, dw[j, i] + dc[j, i] * rate
-        if part < -0.5 * at_rest:
-            ratio = at_rest / part
-            load = -0.25 * at_rest * ratio
-            k = 0.25 * ratio * (ratio * dc[j, i] * rate - 2.0 * dw[j, i])
-            damping = 0.25 * ratio * ratio * damping
+        load, k, damping = unilateral_force(w[j, i], dw[j, i], c[j, i], dc[j, i], rate)
         w0 += load
         w1 += load * x
         k0 += k
@@ -322,7 +312,7 @@ def _write(plane: Plane, length: float, out: FloatArray) -> None:
 def _assemble(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray, out: FloatArray) -> int:
     """Force, stiffness and damping, into `out` (13, 6); returns how many rollers are above the mapped load.
 
-    The loads are those at the rate of each slice, see `ehdmaps.maps.lines.force_of`.
+    The loads are those at the rate of each slice, see `ehdmaps.physics.unilateral`.
     """
     w, dw, c, dc = states[0], states[1], states[2], states[3]
     slope, length = numbers.slope, shape.sizes.slice_length
@@ -386,7 +376,7 @@ def bearing_force(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work
     Returns
     -------
     int
-        Zero; 1 if some slice was above the mapped load; NOT_FINITE or TOO_FAR, with `out` left alone.
+        A code: zero; 1 if some slice was above the mapped load; NOT_FINITE or TOO_FAR, with `out` left alone.
     """
     wrong = _check(motion, shape.sizes)
     if wrong != 0:
@@ -409,7 +399,7 @@ def bearing_force_of_point(
     shape: Shape,
     numbers: LawNumbers,
     states: FloatArray,
-    counts: CountArray,
+    counts: IntArray,
     out: FloatArray,
 ) -> int:
     """`bearing_force` straight from a `Point`, for laws that no table fits; some ten times slower.
@@ -479,7 +469,7 @@ def force_of_arrays(
     angles: FloatArray,
     numbers: FloatArray,
     cells: FloatArray,
-    rows: IndexArray,
+    rows: IntArray,
     states: FloatArray,
     out: FloatArray,
 ) -> int:
@@ -517,7 +507,7 @@ def force_of_point_arrays(
     angles: FloatArray,
     numbers: FloatArray,
     states: FloatArray,
-    counts: CountArray,
+    counts: IntArray,
     out: FloatArray,
 ) -> int:
     """`bearing_force_of_point` for callers in Python.

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.lubricant import Lubricant
@@ -16,8 +16,6 @@ from ehdmaps.units import LOAD, PRESSURE, SPEED, TEMPERATURE
 from mbs.bearings.films import SIDES, ContactState, FilmSource
 from mbs.bearings.laws import Law
 from mbs.bearings.roller_loads import RollerLoads
-
-FloatArray = npt.NDArray[np.float64]
 
 STATIC_LIMIT = 4e9
 """Hertz pressure of the static load rating of roller bearings after ISO 76 [Pa]; permanent deformation above it."""
@@ -137,7 +135,7 @@ def axes_left(law: Law, load: float, entrainment_speed: float, temperature: floa
     Parameters
     ----------
     law : Law
-        Of a map or formula; a dry law has no map.
+        Law of a map or formula; a dry law has no map.
     load, entrainment_speed, temperature : float
         Largest load of a slice [N/m], u [m/s], T [K].
     """
@@ -175,9 +173,9 @@ def heated(
     Parameters
     ----------
     contacts : BearingContacts
-        With their films.
+        Contacts with their films.
     oil : Lubricant or None
-        Its conductivity has to be known.
+        Oil, whose conductivity has to be known.
     modulus, entrainment_speed, temperature : float
         E' [Pa], u [m/s], T [K].
     """

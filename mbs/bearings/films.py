@@ -17,8 +17,8 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.contact import LineContact
@@ -26,8 +26,6 @@ from ehdmaps.physics.films import dowson_higginson_minimum, martin_minimum, moes
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
-
-FloatArray = npt.NDArray[np.float64]
 
 SIDES = ("inner", "outer")
 """The contacts of a roller, in the order of all arrays."""
@@ -172,7 +170,7 @@ class MapFilms:
     Attributes
     ----------
     emap : EHDMap
-        Of a bearing.
+        Map of a bearing.
 
     Raises
     ------

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, OutsideMapError
 from ehdmaps.maps.kernel import LOAD_TOLERANCE
 from ehdmaps.maps.law import ContactLaw, LawAtPoint
@@ -25,7 +26,6 @@ from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.roller_loads import RollerLoads, roller_loads
 from mbs.model.elements import Forces
 
-FloatArray = npt.NDArray[np.float64]
 Triple = tuple[FloatArray, FloatArray, FloatArray]
 """Force, stiffness, damping."""
 
@@ -187,9 +187,9 @@ class ForceAtPoint:
         Parameters
         ----------
         pose : array_like
-            Of the inner ring in O, shape (6,) [m], [rad].
+            Pose of the inner ring in O, shape (6,) [m], [rad].
         velocity : array_like, optional
-            Its rate, shape (6,) [m/s], [rad/s]; at rest if left out.
+            Rate of the pose, shape (6,) [m/s], [rad/s]; at rest if left out.
         cage_angle : float
             Angle at which the cage stands [rad].
         """

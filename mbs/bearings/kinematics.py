@@ -12,9 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-
-FloatArray = npt.NDArray[np.float64]
 
 _ROTATION_ERROR = 1e-6
 
@@ -26,9 +25,9 @@ class RingState:
     Attributes
     ----------
     position, velocity : array (3,)
-        Of the centre of the ring [m], [m/s].
+        Position and velocity of the centre of the ring [m], [m/s].
     rotation : array (3, 3)
-        From the ring's body to the inertial frame; its first column is the axis of the ring.
+        Rotation from the ring's body to the inertial frame; its first column is the axis of the ring.
     angular_velocity : array (3,)
         [rad/s].
 

@@ -3,8 +3,8 @@
 A law here means a roller between both raceways, over the total approach of both contacts. `single` makes the law of
 one of its two contacts, which are alike.
 
-The damping of all laws acts by one rule, which knows no tension: with x = c rate/w_s the load is w_s (1 + x) for
-x >= -1/2, and -w_s/(4 x) below. Laws with a constant c have a jump of the force at lift-off, while bodies approach.
+The damping of all laws acts by the rule of `ehdmaps.physics.unilateral`, which knows no tension. Laws with a constant c
+have a jump of the force at lift-off, while bodies approach.
 """
 
 from __future__ import annotations
@@ -15,7 +15,9 @@ from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
+from numba import njit
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
@@ -24,9 +26,8 @@ from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import reduced_modulus
+from ehdmaps.physics.unilateral import unilateral_force
 from mbs.bearings.bearing import Bearing
-
-FloatArray = npt.NDArray[np.float64]
 
 _EXPONENT = 10.0 / 9.0
 
@@ -38,7 +39,7 @@ class DryLaw:
     Attributes
     ----------
     name : str
-        For messages and provenance.
+        Name for messages and provenance.
     kind : {"series", "single"}
         A roller between both raceways, or one contact.
     coefficient : float
@@ -97,16 +98,43 @@ class DryLaw:
         positive = np.where(loaded, delta, 1.0)
         slope = np.where(loaded, self.coefficient * self.exponent * positive ** (self.exponent - 1.0), 0.0)
         at_rest = slope * positive / self.exponent
-        part = np.where(loaded, self.damping * rate, 0.0)
-        moderate = part >= -0.5 * at_rest
-        ratio = np.where(moderate, 0.0, at_rest / np.where(moderate, 1.0, part))
-        load = np.where(moderate, at_rest + part, -0.25 * at_rest * ratio)
-        stiffness = np.where(moderate, slope, -0.5 * ratio * slope)
-        damping = np.where(loaded, np.where(moderate, 1.0, 0.25 * ratio**2) * self.damping, 0.0)
-        return load, stiffness, damping
+        damping = np.where(loaded, self.damping, 0.0)
+        return unilateral_forces(at_rest, slope, damping, np.zeros(delta.shape), rate)
 
 
 Law = DryLaw | ContactLaw
+
+_unilateral_force = njit(error_model="numpy")(unilateral_force)
+
+
+def unilateral_forces(
+    w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, rate: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """`ehdmaps.physics.unilateral.unilateral_force` of many contacts.
+
+    Parameters
+    ----------
+    w, dw, c, dc, rate : array
+        The same quantities as there, of one shape.
+
+    Returns
+    -------
+    load, stiffness, damping : array
+        The same quantities as there, of the same shape.
+    """
+    forces = np.empty((3, w.size))
+    _fill_forces(w.ravel(), dw.ravel(), c.ravel(), dc.ravel(), rate.ravel(), forces)
+    load, stiffness, damping = forces.reshape(3, *w.shape)
+    return load, stiffness, damping
+
+
+@njit(cache=True, error_model="numpy")
+def _fill_forces(
+    w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, rate: FloatArray, forces: FloatArray
+) -> None:
+    """Loads, stiffness and damping of contacts in motion, into `forces` (3, n)."""
+    for i in range(w.size):
+        forces[0, i], forces[1, i], forces[2, i] = _unilateral_force(w[i], dw[i], c[i], dc[i], rate[i])
 
 
 def hertz(bearing: Bearing, damping: float = 0.0) -> DryLaw:
@@ -115,7 +143,8 @@ def hertz(bearing: Bearing, damping: float = 0.0) -> DryLaw:
     Parameters
     ----------
     bearing : Bearing
-        Its roller length and material; other materials than steel scale the load by E'/E'_steel.
+        Bearing, of which roller length and material are taken; other materials than steel scale the load by
+        E'/E'_steel.
     damping : float
         Constant c of each contact of a roller [N s/m]; both are in series, so that c/2 acts between the rings.
 

@@ -12,11 +12,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from mbs.bearings.kinematics import RingState, axial_rotation, relative_motion
 
-FloatArray = npt.NDArray[np.float64]
 PoseForce = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
 
 _EYE = np.eye(3)
@@ -31,7 +30,7 @@ class RingForces:
     inner_force, outer_force : array (3,)
         [N].
     inner_moment, outer_moment : array (3,)
-        About the centre of each ring [N m].
+        Moments about the centre of each ring [N m].
     stiffness, damping : array (12, 12)
         Minus the derivatives of (inner force, inner moment, outer force, outer moment) by small displacements and
         rotations (inner position, inner rotation vector, outer position, outer rotation vector), and by velocities and
@@ -64,7 +63,7 @@ def ring_forces(
     inner, outer : RingState
         The rings.
     outer_spin, outer_spin_rate : float
-        As of `relative_motion`.
+        The same as for `relative_motion`.
     """
     pose, rate = relative_motion(inner, outer, outer_spin, outer_spin_rate)
     f, K, C = force(pose, rate)

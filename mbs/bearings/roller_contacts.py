@@ -15,13 +15,12 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.maps.law import ContactLaw, LawAtPoint
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.laws import DryLaw, Law
 from mbs.model.elements import Forces
-
-FloatArray = npt.NDArray[np.float64]
 
 _STEPS = 100
 _ALIKE = 1e-6
@@ -78,7 +77,7 @@ class RollerContacts:
         displacement, velocity : array (12 + Z,)
             [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
         cage_angle, entrainment_speed, temperature : float
-            As of `BearingForce`.
+            The same as for `BearingForce`.
 
         Returns
         -------
@@ -136,9 +135,9 @@ class RollerContacts:
         Parameters
         ----------
         inner_pose : array_like
-            Of the inner ring, shape (6,) [m], [rad].
+            Pose of the inner ring, shape (6,) [m], [rad].
         outer_pose : array_like, optional
-            Of the outer ring, shape (6,); at the origin if left out.
+            Pose of the outer ring, shape (6,); at the origin if left out.
         cage_angle : float
             Angle at which the cage stands [rad].
         entrainment_speed : float

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement, RingElement
 from mbs.bearings.roller_contacts import RollerContacts
@@ -88,7 +88,7 @@ def ring_matrices(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArra
     Parameters
     ----------
     stiffness, damping : array, shape (6, 6) or (12 + Z, 12 + Z)
-        Of massless rollers, or of rings and rollers.
+        Matrices of massless rollers, or of rings and rollers.
     """
     if stiffness.shape[0] == 6:
         return stiffness, damping

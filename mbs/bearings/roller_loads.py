@@ -6,14 +6,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import RegularGridInterpolator
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.maps.emap import EHDMap
 from mbs.bearings.bearing import Bearing
-
-FloatArray = npt.NDArray[np.float64]
+from mbs.bearings.laws import unilateral_forces
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +22,7 @@ class RollerLoads:
     Attributes
     ----------
     angle : array (Z,)
-        Where the rollers are in O, from y towards z, within -pi to pi [rad].
+        Angles of the rollers in O, from y towards z, within -pi to pi [rad].
     load : array (Z,)
         Load of each roller on the inner raceway [N].
     moment : array (Z,)
@@ -63,7 +62,7 @@ class RollerLoads:
         Parameters
         ----------
         emap : EHDMap
-            Of this bearing.
+            Map of this bearing.
         entrainment_speed, temperature, centrifugal_load : float
             u [m/s], T [K], q [N/m].
         variable : {"central_film", "minimum_film"}
@@ -131,11 +130,7 @@ def roller_loads(
     gap, tilt, gap_rate, tilt_rate = (part[:, None] for part in rollers)
     approach = gap + x * tilt - lost
     rate = gap_rate + x * tilt_rate
-    at_rest, _, damping, _ = states
-    part = damping * rate
-    moderate = part >= -0.5 * at_rest
-    lifting = -0.25 * at_rest**2 / np.where(moderate, -1.0, part)
-    load = np.where(moderate, at_rest + part, lifting)
+    load, _, _ = unilateral_forces(states[0], states[1], states[2], states[3], rate)
     angle = cage_angle + 2.0 * math.pi * np.arange(count) / count
     return RollerLoads(
         angle=np.arctan2(np.sin(angle), np.cos(angle)),

@@ -12,17 +12,14 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.maps.bulk import evaluate_many_at
 from ehdmaps.maps.kernel import LOAD_TOLERANCE, collapse
 from ehdmaps.maps.lines import FAST, line_approach, line_state
-from ehdmaps.maps.tables import ApproachTable, CountArray, LawTable, Point
-
-FloatArray = npt.NDArray[np.float64]
-IndexArray = npt.NDArray[np.int64]
+from ehdmaps.maps.tables import ApproachTable, LawTable, Point
 
 fixed_tuple: Any = to_fixed_tuple
 """The first numbers of an array as a tuple, in compiled code."""
@@ -110,7 +107,7 @@ def store_numbers(found: LawNumbers, numbers: FloatArray) -> None:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def read_cells(cells: FloatArray, rows: IndexArray, states: FloatArray) -> None:
+def read_cells(cells: FloatArray, rows: IntArray, states: FloatArray) -> None:
     """Load, slope, damping and its slope, into `states` (4, n), from rows (n,) and places in the cells, states[0]."""
     w, dw, c, dc = states[0], states[1], states[2], states[3]
     for i in range(rows.size):
@@ -144,11 +141,11 @@ def tabulate(
     Parameters
     ----------
     point : Point
-        With the whole film.
+        Law at a point, with the whole film.
     nodes : array (ROWS + 1,)
         `NODES`.
     buffer : array (8, 2 ROWS + 1)
-        Scratch.
+        Scratch space.
     cells : array (2 ROWS, 8)
         Filled: four coefficients of w, four of c, over the distance from the end of the cell that is nearer to the
         centre, in scales.
@@ -305,7 +302,7 @@ def tabulate_law(
     buffer: FloatArray,
     cells: FloatArray,
     numbers: FloatArray,
-    counts: CountArray,
+    counts: IntArray,
 ) -> bool:
     """Collapse a law at its conditions, and fill a table with it.
 
@@ -314,11 +311,11 @@ def tabulate_law(
     law : FlatTable
         The law.
     workspace : array (4, n, 8)
-        Of the law.
+        Workspace of the law.
     conditions : array (3,)
         u [m/s], T [K], q [N/m].
     nodes, buffer, cells, numbers
-        As of `tabulate`.
+        The same as for `tabulate`.
     counts : array (4,)
         int64, counted up outside the map.
 

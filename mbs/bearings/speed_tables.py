@@ -11,16 +11,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.errors import EhdmapsError
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.physics._values import FloatArray
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.force_at_point import ForceAtPoint
-
-IndexArray = npt.NDArray[np.int64]
 
 STEP = 1e-3
 """Distance of the nodes in ln of the speed."""
@@ -61,7 +58,7 @@ class SpeedTables:
         self._outside = np.zeros(NODES, dtype=bool)
         self._buffer = np.empty((8, 2 * table.ROWS + 1))
 
-    def places(self, speeds: FloatArray) -> tuple[IndexArray, FloatArray]:
+    def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
         """Nodes below speeds [rad/s], and parts of the way to the next nodes; both zero for one speed alone."""
         size = np.abs(speeds)
         if not self.varies or np.all(size == size[0]):
@@ -72,8 +69,8 @@ class SpeedTables:
         return node.astype(np.int64), place - node
 
     def prepare(
-        self, speeds: FloatArray, nodes: IndexArray, weights: FloatArray, cells: FloatArray, numbers: FloatArray
-    ) -> tuple[IndexArray, npt.NDArray[np.bool_], IndexArray]:
+        self, speeds: FloatArray, nodes: IntArray, weights: FloatArray, cells: FloatArray, numbers: FloatArray
+    ) -> tuple[IntArray, BoolArray, IntArray]:
         """Make the tables for the first of some speeds, as many as are held at once.
 
         Parameters
@@ -81,14 +78,14 @@ class SpeedTables:
         speeds : array (n,)
             [rad/s].
         nodes, weights : array (n,)
-            From `places`.
+            Nodes and weights from `places`.
         cells, numbers : array (NODES, rows, 8), (NODES, 10)
             Tables, kept from call to call.
 
         Returns
         -------
         slots : array (k,)
-            Where the tables of the first k speeds are.
+            Slots of the tables of the first k speeds.
         sound : array (k,)
             Whether tables hold the law there; else it must be called for each slice.
         outside : array (k,)

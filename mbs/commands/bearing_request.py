@@ -21,6 +21,7 @@ from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
+from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
 from mbs.bearings.bearing import Bearing
@@ -40,7 +41,7 @@ MOST_SLICES_IN_ALL = 5_000_000
 """Of all rollers at all points: half a gigabyte."""
 
 _LOADS, _SPEEDS = (1e-3, 1e7), (0.0, 1e5 * math.pi / 30.0)
-_TEMPERATURES, _ROUGHNESSES = (213.15, 573.15), (1e-9, 1e-4)
+_ROUGHNESSES = (1e-9, 1e-4)
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,9 +63,9 @@ class BearingRequest:
     loads : tuple of float
         Sizes of the load on the inner ring [N].
     direction : (float, float)
-        Its direction, y and z; a unit vector.
+        Direction of the load, y and z; a unit vector.
     speeds : tuple of float
-        Of the inner ring [rad/s].
+        Speeds of the inner ring [rad/s].
     temperature, roughness : float
         [K], [m].
     description : BearingDescription
@@ -119,7 +120,7 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
             f"--slices: got {short(arguments.slices)} for all rollers at {len(loads) * len(speeds)} points; allowed: "
             f"{MOST_SLICES_IN_ALL} slices in all; take fewer slices or points"
         )
-    temperature = _one("--temperature", arguments.temperature, "K", _TEMPERATURES, TEMPERATURE, CELSIUS_40, problems)
+    temperature = _one("--temperature", arguments.temperature, "K", OIL_TEMPERATURES, TEMPERATURE, CELSIUS_40, problems)
     roughness = _one("--roughness", arguments.roughness, "m", _ROUGHNESSES, MICROMETRE, ROUGHNESS, problems)
     direction = _direction(arguments.direction, problems)
     clearance = None if arguments.clearance is None else read_clearance(arguments.clearance, problems)

@@ -7,13 +7,14 @@ import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.figure import Figure
 
+from ehdmaps.arrays import BoolArray
 from ehdmaps.errors import InputError
+from ehdmaps.figures import typeset
 from ehdmaps.units import RPM, TEMPERATURE
 from mbs.analyses.campbell import MODE_SPEEDS, CampbellResult, LawRun, campbell, campbell_problems
-from mbs.analyses.case import Case
+from mbs.analyses.case import Case, clearance_text
 from mbs.analyses.film_limits import lowest_limits
 from mbs.analyses.reach import axes_outside, fade_of
 from mbs.commands.cases import load_cases
@@ -24,11 +25,11 @@ from mbs.model.elements import Sensor
 from mbs.output.campbell_plot import MOST_LAWS, Overlay, Reach, campbell_figure
 from mbs.scene.assembly import Model
 from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
-from mbs.scene.fields import HERTZ, MICROMETRE, MILLISECOND
+from mbs.scene.fields import HERTZ, MILLISECOND
+from mbs.settings import CampbellSettings
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, difference_text
 from mbs.spectral.orders import OrderPeak
-from mbs.spectral.settings import CampbellSettings
 
 _LEAST_SHARE = 0.05
 """Of the strain energy in bearings, of a mode that is drawn in."""
@@ -107,7 +108,7 @@ def _reach(entry: LawRun) -> Reach:
     return Reach(at, lowest_limits(entry.case.model, at), float(speeds[_fading(entry)].max(initial=0.0)))
 
 
-def _fading(entry: LawRun) -> npt.NDArray[np.bool_]:
+def _fading(entry: LawRun) -> BoolArray:
     """Which windows reach below the map, where the film fades to the dry contact, shape (windows,)."""
     found, record = entry.spectra.campbell, entry.record
     fade = fade_of(entry.case.model)
@@ -139,6 +140,7 @@ def _report(entry: LawRun) -> list[str]:
         f"step, {entry.seconds:.3g} s",
         f"  highest sum level {found.sum_level[at]:.1f} dB at {RPM.text(float(found.speeds[at]))}"
         f"{_elsewhere(entry, at)}",
+        *(f"  note: {line}" for line in record.notes),
     ]
     if entry.spectra.peaks:
         lines.append("  peaks along the orders: order   speed/rpm   frequency/Hz   level/dB   above its valleys/dB")
@@ -195,7 +197,6 @@ def _peak(peak: OrderPeak, modes: Sweep | None) -> str:
 
 def _title(model: Model, sensor: Sensor) -> str:
     """Heading of the figure."""
-    clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
-    shown = ", ".join(MICROMETRE.text(value) for value in clearances).replace("um", "µm")
-    temperature = TEMPERATURE.text(model.scene.temperature).replace("deg", "°")
-    return f"{model.scene.title}\nsensor {sensor.name}; {temperature}" + (f", clearance {shown}" if shown else "")
+    clearance, temperature = clearance_text(model), TEMPERATURE.text(model.scene.temperature)
+    at = temperature + (f", clearance {clearance}" if clearance else "")
+    return f"{model.scene.title}\nsensor {sensor.name}; {typeset(at)}"

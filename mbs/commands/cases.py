@@ -58,12 +58,12 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
     Parameters
     ----------
     arguments : argparse.Namespace
-        With `scene`, `output`, `plot`, and `law`, `map`, `clearance`, `load_factor`, `start_angle`: each a text, a
-        list of texts, None, or left out.
+        Arguments with `scene`, `output`, `plot`, and `law`, `map`, `clearance`, `load_factor`, `start_angle`: each a
+        text, a list of texts, None, or left out.
     several : bool
         Whether laws and maps stand side by side; else a law goes before a map.
     kind : Kind
-        Of what -o writes.
+        Kind of file that -o writes.
 
     Raises
     ------
@@ -131,13 +131,13 @@ def scene_output_problems(
     Parameters
     ----------
     scene : str
-        As it was given: a shipped system or a file.
+        Scene as it was given: a shipped system or a file.
     read : iterable of str or Path
         Further files that the command reads: maps, and those that the scene names.
     output, plot : str, optional
         What -o and --plot name.
     kind : Kind
-        Of what -o writes.
+        Kind of file that -o writes.
     """
     return output_problems([Output("-o", output, kind), Output("--plot", plot, FIGURE)], [scene, *read])
 

@@ -15,6 +15,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import Bar, Lines, progress
 from ehdmaps.outputs import write_figure
 from ehdmaps.units import RPM, TEMPERATURE, Display, quantity
+from mbs.analyses.case import clearance_text
 from mbs.analyses.film_limits import film_limits, ring_motions
 from mbs.analyses.reach import axes_outside
 from mbs.bearings.bearing_force import BearingForce
@@ -24,12 +25,11 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import write_dataset
 from mbs.scene.assembly import Model
-from mbs.scene.fields import MICROMETRE
 
 RESOLUTION = 150
 
 MORE_DAMPING = "films as a rule are stiffer and damp less than computed here"
-"""What is known of quicker motion."""
+"""What is known of motion above the low-frequency limit."""
 
 NO_LONGER_VALID = f"above it stiffness and damping of slow motion are no longer valid, {MORE_DAMPING}"
 
@@ -60,18 +60,16 @@ class Told:
 
 def heading(model: Model, speed: float | None = None) -> list[str]:
     """What was analysed, and which of its numbers are assumptions."""
-    clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
-    shown = ", ".join(MICROMETRE.text(value) for value in clearances) or "none"
     at = "" if speed is None else f"{RPM.text(speed)}, "
     return [
         f"{model.scene.title}: law {model.law}",
-        f"  {at}{TEMPERATURE.text(model.scene.temperature)}, clearance {shown}; assumed: "
+        f"  {at}{TEMPERATURE.text(model.scene.temperature)}, clearance {clearance_text(model) or 'none'}; assumed: "
         + (f"{len(model.scene.assumed)} keys of the scene, marked there" if model.scene.assumed else "nothing"),
     ]
 
 
 def film_warnings(limits: Sequence[FilmLimit], frequencies: Iterable[float]) -> list[str]:
-    """Lines on frequencies that are too quick for low-frequency films."""
+    """Lines on frequencies above the low-frequency limit of the films."""
     lines = []
     highest = max(frequencies, default=0.0)
     for limit in limits:
@@ -113,7 +111,7 @@ def read_option(
     Parameters
     ----------
     option : str
-        Its name, such as "--highest".
+        Name of the option, such as "--highest".
     text : str or None
         What was given; None if it was left out.
     unit : str
@@ -164,7 +162,7 @@ def write(arguments: argparse.Namespace, dataset: xr.Dataset, figure: Figure | N
     Parameters
     ----------
     arguments : argparse.Namespace
-        With `output` and `plot`.
+        Arguments with `output` and `plot`.
     dataset : xarray.Dataset
         The result.
     figure : matplotlib.figure.Figure or None

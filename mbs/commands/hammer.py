@@ -8,15 +8,17 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.errors import InputError
+from ehdmaps.extras import lacking
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.units import quantity
 from mbs.analyses.hammer import HammerSettings, hammer
 from mbs.commands.cases import load_model
 from mbs.commands.common import Told, film_warnings, heading, outside_at
 from mbs.linearised.modes import Modes
-from mbs.modal.hammer import HammerTest
-from mbs.modal.uff import UFF, Measurement, write_uff
+from mbs.modal.uff import UFF, Measurement
+from mbs.modal.uff_writing import write_uff
 from mbs.scene.fields import MILLISECOND
+from mbs.transient.hammer import HammerTest
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -67,7 +69,7 @@ def _options(arguments: argparse.Namespace) -> tuple[float | None, float | None]
         problems.append(f"--plot: got {arguments.plot}, but records are not drawn; see `mbs modal-fit --plot`")
     if not arguments.output:
         problems.append("-o: missing; give the universal file that the records are written to, such as hits.uff")
-    problems += output_problems([Output("-o", arguments.output, UFF)])
+    problems += [*output_problems([Output("-o", arguments.output, UFF)]), *lacking("modal", "pyuff", "-o")]
     if problems:
         raise InputError(problems)
     return found[0], found[1]

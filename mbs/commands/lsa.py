@@ -9,12 +9,12 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.signal import find_peaks
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.analyses.lsa import lsa
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_warnings, heading, outside_at, write
 from mbs.commands.reach import fade_lines
-from mbs.linearised.linear import ComplexArray, response_unit
+from mbs.linearised.linear import response_unit
 from mbs.linearised.validity import DynamicLoad
 from mbs.output.response_plot import response_figure
 from mbs.scene.assembly import Model

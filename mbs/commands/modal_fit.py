@@ -9,16 +9,17 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
 from ehdmaps.units import quantity
 from mbs.commands.common import RESOLUTION
-from mbs.errors import AnalysisError
 from mbs.modal.estimation import Estimate, estimate
 from mbs.modal.fit import identify
 from mbs.modal.records import Responses
 from mbs.modal.result import Method, ModalFit, fit_dataset
-from mbs.modal.uff import UFF, Measurement, read_uff, write_uff
+from mbs.modal.uff import UFF, Measurement
+from mbs.modal.uff_reading import read_uff
+from mbs.modal.uff_writing import write_uff
 from mbs.modal.windows import needed_decay
 from mbs.output.modal_plot import fit_figure
 from mbs.output.results import RESULT, described, write_dataset

@@ -7,12 +7,13 @@ import math
 
 import numpy as np
 
+from ehdmaps.arrays import IntArray
 from ehdmaps.errors import InputError
 from mbs.analyses.modes import modes
 from mbs.commands.cases import load_model
 from mbs.commands.common import film_warnings, heading, outside_at, read_option, write
 from mbs.commands.reach import fade_lines
-from mbs.linearised.modes import IntArray, Modes
+from mbs.linearised.modes import Modes
 from mbs.output.modes_plot import modes_figure
 from mbs.scene.assembly import Model
 from mbs.scene.campbell import HIGHEST_HIGHEST, LOWEST_HIGHEST

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.units import RPM
 from mbs.analyses.reach import fade_of, share_below
 from mbs.scene.assembly import Model
@@ -20,7 +20,7 @@ def fade_lines(model: Model, speeds: FloatArray, of: str = "the speeds") -> list
     model : Model
         The machine with its law.
     speeds : array, shape (n,)
-        Of the system [rad/s].
+        Speeds of the system [rad/s].
     of : str
         What the speeds are, in words.
     """

@@ -7,7 +7,7 @@ import argparse
 import numpy as np
 from matplotlib.figure import Figure
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.units import RPM
 from mbs.analyses.reach import Fade, axes_outside, fade_of
 from mbs.analyses.runup import runup
@@ -31,6 +31,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"from {first} to {last} in {found.course.duration:.4g} s: {result.steps} steps, {result.halved} taken back, "
         f"{result.iterations / max(result.steps, 1):.3g} Newton iterations a step, "
         f"{1e6 * found.seconds / max(result.steps, 1):.0f} us a step",
+        *(f"note: {line}" for line in result.notes),
     ]
     for bearing, force in zip(model.bearings, result.forces, strict=False):
         size = np.hypot(force[:, 1], force[:, 2])

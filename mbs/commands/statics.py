@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import FILM, PRESSURE
 from mbs.analyses.film_limits import film_limits, ring_motions
 from mbs.analyses.statics import statics
@@ -17,6 +17,7 @@ from mbs.bearings.roller_element import ring_matrices
 from mbs.commands.cases import load_model
 from mbs.commands.common import heading, outside_at, write
 from mbs.commands.reach import fade_lines
+from mbs.linearised.validity import HIGHEST_RATIO
 from mbs.model.equilibrium import Equilibrium
 from mbs.output.plot import statics_figure
 from mbs.scene.assembly import Model
@@ -56,7 +57,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_matrix("C [the same times s]", damping),
         ]
     lines += [
-        f"{limit.bearing}: films follow as in the low-frequency limit up to {limit.frequency:.4g} Hz (omega b/u = 0.3)"
+        f"{limit.bearing}: films follow as in the low-frequency limit up to {limit.frequency:.4g} Hz "
+        f"(omega b/u = {HIGHEST_RATIO})"
         for limit in film_limits(model, balance.displacement, balance.operation)
         if 0.0 < limit.frequency < math.inf
     ]

@@ -18,13 +18,14 @@ from mbs.commands.cases import load_cases
 from mbs.commands.common import NO_LONGER_VALID, heading, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.crossings import exchanged
-from mbs.linearised.sweep import MOST_ANGLES, MOST_SPEEDS, SweepRange
+from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.sweep_result import Sweep
 from mbs.linearised.validity import HIGHEST_RATIO
 from mbs.model.elements import Operation
 from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import Model
 from mbs.scene.fields import MICROMETRE
+from mbs.settings import MOST_SPEEDS, SweepRange
 
 _LEAST_SHARE = 0.05
 _LEAST_ASSURANCE = 0.5

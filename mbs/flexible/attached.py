@@ -20,7 +20,7 @@ class Attached:
     frame : str
         Name of the frame.
     inertia : Inertia
-        Its offset is that of the centre of mass from the frame, along x.
+        Mass and moments of inertia; the offset is that of the centre of mass from the frame, along x.
     """
 
     frame: str
@@ -33,10 +33,10 @@ def attach(body: Body, parts: Sequence[Attached]) -> Body:
     Parameters
     ----------
     body : Body
-        Reduced. Modes that it was reduced to stay its coordinates, so parts much heavier than what they sit on ask for
-        a higher cut-off.
+        The reduced body. Modes that it was reduced to stay its coordinates, so parts much heavier than what they sit on
+        ask for a higher cut-off.
     parts : sequence of Attached
-        On frames whose six displacements are known.
+        Parts on frames whose six displacements are known.
 
     Raises
     ------

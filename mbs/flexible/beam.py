@@ -19,8 +19,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 
 _X = (0, 6)
 _THETA_X = (3, 9)
@@ -82,7 +82,7 @@ class CrossSection:
         youngs_modulus : float
             E [Pa].
         poisson_ratio : float
-            nu.
+            Poisson's ratio nu.
         density : float
             [kg/m3].
         """
@@ -246,7 +246,7 @@ def element_length(section: CrossSection, frequency: float, error: float) -> flo
     Parameters
     ----------
     section : CrossSection
-        Of the beam.
+        Cross section of the beam.
     frequency : float
         [Hz].
     error : float

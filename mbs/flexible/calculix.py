@@ -16,8 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ehdmaps.arrays import IntArray
 from ehdmaps.errors import InputError
-from mbs.flexible.finite_elements import FiniteElementModel, IntArray
+from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.matrix_files import NodePositions, assemble_model, checked_labels, read_triplets
 from mbs.flexible.number_table import check_file, read_numbers
 
@@ -33,11 +34,11 @@ def read_calculix(
     Parameters
     ----------
     stiffness, mass, dofs : Path
-        job.sti, job.mas and job.dof of one run.
+        Files job.sti, job.mas and job.dof of one run.
     nodes : NodePositions
-        Of its mesh; see `mbs.flexible.mesh`.
+        Nodes of its mesh; see `mbs.flexible.mesh`.
     units : {"SI", "mm-t-s"}
-        Of deck and matrices.
+        Units of deck and matrices.
 
     Raises
     ------

@@ -7,8 +7,8 @@ import math
 import numpy as np
 from scipy.linalg import eigh
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 
 
 def modal_damping(mass: FloatArray, stiffness: FloatArray, ratio: float) -> FloatArray:
@@ -20,7 +20,7 @@ def modal_damping(mass: FloatArray, stiffness: FloatArray, ratio: float) -> Floa
     Parameters
     ----------
     mass, stiffness : array, shape (n, n)
-        Symmetric; M positive definite, K positive semi-definite.
+        Symmetric matrices; M positive definite, K positive semi-definite.
     ratio : float
         zeta, 0 <= zeta < 1.
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.matrix_files import UNIT_SYSTEMS
 from mbs.model.body import lever_arm
@@ -36,9 +36,9 @@ class Extent:
     Attributes
     ----------
     mass : float
-        Without the share of fixed nodes [kg].
+        Mass without the share of fixed nodes [kg].
     centre : array, shape (3,)
-        Of that mass [m].
+        Centre of that mass [m].
     lower, upper : array, shape (3,)
         Corners of the box around all nodes of the mesh [m].
     """

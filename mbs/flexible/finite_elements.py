@@ -9,13 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-
-IntArray = npt.NDArray[np.int64]
 
 MOST_FREEDOMS = 300_000
 """More degrees of freedom are refused: their factors fill tens of gigabytes."""
@@ -42,7 +39,7 @@ class FiniteElementModel:
     numbers : array of int, shape (P,)
         Nodes whose position is known.
     positions : array, shape (P, 3)
-        Where they are [m].
+        Positions of the nodes [m].
 
     Raises
     ------

@@ -15,10 +15,9 @@ import numpy as np
 from scipy import linalg, sparse
 from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh, splu
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.flexible.finite_elements import IntArray
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.extras import needs
 
 MOST_MODES = 300
 
@@ -50,9 +49,9 @@ class HeldBody:
     Parameters
     ----------
     stiffness, mass : sparse array, shape (N, N)
-        Without the degrees of freedom that are prescribed one by one.
+        Matrices without the degrees of freedom that are prescribed one by one.
     averages : array, shape (m, N)
-        B; no rows if there are no averages.
+        Matrix B; no rows if there are no averages.
     groups : array of int, shape (N,)
         Degrees of freedom with the same number belong to the same node; for the order of elimination.
     cutoff : float
@@ -111,9 +110,9 @@ class HeldBody:
         Parameters
         ----------
         force : array, shape (N, c)
-            In columns.
+            Forces, in columns.
         prescribed : array, shape (m, c)
-            p.
+            Prescribed displacements p, in columns.
 
         Returns
         -------
@@ -290,7 +289,7 @@ def elimination_order(matrix: sparse.csc_array, groups: IntArray) -> IntArray:
     Parameters
     ----------
     matrix : sparse array, shape (N, N)
-        Symmetric.
+        Symmetric matrix.
     groups : array of int, shape (N,)
         Degrees of freedom with the same number stay together.
 
@@ -298,9 +297,15 @@ def elimination_order(matrix: sparse.csc_array, groups: IntArray) -> IntArray:
     -------
     array of int, shape (N,)
         Degrees of freedom, first to last.
+
+    Raises
+    ------
+    DependencyError
+        If pymetis is not installed.
     """
     # Only here: reduced files are read without it.
-    import pymetis
+    with needs("flexible", "pymetis", "reduction of a finite-element body"):
+        import pymetis
 
     _, group = np.unique(groups, return_inverse=True)
     size = matrix.shape[0]

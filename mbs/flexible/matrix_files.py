@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy import io, sparse
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.flexible.finite_elements import MOST_FREEDOMS, FiniteElementModel, IntArray
+from mbs.flexible.finite_elements import MOST_FREEDOMS, FiniteElementModel
 from mbs.flexible.number_table import NumberTable, check_file, check_last_line, read_numbers
 
 UNIT_SYSTEMS = ("SI", "mm-t-s")
@@ -30,7 +30,7 @@ class Labelled(NamedTuple):
     Attributes
     ----------
     matrix : sparse array, shape (N, N)
-        In the units of the file.
+        The matrix, in the units of the file.
     nodes, directions : array of int, shape (N,)
         Node number, and 0..2 for displacements, 3..5 for rotations.
     """
@@ -55,9 +55,9 @@ def assemble_model(stiffness: Labelled, mass: Labelled, nodes: NodePositions, un
     stiffness, mass : Labelled
         Their rows may be in different order; they have the same degrees of freedom.
     nodes : NodePositions
-        Of the mesh.
+        Nodes of the mesh.
     units : {"SI", "mm-t-s"}
-        Of all three.
+        Units of all three.
 
     Raises
     ------
@@ -148,7 +148,7 @@ def read_abaqus_matrix(path: Path, dofs: Path | None = None) -> Labelled:
     path : Path
         The file; either half of a symmetric matrix, or the whole.
     dofs : Path, optional
-        For FORMAT=COORDINATE; see `read_dof_table`.
+        Table of degrees of freedom for FORMAT=COORDINATE; see `read_dof_table`.
 
     Raises
     ------

@@ -14,8 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.extras import needs
 from ehdmaps.units import short
 from mbs.flexible.matrix_files import NodePositions
 from mbs.flexible.number_table import check_file
@@ -30,16 +31,22 @@ _PACKED = (".gz",)
 SHORTEST_READ, BYTES_PER_SECOND = 20.0, 1e6
 """Seconds that meshio has, and what it reads in one more; it takes half a second to start, and 10 MB a second."""
 
+_NO_PACKAGE = 3
+"""Exit status of the process that reads, where meshio or a package that it needs is not installed."""
+
 # meshio prints what went wrong, and leaves the program.
-_READ = """
+_READ = f"""
 import os, sys
 found = os.fdopen(os.dup(1), "wb")
 os.dup2(2, 1)
 try:
     import meshio, numpy
     numpy.save(found, numpy.asarray(meshio.read(sys.argv[1]).points, dtype=float))
+except ImportError as error:
+    sys.stderr.write(str(error))
+    sys.exit({_NO_PACKAGE})
 except (Exception, SystemExit) as error:
-    sys.stderr.write(f" {error}")
+    sys.stderr.write(f" {{error}}")
 """
 
 
@@ -136,6 +143,9 @@ def _meshio_points(path: Path) -> FloatArray:
                 check=False,
             )
             words = " ".join(done.stderr.decode("utf-8", "replace").split())
+            if done.returncode == _NO_PACKAGE:
+                with needs("flexible", "meshio", f"{path}: reading this format"):
+                    raise ImportError(f"{words:.120}")
         except subprocess.TimeoutExpired:
             words = f"it did not end within {seconds:.3g} s"
         found.seek(0)

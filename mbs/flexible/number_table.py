@@ -8,11 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import check_input, first_bytes
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import short
-from mbs.flexible.finite_elements import IntArray
 
 LONGEST_FILE = 4_000_000_000
 """Bytes."""
@@ -68,7 +67,7 @@ def read_numbers(path: Path, columns: int, comment: str, delimiter: str | None =
     comment : str
         One character, with which lines begin that are passed over.
     delimiter : str, optional
-        Between numbers; blanks if left out.
+        Character between numbers; blanks if left out.
 
     Raises
     ------

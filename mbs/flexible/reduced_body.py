@@ -8,8 +8,8 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from mbs.flexible.damping import modal_damping
 from mbs.model.body import Body, Frame
 
@@ -29,7 +29,7 @@ class ReducedBody:
     Attributes
     ----------
     mass, stiffness : array, shape (n, n)
-        In the units of the coordinates; symmetric, M positive definite, K positive semi-definite.
+        Matrices in the units of the coordinates; symmetric, M positive definite, K positive semi-definite.
     coordinates : tuple of str
         Names, such as "left.y" and "mode 1".
     units : tuple of str
@@ -39,7 +39,7 @@ class ReducedBody:
         are known; at a point that is a single node without rotations the three rotations are zero in the
         transform, so a moment has no effect there and a sensed rotation is zero.
     attributes : mapping of str to str
-        Where the matrices come from.
+        Origin of the matrices.
 
     Raises
     ------
@@ -141,13 +141,13 @@ def to_body(
     Parameters
     ----------
     reduced : ReducedBody
-        Its matrices and frames.
+        Matrices and frames of the body.
     name : str
         Name in the system.
     position : sequence of float, shape (3,)
-        Where the origin of the finite-element body is [m]; its axes are those of the system.
+        Position of the origin of the finite-element body [m]; its axes are those of the system.
     damping_ratio : float
-        Of every mode of the free body.
+        Damping ratio of every mode of the free body.
     spin : float
         Speed about x as a multiple of the system's. The body has no gyroscopic terms: right for housings, which do not
         turn; shafts that turn are made of beams.

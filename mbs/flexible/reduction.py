@@ -15,10 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.flexible.finite_elements import FiniteElementModel, IntArray, named
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.errors import AnalysisError, InputError
+from mbs.flexible.finite_elements import FiniteElementModel, named
 from mbs.flexible.held_body import HeldBody
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.spiders import Interface, Spider, nearest_node, spider
@@ -54,9 +53,9 @@ def reduce(
     model : FiniteElementModel
         The body; free, or with feet that are fixed already.
     interfaces : mapping of str to Interface
-        Where forces act. With all of them held the body must not move.
+        Places where forces act. With all of them held the body must not move.
     points : mapping, optional
-        Where the body is observed only. At a node of a solid the rotations are not known: zero.
+        Places where the body is only observed. At a node of a solid the rotations are not known: zero.
     cutoff : float
         Highest frequency of the modes with all interfaces held [Hz].
     attributes : mapping of str to str, optional

@@ -43,14 +43,14 @@ def flexible_shaft(
     name : str
         Name of the body.
     sections : sequence of Section
-        At least one; without a gap along x.
+        Sections, at least one, without a gap along x.
     discs : sequence of Disc
         Rigid parts; within the sections.
     freedoms : sequence of str
         Some of x, y, z, theta_x, theta_y, theta_z; those left out are held all along the shaft. Bending needs two:
         y and theta_z, z and theta_y.
     position : sequence of float, shape (3,)
-        Where x = 0 of sections, discs and frames is [m].
+        Position of x = 0 of sections, discs and frames [m].
     frames : mapping of str to float
         Places on the axis by name, along x from the position [m]; at least one.
     spin : float
@@ -62,7 +62,7 @@ def flexible_shaft(
         Modes of the shaft with its frames held are kept up to this frequency [Hz]. Left out: no reduction, and the
         coordinates are those of all nodes.
     damping_ratio : float
-        Of the modes of the free shaft at rest.
+        Damping ratio of the modes of the free shaft at rest.
 
     Returns
     -------

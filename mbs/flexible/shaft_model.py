@@ -15,8 +15,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, eigh
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from mbs.flexible.beam import (
     CrossSection,
     element_gyroscopic,
@@ -52,7 +52,7 @@ class ShaftModel:
     nodes : array, shape (nodes,)
         [m].
     freedoms : tuple of str
-        Of each node.
+        Freedoms of each node.
     mass, gyroscopic, stiffness : array, shape (N, N)
         M, G per speed, K.
     """
@@ -90,7 +90,7 @@ def shaft_model(
     freedoms : sequence of str
         Kept freedoms.
     places : sequence of float
-        Where there shall be nodes besides [m].
+        Further places of nodes [m].
     largest_element : float, optional
         [m].
     cutoff : float, optional
@@ -136,7 +136,7 @@ def reduced(model: ShaftModel, masters: Sequence[int], cutoff: float) -> tuple[F
     model : ShaftModel
         The whole.
     masters : sequence of int
-        Nodes.
+        Nodes that stay.
     cutoff : float
         Highest frequency of the modes [Hz].
 

@@ -31,7 +31,7 @@ class Section:
     Attributes
     ----------
     begin, end : float
-        Along x, from the position of the shaft [m].
+        Distances along x from the position of the shaft [m].
     diameter, bore : float
         0 <= bore < diameter [m].
     youngs_modulus : float
@@ -94,9 +94,9 @@ class Disc:
     Attributes
     ----------
     position : float
-        Along x, from the position of the shaft [m].
+        Distance along x from the position of the shaft [m].
     inertia : Inertia
-        Its offset is that of the centre of mass from `position`.
+        Mass and moments of inertia; the offset is that of the centre of mass from `position`.
     """
 
     position: float
@@ -111,7 +111,7 @@ def misfits(
     Parameters
     ----------
     sections, discs : sequence
-        Parts.
+        Parts of the shaft.
     freedoms : sequence of str
         Those that are kept.
     frames : mapping of str to float

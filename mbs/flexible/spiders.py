@@ -16,9 +16,9 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.flexible.finite_elements import FiniteElementModel, IntArray, named
+from mbs.flexible.finite_elements import FiniteElementModel, named
 from mbs.model.body import FREEDOMS, lever_arm
 
 Kind = Literal["rigid", "averaging"]
@@ -37,7 +37,7 @@ class Interface:
     Attributes
     ----------
     position : array, shape (3,)
-        Of the place [m]; need not be a node.
+        Position of the place [m]; it need not be a node.
     nodes : array of int, shape (n,)
         Node numbers.
     kind : {"rigid", "averaging"}
@@ -45,7 +45,7 @@ class Interface:
     freedoms : tuple of str
         Those of the place that become coordinates of the reduced body; the others are left to the body.
     weights : array, shape (n,), optional
-        Of the nodes in the mean, such as the areas that they stand for; equal if left out.
+        Weights of the nodes in the mean, such as the areas that they stand for; equal if left out.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def spider(model: FiniteElementModel, name: str, interface: Interface) -> Spider
     model : FiniteElementModel
         The body.
     name : str
-        Of the interface, for messages.
+        Name of the interface, for messages.
     interface : Interface
         A single node of a solid has translations only: then the interface has no rotations either and is at the node.
 
@@ -201,7 +201,7 @@ def nodes_on_cylinder(
     radius : float
         [m].
     begin, end : float
-        From the point along the axis [m].
+        Distances from the point along the axis [m].
     tolerance : float
         How far off the surface and beyond its ends a node may lie [m].
 

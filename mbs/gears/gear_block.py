@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray, IntArray
 from mbs.gears.gear import GearMesh
 from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_force
-from mbs.model.blocks import FOUND, Answers, IndexArray, Kind, Member, Moment, SteadyBlock
+from mbs.model.blocks import FOUND, Answers, Kind, Member, Moment, SteadyBlock
 
 
 class Meshes(NamedTuple):
@@ -25,7 +25,7 @@ class Meshes(NamedTuple):
         As of `mesh_force`.
     """
 
-    firsts: IndexArray
+    firsts: IntArray
     constants: FloatArray
     series: FloatArray
 

@@ -1,7 +1,7 @@
 """Force of a gear mesh along its line of action, in compiled code, without allocation.
 
-Each flank feels one compression and its rate. k and c act while it is compressed, by the rule of `mbs.bearings.laws`
-that knows no tension: with x = c rate/w the force is w (1 + x) for x >= -1/2, and -w/(4 x) below.
+Each flank feels one compression and its rate. k and c act while it is compressed, by the rule of
+`ehdmaps.physics.unilateral` that knows no tension.
 
 Within `TOUCH` of first contact the stiffness rises from zero in a straight line and the damping by 3 s^2 - 2 s^3, so
 that the force is C1 in compression and rate, at any rate. A compressed flank is thereby offset by TOUCH/2, which is
@@ -14,7 +14,10 @@ import math
 
 from numba import njit
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
+from ehdmaps.physics.unilateral import Force, unilateral_force
+
+_unilateral_force = njit(error_model="numpy")(unilateral_force)
 
 TOUCH = 1e-7
 """Compression over which contact becomes whole [m]."""
@@ -31,15 +34,15 @@ FORCE, SLOPE, BY_RATE = range(3)
 
 
 @njit(cache=True, error_model="numpy")
-def flank_force(compression: float, rate: float, stiffness: float, damping: float) -> tuple[float, float, float]:
+def flank_force(compression: float, rate: float, stiffness: float, damping: float) -> Force:
     """Force of a flank, and its derivatives by compression and by rate.
 
     Parameters
     ----------
     compression : float
-        Of the mesh spring [m]; no force below 0.
+        Compression of the mesh spring [m]; no force below 0.
     rate : float
-        Of the compression [m/s].
+        Rate of the compression [m/s].
     stiffness : float
         [N/m].
     damping : float
@@ -54,11 +57,8 @@ def flank_force(compression: float, rate: float, stiffness: float, damping: floa
     else:
         w, k = stiffness * (compression - 0.5 * TOUCH), stiffness
         c, bend = damping, 0.0
-    part = c * rate
-    if part >= -0.5 * w:
-        return w + part, k + bend * rate, c
-    ratio = w / part
-    return -0.25 * w * ratio, 0.25 * ratio * (ratio * bend * rate - 2.0 * k), 0.25 * ratio * ratio * c
+    force: Force = _unilateral_force(w, k, c, bend, rate)
+    return force
 
 
 @njit(cache=True, error_model="numpy")
@@ -68,13 +68,13 @@ def mesh_course(constants: FloatArray, series: FloatArray, angle: float, speed: 
     Parameters
     ----------
     constants : ndarray
-        Of the mesh, see `GearMesh.arrays`.
+        Constants of the mesh, see `GearMesh.arrays`.
     series : ndarray
         Fourier series of stiffness and error, see there.
     angle : float
-        Of the system [rad].
+        Angle of the system [rad].
     speed : float
-        Of the system [rad/s].
+        Speed of the system [rad/s].
     """
     phase = constants[TEETH] * angle + constants[PHASE]
     pace = constants[TEETH] * speed
@@ -103,9 +103,9 @@ def mesh_force(
     Parameters
     ----------
     constants, series : array (5,), (4, harmonics)
-        Of the mesh; see the names of the places above.
+        Constants and series of the mesh; see the names of the places above.
     angle, speed : float
-        Of the system [rad], [rad/s].
+        Angle and speed of the system [rad], [rad/s].
     motion, rate : array (2,)
         Compression of the driving and of the other flank without error and backlash [m], and its rate [m/s].
     out : array (2, 3)

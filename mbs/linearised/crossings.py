@@ -21,7 +21,7 @@ import itertools
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.linearised.sweep_result import UndampedSweep
 
 _BESIDE = 3

@@ -10,13 +10,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.model.elements import Input, Quantity, Sensor
 from mbs.model.equilibrium import Equilibrium
-
-ComplexArray = npt.NDArray[np.complex128]
 
 _ORDER: dict[Quantity, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
 """How often a sensor differentiates."""
@@ -39,7 +36,7 @@ def with_peaks(frequencies: FloatArray, eigenvalues: ComplexArray) -> FloatArray
     frequencies : array, shape (m,)
         [Hz], rising.
     eigenvalues : array, shape (modes,)
-        Of the complex modes [1/s]. Modes without any damping have no finite peak, and are left out.
+        Eigenvalues of the complex modes [1/s]. Modes without any damping have no finite peak, and are left out.
 
     Returns
     -------
@@ -70,7 +67,7 @@ class StateSpace:
     A : array, shape (2 n, 2 n)
         System matrix.
     B : array, shape (2 n, inputs)
-        For inputs of 1 N or 1 N m.
+        Input matrix for inputs of 1 N or 1 N m.
     C : array, shape (sensors, 2 n)
         Sensors [m or rad, per s, per s2].
     D : array, shape (sensors, inputs)
@@ -103,7 +100,7 @@ def state_space(balance: Equilibrium, inputs: Sequence[Input] = (), sensors: Seq
     Parameters
     ----------
     balance : Equilibrium
-        Where.
+        Equilibrium to linearise at.
     inputs, sensors : sequence
         Columns of B and D, rows of C and D.
     """
@@ -130,7 +127,7 @@ def responses(balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatA
     Parameters
     ----------
     balance : Equilibrium
-        Where.
+        Equilibrium to linearise at.
     inputs : sequence of Input
         What excites.
     frequencies : array, shape (frequencies,)
@@ -150,9 +147,9 @@ def frequency_response(
     Parameters
     ----------
     balance : Equilibrium
-        Where.
+        Equilibrium to linearise at.
     inputs, sensors : sequence
-        From where to where.
+        Inputs and sensors of the responses.
     frequencies : array, shape (frequencies,)
         [Hz].
     """

@@ -1,4 +1,4 @@
-"""Frequency responses from the modes of the state: as exact as solving at each frequency, and much quicker for many.
+"""Frequency responses from the modes of the state: as exact as solving at each frequency, and much faster for many.
 
     H(omega) = sum_k (c . r_k)(l_k . b)/(i omega - lambda_k)
 
@@ -12,9 +12,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.linearised.linear import ComplexArray, frequency_response, input_matrix, responses, sensor_matrix
+from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.errors import AnalysisError
+from mbs.linearised.linear import frequency_response, input_matrix, responses, sensor_matrix
 from mbs.linearised.modes import StateModes
 from mbs.model.elements import Input, Sensor
 from mbs.model.equilibrium import Equilibrium
@@ -38,11 +38,11 @@ def modal_response(
     Parameters
     ----------
     balance : Equilibrium
-        Where.
+        Equilibrium to linearise at.
     states : StateModes
-        Of the same equilibrium.
+        Complex modes of the same equilibrium.
     inputs, sensors : sequence
-        From where to where.
+        Inputs and sensors of the responses.
     frequencies : array, shape (frequencies,)
         [Hz].
     """
@@ -70,10 +70,11 @@ def checked_response(
     Returns
     -------
     responses : array, shape (frequencies, sensors, inputs)
-        By modes; by direct solution where the error was above `TOLERANCE`, or a mode lies on the frequency axis.
+        Responses by modes, or by direct solution where the error was above `TOLERANCE`, or a mode lies on the frequency
+        axis.
     error : float
-        Of the responses, as a part of them or of a millionth of how the whole system moves, whichever is more; 0 if
-        they were solved directly.
+        Error of the responses, as a part of them or of a millionth of how the whole system moves, whichever is more; 0
+        if they were solved directly.
 
     Raises
     ------

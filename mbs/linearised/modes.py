@@ -9,15 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg import eigh
 
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.linearised.linear import ComplexArray
+from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
+from ehdmaps.errors import AnalysisError
 from mbs.model.equilibrium import Equilibrium
-
-IntArray = npt.NDArray[np.int64]
 
 FREE = 1e-6
 """Part of the highest undamped frequency below which a motion counts as free when states are scaled."""
@@ -91,7 +87,7 @@ class StateModes:
     eigenvalues : array, shape (2 n,)
         [1/s].
     right : array, shape (2 n, 2 n)
-        Columns; of size 1 where potential and kinetic energy measure the size.
+        Right eigenvectors in columns, of size 1 where potential and kinetic energy measure the size.
     left : array, shape (2 n, 2 n)
         Rows, with left @ right = 1.
     oscillates : array of bool, shape (2 n,)
@@ -101,7 +97,7 @@ class StateModes:
     eigenvalues: ComplexArray
     right: ComplexArray
     left: ComplexArray
-    oscillates: npt.NDArray[np.bool_]
+    oscillates: BoolArray
 
 
 def damping_ratio(eigenvalues: ComplexArray) -> FloatArray:
@@ -116,7 +112,7 @@ def modes(balance: Equilibrium) -> Modes:
     Parameters
     ----------
     balance : Equilibrium
-        Where; the gyroscopic terms are those of its speed.
+        Equilibrium to linearise at; the gyroscopic terms are those of its speed.
 
     Raises
     ------
@@ -147,7 +143,7 @@ def undamped_modes(balance: Equilibrium) -> UndampedModes:
     Parameters
     ----------
     balance : Equilibrium
-        Where. Gyroscopic terms are left out.
+        Equilibrium to linearise at. Gyroscopic terms are left out.
 
     Raises
     ------
@@ -175,9 +171,9 @@ def state_modes(balance: Equilibrium, undamped: UndampedModes) -> StateModes:
     Parameters
     ----------
     balance : Equilibrium
-        Where; the gyroscopic terms are those of its speed.
+        Equilibrium to linearise at; the gyroscopic terms are those of its speed.
     undamped : UndampedModes
-        Of the same equilibrium.
+        Undamped modes of the same equilibrium.
     """
     n = balance.system.size
     phi = undamped.shapes
@@ -207,7 +203,7 @@ def energy_shares(balance: Equilibrium, shapes: ComplexArray | FloatArray) -> Fl
     Parameters
     ----------
     balance : Equilibrium
-        With the stiffness of each part.
+        Equilibrium, with the stiffness of each part.
     shapes : array, shape (n, modes)
         Real or complex displacements.
     """

@@ -15,13 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
+from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.linearised.crossings import straightened
-from mbs.linearised.linear import ComplexArray
 from mbs.linearised.modal_response import checked_response
-from mbs.linearised.modes import IntArray
 from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep_point import Along, Point, bearing_parts, bridge, first_order_shift, over_pitch, solve_modes
 from mbs.linearised.sweep_result import BearingSweep, ComplexSweep, ResponseSweep, Sweep, UndampedSweep
@@ -29,10 +26,9 @@ from mbs.linearised.tracking import match, numbers, tracks
 from mbs.model.elements import Input, Operation, Sensor
 from mbs.model.equilibrium import equilibrium
 from mbs.model.system import System
+from mbs.settings import MOST_SPEEDS
 
-__all__ = ["MOST_ANGLES", "MOST_SPEEDS", "Sweep", "SweepRange", "sweep"]
-
-MOST_SPEEDS = 2000
+__all__ = ["MOST_ANGLES", "Sweep", "sweep"]
 
 MOST_ANGLES = 1000
 
@@ -41,45 +37,6 @@ FEWEST_BETWEEN = 16
 
 MOST_RESPONSES = 10_000_000
 """Speeds times frequencies times inputs times sensors."""
-
-
-@dataclass(frozen=True)
-class SweepRange:
-    """Speeds of a sweep, equally far apart.
-
-    Attributes
-    ----------
-    begin, end : float
-        Lowest and highest speed [rad/s].
-    points : int
-        How many.
-
-    Raises
-    ------
-    InputError
-        If they do not rise from 0 on, or are too few or too many.
-    """
-
-    begin: float
-    end: float
-    points: int
-
-    def __post_init__(self) -> None:
-        problems = []
-        if not 2 <= self.points <= MOST_SPEEDS:
-            problems.append(f"points: got {self.points}; allowed: a whole number from 2 to {MOST_SPEEDS}")
-        if not 0.0 <= self.begin < self.end < np.inf:
-            problems.append(
-                f"from, to: got {self.begin:.6g} to {self.end:.6g} rad/s; allowed: rising, from 0 rpm on; exchange "
-                "them, or set them apart"
-            )
-        if problems:
-            raise InputError(problems)
-
-    @property
-    def speeds(self) -> FloatArray:
-        """All of them, shape (points,) [rad/s]."""
-        return np.linspace(self.begin, self.end, self.points)
 
 
 def sweep(
@@ -102,9 +59,9 @@ def sweep(
     angle : float
         What the system has turned [rad]: where the cages stand.
     inputs, sensors : sequence
-        From where to where; no responses if left out.
+        Inputs and sensors of the responses; no responses if left out.
     frequencies : array, shape (frequencies,)
-        Of the responses [Hz].
+        Frequencies of the responses [Hz].
     cage_angles : int
         Angles within one pitch of the rollers over which stiffness and damping of the bearings are averaged; modes
         and responses are those of the first.

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from mbs.bearings.bearing_element import RingElement
 from mbs.bearings.roller_element import ring_matrices
-from mbs.linearised.linear import ComplexArray
-from mbs.linearised.modes import IntArray, StateModes, UndampedModes, energy_shares, state_modes, undamped_modes
+from mbs.linearised.modes import StateModes, UndampedModes, energy_shares, state_modes, undamped_modes
 from mbs.linearised.tracking import Match, ModeSet, compose, match
 from mbs.model.elements import Element
 from mbs.model.equilibrium import Equilibrium, equilibrium
@@ -35,9 +34,9 @@ class Point:
     Attributes
     ----------
     balance : Equilibrium
-        Where.
+        Equilibrium at this speed.
     undamped : UndampedModes
-        Of mass and stiffness.
+        Modes of mass and stiffness.
     states : StateModes
         All eigenvalues of the state.
     shapes, damped : ModeSet
@@ -69,7 +68,7 @@ class Along:
     undamped, damped : Match
         Which modes continue which.
     logarithm : array, shape (n,)
-        Of the frequency of each undamped mode, its change by energy.
+        Logarithm of the frequency of each undamped mode, its change by energy.
     between : int
         Speeds that were put in between.
     """
@@ -182,7 +181,7 @@ def over_pitch(balance: Equilibrium, count: int) -> FloatArray:
     Parameters
     ----------
     balance : Equilibrium
-        At the first angle.
+        Equilibrium at the first angle.
     count : int
         How many angles; 1 for that of `balance` alone.
 

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray
-from mbs.linearised.modes import IntArray, damping_ratio
+from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
+from mbs.linearised.modes import damping_ratio
 from mbs.model.elements import Input, Sensor
 
 
@@ -20,7 +19,7 @@ class UndampedSweep:
     Attributes
     ----------
     frequency, damping_ratio : array, shape (speeds, n)
-        Of mass and stiffness [Hz]; modal, may exceed 1.
+        Frequencies of the modes of mass and stiffness [Hz]; modal damping ratios, which may exceed 1.
     shares : array, shape (parts, speeds, n)
         Part of the strain energy that each part has.
     bearing_share : array, shape (speeds, n)
@@ -62,7 +61,7 @@ class ComplexSweep:
     Attributes
     ----------
     eigenvalues : array, shape (speeds, modes)
-        With positive imaginary part [1/s].
+        Eigenvalues with positive imaginary part [1/s].
     shares : array, shape (parts, speeds, modes)
         Part of the strain energy that each part has.
     bearing_share : array, shape (speeds, modes)
@@ -101,7 +100,7 @@ class BearingSweep:
     Attributes
     ----------
     names : tuple of str
-        Of the bearings.
+        Names of the bearings.
     load : array, shape (speeds, bearings)
         Radial force [N].
     stiffness, damping : array, shape (speeds, bearings)
@@ -130,7 +129,7 @@ class ResponseSweep:
     frequencies : array, shape (frequencies,)
         [Hz].
     inputs, sensors : tuple
-        From where to where.
+        Inputs and sensors of the responses.
     values : array, shape (speeds, frequencies, sensors, inputs)
         Sensor unit per N or N m.
     error : array, shape (speeds,)

@@ -15,9 +15,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 from scipy.sparse.csgraph import connected_components
 
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray
-from mbs.linearised.modes import IntArray
+from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 
 SAME = 1e-6
 """Eigenvalues that differ by less than this part of their size, or a tenth of it of the largest one, are equal."""
@@ -53,7 +51,7 @@ class Match:
     chosen : array of int, shape (modes before,)
         Index after; -1 for a mode that ends.
     assurance : array, shape (modes before,)
-        Of the best continuation, from 0 to 1, also where it was refused.
+        Modal assurance of the best continuation, from 0 to 1, also where it was refused.
     size : int
         Modes after; those that nothing continues begin there.
     """
@@ -82,7 +80,7 @@ def match(before: ModeSet, after: ModeSet, least: float = 0.0) -> Match:
     Parameters
     ----------
     before, after : ModeSet
-        At neighbouring operating points.
+        Modes at neighbouring operating points.
     least : float
         A continuation with less assurance is refused: the mode ends, and the other one begins.
     """
@@ -116,7 +114,7 @@ def tracks(size: int, matches: Sequence[Match]) -> IntArray:
     size : int
         Modes at the first point: the first tracks, in their order. Modes that begin later follow.
     matches : sequence of Match
-        From each point to the next.
+        Matches from each point to the next.
     """
     now = np.arange(size)
     found = [now]
@@ -142,7 +140,7 @@ def numbers(order: IntArray, plain: IntArray, kinship: Sequence[FloatArray]) -> 
     plain : array, shape (points, undamped tracks)
         The same of the undamped ones, which exist everywhere.
     kinship : sequence of array, shape (complex modes, undamped modes)
-        At each point, how much each complex mode is one of the undamped ones.
+        Share of each undamped mode in each complex mode, at each point.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Where a linear analysis is not valid: loads that lift off, oscillations too quick for low-frequency films."""
+"""Where a linear analysis is not valid: contacts that lift off, motion above the low-frequency limit of the films."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.solids import reduced_modulus
 from mbs.bearings.bearing import Bearing
@@ -28,7 +28,7 @@ class FilmLimit:
     Attributes
     ----------
     bearing : str
-        Its name.
+        Name of the bearing.
     half_width : float
         Hertz half-width b of the most loaded contact [m].
     entrainment_speed : float
@@ -61,11 +61,11 @@ def film_limit(name: str, bearing: Bearing, load: float, entrainment_speed: floa
     Parameters
     ----------
     name : str
-        Of the bearing.
+        Name of the bearing.
     bearing : Bearing
         The bearing.
     load : float
-        Of its most loaded contact, per unit length [N/m].
+        Load of its most loaded contact, per unit length [N/m].
     entrainment_speed : float
         u [m/s].
     """
@@ -85,7 +85,7 @@ class DynamicLoad:
     dynamic, static : float
         Radial forces [N], at the amplitude of the input.
     frequency : float
-        Where the dynamic one is largest [Hz].
+        Frequency at which the dynamic load is largest [Hz].
     """
 
     element: str
@@ -106,9 +106,9 @@ def dynamic_loads(balance: Equilibrium, inputs: Sequence[Input], frequencies: Fl
     Parameters
     ----------
     balance : Equilibrium
-        Where.
+        Equilibrium to linearise at.
     inputs : sequence of Input
-        With their amplitudes.
+        Inputs with their amplitudes.
     frequencies : array, shape (frequencies,)
         [Hz].
     """

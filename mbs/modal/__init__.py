@@ -4,8 +4,7 @@ In the order in which data pass through:
 
 ================  =====================================================================================
 `records`         channels, time records of hits, frequency responses
-`uff`             universal files (UFF) with either of them, read and written by pyuff
-`hammer`          simulated hammer tests of a linearised or of the nonlinear system
+`uff`             universal files (UFF) with either of them; `uff_reading`, `uff_writing` do it by pyuff
 `windows`         force and exponential windows, and what the latter does to a pole
 `estimation`      H1, H2 and coherence from averaged hits; which hits are left out
 `rational`        rational fraction polynomials: poles of a band by a common denominator
@@ -16,5 +15,6 @@ In the order in which data pass through:
 `result`          the modes found, their uncertainty, and their dataset
 ================  =====================================================================================
 
-The libraries pyuff and sdypy-EMA are loaded when they are needed.
+The package knows nothing of the rest of mbs: a machine that is hit in a simulation (`mbs.transient.hammer`) makes
+records like those of a measured one. The libraries pyuff and sdypy-EMA are loaded when they are needed.
 """

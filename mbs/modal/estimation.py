@@ -17,10 +17,8 @@ from typing import Literal
 
 import numpy as np
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.linearised.linear import ComplexArray
+from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.modal.records import Channel, Hits, Responses
 from mbs.modal.windows import exponential_window, force_window, pulse
 
@@ -76,11 +74,11 @@ class Rejected:
     Attributes
     ----------
     hit : int
-        From 1.
+        Number of the hit, from 1.
     reference : Channel
         The place hit.
     reason : {"double hit", "overload", "no hit", "not finite"}
-        Why.
+        Reason for which it was left out.
     detail : str
         What was seen.
     """
@@ -175,16 +173,16 @@ def transfer(force: FloatArray, response: FloatArray, estimator: Estimator = "h1
     Parameters
     ----------
     force : array, shape (hits, samples)
-        Of the same place.
+        Forces of hits at the same place.
     response : array, shape (hits, sensors, samples)
-        Of the same hits.
+        Responses to the same hits.
     estimator : {"h1", "h2"}
-        Which.
+        Estimator of the frequency responses.
 
     Returns
     -------
     response : array of complex, shape (sensors, lines)
-        At the frequencies of `numpy.fft.rfftfreq`. Zero where the force has nothing.
+        Values at the frequencies of `numpy.fft.rfftfreq`. Zero where the force has nothing.
     coherence : array, shape (sensors, lines)
         0 to 1; NaN of a single hit, whose coherence is 1 whatever it was.
     """

@@ -8,11 +8,8 @@ import math
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.linearised.linear import ComplexArray
-from mbs.linearised.modes import IntArray
+from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.modal.estimation import relative_deviation
 from mbs.modal.lscf import lscf_poles
 from mbs.modal.rational import IMPROPER, rational_poles
@@ -55,11 +52,11 @@ def identify(
     Parameters
     ----------
     responses : Responses
-        With an exponential window or without; its decay is taken out of the poles.
+        Responses, with an exponential window or without; its decay is taken out of the poles.
     method : {"rfp", "lscf"}
         Rational fraction polynomials, or p-LSCF.
     band : (float, float), optional
-        From, to [Hz]; all if left out.
+        Limits of the band, from and to [Hz]; all if left out.
     order : int, optional
         Highest number of pole pairs, 1 to 100; 24 if left out, or what the lines allow.
     modes : int, optional

@@ -18,15 +18,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.linearised.linear import ComplexArray
+from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.extras import needs
 
 _UNEVEN = 1e-3
 """Largest change of the spacing of the lines, as a part of it."""
-
-INSTALL = 'install it: pip install "ehdmaps[modal]", or pip install sdypy-EMA pyuff'
 
 
 def lscf_poles(frequency: FloatArray, response: ComplexArray, orders: Sequence[int]) -> list[ComplexArray]:
@@ -35,7 +32,7 @@ def lscf_poles(frequency: FloatArray, response: ComplexArray, orders: Sequence[i
     Parameters
     ----------
     frequency : array, shape (lines,)
-        Of the band, evenly spaced, > 0 [Hz].
+        Frequencies of the band, evenly spaced, > 0 [Hz].
     response : array of complex, shape (rows, lines)
         Any unit; rows are scaled to their rms.
     orders : sequence of int
@@ -49,15 +46,15 @@ def lscf_poles(frequency: FloatArray, response: ComplexArray, orders: Sequence[i
     Raises
     ------
     InputError
-        If the lines are not evenly spaced, or the library is missing.
+        If the lines are not evenly spaced.
+    DependencyError
+        If the library is not installed.
     AnalysisError
         If the normal equations are singular.
     """
-    try:
+    with needs("modal", "sdypy-EMA", "--method lscf"):
         # It takes a display toolkit along, which is only loaded, never used.
         from sdypy.EMA import Model
-    except ImportError as error:
-        raise InputError(f"--method lscf: the library sdypy-EMA is missing ({error}); {INSTALL}") from error
     spacing = float(frequency[-1] - frequency[0]) / (frequency.size - 1)
     if np.abs(np.diff(frequency) - spacing).max() > _UNEVEN * spacing:
         raise InputError(

@@ -21,9 +21,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.linearised.linear import ComplexArray
+from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.errors import AnalysisError
 
 IMPROPER = 2
 """Powers of the numerators above those of a proper fraction."""
@@ -59,11 +58,11 @@ def orthogonal_basis(s: ComplexArray, weight: FloatArray, degree: int) -> Basis:
     Parameters
     ----------
     s : array of complex, shape (lines,)
-        Points.
+        Points of the basis.
     weight : array, shape (lines,)
         Positive on more lines than the degree.
     degree : int
-        Highest.
+        Highest degree.
 
     Raises
     ------
@@ -97,7 +96,7 @@ def roots(basis: Basis, coefficients: FloatArray) -> ComplexArray:
     Parameters
     ----------
     basis : Basis
-        Of the degree of the polynomial.
+        Basis of the degree of the polynomial.
     coefficients : array, shape (degree + 1,)
         The last one not zero.
     """
@@ -115,7 +114,7 @@ def rational_poles(
     Parameters
     ----------
     frequency : array, shape (lines,)
-        Of the band, > 0 [Hz].
+        Frequencies of the band, > 0 [Hz].
     response : array of complex, shape (rows, lines)
         Any unit.
     weight : array, shape (rows, lines)

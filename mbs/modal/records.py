@@ -7,9 +7,8 @@ from typing import Literal
 
 import numpy as np
 
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray
 
 Measured = Literal["displacement", "velocity", "acceleration", "force", "unknown"]
 
@@ -29,7 +28,7 @@ class Channel:
     Attributes
     ----------
     name : str
-        Of the sensor or of the place hit; may be empty.
+        Name of the sensor or of the place hit; may be empty.
     node : int
         Number of the place.
     direction : int
@@ -68,15 +67,15 @@ class Hits:
     Attributes
     ----------
     step : float
-        Between samples [s].
+        Time between samples [s].
     force : array, shape (hits, samples)
         [N or N m].
     response : array, shape (hits, sensors, samples)
-        In the SI unit of each sensor.
+        Responses in the SI unit of each sensor.
     reference : Channel
         The place hit.
     sensors : tuple of Channel
-        As many as `response` has.
+        Sensors, as many as `response` has.
 
     Raises
     ------
@@ -127,7 +126,7 @@ class Responses:
     frequency : array, shape (lines,)
         Rising [Hz].
     response : array, shape (rows, lines)
-        In the SI unit of the sensor per N or N m.
+        Responses in the SI unit of the sensor per N or N m.
     coherence : array, shape (rows, lines)
         Ordinary coherence; NaN where it is not known, as for a single hit.
     pairs : tuple of (Channel, Channel)

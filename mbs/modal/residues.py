@@ -20,8 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 
 TERMS = 2
 """Residual terms, L and U."""
@@ -92,7 +91,7 @@ def synthesise(s: ComplexArray, derivatives: tuple[int, ...], poles: ComplexArra
     poles : array of complex, shape (modes,)
         Those with positive imaginary part.
     parts : Parts
-        Residues.
+        Residues of the modes.
     """
     total = np.stack([contribution.sum(axis=0) for contribution in _contributions(s, poles, parts.residues)], axis=0)
     total = total + parts.below[:, None] / s**2 + parts.above[:, None]
@@ -110,9 +109,9 @@ def refine(
     Parameters
     ----------
     s, response, weight, derivatives
-        As of `fit_residues`.
+        The same as for `fit_residues`.
     poles : array of complex, shape (modes,)
-        To begin with.
+        Poles to begin with.
 
     Returns
     -------

@@ -8,8 +8,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.modal.records import Responses
 from mbs.modal.residues import Parts, laplace, synthesise
 from mbs.modal.stabilisation import Candidate
@@ -24,11 +23,11 @@ class ModalFit:
     Attributes
     ----------
     method : {"rfp", "lscf"}
-        Where the poles come from.
+        Method that gave the poles.
     responses : Responses
         What was fitted: the lines of the band.
     poles : array of complex, shape (modes,)
-        Of the structure, the exponential window taken out, rising in frequency [1/s].
+        Poles of the structure, the exponential window taken out, rising in frequency [1/s].
     deviation : array, shape (modes, 2)
         Standard deviation of their real and imaginary part by the noise that is left [1/s]; NaN if not refined.
     scatter : array, shape (modes, 2)

@@ -11,9 +11,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray
 from mbs.modal.residues import assurance
 
 _GAP = 2
@@ -76,7 +75,7 @@ class Candidate:
     order : int
         Pole pairs of the fit.
     pole : complex
-        As found, with what an exponential window added [1/s].
+        Pole as found, with what an exponential window added [1/s].
     stable : bool
         Whether it continues one of the orders before.
     """
@@ -133,7 +132,7 @@ def stabilise(
     orders : sequence of int
         Rising numbers of pole pairs.
     band : (float, float)
-        Where a mode may be [Hz].
+        Band in which a mode may be [Hz].
     shapes : callable
         Residues (poles, rows) of given poles.
     criteria : Criteria, optional

@@ -11,11 +11,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray
 
 LEFT = 0.01
 """What an exponential window leaves at the end of records that have not decayed by themselves: cutting a mode off at
@@ -31,7 +29,7 @@ def exponential_window(samples: int, step: float, decay: float) -> FloatArray:
     Parameters
     ----------
     samples : int
-        Of a record.
+        Number of samples of a record.
     step : float
         [s].
     decay : float
@@ -63,7 +61,7 @@ def without_window(poles: ComplexArray, decay: float) -> ComplexArray:
     Parameters
     ----------
     poles : array of complex
-        As identified [1/s].
+        Poles as identified [1/s].
     decay : float
         1/tau of the window [1/s].
     """
@@ -112,7 +110,7 @@ def needed_decay(response: FloatArray, step: float) -> float:
     Parameters
     ----------
     response : array, shape (..., samples)
-        Records.
+        Records of the responses.
     step : float
         [s].
 
@@ -125,7 +123,7 @@ def needed_decay(response: FloatArray, step: float) -> float:
     peak = np.max(np.abs(response), axis=-1)
     end = np.sqrt(2.0 * np.mean(response[..., -max(samples // _LAST, 1) :] ** 2, axis=-1))
     # A channel that shows nothing says nothing about decay.
-    ratio: npt.NDArray[np.float64] = np.divide(end, peak, out=np.zeros_like(peak), where=peak > 0.0)
+    ratio: FloatArray = np.divide(end, peak, out=np.zeros_like(peak), where=peak > 0.0)
     # Twice: a hundredth of noise is no decaying mode.
     left = float(np.max(ratio, initial=0.0))
     return -math.log(LEFT) / (samples * step) if left > 2.0 * LEFT else 0.0

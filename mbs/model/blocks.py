@@ -12,13 +12,9 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from mbs.model.elements import Element
-
-IndexArray = npt.NDArray[np.int64]
-Marks = npt.NDArray[np.bool_]
 
 FOUND, NO_SOLUTION, IN_PYTHON = 0, 1, 2
 """What a compiled function returns: all is written; there is no answer to such a motion, so that the step is halved;
@@ -61,7 +57,7 @@ class Answers(NamedTuple):
 
     force: FloatArray
     slopes: FloatArray
-    outside: IndexArray
+    outside: IntArray
 
 
 class Member(NamedTuple):
@@ -89,7 +85,7 @@ class Block(Protocol):
         """Take note of the speeds [rad/s] at the ends of the steps to come."""
         ...
 
-    def prepare(self, first: int, last: int) -> tuple[Any, Marks]:
+    def prepare(self, first: int, last: int) -> tuple[Any, BoolArray]:
         """Prepare the steps from `first` on, as many as can be held, at most up to `last`.
 
         Returns
@@ -117,7 +113,7 @@ class SteadyBlock:
     def begin(self, speeds: FloatArray) -> None:
         """Nothing depends on them."""
 
-    def prepare(self, first: int, last: int) -> tuple[Any, Marks]:
+    def prepare(self, first: int, last: int) -> tuple[Any, BoolArray]:
         """All steps at once."""
         return self.arrays, np.ones(last - first, dtype=np.bool_)
 

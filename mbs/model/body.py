@@ -17,8 +17,8 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.physics.solids import STEEL
 
 Freedom = Literal["x", "y", "z", "theta_x", "theta_y", "theta_z"]

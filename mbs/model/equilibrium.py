@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError
 from mbs.model.elements import Operation
 from mbs.model.system import System
 

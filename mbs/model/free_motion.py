@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg as sl
 
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError
 from mbs.model.equilibrium import Equilibrium
 
 NOTHING = 1e-16

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import closest
 from mbs.model.body import CENTRE, Body
 from mbs.model.elements import GROUND, Element, Forces, Load, Operation, Port, Spring

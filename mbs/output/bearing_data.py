@@ -34,9 +34,9 @@ class BearingDescription:
     bearing : Bearing
         Geometry with its clearance, profile, slices.
     law, films : str
-        In words.
+        Law and films, in words.
     direction : float
-        Of the load, from y towards z [deg].
+        Direction of the load, from y towards z [deg].
     temperature, roughness : float
         [K], [m].
     assumed : tuple of str
@@ -103,7 +103,7 @@ def bearing_dataset(description: BearingDescription, points: Points) -> xr.Datas
     description : BearingDescription
         What they have in common.
     points : sequence of sequence of BearingPoint
-        By load, then by speed.
+        Points by load, then by speed.
     """
     dims = ("load", "speed")
     rows = [[bearing_row(point, description.roughness) for point in line] for line in points]

@@ -12,19 +12,20 @@ from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
+from ehdmaps.figures import COLOURS, WARNING, typeset
 from ehdmaps.units import PRESSURE, RPM
 from mbs.analyses.bearing_point import BearingPoint
 from mbs.bearings.contact_report import STATIC_LIMIT
 from mbs.bearings.films import SIDES
 from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, Points, bearing_row
 from mbs.output.bearing_text import bearing_heading, without_numbers
+from mbs.output.page import grid as quiet_grid
 from mbs.scene.fields import FORCE, MICROMETRE
 
-_COLOURS = ("#1f5fa8", "#c8102e")
-"""Inner and outer contact; along and across the load."""
+_SIDES = COLOURS[:2]
+"""Colours of the inner and the outer contact."""
 
-_WARNING = "#c8102e"
 _MOST_LINES = 8
 _WIDE = 130
 
@@ -37,7 +38,7 @@ def bearing_figure(description: BearingDescription, points: Points) -> Figure:
     description : BearingDescription
         What the points have in common.
     points : sequence of sequence of BearingPoint
-        By load, then by speed.
+        Points by load, then by speed.
     """
     if len(points) == 1 and len(points[0]) == 1:
         return _page(description, points[0][0], description.roughness)
@@ -52,7 +53,7 @@ def _page(description: BearingDescription, point: BearingPoint, roughness: float
     summary = (
         f"{FORCE.text(point.size, 6)}, {RPM.text(point.speed)}: K along the load {1e-6 * row['stiffness_along']:.4g} "
         f"N/µm, across {1e-6 * row['stiffness_across']:.4g} N/µm; c along {1e-3 * row['damping_along']:.3g} N s/mm"
-        + ("" if math.isnan(parameter) else f"; Λ = {parameter:.3g} at {_micro(MICROMETRE.text(roughness))} roughness")
+        + ("" if math.isnan(parameter) else f"; Λ = {parameter:.3g} at {typeset(MICROMETRE.text(roughness))} roughness")
     )
     _title(figure, description, summary, point.problems)
     grid = figure.add_gridspec(3, 2, width_ratios=(1.0, 1.15))
@@ -70,13 +71,13 @@ def _rollers(polar: PolarAxes, point: BearingPoint) -> None:
     rollers = point.rollers
     highest = float(rollers.load.max())
     width = 0.7 * 2.0 * math.pi / rollers.angle.size
-    polar.bar(rollers.angle, rollers.load, width=width, color=_COLOURS[0], alpha=0.85)
+    polar.bar(rollers.angle, rollers.load, width=width, color=COLOURS[0], alpha=0.85)
     angle = math.atan2(point.load[1], point.load[0])
     polar.annotate(
         "",
         xy=(angle, 1.22 * highest),
         xytext=(angle, 0.0),
-        arrowprops={"arrowstyle": "-|>", "color": _COLOURS[1], "lw": 1.6},
+        arrowprops={"arrowstyle": "-|>", "color": COLOURS[1], "lw": 1.6},
     )
     polar.set_ylim(0.0, 1.25 * highest)
     polar.yaxis.set_major_locator(MaxNLocator(4))
@@ -103,7 +104,7 @@ def _slices(panels: Sequence[Axes], point: BearingPoint) -> None:
     angle = math.degrees(point.rollers.angle[index])
     panels[0].set_title(f"along the most loaded roller, at {angle:.4g}°", fontsize=9)
     films = False
-    for side, name, colour in zip(point.contacts.sides, SIDES, _COLOURS, strict=True):
+    for side, name, colour in zip(point.contacts.sides, SIDES, _SIDES, strict=True):
         panels[1].plot(place, 1e-9 * side.hertz_pressure[index], color=colour, lw=1.2, label=name)
         if np.any(np.isfinite(side.central_film[index])):
             films = True
@@ -117,7 +118,7 @@ def _slices(panels: Sequence[Axes], point: BearingPoint) -> None:
     _static_limit(panels[1], point.contacts.hertz_pressure)
     for panel in panels:
         panel.set_ylim(0.0, 1.1 * panel.get_ylim()[1])
-        _grid(panel)
+        quiet_grid(panel)
     if films and point.entrainment_speed > 0.0:
         # The thick films at the unloaded ends would hide the others.
         panels[2].set_ylim(0.0, 2.0e6 * float(np.max(point.contacts.central_film)))
@@ -182,12 +183,12 @@ def _label(panels: Sequence[Axes], over_load: bool, roughness: float, points: Se
         "highest roller load, N",
         "largest Hertz pressure, GPa\nsolid inner, dashed outer raceway",
         "smallest film, µm\nsolid inner, dashed outer raceway",
-        f"Λ, film over {_micro(MICROMETRE.text(roughness))} of roughness\n(mixed below 3, boundary below 1)",
+        f"Λ, film over {typeset(MICROMETRE.text(roughness))} of roughness\n(mixed below 3, boundary below 1)",
     )
     spread = points[-1].size / points[0].size if over_load else 1.0
     for panel, text in zip(panels, texts, strict=True):
         panel.set_title(text, fontsize=9)
-        _grid(panel)
+        quiet_grid(panel)
         if spread > WIDE_RANGE:
             panel.set_xscale("log")
         if spread > WIDE_RANGE and panel is panels[2]:
@@ -212,16 +213,16 @@ def _label(panels: Sequence[Axes], over_load: bool, roughness: float, points: Se
 def _static_limit(panel: Axes, pressures: FloatArray) -> None:
     """A line at the static limit, where pressures come near it."""
     if np.max(pressures) > 0.75 * STATIC_LIMIT:
-        panel.axhline(1e-9 * STATIC_LIMIT, color=_WARNING, lw=0.9, ls=":")
+        panel.axhline(1e-9 * STATIC_LIMIT, color=WARNING, lw=0.9, ls=":")
         words = f"static limit {PRESSURE.text(STATIC_LIMIT)}"
         place = panel.get_yaxis_transform()
-        panel.text(0.02, 1e-9 * STATIC_LIMIT, words, color=_WARNING, fontsize=7.5, va="bottom", transform=place)
+        panel.text(0.02, 1e-9 * STATIC_LIMIT, words, color=WARNING, fontsize=7.5, va="bottom", transform=place)
 
 
 def _title(figure: Figure, description: BearingDescription, words: str, problems: Sequence[str]) -> None:
     """What is shown, what was assumed, and why it may not hold."""
     heading = "\n".join(line.strip() for line in bearing_heading(description))
-    lines = _micro(heading).replace(" degC", " °C").replace(" deg ", "° ").splitlines()
+    lines = typeset(heading).splitlines()
     lines += [words] if words else []
     figure.suptitle(
         "\n".join(part for line in lines for part in textwrap.wrap(line, _WIDE, break_on_hyphens=False)), fontsize=9.5
@@ -230,7 +231,7 @@ def _title(figure: Figure, description: BearingDescription, words: str, problems
         # One of a kind: the numbers differ from point to point.
         kinds = {without_numbers(problem): problem for problem in problems}
         warnings = [part for problem in kinds.values() for part in textwrap.wrap(f"warning: {problem}", _WIDE)]
-        figure.supxlabel("\n".join(warnings), color=_WARNING, fontsize=8.5)
+        figure.supxlabel("\n".join(warnings), color=WARNING, fontsize=8.5)
 
 
 def _shade(order: int, count: int) -> str:
@@ -238,16 +239,4 @@ def _shade(order: int, count: int) -> str:
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
 
-    return _COLOURS[0] if count == 1 else to_hex(colormaps["viridis"](0.9 * order / (count - 1)))
-
-
-def _micro(text: str) -> str:
-    """Micrometres as figures show them."""
-    return text.replace(" um", " µm")
-
-
-def _grid(panel: Axes) -> None:
-    """A quiet grid."""
-    panel.grid(color="0.88", lw=0.5)
-    panel.set_axisbelow(True)
-    panel.tick_params(labelsize=8)
+    return COLOURS[0] if count == 1 else to_hex(colormaps["viridis"](0.9 * order / (count - 1)))

@@ -25,7 +25,7 @@ def bearing_text(description: BearingDescription, points: Points) -> list[str]:
     description : BearingDescription
         What they have in common.
     points : sequence of sequence of BearingPoint
-        By load, then by speed.
+        Points by load, then by speed.
     """
     everything = [point for line in points for point in line]
     lines = bearing_heading(description)

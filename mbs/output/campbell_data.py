@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, level
 
@@ -30,9 +30,9 @@ def campbell_dataset(
     laws : sequence of str
         Names of the contact laws.
     results : sequence of RunUpSpectra
-        Of each law, all of the same run, so that speeds, frequencies and orders are the same.
+        Spectra of each law, all of the same run, so that speeds, frequencies and orders are the same.
     reference : Reference
-        Of the levels.
+        Reference of the levels.
     sensor : str
         Whose signal it is.
 

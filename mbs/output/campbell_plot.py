@@ -14,9 +14,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
+from ehdmaps.figures import COLOURS, SHADE
 from mbs.linearised.validity import HIGHEST_RATIO
-from mbs.output.page import SHADE, shade_handle
+from mbs.output.page import shade_handle
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, level
 from mbs.spectral.run_signal import RPM
@@ -27,7 +28,6 @@ MOST_LAWS = 4
 _WIDTH, _HEIGHT = 7.2, 5.4
 """Of a page with a margin [inch]."""
 
-_COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00")
 _DASHES = ("-", "--", "-.", ":")
 _MAP = "viridis"
 _RANGE, _LEAST_RANGE, _WIDEST_RANGE = 80.0, 40.0, 120.0
@@ -100,13 +100,13 @@ def campbell_figure(
     Parameters
     ----------
     title : str
-        Heading.
+        Heading of the page.
     laws : sequence of str
         Names of the contact laws.
     results : sequence of RunUpSpectra
-        Of each law, of the same run.
+        Spectra of each law, of the same run.
     reference : Reference
-        Of the levels.
+        Reference of the levels.
     orders : sequence of (float, str)
         Lines to draw in, with their names.
     overlays : sequence of Overlay or None
@@ -142,7 +142,7 @@ def campbell_figure(
     last = _highest_order(results[0], orders)
     for order, _ in orders:
         right.axvline(order, color="0.7", lw=0.5, ls=":")
-    for law, result, colour, dashes in zip(laws, results, _COLOURS, _DASHES, strict=False):
+    for law, result, colour, dashes in zip(laws, results, COLOURS, _DASHES, strict=False):
         left.plot(result.campbell.speeds * RPM, result.campbell.sum_level, dashes, color=colour, lw=1.0, label=law)
         spectrum = level(result.spectra.mean(), reference.value)
         place = result.spectra.orders

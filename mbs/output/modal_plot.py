@@ -8,11 +8,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ehdmaps.figures import COLOURS
 from mbs.modal.records import Channel
 from mbs.modal.result import ModalFit
 
 _SIZE = (9.0, 8.5)
-_COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00", "#6a3d9a")
 _MOST_ROWS = 5
 """Responses drawn: those with the most energy; more would hide each other."""
 
@@ -26,9 +26,9 @@ def fit_figure(title: str, fits: Sequence[ModalFit]) -> Figure:
     Parameters
     ----------
     title : str
-        Heading.
+        Heading of the page.
     fits : sequence of ModalFit
-        Of the same responses; the lines of the fit are those of the first one.
+        Fits of the same responses; the lines of the fit are those of the first one.
     """
     first = fits[0]
     figure = Figure(figsize=_SIZE, layout="constrained")
@@ -59,7 +59,7 @@ def _responses(magnitudes: dict[str, Axes], phase: Axes, fit: ModalFit, shown: S
     frequency = fit.responses.frequency
     fine = np.unique(np.concatenate([np.linspace(frequency[0], frequency[-1], 4000), *_near(fit)]))
     made = fit.synthesise(fine)
-    for row, colour in zip(shown, _COLOURS, strict=False):
+    for row, colour in zip(shown, COLOURS, strict=False):
         measured = fit.responses.response[row]
         magnitude = magnitudes[_unit(*fit.responses.pairs[row])]
         label = f"{fit.responses.labels[row]}, {100.0 * fit.error[row]:.2g} % left"
@@ -75,7 +75,7 @@ def _responses(magnitudes: dict[str, Axes], phase: Axes, fit: ModalFit, shown: S
 
 def _coherence(panel: Axes, fit: ModalFit, shown: Sequence[int]) -> None:
     """Coherence of each response."""
-    for row, colour in zip(shown, _COLOURS, strict=False):
+    for row, colour in zip(shown, COLOURS, strict=False):
         panel.plot(fit.responses.frequency, fit.responses.coherence[row], color=colour, lw=0.7)
     panel.set(ylabel=f"coherence,\n{fit.responses.hits} hits", ylim=(0.0, 1.05))
 
@@ -83,7 +83,7 @@ def _coherence(panel: Axes, fit: ModalFit, shown: Sequence[int]) -> None:
 def _diagram(panel: Axes, fits: Sequence[ModalFit]) -> None:
     """Poles over the order: stable ones filled."""
     highest = 1
-    for fit, colour in zip(fits, ("0.1", _COLOURS[1]), strict=False):
+    for fit, colour in zip(fits, ("0.1", COLOURS[1]), strict=False):
         mark, name = _MARKS[fit.method]
         # The window is taken out, so that the poles stand over the peaks.
         poles = np.array([entry.pole for entry in fit.candidates]) + fit.responses.decay

@@ -8,7 +8,8 @@ import math
 import numpy as np
 from matplotlib.figure import Figure
 
-from mbs.linearised.modes import IntArray, Modes
+from ehdmaps.arrays import IntArray
+from mbs.linearised.modes import Modes
 from mbs.linearised.validity import HIGHEST_RATIO
 from mbs.output.page import headed, shade, shade_handle
 from mbs.scene.assembly import Model

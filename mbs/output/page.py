@@ -1,4 +1,4 @@
-"""What the figures of the analyses share: heading, panels, grid, colours."""
+"""What the figures of the analyses share: heading, panels, grid, shade."""
 
 from __future__ import annotations
 
@@ -9,16 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import ScalarFormatter
 
+from ehdmaps.figures import SHADE, SHADE_ALPHA, typeset
 from ehdmaps.units import TEMPERATURE
+from mbs.analyses.case import clearance_text
 from mbs.scene.assembly import Model
-from mbs.scene.fields import MICROMETRE
-
-COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00", "#6a3d9a")
-
-SHADE = "#f2c14e"
-"""Of what is no longer valid, or not known: the same in all figures."""
-
-SHADE_ALPHA = 0.35
 
 _SIZE = (9.0, 5.5)
 
@@ -55,20 +49,15 @@ def headed(model: Model, words: str, size: tuple[float, float] = _SIZE) -> Figur
     size : tuple[float, float]
         Width and height [inches].
     """
-    clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
+    clearance = clearance_text(model)
     at = [
         *([words] if words else []),
-        TEMPERATURE.text(model.scene.temperature).replace("deg", "°"),
-        *([f"clearance {', '.join(shown(MICROMETRE.text(value)) for value in clearances)}"] if clearances else []),
+        typeset(TEMPERATURE.text(model.scene.temperature)),
+        *([f"clearance {typeset(clearance)}"] if clearance else []),
     ]
     figure = Figure(figsize=size, layout="constrained")
     figure.suptitle(f"{model.scene.title}\n{model.law}; {', '.join(at)}", fontsize=10)
     return figure
-
-
-def shown(unit: str) -> str:
-    """A unit as figures show it."""
-    return unit.replace("s2", "s²").replace("um", "µm")
 
 
 def grid(panel: Axes) -> None:

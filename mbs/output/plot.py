@@ -9,9 +9,10 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from ehdmaps.figures import COLOURS, WARNING
 from mbs.bearings.contact_report import BearingContacts
 from mbs.model.equilibrium import Equilibrium
-from mbs.output.page import COLOURS, grid, page
+from mbs.output.page import grid, page
 from mbs.scene.assembly import Model
 
 _RPM = 30.0 / np.pi
@@ -27,7 +28,7 @@ def statics_figure(
     model : Model
         The system.
     balance : Equilibrium
-        Its equilibrium.
+        Equilibrium of the model.
     contacts : sequence of BearingContacts
         Pressures and films of each bearing.
     warnings : sequence of str
@@ -50,7 +51,7 @@ def statics_figure(
     if wrapped:
         for panel in axes:
             panel.set_xlabel(words, fontsize=8)
-        figure.supxlabel("\n".join(wrapped), fontsize=8, color=COLOURS[1])
+        figure.supxlabel("\n".join(wrapped), fontsize=8, color=WARNING)
     else:
         figure.supxlabel(words, fontsize=10)
     return figure

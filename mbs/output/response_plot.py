@@ -9,13 +9,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray, response_unit
+from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.figures import COLOURS, typeset
+from ehdmaps.units import RPM
+from mbs.linearised.linear import response_unit
 from mbs.linearised.validity import HIGHEST_RATIO
-from mbs.output.page import COLOURS, grid, page, shade, shown
+from mbs.output.page import grid, page, shade
 from mbs.scene.assembly import Model
 
-_RPM = 30.0 / np.pi
 _ROUND_OFF = 1e-6
 """Of a phase [degrees]: -180 degrees less than this beside is +180 degrees."""
 
@@ -32,7 +33,7 @@ def response_figure(
     Parameters
     ----------
     model : Model
-        With its sensors and inputs.
+        Model with its sensors and inputs.
     frequencies : array, shape (frequencies,)
         [Hz].
     responses : array, shape (frequencies, sensors, inputs)
@@ -45,13 +46,13 @@ def response_figure(
     kinds: dict[str, str] = {}
     for sensor in model.scene.sensors:
         for entry in model.scene.inputs:
-            kinds.setdefault(shown(response_unit(sensor, entry)), sensor.quantity)
-    figure, axes = page(model, f"{model.scene.speed * _RPM:.4g} rpm", len(kinds) + 1, stacked=True)
+            kinds.setdefault(typeset(response_unit(sensor, entry)), sensor.quantity)
+    figure, axes = page(model, f"{RPM.value(model.scene.speed):.4g} rpm", len(kinds) + 1, stacked=True)
     panels, phase = dict(zip(kinds, axes[:-1], strict=True)), axes[-1]
     colours = iter(COLOURS * 20)
     for s, sensor in enumerate(model.scene.sensors):
         for i, entry in enumerate(model.scene.inputs):
-            colour, panel = next(colours), panels[shown(response_unit(sensor, entry))]
+            colour, panel = next(colours), panels[typeset(response_unit(sensor, entry))]
             size = np.abs(responses[:, s, i])
             values = np.where(size > 0.0, size, np.nan)
             panel.loglog(frequencies, values, color=colour, lw=1.0, label=f"{sensor.name} by {entry.name}")
@@ -77,7 +78,7 @@ def _phase(frequencies: FloatArray, response: ComplexArray) -> tuple[FloatArray,
 
 
 def _limit(axes: Sequence[Axes], limit: float) -> None:
-    """Shade what is too quick for low-frequency films, and say so in the first panel."""
+    """Shade frequencies above the low-frequency limit of the films, and say so in the first panel."""
     low, high = axes[0].get_xlim()
     if not limit < high:
         return

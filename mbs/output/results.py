@@ -10,14 +10,14 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.outputs import MADE_AS, dataset_kind, written_aside
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.version import version
 from mbs.bearings.bearing_element import RingElement
 from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.films import SIDES
 from mbs.bearings.roller_element import ring_matrices
-from mbs.linearised.linear import ComplexArray, StateSpace
+from mbs.linearised.linear import StateSpace
 from mbs.linearised.modes import Modes
 from mbs.model.body import FREEDOMS
 from mbs.model.elements import Input, Sensor
@@ -131,9 +131,9 @@ def linear_dataset(
     frequencies : ndarray
         [Hz].
     inputs : sequence of Input
-        Where forces act.
+        Inputs, where forces act.
     sensors : sequence of Sensor
-        Where motion is measured.
+        Sensors, where motion is measured.
     """
     names = list(balance.system.coordinates)
     states = [*names, *(f"{name}.rate" for name in names)]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehdmaps.physics._values import FloatArray
-from mbs.output.page import COLOURS, grid, headed, shade, shade_handle, whole_numbers
+from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.figures import COLOURS
+from mbs.output.page import grid, headed, shade, shade_handle, whole_numbers
 from mbs.scene.assembly import Model
 from mbs.transient.run import Recording
 
@@ -89,7 +89,7 @@ def _room(panel: Axes) -> None:
         panel.set_ylim(middle - 0.5 * least, middle + 0.5 * least)
 
 
-def _shade(figure: Figure, panels: Sequence[Axes], time: FloatArray, slow: npt.NDArray[np.bool_], words: str) -> None:
+def _shade(figure: Figure, panels: Sequence[Axes], time: FloatArray, slow: BoolArray, words: str) -> None:
     """Shade the times at which the film fades, and say so."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], slow.astype(np.int64), [0]])))
     for begin, end in zip(edges[::2], edges[1::2], strict=True):

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.linearised.sweep_result import Sweep
 
 _Variable = tuple[tuple[str, ...], Any, dict[str, str]]
@@ -32,7 +32,7 @@ def sweep_dataset(
     clearances : sequence of float
         Diametral clearance [m].
     load_factors : sequence of float
-        By which the loads of the scene were multiplied.
+        Factors of the loads of the scene.
     """
     first = sweeps[0]
     most = max(entry.damped.eigenvalues.shape[1] for entry in sweeps)

@@ -11,14 +11,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
+from ehdmaps.figures import COLOURS, typeset
+from ehdmaps.units import RPM
 from mbs.linearised.linear import response_unit
 from mbs.linearised.sweep_result import Sweep, UndampedSweep
 from mbs.linearised.validity import HIGHEST_RATIO
 from mbs.output.page import shade, shade_handle, whole_numbers
 
-_RPM = 30.0 / np.pi
-_COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00", "#6a3d9a", "#0b8a8f", "#d95f02", "#444444")
 _LEAST_SHARE = 0.05
 _MOST_MAPS = 4
 _MARKS = 16
@@ -53,13 +53,13 @@ def sweep_figure(
     Parameters
     ----------
     title, words : str
-        Heading; the words are its second line.
+        Heading of the page; the words are its second line.
     sweeps : sequence of Sweep
-        At the same speeds.
+        Sweeps over the same speeds.
     labels : sequence of str
         What each is.
     limits : sequence of array, shape (speeds,)
-        Of each, the frequency at which omega b/u is 0.3 [Hz]; NaN for laws without films.
+        Frequency of each sweep at which omega b/u is 0.3 [Hz]; NaN for laws without films.
     below : float
         Speed below which the film fades to the dry contact: shaded [rad/s].
     """
@@ -67,15 +67,15 @@ def sweep_figure(
     maps = [entry for entry in sweeps if entry.responses.values.size][:_MOST_MAPS]
     rows = 3 if maps else 2
     figure = Figure(figsize=(_WIDTH, _ROW * rows + 0.4), layout="constrained")
-    figure.suptitle(f"{title}\n{words.replace(' degC', ' °C').replace(' um', ' µm')}", fontsize=10)
+    figure.suptitle(f"{title}\n{typeset(words)}", fontsize=10)
     parts = figure.subfigures(rows, 1, squeeze=False)[:, 0]
     top, middle = parts[0].subplots(1, 2), parts[1].subplots(1, 3)
     handles = []
-    for index, (entry, label, colour) in enumerate(zip(sweeps, labels, _COLOURS * 6, strict=False)):
+    for index, (entry, label, colour) in enumerate(zip(sweeps, labels, COLOURS * 6, strict=False)):
         _modes((*top, middle[0]), entry, colour)
         _bearings(middle[1:], entry, colour)
-        top[0].plot(entry.speeds * _RPM, limits[index], color=colour, lw=1.2, ls=_LIMIT)
-        handles.append(Line2D([], [], color=colour, lw=1.6, label=label.replace(" um", " µm")))
+        top[0].plot(entry.speeds * RPM.factor, limits[index], color=colour, lw=1.2, ls=_LIMIT)
+        handles.append(Line2D([], [], color=colour, lw=1.6, label=typeset(label)))
     _axes(top[0], "frequency, Hz", "log")
     _axes(top[1], "change of undamped frequency, %")
     _axes(middle[0], "damping ratio, %", "log")
@@ -89,7 +89,7 @@ def sweep_figure(
         top[0].set_ylim(top=min(top[0].get_ylim()[1], 1.4 * _highest(maps[0])))
     _room(top[1])
     # With more cases their numbers would lie on each other.
-    for entry, colour, last in zip(sweeps, _COLOURS, (False, True), strict=False):
+    for entry, colour, last in zip(sweeps, COLOURS, (False, True), strict=False):
         _numbers(top[0], entry, colour, last)
     _bearing_names(middle[1], sweeps[0].bearings.names)
     if len(handles) > 1:
@@ -103,7 +103,7 @@ def sweep_figure(
     if any(np.isfinite(limit).any() for limit in limits):
         styles.append(Line2D([], [], color="0.3", lw=1.2, ls=_LIMIT, label=_ABOVE))
     if below > sweeps[0].speeds[0]:
-        styles.append(shade_handle(f"below {below * _RPM:.4g} rpm: {_BELOW}"))
+        styles.append(shade_handle(f"below {below * RPM.factor:.4g} rpm: {_BELOW}"))
     parts[1].legend(handles=styles, loc="outside lower center", ncols=3, fontsize=7.5, frameon=False)
     if maps:
         kept = [limit for limit, entry in zip(limits, sweeps, strict=True) if entry.responses.values.size]
@@ -111,14 +111,14 @@ def sweep_figure(
     if below > sweeps[0].speeds[0]:
         for panel in (*top, *middle):
             low, high = panel.get_xlim()
-            shade(panel, low, below * _RPM)
+            shade(panel, low, below * RPM.factor)
             panel.set_xlim(low, high)
     return figure
 
 
 def _modes(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
     """Modes over speed: thick where the strain energy is in the bearings, grey where hardly any is."""
-    rpm = entry.speeds * _RPM
+    rpm = entry.speeds * RPM.factor
     plain, damped = entry.undamped, entry.damped
     highest = _highest(entry)
     for k in range(plain.frequency.shape[1]):
@@ -140,7 +140,7 @@ def _modes(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
 
 def _bearings(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
     """Stiffness and damping of each bearing over speed; bearings that do the same lie on each other."""
-    rpm = entry.speeds * _RPM
+    rpm = entry.speeds * RPM.factor
     for index, dashes in zip(range(len(entry.bearings.names)), _DASHES * 16, strict=False):
         axes[0].plot(rpm, 1e-6 * entry.bearings.stiffness[:, index], dashes, color=colour, lw=1.3)
         axes[1].plot(rpm, entry.bearings.damping[:, index], dashes, color=colour, lw=1.3)
@@ -149,7 +149,7 @@ def _bearings(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
 def _numbers(panel: Axes, entry: Sweep, colour: str, last: bool) -> None:
     """Write the numbers of the modes beside the first speed, or the last one, where there is room for them."""
     low, high = np.log(panel.get_ylim())
-    rpm = float(entry.speeds[-1 if last else 0]) * _RPM
+    rpm = float(entry.speeds[-1 if last else 0]) * RPM.factor
     found = entry.undamped.frequency[-1 if last else 0]
     taken: list[float] = []
     for k in np.flatnonzero(entry.undamped.bearing_share.max(axis=0) >= _least(entry)):
@@ -195,7 +195,7 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits:
     image = None
     for panel, entry, level, label, limit in zip(axes, maps, levels, labels, limits, strict=False):
         image = panel.pcolormesh(
-            entry.speeds * _RPM,
+            entry.speeds * RPM.factor,
             found.frequencies,
             level.T,
             vmin=lowest,
@@ -205,12 +205,12 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits:
             rasterized=True,
         )
         panel.set_xlabel("speed, rpm", fontsize=9)
-        panel.set_xlim(entry.speeds[0] * _RPM, entry.speeds[-1] * _RPM)
+        panel.set_xlim(entry.speeds[0] * RPM.factor, entry.speeds[-1] * RPM.factor)
         panel.set_yscale(scale)
-        panel.plot(entry.speeds * _RPM, limit, color="w", lw=1.2, ls=_LIMIT)
+        panel.plot(entry.speeds * RPM.factor, limit, color="w", lw=1.2, ls=_LIMIT)
         if found.frequencies[0] < found.frequencies[-1]:
             panel.set_ylim(found.frequencies[0], found.frequencies[-1])
-        panel.set_title(label.replace(" um", " µm"), fontsize=8.5)
+        panel.set_title(typeset(label), fontsize=8.5)
         panel.tick_params(labelsize=8)
     axes[0].set_ylabel("frequency, Hz", fontsize=9)
     if image is not None:

@@ -24,7 +24,8 @@ from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.bearings.roller_element import RollerElement, roller_body
-from mbs.gears.gear import GearMesh, GearPair, gear_mesh
+from mbs.gears.gear import GearMesh, gear_mesh
+from mbs.gears.pair import GearPair
 from mbs.model.body import CENTRE, Body
 from mbs.model.elements import GROUND, Element, Operation
 from mbs.model.system import System

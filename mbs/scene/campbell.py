@@ -6,7 +6,7 @@ from ehdmaps.jobs.table import Table
 from ehdmaps.units import short
 from mbs.scene import fields
 from mbs.scene.fields import HERTZ, MILLISECOND
-from mbs.spectral.settings import HIGHEST, CampbellSettings
+from mbs.settings import HIGHEST, CampbellSettings
 
 LOWEST_HIGHEST, HIGHEST_HIGHEST = 1.0, 1e6
 """Limits of the highest frequency [Hz]."""

@@ -8,9 +8,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import LENGTH, Display, short
 from mbs.model.body import FREEDOMS, Inertia

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
-from ehdmaps.physics._values import FloatArray
 from ehdmaps.units import LENGTH, short
 from mbs.flexible.calculix import check_deck, read_calculix
 from mbs.flexible.extent import extent
-from mbs.flexible.finite_elements import FiniteElementModel, IntArray
+from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.matrix_files import (
     UNIT_SYSTEMS,
     assemble_model,

@@ -6,7 +6,7 @@ import math
 
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import LENGTH, STIFFNESS, Display, short
-from mbs.gears.gear import FEWEST_TEETH, MOST_HARMONICS, MOST_TEETH, GearPair
+from mbs.gears.pair import FEWEST_TEETH, MOST_HARMONICS, MOST_TEETH, GearPair
 from mbs.scene import fields
 from mbs.scene.fields import DEGREE, MICROMETRE
 

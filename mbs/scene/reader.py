@@ -16,6 +16,7 @@ from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.axes import AxisRule, read_axis
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.table import Table
+from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, short
 from mbs.model.body import FREEDOMS, Body, Inertia, rigid_body
 from mbs.model.elements import Input, Load, Sensor, Spring
@@ -26,11 +27,10 @@ from mbs.scene.campbell import read_campbell
 from mbs.scene.fields import DEGREE, FORCE, HERTZ, MICROMETRE, MILLISECOND, MOMENT, Built
 from mbs.scene.flexible import read_flexible
 from mbs.scene.gears import read_gears
-from mbs.scene.scene import RunUp, Scene, SceneBearing
+from mbs.scene.scene import Scene, SceneBearing
 from mbs.scene.shaft import read_shaft
 from mbs.scene.sweep import read_sweep
-from mbs.spectral.settings import CampbellSettings
-from mbs.transient.settings import Settings
+from mbs.settings import CampbellSettings, RunUp, Settings
 
 LONGEST_FILE = 1_000_000
 """Bytes of a scene file."""
@@ -116,7 +116,7 @@ class _Reader:
         operation = top.table("operation", "[operation]", required="a table with speed and temperature")
         if operation:
             speed = operation.quantity("speed", "rad/s", 0.0, 1e5, RPM, required=True)
-            temperature = operation.quantity("temperature", "K", 213.15, 573.15, TEMPERATURE, required=True)
+            temperature = operation.quantity("temperature", "K", *OIL_TEMPERATURES, TEMPERATURE, required=True)
             self._close(operation)
         section = top.table("lubricant", "[lubricant]")
         lubricant = read_lubricant(section) if section else None

@@ -7,13 +7,10 @@ from pathlib import Path
 
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
-from mbs.gears.gear import GearPair
-from mbs.linearised.sweep import SweepRange
+from mbs.gears.pair import GearPair
 from mbs.model.body import Body
 from mbs.model.elements import Input, Load, Sensor, Spring
-from mbs.model.profiles import SpeedProfile
-from mbs.spectral.settings import CampbellSettings
-from mbs.transient.settings import Settings
+from mbs.settings import CampbellSettings, RunUp, SweepRange
 
 
 @dataclass(frozen=True)
@@ -47,25 +44,6 @@ class SceneBearing:
     start_angle: float = 0.0
     rollers_as_bodies: bool = False
     centrifugal: bool = False
-
-
-@dataclass(frozen=True)
-class RunUp:
-    """Speed over time, and how to integrate.
-
-    Attributes
-    ----------
-    speed : SpeedProfile
-        Prescribed speed.
-    duration : float
-        [s].
-    settings : Settings
-        Steps and method.
-    """
-
-    speed: SpeedProfile
-    duration: float
-    settings: Settings
 
 
 @dataclass(frozen=True, eq=False)

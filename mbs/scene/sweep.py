@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import RPM
-from mbs.linearised.sweep import MOST_SPEEDS, SweepRange
 from mbs.scene import fields
+from mbs.settings import MOST_SPEEDS, SweepRange
 
 
 def read_sweep(section: Table) -> SweepRange | None:

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
+from mbs.settings import HIGHEST
 from mbs.spectral.levels import level
 from mbs.spectral.orders import (
     OrderPeak,
@@ -21,7 +22,6 @@ from mbs.spectral.orders import (
     track_orders,
 )
 from mbs.spectral.run_signal import RunSignal
-from mbs.spectral.settings import HIGHEST
 from mbs.spectral.spectra import LEAST_PERIODS, LINE_WIDTH, default_window, short_time_spectra
 
 _MEAN_LOBE = 2.0
@@ -35,21 +35,21 @@ class Campbell:
     Attributes
     ----------
     time, speeds : array, shape (windows,)
-        At the middle of each window [s], [rad/s]; the speeds only rise, or only fall.
+        Time [s] and speed [rad/s] at the middle of each window; the speeds only rise, or only fall.
     frequencies : array, shape (lines,)
         [Hz].
     level : array, shape (windows, lines)
-        Of the root mean square of a sine at each line [dB].
+        Level of the root mean square of a sine at each line [dB].
     sum_level : array, shape (windows,)
-        Of the root mean square of all lines together [dB].
+        Level of the root mean square of all lines together [dB].
     reference : float
         Root mean square at 0 dB, in the unit of the signal.
     window : float
         Length of the windows [s].
     line_width : float
-        Of a line at rest, 3 dB [Hz].
+        Width of a line at rest, 3 dB [Hz].
     smear : float
-        By how much the highest order sweeps in a window [Hz].
+        Frequency range that the highest order sweeps in a window [Hz].
     """
 
     time: FloatArray
@@ -72,7 +72,7 @@ class RunUpSpectra:
     campbell : Campbell
         Level over speed and frequency, and sum level.
     spectra : OrderSpectra
-        Over orders.
+        Spectra over orders.
     tracks : OrderTracks or None
         Single orders; None where none was asked for.
     peaks : tuple of OrderPeak
@@ -154,11 +154,11 @@ def run_up_spectra(
     highest : float
         Highest frequency [Hz].
     window : float, optional
-        Of the Campbell diagram [s].
+        Length of the windows of the Campbell diagram [s].
     orders : sequence of float
-        To be followed.
+        Orders to be followed.
     lowest_speed : float, optional
-        Of the order domain [rad/s]; a tenth of the highest speed if left out.
+        Lowest speed of the order domain [rad/s]; a tenth of the highest speed if left out.
 
     Raises
     ------

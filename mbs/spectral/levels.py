@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.model.elements import Quantity, Sensor
 
 SPREAD = (0.05, 0.5, 0.95)

@@ -23,9 +23,8 @@ from scipy.fft import next_fast_len
 from scipy.interpolate import make_interp_spline
 from scipy.signal import ShortTimeFFT, find_peaks, firwin, get_window, kaiserord, oaconvolve
 
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.linearised.linear import ComplexArray
 from mbs.spectral.levels import level
 from mbs.spectral.run_signal import RPM, RunSignal
 from mbs.spectral.spectra import LEAST_OVERSAMPLING, MOST_WINDOWS, without_mean
@@ -88,7 +87,7 @@ class OrderSpectra:
     Attributes
     ----------
     time, speeds : array, shape (windows,)
-        At the middle of each window [s], [rad/s].
+        Time [s] and speed [rad/s] at the middle of each window.
     orders : array, shape (lines,)
         Periods a turn of the system.
     power : array, shape (windows, lines)
@@ -118,7 +117,7 @@ class OrderTracks:
     Attributes
     ----------
     time, speeds : array, shape (windows,)
-        At the middle of each window [s], [rad/s].
+        Time [s] and speed [rad/s] at the middle of each window.
     orders : array, shape (orders,)
         Periods a turn of the system.
     amplitude : array, shape (windows, orders)
@@ -147,7 +146,7 @@ class OrderPeak:
     order : float
         Periods a turn of the system.
     speed : float
-        Of the system [rad/s].
+        Speed of the system [rad/s].
     frequency : float
         Order times speed [Hz].
     level : float
@@ -173,7 +172,7 @@ def angle_signal(run: RunSignal, highest: float, lowest_speed: float | None = No
     highest : float
         Highest frequency to keep [Hz].
     lowest_speed : float, optional
-        Where the speed is lower the signal is left out [rad/s]; a tenth of the highest speed if left out.
+        Speed below which the signal is left out [rad/s]; a tenth of the highest speed if left out.
 
     Raises
     ------
@@ -189,7 +188,7 @@ def angle_signal(run: RunSignal, highest: float, lowest_speed: float | None = No
     elif run.rate < needed * (1.0 - 1e-6):
         problems.append(
             f"orders, sample rate: got {run.rate:.6g} Hz; allowed: at least {needed:.6g} Hz for a band up to "
-            f"{highest:.6g} Hz; record oftener or lower the highest frequency"
+            f"{highest:.6g} Hz; record more often or lower the highest frequency"
         )
     if not 0.0 < lowest < top:
         problems.append(
@@ -232,7 +231,7 @@ def order_spectra(signal: AngleSignal, window: float | None = None) -> OrderSpec
     Parameters
     ----------
     signal : AngleSignal
-        At equal angles.
+        Signal at equal angles.
     window : float, optional
         Length of a window [turns]: lines are 1.44/window wide. An eighth of the record, at most 8, if left out.
 
@@ -273,7 +272,7 @@ def track_orders(signal: AngleSignal, orders: Sequence[float], window: float | N
     Parameters
     ----------
     signal : AngleSignal
-        At equal angles.
+        Signal at equal angles.
     orders : sequence of float
         Periods a turn of the system; at least 2 periods in a window.
     window : float, optional

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 
 RPM = 30.0 / np.pi
 
@@ -30,11 +30,11 @@ class RunSignal:
     Attributes
     ----------
     time : array, shape (samples,)
-        At equal distances [s].
+        Times of the samples, equally spaced [s].
     speed, angle : array, shape (samples,)
-        Of the system [rad/s], and turned [rad]; angle is the integral of speed.
+        Speed of the system [rad/s] and angle turned [rad]; angle is the integral of speed.
     signal : array, shape (samples,)
-        In any unit.
+        The signal, in any unit.
 
     Raises
     ------

@@ -24,8 +24,8 @@ import numpy as np
 from scipy.fft import next_fast_len
 from scipy.signal import ShortTimeFFT, get_window
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
 from mbs.spectral.run_signal import RunSignal
 
 LINE_WIDTH = 1.44
@@ -57,7 +57,7 @@ class Spectra:
     Attributes
     ----------
     time, speeds : array, shape (windows,)
-        At the middle of each window [s], [rad/s].
+        Time [s] and speed [rad/s] at the middle of each window.
     frequencies : array, shape (lines,)
         [Hz].
     power : array, shape (windows, lines)
@@ -65,7 +65,7 @@ class Spectra:
     window : float
         Length of the windows [s].
     noise_bandwidth : float
-        Of a line [Hz]: white noise of density 1/Hz has this power in each line.
+        Noise bandwidth of a line [Hz]: white noise of density 1/Hz has this power in each line.
     """
 
     time: FloatArray
@@ -149,12 +149,12 @@ def without_mean(weights: FloatArray) -> Callable[[FloatArray], FloatArray]:
     Parameters
     ----------
     weights : array, shape (length,)
-        Of the window.
+        Weights of the window.
 
     Returns
     -------
     callable
-        From a part of the signal (..., length) to the part without its mean.
+        A function that takes a part of the signal (..., length) and returns it without its mean.
     """
     unit = weights / weights.sum()
 
@@ -174,7 +174,7 @@ def _band_problems(run: RunSignal, band: tuple[float, float]) -> list[str]:
     if run.rate < needed * (1.0 - 1e-6):
         return [
             f"spectra, sample rate: got {run.rate:.6g} Hz; allowed: at least {needed:.6g} Hz for a band up to "
-            f"{high:.6g} Hz; record every {1e3 / needed:.4g} ms or oftener, or lower the highest frequency to "
+            f"{high:.6g} Hz; record every {1e3 / needed:.4g} ms or more often, or lower the highest frequency to "
             f"{run.rate / LEAST_OVERSAMPLING:.5g} Hz"
         ]
     return []

@@ -1,1 +1,1 @@
-"""The nonlinear system in time: the method, compiled run-ups, and the same in plain Python."""
+"""The nonlinear system in time: the method, compiled run-ups, the same in plain Python, and hammer tests."""

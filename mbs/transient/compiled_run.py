@@ -12,15 +12,15 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.linalg
 
-from ehdmaps.physics._values import FloatArray
-from mbs.model.blocks import IN_PYTHON, IndexArray
+from ehdmaps.arrays import FloatArray, IntArray
+from mbs.model.blocks import IN_PYTHON
 from mbs.model.profiles import LoadProfile, SpeedProfile
 from mbs.model.system import System
+from mbs.settings import Settings
 from mbs.transient.linear_part import LinearPart
 from mbs.transient.run_arrays import Course, Numbers, Records, State
 from mbs.transient.run_elements import RunElements
 from mbs.transient.run_kernel import advance, advance_anew, observe
-from mbs.transient.settings import Settings
 from mbs.transient.stepping import ITERATIONS, Method, Stepper
 
 
@@ -36,7 +36,7 @@ class CompiledRun:
     settings : Settings
         Method and steps.
     stepper : Stepper
-        At the beginning of the run; makes the steps that compiled code cannot.
+        Stepper at the beginning of the run; it makes the steps that compiled code cannot.
     outputs : array, shape (k, n)
         What is recorded of the coordinates.
     orders : array, shape (k,)
@@ -54,7 +54,7 @@ class CompiledRun:
         settings: Settings,
         stepper: Stepper,
         outputs: FloatArray,
-        orders: IndexArray,
+        orders: IntArray,
         samples: int,
         states: bool,
     ) -> None:
@@ -95,11 +95,11 @@ class CompiledRun:
         return self._stepper.iterations + int(self._counters[0])
 
     @property
-    def outside(self) -> IndexArray:
+    def outside(self) -> IntArray:
         """How often each element was evaluated outside its map so far."""
         return self._stepper.outside + self._elements.outside
 
-    def steps(self, times: FloatArray, h: float, rows: IndexArray) -> tuple[int, float]:
+    def steps(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
         """Make steps of length h [s] to the given times.
 
         Parameters
@@ -109,7 +109,7 @@ class CompiledRun:
         h : float
             Their length [s].
         rows : array, shape (k,)
-            Where to record; negative for not at all.
+            Rows to record in; negative for not at all.
 
         Returns
         -------
@@ -161,7 +161,7 @@ class CompiledRun:
         records = self._records
         return records.outputs, records.forces @ self._elements.expand, records.motions @ self._modes.T
 
-    def _uncompiled(self, times: FloatArray, h: float, rows: IndexArray) -> tuple[int, float]:
+    def _uncompiled(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
         """Make steps by the reference; as `steps`."""
         stepper = self._stepper
         stepper.q, stepper.v, stepper.acceleration, stepper.carried = (

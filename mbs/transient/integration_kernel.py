@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 
 
 @njit(cache=True, error_model="numpy")

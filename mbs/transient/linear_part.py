@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import BoolArray, FloatArray
 from mbs.transient.run_arrays import Linear
 from mbs.transient.stepping import Method
 
@@ -29,7 +28,7 @@ class LinearPart:
     physical : array, shape (n, n) or (0, n)
         Coordinates by the modes, where errors of steps are asked for.
     method : Method
-        Of the steps.
+        Method of the steps.
     """
 
     def __init__(
@@ -92,6 +91,6 @@ class LinearPart:
         return linear, math.inf if size == 0.0 else THIRD_ORDER ** (1.0 / 3.0) / size
 
 
-def _leading(marks: npt.NDArray[np.bool_]) -> int:
+def _leading(marks: BoolArray) -> int:
     """How many marks at the beginning are set."""
     return marks.size if np.all(marks) else int(np.argmin(marks))

@@ -18,16 +18,14 @@ from typing import Protocol
 
 import numpy as np
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics._values import FloatArray
-from mbs.errors import AnalysisError
-from mbs.model.blocks import IndexArray
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.model.elements import Sensor
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
+from mbs.settings import Settings
 from mbs.transient.compiled_run import CompiledRun
 from mbs.transient.run_elements import in_python
-from mbs.transient.settings import Settings
 from mbs.transient.stepping import Stepper
 
 HALVINGS = 10
@@ -63,9 +61,9 @@ class Recording:
     time, speed, angle : array, shape (samples,)
         [s], [rad/s], [rad].
     signals : array, shape (samples, sensors)
-        Of the sensors [m or rad, per s, per s2].
+        Signals of the sensors [m or rad, per s, per s2].
     forces : tuple of array, shape (samples, m)
-        Of each element in its ports [N or N m].
+        Forces of each element in its ports [N or N m].
     motions : tuple of array, shape (samples, m)
         Displacement of the ports of each element [m or rad].
     steps, halved, iterations : int
@@ -141,7 +139,7 @@ def run(
     sensors : sequence of Sensor
         What to record.
     displacement, velocity : array, shape (n,), optional
-        At time zero; zero if left out.
+        Motion at time zero; zero if left out.
     progress : callable, optional
         Told the number of samples done: once for each, some at a time.
     options : Options
@@ -194,7 +192,7 @@ class _Plan:
 
     samples: int
     rows: FloatArray
-    orders: IndexArray
+    orders: IntArray
     ports: FloatArray
     states: bool
 
@@ -228,11 +226,11 @@ class _Engine(Protocol):
         ...
 
     @property
-    def outside(self) -> IndexArray:
+    def outside(self) -> IntArray:
         """How often each element was evaluated outside its map so far."""
         ...
 
-    def steps(self, times: FloatArray, h: float, rows: IndexArray) -> tuple[int, float]:
+    def steps(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
         """Make steps of length h to the given times; how many were made, and the error of the last one tried."""
         ...
 
@@ -292,11 +290,11 @@ class _Reference:
         return self._stepper.iterations
 
     @property
-    def outside(self) -> IndexArray:
+    def outside(self) -> IntArray:
         """How often each element was evaluated outside its map so far."""
         return self._stepper.outside
 
-    def steps(self, times: FloatArray, h: float, rows: IndexArray) -> tuple[int, float]:
+    def steps(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
         """Make steps."""
         error = 0.0
         for done, (time, row) in enumerate(zip(times.tolist(), rows.tolist(), strict=True)):

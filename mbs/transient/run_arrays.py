@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ehdmaps.physics._values import FloatArray
-from mbs.model.blocks import IndexArray
+from ehdmaps.arrays import FloatArray, IntArray
 
 
 class Linear(NamedTuple):
@@ -20,7 +19,7 @@ class Linear(NamedTuple):
     inverse : array (3, n, n)
         Coefficients of L^-1 in powers of speed - reference.
     ports : array (m, n)
-        T.
+        Matrix T of the ports.
     reach : array (3, m, n)
         Transposed L^-1 T^T, likewise.
     receptance : array (3, m, m)
@@ -75,7 +74,7 @@ class Course(NamedTuple):
     steady, varying, factors : array (n,), (loads, n), (steps, loads)
         Loads, by mode.
     rows : array (steps,), of int
-        Where to record; negative for not at all.
+        Rows to record in; negative for not at all.
     """
 
     times: FloatArray
@@ -84,7 +83,7 @@ class Course(NamedTuple):
     steady: FloatArray
     varying: FloatArray
     factors: FloatArray
-    rows: IndexArray
+    rows: IntArray
 
 
 class State(NamedTuple):
@@ -95,7 +94,7 @@ class State(NamedTuple):
     motion : array (4, n)
         Displacement, velocity, acceleration and carried acceleration of the modes.
     forces : array (3, m)
-        Of the elements after the last steps, the latest first.
+        Forces of the elements after the last steps, the latest first.
     """
 
     motion: FloatArray
@@ -112,15 +111,15 @@ class Records(NamedTuple):
     orders : array (outputs,), of int
         Whether of their displacement, velocity or acceleration.
     outputs : array (samples, outputs)
-        Filled.
+        Outputs, filled row by row.
     forces : array (samples, m)
-        Filled.
+        Forces, filled row by row.
     motions : array (samples, 3, n)
-        Filled; of no samples where not asked for.
+        Motions, filled row by row; of no samples where not asked for.
     """
 
     rows: FloatArray
-    orders: IndexArray
+    orders: IntArray
     outputs: FloatArray
     forces: FloatArray
     motions: FloatArray

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
-from ehdmaps.physics._values import FloatArray
-from mbs.model.blocks import Block, IndexArray, Kind, Marks, Member
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from mbs.model.blocks import Block, Kind, Member
 from mbs.model.system import Connected
 from mbs.transient.kinds import KINDS, is_ours, kind_of
 
@@ -42,7 +42,7 @@ class RunElements:
 
     blocks: tuple[Block, ...]
     expand: FloatArray
-    outside: IndexArray
+    outside: IntArray
     ours: bool
 
     @classmethod
@@ -71,7 +71,7 @@ class RunElements:
         for block in self.blocks:
             block.begin(speeds)
 
-    def prepare(self, first: int, last: int) -> tuple[tuple[Any, ...], Marks]:
+    def prepare(self, first: int, last: int) -> tuple[tuple[Any, ...], BoolArray]:
         """Arrays of all blocks, and which of the steps from `first` on compiled code has, as far as all are prepared.
 
         Parameters

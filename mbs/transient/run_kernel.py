@@ -27,9 +27,9 @@ import numpy as np
 from numba import njit
 from numba.extending import overload
 
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.maps.lines import FAST
-from ehdmaps.physics._values import FloatArray
-from mbs.model.blocks import FOUND, NO_SOLUTION, Answers, IndexArray, Moment
+from mbs.model.blocks import FOUND, NO_SOLUTION, Answers, Moment
 from mbs.transient.kinds import KINDS
 from mbs.transient.run_arrays import Course, Linear, Numbers, Records, State
 
@@ -197,8 +197,8 @@ def advance(
     course: Course,
     state: State,
     records: Records,
-    outside: IndexArray,
-    counters: IndexArray,
+    outside: IntArray,
+    counters: IntArray,
 ) -> tuple[int, int, float]:
     """Make the steps of a course.
 

@@ -18,12 +18,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.physics._values import FloatArray
+from ehdmaps.arrays import FloatArray
 from mbs.model.elements import Operation
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
+from mbs.settings import Settings
 from mbs.transient.integration_kernel import correction, port_motion, unbalanced
-from mbs.transient.settings import Settings
 
 ITERATIONS = 12
 """Newton iterations of a step at most."""
@@ -75,7 +75,7 @@ class Stepper:
     Attributes
     ----------
     q, v, acceleration : array, shape (n,)
-        Of the coordinates [m or rad, per s, per s2].
+        Motion of the coordinates [m or rad, per s, per s2].
     carried : array, shape (n,)
         Algorithmic acceleration, which the method carries along.
     iterations : int
@@ -119,7 +119,7 @@ class Stepper:
         Parameters
         ----------
         time : float
-            At the end of the step [s].
+            Time at the end of the step [s].
         h : float
             How long [s].
         """

@@ -44,12 +44,12 @@ from mbs.model.profiles import Course, SpeedProfile
 from mbs.model.system import System
 from mbs.scene.assembly import Model, assemble
 from mbs.scene.reader import parse_scene, read_scene
-from mbs.scene.scene import RunUp, Scene
+from mbs.scene.scene import Scene
+from mbs.settings import RunUp, Settings
 from mbs.spectral.levels import Reference, level
 from mbs.spectral.run_signal import RunSignal
 from mbs.spectral.spectra import short_time_spectra
 from mbs.transient.run import Options, Recording, run
-from mbs.transient.settings import Settings
 
 RPM = math.pi / 30.0
 MIDDLE = 1500.0 * RPM
@@ -371,7 +371,7 @@ def main() -> None:
     parser.add_argument("map", help="Reynolds map of the NU308, by `ehdmaps generate nu308`")
     parser.add_argument("--duration", type=float, default=0.5, help="of the piece of the ramp around 1500 rpm [s]")
     parser.add_argument("--whole", action="store_true", help="the whole ramp of 5 s; fewer rows")
-    parser.add_argument("--housing", help="the same housing with modes up to 12 kHz, by `python -m mbs.housings`")
+    parser.add_argument("--housing", help="the same housing with modes up to 12 kHz, by `python -m examples.housings`")
     given = parser.parse_args()
     if not SHORTEST <= given.duration <= LONGEST:
         parser.error(f"--duration: got {given.duration:g} s; allowed: {SHORTEST:g} to {LONGEST:g} s")

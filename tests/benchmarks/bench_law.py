@@ -21,7 +21,7 @@ from scipy.interpolate import RegularGridInterpolator
 from ehdmaps.maps import kernel
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.law import ContactLaw
-from tests.unit.law_cases import CONTACTS, OIL, ValleyField, exact_law
+from tests.cases.laws import CONTACTS, OIL, ValleyField, exact_law
 
 POINTS = 200_000
 CHECKS = 400

@@ -15,7 +15,7 @@ import numpy as np
 
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.openfoam.parameters import Flow
-from tests.openfoam.comparison import (
+from tests.cases.openfoam_points import (
     HEADING,
     OIL,
     PLACES,

@@ -5,7 +5,7 @@ Run: python -m tests.benchmarks.grid_convergence
 
 from __future__ import annotations
 
-from tests.openfoam.comparison import HEADING, PLACES, SPIKED, THICK, compare, thickness
+from tests.cases.openfoam_points import HEADING, PLACES, SPIKED, THICK, compare, thickness
 
 
 def main() -> None:

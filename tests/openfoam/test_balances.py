@@ -7,7 +7,7 @@ import pytest
 
 from ehdmaps.openfoam.parameters import Flow
 from ehdmaps.physics.solution import Status
-from tests.openfoam import cases
+from tests.cases import openfoam_runs
 
 pytestmark = pytest.mark.openfoam
 
@@ -17,7 +17,7 @@ POINTS = {"light and fast": (0.3, 12.0), "heavy and slow": (200.0, 4.0), "hot": 
 @pytest.mark.parametrize("flow", ["thin_film", "full_stress"])
 @pytest.mark.parametrize("point", POINTS)
 def test_balances(point: str, flow: Flow) -> None:
-    solution = cases.run(cases.parameters(*POINTS[point], columns=200, flow=flow))
+    solution = openfoam_runs.run(openfoam_runs.parameters(*POINTS[point], columns=200, flow=flow))
     results, film = solution.results, solution.film
     assert results.status is Status.CONVERGED
     full = np.flatnonzero(film.liquid_fraction < 1.0)[0]

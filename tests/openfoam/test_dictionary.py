@@ -13,7 +13,7 @@ from ehdmaps.openfoam.fields import read_fields, write_fields
 from ehdmaps.openfoam.installation import Installation, installation
 from ehdmaps.openfoam.results import read_film, read_results
 from ehdmaps.physics.solution import Status
-from tests.openfoam import cases
+from tests.cases import openfoam_runs
 
 pytestmark = pytest.mark.openfoam
 
@@ -57,7 +57,7 @@ def installed() -> Installation:
 
 @pytest.fixture(scope="module")
 def good() -> str:
-    return cases.parameters(5.0, 5.0, COLUMNS, ROWS).text()
+    return openfoam_runs.parameters(5.0, 5.0, COLUMNS, ROWS).text()
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +65,7 @@ def meshed(installed: Installation, good: str, tmp_path_factory: pytest.TempPath
     case = tmp_path_factory.mktemp("dictionary") / "case"
     shutil.copytree(installed.template, case, ignore=shutil.ignore_patterns("polyMesh"))
     (case / "constant" / "ehlProperties").write_text(good)
-    assert cases.program(installed, installed.block_mesh, case).returncode == 0
+    assert openfoam_runs.program(installed, installed.block_mesh, case).returncode == 0
     return case
 
 
@@ -74,7 +74,7 @@ def _fatal(installed: Installation, case: Path, text: str) -> str:
     properties = case / "constant" / "ehlProperties"
     properties.write_text(text)
     (case / "results").unlink(missing_ok=True)
-    ended = cases.program(installed, installed.solver, case)
+    ended = openfoam_runs.program(installed, installed.solver, case)
     assert ended.returncode == 1
     if (case / "results").exists():  # what is read only after the solve: nobody may take it for a solution
         assert "status" not in (case / "results").read_text()
@@ -125,7 +125,7 @@ def test_case_by_hand(installed: Installation, tmp_path: Path) -> None:
     assert (tmp_path / "film.vtu").stat().st_size > 0
     to_vtk = shutil.which("foamToVTK")
     if to_vtk is not None:
-        ended = cases.program(installed, to_vtk, case)
+        ended = openfoam_runs.program(installed, to_vtk, case)
         assert ended.returncode == 0, ended.stdout[-2000:]
         (written,) = (case / "VTK").rglob("internal.vtu")
         import meshio

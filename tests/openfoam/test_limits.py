@@ -12,7 +12,7 @@ import pytest
 from ehdmaps.openfoam.parameters import Flow, Parameters
 from ehdmaps.openfoam.results import Results
 from ehdmaps.physics.hertz import DRY_COMPLIANCE, half_width, max_pressure
-from tests.openfoam import cases
+from tests.cases import openfoam_runs
 
 pytestmark = pytest.mark.openfoam
 
@@ -54,9 +54,9 @@ def test_independent_solver(point: dict[str, float], flow: Flow) -> None:
     """Isothermal, Newtonian points of a finite-difference solver, extrapolated over its grids."""
     inlet = 60.0 if point["L"] == 0.0 else 100.0  # the reference's inlet at M = 0.1, where it matters
     M, L = point["M"], point["L"]
-    settings = cases.parameters(M, L, inlet_length=inlet, flow=flow)
+    settings = openfoam_runs.parameters(M, L, inlet_length=inlet, flow=flow)
     coarse, fine = (
-        _in_groups(cases.results(M, L, columns, rows, flow, inlet_length=inlet), settings)
+        _in_groups(openfoam_runs.results(M, L, columns, rows, flow, inlet_length=inlet), settings)
         for columns, rows in ((200, 8), (400, 16))
     )
     # films: what is left after second order, of 2/rows^2 squared; response: the place of rupture among the columns,
@@ -77,11 +77,11 @@ def test_independent_solver(point: dict[str, float], flow: Flow) -> None:
 
 def _martin(columns: int, rows: int, flow: Flow) -> dict[str, float]:
     """Film, stiffness and damping over their limits at M = 1e-3, where elastic deflection is 1e-5 of the film."""
-    settings = cases.parameters(1e-3, 0.0, columns, rows, inlet_length=300.0, flow=flow)
+    settings = openfoam_runs.parameters(1e-3, 0.0, columns, rows, inlet_length=300.0, flow=flow)
     assert settings.start is not None
     # mixture ends at a pressure of -1e-5 of the film's, not of Hertz', which is a thousand times as high here
     range_ = 1e-5 * float(settings.start.pressure.max())
-    results = cases.run(replace(settings, cavitation_range=range_, tolerance=1e-11)).results
+    results = openfoam_runs.run(replace(settings, cavitation_range=range_, tolerance=1e-11)).results
     radius, viscosity, load = settings.reduced_radius, settings.oil.viscosity, settings.load
     film, stiffness = results.minimum_film, 1.0 / results.film_compliance[0]
     limit = 2.0 * MARTIN["film_times_M"] * viscosity * settings.lower_speed * radius / load

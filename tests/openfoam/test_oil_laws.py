@@ -10,11 +10,11 @@ import pytest
 
 from ehdmaps.openfoam.fields import read_fields
 from ehdmaps.physics.lubricant import Lubricant
-from tests.openfoam import cases
+from tests.cases import openfoam_runs
 
 pytestmark = pytest.mark.openfoam
 
-STATED = {"viscosity": cases.VISCOSITY, "density": 880.0}
+STATED = {"viscosity": openfoam_runs.VISCOSITY, "density": 880.0}
 FREE_VOLUME = {
     "doolittle_slope": 3.5,
     "occupied_fraction": 0.66,
@@ -26,9 +26,9 @@ FREE_VOLUME = {
     "reference_temperature": 313.15,
 }
 OILS = {
-    "barus": Lubricant.barus(**STATED, pressure_viscosity=cases.ALPHA, density_law="incompressible"),
-    "roelands": cases.ROELANDS,
-    "fva3": Lubricant.fva3(**STATED, pressure_viscosity=cases.ALPHA),
+    "barus": Lubricant.barus(**STATED, pressure_viscosity=openfoam_runs.ALPHA, density_law="incompressible"),
+    "roelands": openfoam_runs.ROELANDS,
+    "fva3": Lubricant.fva3(**STATED, pressure_viscosity=openfoam_runs.ALPHA),
     "tait-doolittle": Lubricant.own("tait-doolittle", FREE_VOLUME, **STATED),
 }
 
@@ -37,7 +37,7 @@ OILS = {
 @pytest.mark.parametrize("law", OILS)
 def test_viscosity_and_density_of_the_cells(law: str, temperature: float, tmp_path: Path) -> None:
     oil = OILS[law].at(temperature)
-    solution = cases.run(replace(cases.parameters(10.0, 5.0), oil=oil), keep=tmp_path)
+    solution = openfoam_runs.run(replace(openfoam_runs.parameters(10.0, 5.0), oil=oil), keep=tmp_path)
     (case,) = [path.parent for path in tmp_path.rglob("constant") if path.is_dir()]
     fields = read_fields(case)
     liquid = fields.liquid_fraction == 1.0

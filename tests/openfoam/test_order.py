@@ -9,7 +9,7 @@ import pytest
 
 from ehdmaps.openfoam.parameters import Flow
 from ehdmaps.openfoam.results import Results
-from tests.openfoam import cases
+from tests.cases import openfoam_runs
 
 pytestmark = pytest.mark.openfoam
 
@@ -31,7 +31,7 @@ def _order(coarse: float, middle: float, fine: float) -> float:
 @pytest.mark.parametrize("flow", ["thin_film", "full_stress"])
 @pytest.mark.parametrize(("M", "L"), POINTS)
 def test_order_across_the_film(M: float, L: float, flow: Flow, quantity: str) -> None:
-    found = [QUANTITIES[quantity](cases.results(M, L, 100, rows, flow)) for rows in (6, 12, 24)]
+    found = [QUANTITIES[quantity](openfoam_runs.results(M, L, 100, rows, flow)) for rows in (6, 12, 24)]
     # second order: the flux that pressure drives is 1 + 2/rows^2 of the exact one; 1.7 leaves room for the next terms
     assert _order(*found) > 1.7
 
@@ -39,11 +39,12 @@ def test_order_across_the_film(M: float, L: float, flow: Flow, quantity: str) ->
 @pytest.mark.parametrize("flow", ["thin_film", "full_stress"])
 @pytest.mark.parametrize(("M", "L"), POINTS)
 def test_order_of_the_film_along_it(M: float, L: float, flow: Flow) -> None:
-    found = [cases.results(M, L, columns, 6, flow).film_offset for columns in (100, 200, 400)]
+    found = [openfoam_runs.results(M, L, columns, 6, flow).film_offset for columns in (100, 200, 400)]
     # second order; 1.7 leaves room for the place of the film's rupture among the columns, which comes and goes
     assert _order(*found) > 1.7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quantity", ["film_compliance", "loss_compliance"])
 @pytest.mark.parametrize(("M", "L"), POINTS)
 def test_error_of_the_response_along_the_film(M: float, L: float, quantity: str) -> None:
@@ -52,8 +53,8 @@ def test_error_of_the_response_along_the_film(M: float, L: float, quantity: str)
     A wiggle of second order in the film offset, one column long, is of first order in its derivative.
     """
     value = QUANTITIES[quantity]
-    reference = value(cases.results(M, L, 1000, 6))
+    reference = value(openfoam_runs.results(M, L, 1000, 6))
     for columns in (100, 160, 200, 320, 400):
-        error = value(cases.results(M, L, columns, 6)) / reference - 1.0
+        error = value(openfoam_runs.results(M, L, columns, 6)) / reference - 1.0
         # discretisation: 3 % at 100 columns and, of first order, 0.75 % at 400, errors of the reference among them
         assert abs(error) < 0.03 * 100 / columns

@@ -13,12 +13,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.openfoam.fields import read_fields
 from ehdmaps.openfoam.installation import Installation, installation
 from ehdmaps.openfoam.parameters import Mesh
-from tests.openfoam import cases
+from tests.cases import openfoam_runs
 
 pytestmark = pytest.mark.openfoam
 
@@ -57,7 +57,7 @@ def _write(case: Path, name: str, kind: str, text: str) -> None:
     path.write_text(HEADER.format(kind=kind, name=path.name) + text)
 
 
-def _numbers(path: Path, width: int) -> NDArray[np.float64]:
+def _numbers(path: Path, width: int) -> FloatArray:
     """The list of numbers or vectors in a file of OpenFOAM."""
     found = re.search(r"\n(\d+)\s*\n\(\n", text := path.read_text())
     assert found is not None
@@ -65,21 +65,21 @@ def _numbers(path: Path, width: int) -> NDArray[np.float64]:
     return np.array(words[: int(found[1]) * width], dtype=float).reshape(-1, width)
 
 
-def _vectors(values: NDArray[np.float64]) -> str:
+def _vectors(values: FloatArray) -> str:
     return "(" + " ".join("({:.15g} {:.15g} {:.15g})".format(*value) for value in values) + ")"
 
 
-def _mesh(case: Path, solved: Path, columns: int, installed: Installation) -> NDArray[np.float64]:
+def _mesh(case: Path, solved: Path, columns: int, installed: Installation) -> FloatArray:
     """The first columns of a solved mesh; returns its points, shape (columns + 1, 2, rows + 1, 3)."""
     shutil.copytree(installed.template / "system", case / "system")
     _write(case, "constant/ehlProperties", "dictionary", f"columns {columns}; rows {ROWS};")
-    assert cases.program(installed, installed.block_mesh, case).returncode == 0
+    assert openfoam_runs.program(installed, installed.block_mesh, case).returncode == 0
     points = _numbers(solved / "1" / "polyMesh" / "points", 3).reshape(-1, 2, ROWS + 1, 3)[: columns + 1]
     _write(case, "constant/polyMesh/points", "vectorField", f"{points.size // 3}\n{_vectors(points.reshape(-1, 3))}")
     return points
 
 
-def _wall_speeds(points: NDArray[np.float64], case: Path, patch: str, speed: float) -> str:
+def _wall_speeds(points: FloatArray, case: Path, patch: str, speed: float) -> str:
     """A surface that moves along itself, face by face in the order of its patch."""
     edge = points[:, 0, 0 if patch == "lower" else -1]
     along = np.diff(edge, axis=0)
@@ -97,9 +97,9 @@ def _differences(folder: Path, columns: int) -> tuple[float, float, float]:
     installed = installation()
     simple_foam = shutil.which("simpleFoam")
     assert simple_foam is not None
-    settings = cases.parameters(0.02, 0.0, columns, ROWS, flow="full_stress", slide_to_roll=0.5)
+    settings = openfoam_runs.parameters(0.02, 0.0, columns, ROWS, flow="full_stress", slide_to_roll=0.5)
     mesh = Mesh(film=settings.mesh.film, inlet_length=10.0)
-    found = cases.run(replace(settings, mesh=mesh), keep=folder)
+    found = openfoam_runs.run(replace(settings, mesh=mesh), keep=folder)
     solved = next(folder.glob("case*"))
     pressure = read_fields(solved).p.reshape(columns, ROWS).mean(axis=1)
     peak = float(pressure.max())
@@ -141,7 +141,7 @@ def _differences(folder: Path, columns: int) -> tuple[float, float, float]:
     _write(case, "system/controlDict", "dictionary", CONTROL)
     _write(case, "system/fvSchemes", "dictionary", SCHEMES)
     _write(case, "system/fvSolution", "dictionary", SOLUTION)
-    assert "SIMPLE solution converged" in cases.program(installed, simple_foam, case).stdout
+    assert "SIMPLE solution converged" in openfoam_runs.program(installed, simple_foam, case).stdout
 
     last = max((path for path in case.iterdir() if path.name.isdigit()), key=lambda path: int(path.name))
     its_pressure = density * _numbers(last / "p", 1)[:, 0].reshape(cut, ROWS).mean(axis=1)

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from ehdmaps.openfoam.results import Results
-from tests.openfoam import cases
+from tests.cases import openfoam_runs
 
 pytestmark = pytest.mark.openfoam
 
@@ -25,8 +25,8 @@ def _numbers(results: Results) -> list[float]:
 
 @pytest.mark.parametrize(("shear", "stress", "tolerance"), [("eyring", 1e12, 1e-8), ("limiting", 1e13, 1e-6)])
 def test_high_stress_is_newtonian(shear: str, stress: float, tolerance: float) -> None:
-    newtonian = cases.results(5.0, 5.0, 100, 8, **SLIDING)
-    limited = cases.results(5.0, 5.0, 100, 8, shear=shear, shear_stress=stress, **SLIDING)
+    newtonian = openfoam_runs.results(5.0, 5.0, 100, 8, **SLIDING)
+    limited = openfoam_runs.results(5.0, 5.0, 100, 8, shear=shear, shear_stress=stress, **SLIDING)
     # the laws leave Newton's by s^2/6 (Eyring) and s/2 (limiting), s = some 1e7 Pa over the stress of the law; then
     # what Newton's method leaves after a last step of 1e-9
     assert _numbers(limited) == pytest.approx(_numbers(newtonian), rel=tolerance)
@@ -34,11 +34,11 @@ def test_high_stress_is_newtonian(shear: str, stress: float, tolerance: float) -
 
 def test_sliding_alone_changes_nothing() -> None:
     """A Newtonian, isothermal thin film knows the mean speed of its surfaces only."""
-    rolling = cases.results(5.0, 5.0, 100, 8)
-    assert _numbers(cases.results(5.0, 5.0, 100, 8, **SLIDING)) == pytest.approx(_numbers(rolling), rel=1e-8)
+    rolling = openfoam_runs.results(5.0, 5.0, 100, 8)
+    assert _numbers(openfoam_runs.results(5.0, 5.0, 100, 8, **SLIDING)) == pytest.approx(_numbers(rolling), rel=1e-8)
 
 
 def test_sliding_thins_the_film_of_a_shear_thinning_oil() -> None:
-    newtonian = cases.results(5.0, 5.0, 100, 8, **SLIDING)
-    thinning = cases.results(5.0, 5.0, 100, 8, shear="eyring", shear_stress=5e6, **SLIDING)
+    newtonian = openfoam_runs.results(5.0, 5.0, 100, 8, **SLIDING)
+    thinning = openfoam_runs.results(5.0, 5.0, 100, 8, shear="eyring", shear_stress=5e6, **SLIDING)
     assert thinning.central_film < newtonian.central_film

@@ -11,7 +11,7 @@ import pytest
 from ehdmaps.openfoam.parameters import Flow, Oscillation, Parameters
 from ehdmaps.openfoam.results import Results
 from ehdmaps.physics.hertz import half_width
-from tests.openfoam import cases
+from tests.cases import openfoam_runs
 
 pytestmark = pytest.mark.openfoam
 
@@ -22,7 +22,7 @@ AMPLITUDE = 1e-3
 
 def _settings(flow: Flow) -> Parameters:
     """Without columns at the spike: there the response lets the mesh follow it, which the oscillation does not."""
-    found = cases.parameters(M, L, *GRIDS[flow], flow=flow)
+    found = openfoam_runs.parameters(M, L, *GRIDS[flow], flow=flow)
     return replace(found, mesh=replace(found.mesh, spike_width=0.0))
 
 
@@ -37,7 +37,7 @@ def _oscillated(flow: Flow, omega: float, steps: int) -> Results:
     settings = _settings(flow)
     frequency = _frequency(settings, omega)
     oscillation = Oscillation(frequency, AMPLITUDE, steps_per_cycle=steps, cycles=3)
-    return cases.run(replace(settings, frequencies=(0.0, frequency), oscillation=oscillation)).results
+    return openfoam_runs.run(replace(settings, frequencies=(0.0, frequency), oscillation=oscillation)).results
 
 
 def _differences(results: Results) -> tuple[float, float]:
@@ -71,7 +71,7 @@ def test_response_does_depend_on_frequency(flow: Flow) -> None:
 @pytest.mark.parametrize("flow", ["thin_film", "full_stress"])
 def test_low_frequency_limit(flow: Flow) -> None:
     settings = _settings(flow)
-    results = cases.run(replace(settings, frequencies=(0.0, _frequency(settings, 1e-3)))).results
+    results = openfoam_runs.run(replace(settings, frequencies=(0.0, _frequency(settings, 1e-3)))).results
     # (omega b/u)^2 = 1e-6 times some 30
     assert results.film_compliance[1] == pytest.approx(results.film_compliance[0], rel=1e-4)
     assert results.loss_compliance[1] == pytest.approx(results.loss_compliance[0], rel=1e-4)

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ehdmaps.maps.law import ContactLaw
-from tests.unit.law_cases import CONTACTS, OIL, SMALL_FIELD
+from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
 speeds = st.floats(0.0, 3.0)
 temperatures = st.floats(*SMALL_FIELD.temperature_range)

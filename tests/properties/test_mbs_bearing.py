@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.unit.law_cases import SMALL_FIELD
-from tests.unit.mbs_cases import PLANE, force
+from tests.cases.bearings import PLANE, force
+from tests.cases.laws import SMALL_FIELD
 
 speeds = st.sampled_from([0.0, 0.15, 0.3, 1.0, 3.0])
 temperatures = st.sampled_from([SMALL_FIELD.temperature_range[0], 330.0])

@@ -15,21 +15,9 @@ from ehdmaps.jobs import cli, solvers
 from ehdmaps.maps.emap import open_map
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.solution import FilmSolution, Status
+from tests.cases.jobs import map_job, spaced
 
-TEXT = """
-schema = 1
-[bearing]
-name = "NU308"
-[lubricant]
-name = "FVA3"
-[grid]
-load = { from = "1 N/mm", to = "1000 N/mm", points = 6, spacing = "log" }
-entrainment_speed = ["0.5 m/s", "1 m/s"]
-temperature = ["40 degC", "60 degC"]
-[solver]
-name = "formula"
-structural_law = "iso16281"
-"""
+TEXT = map_job(spaced("1 N/mm", "1000 N/mm", 6), '["0.5 m/s", "1 m/s"]', '["40 degC", "60 degC"]')
 COLD = TEXT.replace("1 N/mm", "0.1 N/mm").replace('"40 degC"', '"0 degC", "40 degC"')
 POINT = ["--load", "40 N", "--length", "0.45 mm", "--speed", "3.297 m/s", "--temperature", "40 degC"]
 TIMES = ["solve_seconds"]
@@ -69,7 +57,7 @@ def test_generate_show_plot_compare(here, capsys):
     status, out, _ = run(capsys, "plot", "mine.nc", "-o", "page.pdf")
     assert (status, (here / "page.pdf").read_bytes()[:4]) == (0, b"%PDF")
 
-    assert run(capsys, "generate", "mine.toml", "-o", "dry.nc", "--solver", "hertz")[0] == 0
+    assert run(capsys, "generate", "mine.toml", "-o", "dry.nc", "--solver", "hertz", "--workers", "1")[0] == 0
     status, out, _ = run(capsys, "compare", "mine.nc", "dry.nc")
     assert status == 0
     assert "48 points in common, 48 of them solved in both" in out
@@ -92,7 +80,7 @@ def test_a_changed_job_solves_only_what_is_new(here, capsys):
 def test_a_map_alone_repeats_itself(here, capsys):
     run(capsys, "generate", "mine.toml", "-o", "a.nc", "--solver", "hertz")
     (here / "mine.toml").unlink()
-    assert run(capsys, "generate", "a.nc", "-o", "again.nc")[0] == 0
+    assert run(capsys, "generate", "a.nc", "-o", "again.nc", "--workers", "1")[0] == 0
     first, again = open_map(here / "a.nc").dataset, open_map(here / "again.nc").dataset
     assert again.attrs["solver"] == "hertz"
     xr.testing.assert_identical(again.drop_vars(TIMES).drop_attrs(), first.drop_vars(TIMES).drop_attrs())

@@ -14,6 +14,8 @@ from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.summary import summary
 from ehdmaps.maps.schema import BACKBONE_GROUP
 
+pytestmark = pytest.mark.slow  # its map is checked against forty fresh solves
+
 OIL = (Path(__file__).parents[1] / "references" / "n1014_thin_oil.toml").read_text()
 TEXT = OIL.replace('"10 N/mm", "100 N/mm"', '"2 N/mm", "15 N/mm", "100 N/mm"') + "law_check = 40\n"
 

@@ -12,9 +12,9 @@ import xarray as xr
 from scipy.optimize import root
 
 import ehdmaps
-from ehdmaps.jobs import cli as ehdmaps_cli
 from mbs import Bearing, BearingForce, cli
-from tests.system.test_mbs_cli import JOB, check_units
+from tests.cases.commands import check_units
+from tests.cases.jobs import WIDE
 
 OWN = """
 [bearing]
@@ -25,15 +25,6 @@ roller_length = "15 mm"
 rollers = 12
 diametral_clearance = "20 um"
 """
-
-
-@pytest.fixture(scope="module")
-def formula_map(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("map")
-    (folder / "nu308.toml").write_text(JOB.format(bearing="NU308"))
-    path = str(folder / "nu308.nc")
-    assert ehdmaps_cli.main(["generate", str(folder / "nu308.toml"), "-o", path, "--workers", "1"]) in (0, 1)
-    return path
 
 
 @pytest.fixture
@@ -208,7 +199,7 @@ BAD = (
 def test_bad_input_is_refused_in_words(here, capsys, formula_map, bearing, options, words):
     contact = '[contact]\nradius = "5 mm"\nroller_length = "9 mm"\n'
     (here / "bare.toml").write_text(contact)
-    job = JOB.format(bearing="NU308")
+    job = WIDE
     (here / "job.toml").write_text(job.replace('[bearing]\nname = "NU308"\n', contact))
     (here / "odd.toml").write_text(OWN.replace("rollers = 12\n", "") + "[sped]\n")
     (here / "no.toml").write_text("= 1")

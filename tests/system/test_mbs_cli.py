@@ -12,37 +12,8 @@ import pytest
 import xarray as xr
 
 from ehdmaps import errors
-from ehdmaps.jobs import cli as ehdmaps_cli
-from mbs import cli
 from mbs.scene.reader import read_scene
-
-JOB = """
-schema = 1
-[bearing]
-name = "{bearing}"
-[lubricant]
-name = "FVA3"
-[grid]
-load = {{ from = "0.1 N/mm", to = "1000 N/mm", points = 13, spacing = "log" }}
-entrainment_speed = {{ from = "0.05 m/s", to = "10 m/s", points = 6, spacing = "log" }}
-temperature = ["20 degC", "40 degC", "60 degC"]
-[solver]
-name = "formula"
-structural_law = "iso16281"
-"""
-
-
-@pytest.fixture(scope="module")
-def maps(tmp_path_factory):
-    """A small map of each bearing, from the film formula."""
-    folder = tmp_path_factory.mktemp("maps")
-    paths = {}
-    for bearing in ("NU308", "N1014"):
-        job, path = folder / f"{bearing}.toml", folder / f"{bearing}.nc"
-        job.write_text(JOB.format(bearing=bearing))
-        assert ehdmaps_cli.main(["generate", str(job), "-o", str(path), "--workers", "1"]) in (0, 1)
-        paths[bearing] = str(path)
-    return paths
+from tests.cases.commands import check_units, run
 
 
 @pytest.fixture
@@ -50,18 +21,6 @@ def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PYTHONPATH", str(Path(errors.__file__).parents[1]))
     return tmp_path
-
-
-def run(capsys, *arguments):
-    status = cli.main(arguments)
-    captured = capsys.readouterr()
-    return status, captured.out, captured.err
-
-
-def check_units(dataset):
-    for name, variable in dataset.data_vars.items():
-        assert "long_name" in variable.attrs, name
-        assert "units" in variable.attrs or variable.dtype.kind in "OUS", name
 
 
 def test_statics(here, capsys):
@@ -78,8 +37,10 @@ def test_statics(here, capsys):
     assert (here / "a.png").stat().st_size > 10_000
 
 
-def test_modes_by_map(here, capsys, maps):
-    status, out, err = run(capsys, "modes", "nu308_rigid", "--map", maps["NU308"], "-o", "m.nc", "--plot", "m.png")
+def test_modes_by_map(here, capsys, formula_maps):
+    status, out, err = run(
+        capsys, "modes", "nu308_rigid", "--map", formula_maps["NU308"], "-o", "m.nc", "--plot", "m.png"
+    )
     assert (status, err) == (0, "")
     assert "law map of NU308, FVA3, solver formula" in out
     assert "warning: bearing_left: omega b/u is" in out
@@ -89,9 +50,9 @@ def test_modes_by_map(here, capsys, maps):
         np.testing.assert_allclose(data["energy_share"].sum("part"), 1.0, rtol=1e-9)
 
 
-def test_sweep_of_two_laws_and_clearances(here, capsys, maps):
+def test_sweep_of_two_laws_and_clearances(here, capsys, formula_maps):
     status, out, err = run(
-        capsys, "sweep", "nu308_rigid", "--map", maps["NU308"], "--law", "hertz", "--clearance", "0 um",
+        capsys, "sweep", "nu308_rigid", "--map", formula_maps["NU308"], "--law", "hertz", "--clearance", "0 um",
         "--clearance", "20 um", "--speeds", "200 rpm", "2000 rpm", "4", "-o", "s.nc", "--plot", "s.png",
     )  # fmt: skip
     assert (status, err) == (0, "")
@@ -112,8 +73,8 @@ def test_sweep_of_two_laws_and_clearances(here, capsys, maps):
     assert (here / "s.png").stat().st_size > 10_000
 
 
-def test_linear_analysis_with_rollers_as_bodies(here, capsys, maps):
-    status, out, _ = run(capsys, "lsa", "n1014_rigid", "--map", maps["N1014"], "-o", "l.nc", "--plot", "l.png")
+def test_linear_analysis_with_rollers_as_bodies(here, capsys, formula_maps):
+    status, out, _ = run(capsys, "lsa", "n1014_rigid", "--map", formula_maps["N1014"], "-o", "l.nc", "--plot", "l.png")
     assert status == 0
     assert "state space: 60 states, 1 inputs, 1 outputs" in out
     assert "S1 (acceleration, m/s2/N) by E1: peaks at" in out
@@ -134,8 +95,10 @@ def short_run(here, **changes):
     return "short.toml"
 
 
-def test_run_up(here, capsys, maps):
-    status, out, err = run(capsys, "runup", short_run(here), "--map", maps["NU308"], "-o", "r.nc", "--plot", "r.png")
+def test_run_up(here, capsys, formula_maps):
+    status, out, err = run(
+        capsys, "runup", short_run(here), "--map", formula_maps["NU308"], "-o", "r.nc", "--plot", "r.png"
+    )
     assert status == 0
     assert "100 of 100 steps" in err
     assert "from 0 rpm to 2000 rpm in 0.002 s: 100 steps" in out
@@ -150,19 +113,19 @@ def test_run_up(here, capsys, maps):
         np.testing.assert_array_equal(data["outside_calls"], 0)
 
 
-def test_outside_the_map_is_counted_said_and_makes_status_1(here, capsys, maps):
+def test_outside_the_map_is_counted_said_and_makes_status_1(here, capsys, formula_maps):
     scene = short_run(here, temperature='"65 degC"')
-    status, out, _ = run(capsys, "runup", scene, "--map", maps["NU308"])
+    status, out, _ = run(capsys, "runup", scene, "--map", formula_maps["NU308"])
     assert status == 1
     assert "0 calls outside the map" not in out
-    status, out, _ = run(capsys, "statics", scene, "--map", maps["NU308"])
+    status, out, _ = run(capsys, "statics", scene, "--map", formula_maps["NU308"])
     assert status == 1
     assert "warning: bearing_left: lies outside the map" in out
 
 
-def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys, maps):
+def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys, formula_maps):
     status, out, err = run(
-        capsys, "modes", "nu308_rigid", "--map", maps["N1014"], "--clearance", "5 kg", "-o", "no/x.nc"
+        capsys, "modes", "nu308_rigid", "--map", formula_maps["N1014"], "--clearance", "5 kg", "-o", "no/x.nc"
     )
     assert (status, out) == (2, "")
     for words in ("is made for N1014: inner_raceway_diameter 82 mm and not 52 mm", "got the unit 'kg'", "is no folder"):
@@ -213,10 +176,10 @@ def test_as_a_module(here):
     assert "141.421 N" in result.stdout
 
 
-def test_runs_in_time_say_how_quick_their_films_are(here, capsys, maps):
+def test_runs_in_time_say_how_quick_their_films_are(here, capsys, formula_maps):
     text = read_scene("nu308_rigid").text
     (here / "fast.toml").write_text(text.replace('speed = "500 rpm"', 'speed = "2000 rpm"'))
-    options = ("fast.toml", "--map", maps["NU308"], "--clearance", "20 um")
+    options = ("fast.toml", "--map", formula_maps["NU308"], "--clearance", "20 um")
     status, out, _ = run(capsys, "runup", *options)
     assert status == 0
     found = re.search(r"this is valid \(omega b/u up to 0\.3\) up to (\S+) Hz at 2000 rpm", out)

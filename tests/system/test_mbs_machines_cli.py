@@ -14,7 +14,6 @@ import xarray as xr
 
 import mbs
 from ehdmaps.errors import InputError
-from ehdmaps.jobs import cli as ehdmaps_cli
 from ehdmaps.maps.emap import open_map
 from mbs import cli
 from mbs.analyses import campbell
@@ -85,32 +84,7 @@ sample = "40 us"
 highest = "1 kHz"
 """
 
-JOB = """
-schema = 1
-[bearing]
-name = "NU308"
-[lubricant]
-name = "FVA3"
-[grid]
-load = { from = "0.1 N/mm", to = "1000 N/mm", points = 13, spacing = "log" }
-entrainment_speed = { from = "0.05 m/s", to = "10 m/s", points = 6, spacing = "log" }
-temperature = ["20 degC", "40 degC", "60 degC"]
-[solver]
-name = "formula"
-structural_law = "iso16281"
-"""
-
 SPIN = 21.0 / 23.0
-
-
-@pytest.fixture(scope="module")
-def film_map(tmp_path_factory):
-    """A small map, from the film formula."""
-    folder = tmp_path_factory.mktemp("map")
-    job, path = folder / "job.toml", folder / "map.nc"
-    job.write_text(JOB)
-    assert ehdmaps_cli.main(["generate", str(job), "-o", str(path), "--workers", "1"]) in (0, 1)
-    return str(path)
 
 
 def shaft_on_springs(name="shaft", sensor="S", title="shaft on springs", speed="1000 rpm"):
@@ -206,25 +180,25 @@ class TestFiles:
 
 
 class TestWithoutLoad:
-    def test_there_is_an_equilibrium(self, here, capsys, film_map):
+    def test_there_is_an_equilibrium(self, here, capsys, formula_map):
         """The films push from all sides: what they leave over is round-off, and was taken for a load."""
-        status, _, err = run(capsys, "statics", "unloaded.toml", "--map", film_map, "-o", "u.nc", "--plot", "u.png")
+        status, _, err = run(capsys, "statics", "unloaded.toml", "--map", formula_map, "-o", "u.nc", "--plot", "u.png")
         assert (status, err) == (0, "")
         with xr.open_dataset("u.nc") as data:
             # round-off of a film's force of some newtons
             assert np.max(np.abs(data["bearing_force"])) < 1e-9
             assert np.max(np.abs(data["displacement"])) < 1e-12
             assert data.attrs["residual"] < 1.0
-        assert run(capsys, "modes", "unloaded.toml", "--map", film_map)[0] == 0
-        assert run(capsys, "sweep", "unloaded.toml", "--map", film_map, "--speeds", "0 rpm", "500 rpm", "2")[0] == 0
+        assert run(capsys, "modes", "unloaded.toml", "--map", formula_map)[0] == 0
+        assert run(capsys, "sweep", "unloaded.toml", "--map", formula_map, "--speeds", "0 rpm", "500 rpm", "2")[0] == 0
 
-    def test_no_film_at_rest_is_said_in_words(self, here, capsys, film_map):
+    def test_no_film_at_rest_is_said_in_words(self, here, capsys, formula_map):
         text = (here / "own.toml").read_text(encoding="utf-8").replace('speed = "500 rpm"', 'speed = "0 rpm"')
         (here / "rest.toml").write_text(text, encoding="utf-8")
-        _, out, _ = run(capsys, "modes", "rest.toml", "--map", film_map)
+        _, out, _ = run(capsys, "modes", "rest.toml", "--map", formula_map)
         assert "bearing_left: at rest no film: the stiffness is that of dry contacts, no damping" in out
         assert "inf" not in out
-        _, out, _ = run(capsys, "statics", "rest.toml", "--map", film_map)
+        _, out, _ = run(capsys, "statics", "rest.toml", "--map", formula_map)
         assert "films follow" not in out
 
 
@@ -451,8 +425,8 @@ def places(model, balance):
 
 
 @pytest.fixture(scope="module")
-def emap(film_map):
-    return open_map(film_map)
+def emap(formula_map):
+    return open_map(formula_map)
 
 
 @pytest.fixture(scope="module")

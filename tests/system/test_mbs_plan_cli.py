@@ -14,6 +14,7 @@ from ehdmaps.physics.solution import FilmSolution, Status, contact_solution
 from mbs import cli
 
 
+@pytest.mark.slow
 def test_the_planned_map_of_the_gearbox_is_as_good_as_it_should_be(tmp_path, monkeypatch, capsys):
     """At 40 degC its damping is negative in the valley, beside which a law must not ring."""
     monkeypatch.chdir(tmp_path)
@@ -26,6 +27,7 @@ def test_the_planned_map_of_the_gearbox_is_as_good_as_it_should_be(tmp_path, mon
     assert found["law_valley_damping_within_bar"] >= 0.95
 
 
+@pytest.mark.slow
 def test_a_planned_map_serves_its_scene(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert cli.main(["plan", "nu308_rigid", "--clearance", "20 um", "-o", "job.toml"]) == 0

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from ehdmaps.jobs import cli as ehdmaps_cli
 from mbs import Bearing
 from mbs.scene.reader import read_scene
-from tests.system.test_mbs_cli import JOB, check_units, run
+from tests.cases.commands import check_units, run
 
 STRAIGHT = ('profile = "iso"', 'profile = "straight"')
 FREE_RING = ('freedoms = ["y", "z"]\nposition = ["-70 mm"', 'freedoms = ["x", "y", "z"]\nposition = ["-70 mm"')
@@ -21,15 +20,6 @@ FREE_RING = ('freedoms = ["y", "z"]\nposition = ["-70 mm"', 'freedoms = ["x", "y
 def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-@pytest.fixture(scope="module")
-def formula_map(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("map")
-    (folder / "nu308.toml").write_text(JOB.format(bearing="NU308"))
-    path = str(folder / "nu308.nc")
-    assert ehdmaps_cli.main(["generate", str(folder / "nu308.toml"), "-o", path, "--workers", "1"]) in (0, 1)
-    return path
 
 
 def scene(here, *changes):

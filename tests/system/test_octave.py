@@ -13,7 +13,7 @@ import pytest
 
 import ehdmaps
 from ehdmaps.jobs.cli import main
-from tests.unit.test_job_map import TEXT
+from tests.cases.jobs import SMALL
 
 PAGE = Path(__file__).parents[2] / "ehdmaps" / "REFERENCE.md"
 
@@ -40,7 +40,7 @@ def octave():
 
 def test_the_example_of_the_page_runs(octave, tmp_path):
     # thick films, which have a reason
-    (tmp_path / "job.toml").write_text(TEXT.replace('"2 m/s"', '"9 m/s"').replace('"1 N/mm"', '"0.1 N/mm"'))
+    (tmp_path / "job.toml").write_text(SMALL.replace('"2 m/s"', '"9 m/s"').replace('"1 N/mm"', '"0.1 N/mm"'))
     assert main(["generate", str(tmp_path / "job.toml"), "-o", str(tmp_path / "nu308.nc"), "--workers", "1"]) == 0
     (example,) = re.findall(r"```octave\n(.*?)```", PAGE.read_text(), re.DOTALL)
     assert len(example.splitlines()) == 5

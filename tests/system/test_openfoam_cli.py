@@ -5,7 +5,9 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 import meshio
@@ -13,52 +15,63 @@ import numpy as np
 import pytest
 
 from ehdmaps import errors
+from ehdmaps.jobs import cli
 from ehdmaps.maps.emap import open_map
-from tests.system.interruptible import start
-from tests.unit import openfoam_fake
+from tests.cases import openfoam_fake
+from tests.cases.interruptible import start
+from tests.cases.jobs import map_job, spaced
 
-JOB = """
-schema = 1
-[bearing]
-name = "NU308"
-[lubricant]
-name = "FVA3"
-[grid]
-load = { from = "2 N/mm", to = "200 N/mm", points = 3, spacing = "log" }
-entrainment_speed = ["1 m/s", "2 m/s"]
-temperature = ["40 degC"]
-[solver]
-name = "openfoam"
-structural_law = "iso16281"
-columns = 40
+JOB = (
+    map_job(spaced("2 N/mm", "200 N/mm", 3), '["1 m/s", "2 m/s"]', '["40 degC"]', solver="openfoam")
+    + """columns = 40
 rows = 4
 start = "hertz"
 fill = "none"
 """
+)
 POINTS = 12
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """Folder with a job; a fake build beside it; `build` is where its mode stands."""
+    """Folder with a job, where the commands run; a fake build beside it; `build` is where its mode stands."""
     for key, value in openfoam_fake.build(tmp_path / "build").items():
         monkeypatch.setenv(key, value)
-    monkeypatch.setenv("PYTHONPATH", str(Path(errors.__file__).parents[1]))
+    monkeypatch.setattr(tempfile, "tempdir", None)  # python asks for TMPDIR only once
+    monkeypatch.setenv("PYTHONPATH", str(Path(errors.__file__).parents[1]))  # for commands in their own process
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
     here = tmp_path / "here"
     here.mkdir()
     (here / "job.toml").write_text(JOB)
+    monkeypatch.chdir(here)
     return here
 
 
+@dataclass(frozen=True)
+class Done:
+    """What a command printed."""
+
+    stdout: str
+    stderr: str
+
+
+@pytest.fixture
+def done(capsys):
+    """Run a command in this process; those that are killed run in their own, by `command`."""
+
+    def run(*arguments, status=0):
+        capsys.readouterr()
+        found = cli.main(arguments)
+        captured = Done(*capsys.readouterr())
+        assert found == status, captured.stderr
+        return captured
+
+    return run
+
+
 def command(*arguments):
+    """Return the command line of a process of its own."""
     return [sys.executable, "-m", "ehdmaps.jobs.cli", *arguments]
-
-
-def done(folder, *arguments, status=0):
-    result = subprocess.run(command(*arguments), cwd=folder, capture_output=True, text=True, check=False)
-    assert result.returncode == status, result.stderr
-    return result
 
 
 def counts(out):
@@ -91,28 +104,27 @@ def left_cases(folder):
     return sorted(folder.parent.glob("ehdmaps-openfoam-*"))
 
 
-@pytest.mark.parametrize("workers", ["1", "2"])
-def test_a_map_and_the_same_command_again(folder, workers):
-    first = done(folder, "generate", "job.toml", "--workers", workers)
+def test_a_map_and_the_same_command_again(folder, done):
+    first = done("generate", "job.toml", "--workers", "1")
     assert counts(first.stdout) == (0, POINTS, 0)
     dataset = open_map(folder / "job.nc").dataset
     assert dataset.attrs["openfoam_version"] == "v1912"
     assert dataset.attrs["openfoam_build"] == "OpenFOAM v1912 compiler g++ 12.2.0 sources 0123abcd"
     assert np.isfinite(dataset["film_compliance_error"].values).all()
-    assert "OpenFOAM             v1912; ehlFoam built with OpenFOAM v1912" in done(folder, "show", "job.nc").stdout
-    assert counts(done(folder, "generate", "job.toml", "--workers", workers).stdout) == (POINTS, 0, 0)
+    assert "OpenFOAM             v1912; ehlFoam built with OpenFOAM v1912" in done("show", "job.nc").stdout
+    assert counts(done("generate", "job.toml", "--workers", "1").stdout) == (POINTS, 0, 0)
     # another build solves its own points
     (build_of(folder) / "bin" / "ehlFoam.build").write_text("OpenFOAM v1912 sources 4567\n")
-    assert counts(done(folder, "generate", "job.toml", "--workers", workers).stdout) == (0, POINTS, 0)
+    assert counts(done("generate", "job.toml", "--workers", "1").stdout) == (0, POINTS, 0)
     assert sorted(os.listdir(folder)) == ["job.nc", "job.nc.store", "job.toml"]
     assert left_cases(folder) == []
     assert not (folder.parent / "home").exists()
 
 
-@pytest.mark.parametrize("workers", ["1", "2"])
-def test_kill_9_of_a_running_solver_costs_nothing(folder, workers):
+@pytest.mark.slow
+def test_kill_9_of_a_running_solver_costs_nothing(folder):
     openfoam_fake.set_mode(build_of(folder), "patient 0.3")
-    job = start(command("generate", "job.toml", "--workers", workers), cwd=folder, stdout=subprocess.PIPE, text=True)
+    job = start(command("generate", "job.toml", "--workers", "2"), cwd=folder, stdout=subprocess.PIPE, text=True)
     wait_for(lambda: len(openfoam_fake.starts(build_of(folder))) >= 3)
     os.kill(int(openfoam_fake.starts(build_of(folder))[-1][0]), signal.SIGKILL)
     out, _ = job.communicate(timeout=60)
@@ -122,25 +134,29 @@ def test_kill_9_of_a_running_solver_costs_nothing(folder, workers):
     assert left_cases(folder) == []  # the second try made it good
 
 
-def test_failed_points_are_summed_up_and_tried_again_by_the_next_run(folder):
+def test_failed_points_are_summed_up_and_tried_again_by_the_next_run(folder, done):
     openfoam_fake.set_mode(build_of(folder), "fatal")
-    failed = done(folder, "generate", "job.toml", "--workers", "2", status=1)
+    failed = done("generate", "job.toml", "--workers", "1", status=1)
     assert counts(failed.stdout) == (0, POINTS, POINTS)
     assert (
         "12 x coarse grid: ehlFoam ended with status 1; last lines of the log: viscosity is negative" in failed.stdout
     )
     openfoam_fake.set_mode(build_of(folder), "stagnated")
-    stagnated = done(folder, "generate", "job.toml", "--workers", "2", status=1)
+    stagnated = done("generate", "job.toml", "--workers", "1", status=1)
     assert counts(stagnated.stdout) == (0, POINTS, POINTS)
     openfoam_fake.set_mode(build_of(folder), "good")
     # a failure may not happen again; how a run converges is a result
-    assert counts(done(folder, "generate", "job.toml", status=1).stdout) == (POINTS, 0, POINTS)
-    assert counts(done(folder, "generate", "job.toml", "--fresh").stdout) == (0, POINTS, 0)
+    assert counts(done("generate", "job.toml", "--workers", "1", status=1).stdout) == (POINTS, 0, POINTS)
+    assert counts(done("generate", "job.toml", "--workers", "1", "--fresh").stdout) == (0, POINTS, 0)
 
 
-@pytest.mark.parametrize("workers", ["1", "2"])
-@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGKILL], ids=["ctrl-c", "kill -9"])
-def test_the_end_of_a_job_is_the_end_of_its_solvers(folder, workers, end):
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("end", "workers"),
+    [(signal.SIGINT, "1"), (signal.SIGINT, "2"), (signal.SIGKILL, "2")],
+    ids=["ctrl-c 1", "ctrl-c 2", "kill -9 2"],
+)
+def test_the_end_of_a_job_is_the_end_of_its_solvers(folder, done, end, workers):
     openfoam_fake.set_mode(build_of(folder), "hang")
     job = start(
         command("generate", "job.toml", "--workers", workers),
@@ -163,13 +179,13 @@ def test_the_end_of_a_job_is_the_end_of_its_solvers(folder, workers, end):
         assert "stopped; what is solved is kept in job.nc.store" in err
     wait_for(lambda: not any(alive(pid) for pid, *_ in openfoam_fake.starts(build_of(folder))), seconds=10.0)
     openfoam_fake.set_mode(build_of(folder), "good")
-    assert counts(done(folder, "generate", "job.toml", "--workers", workers).stdout) == (0, POINTS, 0)
+    assert counts(done("generate", "job.toml", "--workers", "1").stdout) == (0, POINTS, 0)
 
 
-def test_a_hanging_solver_is_stopped_after_its_time(folder):
+def test_a_hanging_solver_is_stopped_after_its_time(folder, done):
     openfoam_fake.set_mode(build_of(folder), "hang")
     (folder / "job.toml").write_text(JOB.replace("points = 3", "points = 2").replace(', "2 m/s"', "") + "timeout = 1\n")
-    result = done(folder, "generate", "job.toml", "--workers", "2", status=1)
+    result = done("generate", "job.toml", "--workers", "1", status=1)
     assert "4 x coarse grid: ehlFoam did not end within" in result.stdout
     assert not any(alive(pid) for pid, *_ in openfoam_fake.starts(build_of(folder)))
 
@@ -177,8 +193,8 @@ def test_a_hanging_solver_is_stopped_after_its_time(folder):
 POINT = ("--load", "62 N/mm", "--speed", "1.7 m/s", "--temperature", "40 degC")
 
 
-def test_one_point_with_fields_and_pictures(folder):
-    result = done(folder, "solve", "job.toml", *POINT, "--fields", "film.vtu", "--plot", "film.png", "--json")
+def test_one_point_with_fields_and_pictures(folder, done):
+    result = done("solve", "job.toml", *POINT, "--fields", "film.vtu", "--plot", "film.png", "--json")
     assert [record["status"] for record in json.loads(result.stdout)] == ["converged", "converged"]
     assert result.stderr.splitlines() == [
         "film-inner.vtu: written",
@@ -187,22 +203,22 @@ def test_one_point_with_fields_and_pictures(folder):
     ]
     assert meshio.read(folder / "film-inner.vtu").cells_dict["quad"].shape == (160, 4)
     assert (folder / "film.png").stat().st_size > 10_000
-    plain = done(folder, "solve", "job.toml", *POINT, "--json")
+    plain = done("solve", "job.toml", *POINT, "--json")
     first, second = json.loads(result.stdout)[0], json.loads(plain.stdout)[0]
     assert {**first, "solve_seconds": 0} == {**second, "solve_seconds": 0}
 
 
-def test_one_point_of_a_bare_contact_has_one_file(folder):
+def test_one_point_of_a_bare_contact_has_one_file(folder, done):
     bare = JOB.replace('[bearing]\nname = "NU308"', '[contact]\nradius = "5 mm"\nreference_depth = "5 mm"')
     (folder / "job.toml").write_text(bare.replace("iso16281", "half_space"))
-    done(folder, "solve", "job.toml", *POINT, "--fields", "film.xdmf", "--keep-cases", "cases")
+    done("solve", "job.toml", *POINT, "--fields", "film.xdmf", "--keep-cases", "cases")
     assert meshio.read(folder / "film.xdmf").cell_data["p"][0].size == 160
     assert sorted(os.listdir(folder / "cases")) == [f"line_w62000_u1.7_T313.15_{grid}" for grid in ("20x2", "40x4")]
 
 
-def test_one_point_that_fails_has_no_files(folder):
+def test_one_point_that_fails_has_no_files(folder, done):
     openfoam_fake.set_mode(build_of(folder), "segv")
-    result = done(folder, "solve", "job.toml", *POINT, "--fields", "film.vtu", "--plot", "film.png", status=1)
+    result = done("solve", "job.toml", *POINT, "--fields", "film.vtu", "--plot", "film.png", status=1)
     assert "inner: coarse grid: ehlFoam crashed with signal 11 (SIGSEGV)" in result.stdout
     assert "inner: failed, no film to write" in result.stderr
     assert sorted(os.listdir(folder)) == ["job.toml"]
@@ -219,39 +235,40 @@ def test_one_point_that_fails_has_no_files(folder):
         (["--keep-cases", "my cases"], "OpenFOAM takes no spaces or quotes in the path of a case; choose another"),
     ],
 )
-def test_options_that_cannot_be(folder, arguments, message):
-    assert message in done(folder, "solve", "job.toml", *POINT, *arguments, status=2).stderr
+def test_options_that_cannot_be(folder, done, arguments, message):
+    assert message in done("solve", "job.toml", *POINT, *arguments, status=2).stderr
     assert openfoam_fake.starts(build_of(folder)) == []
 
 
-def test_a_picture_that_cannot_be_written(folder):
+def test_a_picture_that_cannot_be_written(folder, done):
     (folder / "film.png").mkdir()
-    result = done(folder, "solve", "job.toml", *POINT, "--plot", "film.png", status=2)
+    result = done("solve", "job.toml", *POINT, "--plot", "film.png", status=2)
     assert "--plot: got film.png, which is a folder; allowed: a file in it" in result.stderr
 
 
-def test_check_tries_a_point(folder):
-    assert "for one point in the middle of the map: converged)" in done(folder, "check", "job.toml").stdout
+def test_check_tries_a_point(folder, done):
+    assert "for one point in the middle of the map: converged)" in done("check", "job.toml").stdout
     openfoam_fake.set_mode(build_of(folder), "fatal")
-    assert "time    not estimated; " in done(folder, "check", "job.toml").stdout
+    assert "time    not estimated; " in done("check", "job.toml").stdout
 
 
-def test_check_names_what_is_missing_beside_other_problems(folder):
+def test_check_names_what_is_missing_beside_other_problems(folder, done):
     (build_of(folder) / "bin" / "ehlFoam").unlink()
     (folder / "job.toml").write_text(JOB.replace('"FVA3"', '"FVA9"'))
-    err = done(folder, "check", "job.toml", status=2).stderr
+    err = done("check", "job.toml", status=2).stderr
     assert "2 problems" in err
     assert "which needs more than is here: ehlFoam: there is no program" in err
     assert "build it with `openfoam_cases/build`" in err
     assert "FVA9" in err
     for arguments in (["generate", "job.toml"], ["solve", "job.toml", *POINT]):
-        assert "openfoam_cases/build" in done(folder, *arguments, status=2).stderr
+        assert "openfoam_cases/build" in done(*arguments, status=2).stderr
 
 
-def test_everything_else_works_without_openfoam(folder, monkeypatch):
+@pytest.mark.slow
+def test_everything_else_works_without_openfoam(folder, done, monkeypatch):
     monkeypatch.setenv("EHDMAPS_OPENFOAM", str(folder / "none"))
     (folder / "job.toml").write_text(JOB.replace("[solver]", "[solver]\nbackbone = 'none'"))
-    assert counts(done(folder, "generate", "job.toml", "--solver", "reynolds").stdout) == (0, POINTS, 0)
+    assert counts(done("generate", "job.toml", "--workers", "1", "--solver", "reynolds").stdout) == (0, POINTS, 0)
     code = (
         "import sys; from ehdmaps.jobs.cli import main; status = main(sys.argv[1:]); "
         "assert not [name for name in sys.modules if name.split('.')[0] in ('PyFoam', 'meshio')]; sys.exit(status)"

@@ -11,38 +11,24 @@ from pathlib import Path
 
 import pytest
 
+import examples.housings.__main__ as housings
 import mbs.cli
-import mbs.housings.__main__ as housings
 from ehdmaps import errors, program
+from ehdmaps.errors import AnalysisError
 from ehdmaps.jobs import cli
-from mbs.errors import AnalysisError
-from tests.system.interruptible import start
+from tests.cases.interruptible import start
+from tests.cases.jobs import DRY
 
 ROOT = str(Path(errors.__file__).parents[1])
-PROGRAMS = {"ehdmaps": "ehdmaps.jobs.cli", "mbs": "mbs", "mbs.housings": "mbs.housings"}
-NOWHERE = {"ehdmaps": ["show", "none.nc"], "mbs": ["modes", "none.toml"], "mbs.housings": ["none"]}
-
-MAP = """
-schema = 1
-[bearing]
-name = "NU308"
-[lubricant]
-name = "FVA3"
-[grid]
-load = { from = "1 N/mm", to = "1000 N/mm", points = 4, spacing = "log" }
-entrainment_speed = { from = "0.1 m/s", to = "10 m/s", points = 4, spacing = "log" }
-temperature = ["40 degC"]
-[solver]
-name = "hertz"
-structural_law = "iso16281"
-"""
+PROGRAMS = {"ehdmaps": "ehdmaps.jobs.cli", "mbs": "mbs", "examples.housings": "examples.housings"}
+NOWHERE = {"ehdmaps": ["show", "none.nc"], "mbs": ["modes", "none.toml"], "examples.housings": ["none"]}
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", ROOT)
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "job.toml").write_text(MAP)
+    (tmp_path / "job.toml").write_text(DRY)
     return tmp_path
 
 
@@ -91,8 +77,10 @@ def test_a_closed_stdout_is_told(folder):
     )
 
 
-@pytest.mark.parametrize("name", PROGRAMS)
-@pytest.mark.parametrize("stderr", ["2>&-", "2>/dev/full"])
+@pytest.mark.parametrize(
+    ("name", "stderr"),
+    [("ehdmaps", "2>&-"), ("ehdmaps", "2>/dev/full"), ("mbs", "2>/dev/full"), ("examples.housings", "2>&-")],
+)
 def test_problems_that_nobody_can_read_keep_their_exit_status(folder, name, stderr):
     if stderr.endswith("full"):
         full().close()
@@ -105,7 +93,7 @@ def test_a_map_is_made_whole_where_nobody_listens(folder, streams):
         full().close()
     status = shell(f"ehdmaps.jobs.cli generate job.toml --workers 1 {streams}").returncode
     assert status == (1 if ">&- 2" in streams else 0)
-    assert done("ehdmaps", "compare", "job.nc", "job.nc").returncode == 0
+    assert cli.main(["compare", "job.nc", "job.nc"]) == 0
 
 
 # --- arguments and characters
@@ -132,26 +120,27 @@ def test_a_locale_without_utf_8_is_named(folder, monkeypatch):
 
 
 @pytest.mark.parametrize("name", ["ehdmaps", "mbs"])
-def test_foreign_characters_reach_a_terminal_as_escapes(folder, name):
+def test_foreign_characters_reach_a_terminal_as_escapes(folder, capsys, name):
+    main = {"ehdmaps": cli.main, "mbs": mbs.cli.main}[name]
     foreign = "\x1b]0;title\x07\x9b31m\u202egnp\u2066\x7f"
-    found = done(name, NOWHERE[name][0], f"{foreign}.toml")
-    assert found.returncode == 2
-    assert "\\x1b]0;title\\x07\\x9b31m\\u202egnp\\u2066\\u007f.toml" in found.stderr.decode()
-    usage = done(name, foreign)
-    assert usage.returncode == 2
-    assert not set(foreign) - set("]0;title31mgnp") & set(found.stderr.decode() + usage.stderr.decode())
+    assert main([NOWHERE[name][0], f"{foreign}.toml"]) == 2
+    found = capsys.readouterr().err
+    assert "\\x1b]0;title\\x07\\x9b31m\\u202egnp\\u2066\\u007f.toml" in found
+    with pytest.raises(SystemExit) as end:
+        main([foreign])
+    assert end.value.code == 2
+    assert not set(foreign) - set("]0;title31mgnp") & set(found + capsys.readouterr().err)
 
 
-@pytest.mark.parametrize("name", ["ehdmaps", "mbs"])
-def test_a_stream_that_lacks_a_character_gets_an_escape(folder, monkeypatch, name):
+def test_a_stream_that_lacks_a_character_gets_an_escape(folder, monkeypatch):
     monkeypatch.setenv("PYTHONIOENCODING", "ascii")
-    found = done(name, NOWHERE[name][0], "größe.nc")
+    found = done("ehdmaps", NOWHERE["ehdmaps"][0], "größe.nc")
     assert found.returncode == 2
     assert b"gr\\xf6\\xdfe.nc" in found.stderr
 
 
 def test_a_result_in_an_encoding_that_lacks_a_character(folder, monkeypatch):
-    (folder / "größe.toml").write_text(MAP)
+    (folder / "größe.toml").write_text(DRY)
     monkeypatch.setenv("PYTHONIOENCODING", "ascii")
     found = done("ehdmaps", "check", "größe.toml")
     assert (found.returncode, found.stderr) == (0, b"")
@@ -166,7 +155,7 @@ def test_newline_and_tab_stay():
 
 
 def test_the_backend_of_a_notebook_is_no_matter_of_the_programs(folder, monkeypatch):
-    assert done("ehdmaps", "generate", "job.toml", "--workers", "1").returncode == 0
+    assert cli.main(["generate", "job.toml", "--workers", "1"]) == 0
     monkeypatch.setenv("MPLBACKEND", "module://no.such.backend")
     found = done("ehdmaps", "plot", "job.nc")
     assert (found.returncode, found.stderr) == (0, b"")
@@ -179,7 +168,7 @@ def test_the_backend_of_a_notebook_is_no_matter_of_the_programs(folder, monkeypa
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_programs_know_their_version(name, capsys):
-    main = {"ehdmaps": cli.main, "mbs": mbs.cli.main, "mbs.housings": housings.main}[name]
+    main = {"ehdmaps": cli.main, "mbs": mbs.cli.main, "examples.housings": housings.main}[name]
     with pytest.raises(SystemExit) as end:
         main(["--version"])
     out = capsys.readouterr().out

@@ -20,7 +20,7 @@ from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import Status
-from tests.unit.law_cases import CONTACTS, LINE, NU308, OIL, dataset_of, dry_dataset
+from tests.cases.laws import CONTACTS, LINE, NU308, OIL, dataset_of, dry_dataset
 
 
 @pytest.fixture(scope="module")

@@ -1,8 +1,12 @@
-"""Imports run one way: errors <- physics <- (ehl | openfoam | maps) <- jobs; maps, physics <- mbs; jobs <- scenes."""
+"""Imports run one way: errors <- physics <- (ehl | openfoam | maps) <- jobs; maps, physics <- mbs; jobs <- scenes.
+
+Nothing imports the examples.
+"""
 
 from __future__ import annotations
 
 import ast
+import re
 import shutil
 import subprocess
 import sys
@@ -13,21 +17,34 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 ALLOWED = {
+    "ehdmaps.arrays": set(),
     "ehdmaps.errors": set(),
+    "ehdmaps.extras": {"ehdmaps.errors"},
     "ehdmaps.units": {"ehdmaps.errors"},
+    "ehdmaps.figures": set(),
     "ehdmaps.inputs": {"ehdmaps.errors"},
     "ehdmaps.outputs": {"ehdmaps.errors"},
     "ehdmaps.provenance": set(),
     "ehdmaps.version": {"ehdmaps.provenance"},
     "ehdmaps.interrupts": set(),
     "ehdmaps.program": {"ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.version"},
-    "ehdmaps.physics": {"ehdmaps.errors"},
-    "ehdmaps.ehl": {"ehdmaps.errors", "ehdmaps.physics"},
-    "ehdmaps.maps": {"ehdmaps.errors", "ehdmaps.inputs", "ehdmaps.units", "ehdmaps.physics"},
-    "ehdmaps.openfoam": {"ehdmaps.errors", "ehdmaps.outputs", "ehdmaps.units", "ehdmaps.physics"},
+    "ehdmaps.physics": {"ehdmaps.arrays", "ehdmaps.errors"},
+    "ehdmaps.ehl": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.physics"},
+    "ehdmaps.maps": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.inputs", "ehdmaps.units", "ehdmaps.physics"},
+    "ehdmaps.openfoam": {
+        "ehdmaps.arrays",
+        "ehdmaps.errors",
+        "ehdmaps.extras",
+        "ehdmaps.outputs",
+        "ehdmaps.units",
+        "ehdmaps.physics",
+    },
     "ehdmaps.jobs": {
         "ehdmaps",
+        "ehdmaps.arrays",
         "ehdmaps.errors",
+        "ehdmaps.extras",
+        "ehdmaps.figures",
         "ehdmaps.inputs",
         "ehdmaps.interrupts",
         "ehdmaps.outputs",
@@ -40,7 +57,10 @@ ALLOWED = {
         "ehdmaps.maps",
     },
     "mbs": {
+        "ehdmaps.arrays",
         "ehdmaps.errors",
+        "ehdmaps.extras",
+        "ehdmaps.figures",
         "ehdmaps.inputs",
         "ehdmaps.outputs",
         "ehdmaps.program",
@@ -50,7 +70,10 @@ ALLOWED = {
         "ehdmaps.maps",
     },
     "mbs.scene.scene": {
+        "ehdmaps.arrays",
         "ehdmaps.errors",
+        "ehdmaps.extras",
+        "ehdmaps.figures",
         "ehdmaps.inputs",
         "ehdmaps.outputs",
         "ehdmaps.program",
@@ -60,6 +83,19 @@ ALLOWED = {
         "ehdmaps.maps",
         "ehdmaps.jobs",
         "mbs",
+    },
+    "examples": {
+        "ehdmaps",
+        "ehdmaps.arrays",
+        "ehdmaps.errors",
+        "ehdmaps.extras",
+        "ehdmaps.outputs",
+        "ehdmaps.program",
+        "ehdmaps.units",
+        "ehdmaps.version",
+        "ehdmaps.physics",
+        "mbs",
+        "mbs.scene.scene",
     },
 }
 """What each layer may import besides itself and other distributions. `ehdmaps` itself is the shop window of all."""
@@ -73,6 +109,8 @@ def _layer(module: str) -> str | None:
     parts = module.split(".")
     if parts[0] == "mbs":
         return "mbs.scene.scene" if len(parts) > 1 and parts[1] in SCENES else "mbs"
+    if parts[0] == "examples":
+        return "examples"
     if parts[0] != "ehdmaps":
         return None
     return ".".join(parts[:2])
@@ -89,7 +127,8 @@ def _imported(path: Path) -> set[str]:
     return modules
 
 
-FILES = sorted([*ROOT.glob("ehdmaps/*/**/*.py"), *ROOT.glob("ehdmaps/*.py"), *ROOT.glob("mbs/**/*.py")])
+ROOMS = ("ehdmaps", "mbs", "examples")
+FILES = sorted(path for room in ROOMS for path in ROOT.glob(f"{room}/**/*.py"))
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(ROOT)))
@@ -156,16 +195,28 @@ def test_analyses_know_no_command_line(path: Path) -> None:
     assert not [name for name in names if name.startswith(("mbs.commands", "mbs.cli", "matplotlib"))]
 
 
+@pytest.mark.parametrize("path", sorted((ROOT / "mbs" / "modal").glob("*.py")), ids=lambda p: p.stem)
+def test_modal_analysis_knows_no_machine(path: Path) -> None:
+    names = {name for name in _imported(path) if name.partition(".")[0] in ("mbs", "ehdmaps")}
+    known = {f"ehdmaps.{part}" for part in ("arrays", "errors", "extras", "inputs", "outputs", "units")}
+    assert [name for name in names if not name.startswith("mbs.modal.") and name not in known] == []
+
+
 def test_pyfoam_has_one_door() -> None:
     users = [path for path in FILES if any(name.partition(".")[0] == "PyFoam" for name in _imported(path))]
     assert users == [ROOT / "ehdmaps" / "openfoam" / "pyfoam.py"]
+
+
+def test_types_of_arrays_have_one_home() -> None:
+    own = re.compile(r"^\w+ = .*NDArray\[np\.", re.MULTILINE)
+    assert [path for path in FILES if own.search(path.read_text())] == [ROOT / "ehdmaps" / "arrays.py"]
 
 
 def test_every_file_is_looked_at() -> None:
     """What git tracks, exactly: a glob that loses a folder, or a file that was never committed, is found."""
     if not (ROOT / ".git").exists() or shutil.which("git") is None:
         pytest.skip("needs a clone and git")
-    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--deduplicate", "ehdmaps", "mbs"]
+    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--deduplicate", *ROOMS]
     listed = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout.split()
     tracked = {name for name in listed if name.endswith(".py") and (ROOT / name).exists()}
     assert {path.relative_to(ROOT).as_posix() for path in FILES} == tracked

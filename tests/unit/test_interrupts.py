@@ -8,7 +8,7 @@ import time
 import pytest
 
 from ehdmaps.interrupts import careful_interrupts, deaf_children
-from tests.system.interruptible import start
+from tests.cases.interruptible import start
 
 LOOP = """
 import sys

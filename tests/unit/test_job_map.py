@@ -27,40 +27,7 @@ from ehdmaps.maps.validation import validate
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status, contact_solution
-
-TEXT = """
-schema = 1
-[bearing]
-name = "NU308"
-[lubricant]
-name = "FVA3"
-[grid]
-load = { from = "1 N/mm", to = "1000 N/mm", points = 7, spacing = "log" }
-entrainment_speed = ["0.5 m/s", "1 m/s", "2 m/s"]
-temperature = ["20 degC", "40 degC"]
-[solver]
-name = "formula"
-structural_law = "iso16281"
-"""
-
-LINE = """
-schema = 1
-[contact]
-radius = "5 mm"
-reference_depth = "5 mm"
-[lubricant]
-viscosity_law = "barus"
-viscosity = "80 mPa s"
-pressure_viscosity = "20 1/GPa"
-density = "880 kg/m^3"
-[grid]
-load = ["1 N/mm", "10 N/mm", "100 N/mm"]
-entrainment_speed = ["0 m/s", "1 m/s"]
-temperature = ["40 degC"]
-[solver]
-name = "formula"
-structural_law = "half_space"
-"""
+from tests.cases.jobs import LINE, SMALL
 
 
 @dataclass(frozen=True)
@@ -88,7 +55,7 @@ class Holey(ContactSolverDefaults):
         return {}
 
 
-def job_of(text=TEXT, **changes):
+def job_of(text=SMALL, **changes):
     return replace(parse_job(text, "test", "test.toml"), **changes)
 
 
@@ -114,7 +81,7 @@ def test_every_point_is_in_its_place():
 
 
 def test_long_axes_are_cut_into_tasks_that_meet():
-    text = TEXT.replace("points = 7", f"points = {2 * LONGEST_LINE + 5}")
+    text = SMALL.replace("points = 7", f"points = {2 * LONGEST_LINE + 5}")
     job = job_of(text)
     tasks = line_tasks(job, FormulaSolver())
     assert max(task.points for task in tasks) == LONGEST_LINE
@@ -174,7 +141,7 @@ def test_an_isolated_hole_is_filled_and_says_so():
 
 @pytest.mark.parametrize(("fill", "lost"), [("none", slice(3, 4)), ("neighbours", slice(3, 5))])
 def test_other_holes_hold_no_numbers(fill, lost):
-    text = TEXT.replace('"0.5 m/s", "1 m/s", "2 m/s"', '"0.5 m/s", "1 m/s"')  # the lost speed is at the edge
+    text = SMALL.replace('"0.5 m/s", "1 m/s", "2 m/s"', '"0.5 m/s", "1 m/s"')  # the lost speed is at the edge
     job = job_of(text, fill=fill)
     dataset = made(job, Holey(job.loads[lost]))
     hole = dataset["status"] == int(Status.STAGNATED)
@@ -186,7 +153,7 @@ def test_other_holes_hold_no_numbers(fill, lost):
 
 
 def test_structural_scaling_is_recorded_for_other_materials():
-    text = TEXT.replace("[grid]", '[material]\nyoungs_modulus = "105 GPa"\n[grid]')
+    text = SMALL.replace("[grid]", '[material]\nyoungs_modulus = "105 GPa"\n[grid]')
     assert made(job_of(text)).attrs["structural_scaling"] == pytest.approx(2.0**0.9, rel=1e-12)  # round-off
     assert made(job_of()).attrs["structural_scaling"] == 1.0
     assert made(job_of(LINE)).attrs["structural_scaling"] == 1.0
@@ -242,7 +209,7 @@ def test_extrapolated_viscosity_is_said_everywhere(with_backbone, tmp_path, monk
         assert share in text
         assert "inner and outer, 100 to 1000 N/mm, 0.5 to 2 m/s, 20 to 40 degC" in text
     assert "viscosity extrapolated at some speed: above 0.6 GPa" in drawn(emap, tmp_path, monkeypatch)
-    light = EHDMap(made(job_of(TEXT.replace("1000 N/mm", "10 N/mm"))))
+    light = EHDMap(made(job_of(SMALL.replace("1000 N/mm", "10 N/mm"))))
     assert "extrapolated" not in describe(light, "a.nc") + drawn(light, tmp_path, monkeypatch)
 
 
@@ -394,7 +361,7 @@ def test_describe_says_what_is_in_the_map():
 
 
 def test_describe_warns_of_an_oil_without_a_source():
-    assert "NOT VERIFIED" in describe(EHDMap(made(job_of(TEXT.replace("FVA3", "Spirax MA 80W")))), "a.nc")
+    assert "NOT VERIFIED" in describe(EHDMap(made(job_of(SMALL.replace("FVA3", "Spirax MA 80W")))), "a.nc")
 
 
 def test_compare_finds_the_difference_and_its_place():
@@ -420,7 +387,7 @@ def test_compare_finds_the_difference_and_its_place():
 
 def test_compare_takes_common_points_only():
     first = made(job_of())
-    second = made(job_of(TEXT.replace('"1 m/s", "2 m/s"', '"1 m/s", "3 m/s"')))
+    second = made(job_of(SMALL.replace('"1 m/s", "2 m/s"', '"1 m/s", "3 m/s"')))
     assert "56 points in common, 56 of them solved in both (A has 84, B 84)" in comparison_text(
         compare(first, second, ("a", "b"))
     )
@@ -437,12 +404,12 @@ def test_compare_refuses_maps_without_common_points():
     first = made(job_of())
     with pytest.raises(MapError, match="contacts are inner, outer and line; allowed: maps that share a contact"):
         compare(first, made(job_of(LINE)), ("a", "b"))
-    other = made(job_of(TEXT.replace('"20 degC", "40 degC"', '"30 degC"')))
+    other = made(job_of(SMALL.replace('"20 degC", "40 degC"', '"30 degC"')))
     with pytest.raises(MapError, match=r"no temperature in common \(2 values, 20 to 40 degC, against 1, 30 degC\)"):
         compare(first, other, ("a", "b"))
 
 
-@pytest.mark.parametrize("text", [TEXT, LINE, TEXT.replace("points = 7", "points = 2")])
+@pytest.mark.parametrize("text", [SMALL, LINE, SMALL.replace("points = 7", "points = 2")])
 @pytest.mark.parametrize("solver", [None, HertzSolver(), Holey((1e3, 1e4, 31622.776601683792), version="1")])
 def test_every_kind_of_map_can_be_drawn(tmp_path, text, solver):
     plot_map(EHDMap(made(job_of(text), solver)), tmp_path / "a.png")
@@ -489,7 +456,7 @@ def test_tradeoff_measures_against_the_reference():
 
 
 def test_tradeoff_knows_its_contestants():
-    entries, reference = contestants(job_of(TEXT.replace('"formula"', '"reynolds"\ndensity = 4.0')))
+    entries, reference = contestants(job_of(SMALL.replace('"formula"', '"reynolds"\ndensity = 4.0')))
     assert [entry.label for entry in entries][:2] == ["hertz", "formula, moes"]
     assert "reynolds, density 4" in [entry.label for entry in entries]
     assert reference.label == "reynolds, density 16"

@@ -10,21 +10,9 @@ from ehdmaps.jobs.reader import parse_job, read_job, shipped_jobs
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.pressure_viscosity import TaitDoolittle
+from tests.cases.jobs import map_job, spaced
 
-GOOD = """
-schema = 1
-[bearing]
-name = "NU308"
-[lubricant]
-name = "FVA3"
-[grid]
-load = { from = "0.1 N/mm", to = "1000 N/mm", points = 5, spacing = "log" }
-entrainment_speed = ["0.5 m/s", "1 m/s"]
-temperature = ["20 degC", "40 degC"]
-[solver]
-name = "formula"
-structural_law = "iso16281"
-"""
+GOOD = map_job(spaced("0.1 N/mm", "1000 N/mm", 5), '["0.5 m/s", "1 m/s"]', '["20 degC", "40 degC"]')
 
 BY_HAND = """[bearing]
 inner_raceway_diameter = "52 mm"

@@ -15,7 +15,7 @@ from ehdmaps.errors import InputError, OutsideMapError
 from ehdmaps.maps import bulk, kernel
 from ehdmaps.maps.law import LOAD_REACH, ContactLaw
 from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE
-from tests.unit.law_cases import CONTACTS, LINE, OIL, SMALL_FIELD, ValleyField, exact_law
+from tests.cases.laws import CONTACTS, LINE, OIL, SMALL_FIELD, ValleyField, exact_law
 
 FULL_FIELD = ValleyField()
 LENGTH_MM = 15.0

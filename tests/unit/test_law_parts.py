@@ -18,7 +18,7 @@ from ehdmaps.maps.film_field import LOSS_FLOOR, lifted_loss
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.splines import hermite, spline_coefficients, spline_weights
 from ehdmaps.maps.tail import Tail
-from tests.unit.law_cases import CONTACTS, LINE, OIL, SMALL_FIELD, ValleyField
+from tests.cases.laws import CONTACTS, LINE, OIL, SMALL_FIELD, ValleyField
 
 
 def basis(degree, t):

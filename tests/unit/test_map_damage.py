@@ -22,21 +22,9 @@ from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.records import read_json
 from ehdmaps.physics.closed_form import FormulaSolver
+from tests.cases.jobs import map_job, spaced
 
-JOB = """
-schema = 1
-[bearing]
-name = "NU308"
-[lubricant]
-name = "FVA3"
-[grid]
-load = { from = "1 N/mm", to = "100 N/mm", points = 9, spacing = "log" }
-entrainment_speed = ["0.5 m/s", "1 m/s", "2 m/s"]
-temperature = ["40 degC", "60 degC"]
-[solver]
-name = "formula"
-structural_law = "iso16281"
-"""
+JOB = map_job(spaced("1 N/mm", "100 N/mm", 9), '["0.5 m/s", "1 m/s", "2 m/s"]', '["40 degC", "60 degC"]')
 
 
 class WithBackbone(FormulaSolver):

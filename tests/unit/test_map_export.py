@@ -14,7 +14,7 @@ from ehdmaps.jobs.generate import generate
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.maps.emap import open_map
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
-from tests.unit.test_job_map import LINE, TEXT
+from tests.cases.jobs import LINE, SMALL
 
 
 class WithBackbone(FormulaSolver):
@@ -26,7 +26,7 @@ class WithBackbone(FormulaSolver):
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
     path = tmp_path_factory.mktemp("export") / "map.nc"
-    generate(parse_job(TEXT, "map", "map.toml"), path, workers=1, solver=WithBackbone())
+    generate(parse_job(SMALL, "map", "map.toml"), path, workers=1, solver=WithBackbone())
     return path
 
 

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import STEEL
 from mbs.analyses.bearing_point import bearing_point, bearing_points
@@ -17,11 +17,10 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import fading, heated, outside_map
 from mbs.bearings.films import FormulaFilms
-from mbs.errors import AnalysisError
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
-from tests.unit.mbs_cases import map_law
+from tests.cases.bearings import map_law
 
 OIL = Lubricant.named("FVA3")
 WARM = 313.15

@@ -33,7 +33,7 @@ from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
 from mbs.transient.run import Recording, States
-from tests.unit.mbs_cases import map_law
+from tests.cases.bearings import map_law
 
 RPM = np.pi / 30.0
 LOWEST = 0.3

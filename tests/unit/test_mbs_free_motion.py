@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mbs.errors import AnalysisError
+from ehdmaps.errors import AnalysisError
 from mbs.model.body import rigid_body
 from mbs.model.elements import Load, Spring
 from mbs.model.equilibrium import equilibrium
@@ -13,7 +13,7 @@ from mbs.model.free_motion import free_lines, free_motions
 from mbs.model.system import System
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene, shipped_systems
-from tests.unit.test_mbs_system import MASS, OneSided, force, stiff
+from tests.cases.elements import MASS, OneSided, force, stiff
 
 
 def two_bodies(loads=(), **ground):

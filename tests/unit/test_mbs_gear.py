@@ -11,8 +11,9 @@ import pytest
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
-from mbs.gears.gear import GearPair, contact_ratio, gear_mesh, pair_harmonics
+from mbs.gears.gear import gear_mesh
 from mbs.gears.gear_kernel import TOUCH, flank_force
+from mbs.gears.pair import GearPair, contact_ratio, pair_harmonics
 from mbs.model.elements import Operation
 from mbs.scene.gears import read_gears
 

@@ -7,15 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from ehdmaps.errors import InputError
-from mbs.errors import AnalysisError
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import ElementDefaults, Forces, Load, Spring
 from mbs.model.profiles import Harmonic, SpeedProfile
 from mbs.model.system import System
-from mbs.transient.settings import Settings
-from tests.unit.mbs_cases import integrate
-from tests.unit.test_mbs_system import MASS, OneSided, force, stiff
+from mbs.settings import Settings
+from tests.cases.bearings import integrate
+from tests.cases.elements import MASS, OneSided, force, stiff
 
 REST = SpeedProfile.constant(0.0)
 OMEGA = math.sqrt(5e4 / 2.0)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numba import njit
 
+from ehdmaps.errors import AnalysisError
 from mbs.bearings.bearing_element import RingElement
 from mbs.gears.gear import GearMesh
 from mbs.model.blocks import FOUND, NO_SOLUTION, Kind, SteadyBlock
@@ -19,9 +20,9 @@ from mbs.model.elements import ElementDefaults, Forces, Load, Port, Sensor, Spri
 from mbs.model.profiles import Harmonic, SpeedProfile
 from mbs.model.system import System
 from mbs.output.results import run_dataset
+from mbs.settings import Settings
 from mbs.transient.kinds import KINDS, is_ours, kind_of
 from mbs.transient.run import Options, run
-from mbs.transient.settings import Settings
 
 Y, Z = np.eye(6)[1], np.eye(6)[2]
 MASS = Inertia(2.0, 0.01, 0.02)
@@ -97,6 +98,7 @@ def machine(cubic=Cubic):
     return System(bodies, springs, [shaker], [cubic("first", "a"), cubic("second", "b", "a", k=3e5)])
 
 
+@pytest.mark.slow
 def test_a_block_of_ones_own_runs_compiled_as_python_does(known):
     """Both make the same steps; they differ by what Newton leaves over, 1e-13 of the forces, grown over the run."""
     system = machine()
@@ -151,9 +153,10 @@ def test_only_kinds_of_the_package_are_kept_on_disk():
     assert not is_ours(CUBICS)
 
 
+@pytest.mark.slow
 def test_a_compiled_step_without_answer_is_halved(known):
     """The spring is thrown further than it has an answer for: no step of any size leads back."""
-    with pytest.raises(Exception, match="no solution at"):
+    with pytest.raises(AnalysisError, match="no solution at"):
         run(machine(), RAMP, 1e-2, SETTINGS, velocity=np.array([1e6, 0.0, 0.0, 0.0]))
 
 
@@ -170,6 +173,7 @@ print(sum(advance.stats.cache_hits.values()), sum(advance.stats.cache_misses.val
 """
 
 
+@pytest.mark.slow
 def test_compiled_steps_are_kept_from_process_to_process():
     """The second process compiles nothing: the first one, or an earlier run of the tests, left it on disk."""
     found = []

@@ -15,7 +15,7 @@ import pytest
 import xarray as xr
 
 import mbs
-from ehdmaps.errors import InputError, MapError
+from ehdmaps.errors import AnalysisError, InputError, MapError
 from ehdmaps.jobs import cli as jobs_cli
 from ehdmaps.maps.emap import open_map
 from ehdmaps.outputs import MADE_AS
@@ -43,23 +43,12 @@ from mbs import (
     statics,
     sweep,
 )
-from mbs.errors import AnalysisError
-from mbs.modal.uff import read_uff
+from mbs.modal.uff_reading import read_uff
+from tests.cases.jobs import map_job
 
-JOB = """
-schema = 1
-[bearing]
-name = "NU308"
-[lubricant]
-name = "FVA3"
-[grid]
-load = ["1 N/mm", "10 N/mm", "100 N/mm", "400 N/mm"]
-entrainment_speed = ["0.1 m/s", "0.5 m/s", "2 m/s", "10 m/s"]
-temperature = ["40 degC"]
-[solver]
-name = "formula"
-structural_law = "iso16281"
-"""
+JOB = map_job(
+    '["1 N/mm", "10 N/mm", "100 N/mm", "400 N/mm"]', '["0.1 m/s", "0.5 m/s", "2 m/s", "10 m/s"]', '["40 degC"]'
+)
 
 EXAMPLES = ["mbs.scene.assembly", *(f"mbs.analyses.{entry.name}" for entry in pkgutil.iter_modules(analyses.__path__))]
 

@@ -9,20 +9,21 @@ import sys
 import numpy as np
 import pytest
 
-from ehdmaps.errors import InputError
-from mbs.errors import AnalysisError
+from ehdmaps.errors import AnalysisError, DependencyError, InputError
 from mbs.linearised.modes import Modes
 from mbs.modal.estimation import HitLimits, estimate, relative_deviation, transfer
 from mbs.modal.fit import identify
-from mbs.modal.hammer import HammerTest, suggested_duration
 from mbs.modal.lscf import lscf_poles
 from mbs.modal.rational import orthogonal_basis, rational_poles, roots
 from mbs.modal.records import Channel
 from mbs.modal.residues import assurance
 from mbs.modal.stabilisation import Criteria, stabilise
-from mbs.modal.uff import LARGEST, Measurement, read_uff, write_uff
+from mbs.modal.uff import Measurement
+from mbs.modal.uff_reading import LARGEST, read_uff
+from mbs.modal.uff_writing import write_uff
 from mbs.modal.windows import exponential_window, force_window, needed_decay, pulse, without_window
-from tests.unit.modal_cases import POLES, REFERENCE, SENSORS, STEP, hits, measured
+from mbs.transient.hammer import HammerTest, suggested_duration
+from tests.cases.modal import POLES, REFERENCE, SENSORS, STEP, hits, measured
 
 
 def changed(entry, **keywords):
@@ -311,14 +312,14 @@ def test_lscf_wants_lines_of_a_transform():
 def test_libraries_that_are_missing(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "sdypy.EMA", None)
     monkeypatch.setitem(sys.modules, "pyuff", None)
-    with pytest.raises(InputError, match=r"sdypy-EMA is missing .*install it"):
+    with pytest.raises(DependencyError, match=r"the package sdypy-EMA cannot be loaded .*ehdmaps\[modal\]"):
         identify(measured(), "lscf")
-    with pytest.raises(InputError, match=r"pyuff is missing .*install it"):
+    with pytest.raises(DependencyError, match=r"the package pyuff cannot be loaded .*ehdmaps\[modal\]"):
         read_uff(tmp_path / "a.uff")
 
 
 def test_libraries_are_loaded_late():
-    code = "import mbs.modal.fit, mbs.modal.uff, mbs.modal.hammer, sys; "
+    code = "import mbs.modal.fit, mbs.modal.uff_reading, mbs.modal.uff_writing, mbs.transient.hammer, sys; "
     code += "print('pyuff' in sys.modules, 'sdypy' in sys.modules)"
     result = subprocess.run([sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=True)
     assert result.stdout.split() == ["False", "False"]

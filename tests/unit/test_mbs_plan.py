@@ -11,7 +11,7 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs.reader import parse_job
 from mbs import cli
 from mbs.analyses.planned_job import job_text
@@ -25,11 +25,11 @@ from mbs.analyses.planning import (
     same_contacts,
     speed_range,
 )
-from mbs.errors import AnalysisError
 from mbs.model.elements import Load
 from mbs.model.profiles import Course, Harmonic
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import parse_scene, read_scene
+from tests.cases.jobs import map_job, spaced
 
 TEXT = read_scene("nu308_rigid").text
 RPM = math.pi / 30.0
@@ -338,21 +338,6 @@ viscosity = "20 mPa s"
 pressure_viscosity = "15 1/GPa"
 density = "860 kg/m^3\""""
 
-MAP_JOB = """
-schema = 1
-[bearing]
-name = "NU308"
-[lubricant]
-name = "FVA3"
-[grid]
-load = {{ from = "{light}", to = "{load}", points = 4, spacing = "log" }}
-entrainment_speed = ["{speed}", "4 m/s"]
-temperature = {temperature}
-[solver]
-name = "hertz"
-structural_law = "iso16281"
-"""
-
 
 @pytest.mark.parametrize(
     ("light", "load", "speed", "temperature", "short"),
@@ -367,7 +352,7 @@ structural_law = "iso16281"
 def test_command_tells_whether_a_map_covers_the_scene(here, capsys, light, load, speed, temperature, short):
     from ehdmaps.jobs import cli as ehdmaps_cli
 
-    (here / "map.toml").write_text(MAP_JOB.format(light=light, load=load, speed=speed, temperature=temperature))
+    (here / "map.toml").write_text(map_job(spaced(light, load, 4), f'["{speed}", "4 m/s"]', temperature, "hertz"))
     assert ehdmaps_cli.main(["generate", "map.toml", "-o", "map.nc", "--workers", "1"]) == 0
     capsys.readouterr()
     status, out, _ = run(capsys, "nu308_rigid", "--map", "map.nc")

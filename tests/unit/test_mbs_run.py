@@ -8,25 +8,24 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.errors import AnalysisError, InputError, OutsideMapError
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
 from mbs.bearings.speed_tables import NODES, STEP, SpeedTables
-from mbs.errors import AnalysisError
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import ElementDefaults, Forces, Load, Operation, Port, Sensor, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
+from mbs.settings import Settings
 from mbs.transient.kinds import kind_of
 from mbs.transient.linear_part import LinearPart
 from mbs.transient.run import CHUNK, Options, run
 from mbs.transient.run_kernel import _expanded_times, _solve
-from mbs.transient.settings import Settings
 from mbs.transient.stepping import Method
-from tests.unit.mbs_cases import TEMPERATURE, integrate, map_law
+from tests.cases.bearings import TEMPERATURE, integrate, map_law
 
 REST = SpeedProfile.constant(0.0)
 MASS = Inertia(2.0, 0.01, 0.02)

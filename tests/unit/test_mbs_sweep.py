@@ -9,14 +9,13 @@ import math
 import numpy as np
 import pytest
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs.table import Table
 from mbs.bearings.bearing_element import RingElement
 from mbs.commands import sweep as command
 from mbs.commands.cases import load_cases
-from mbs.errors import AnalysisError
 from mbs.linearised.steady import steady_system
-from mbs.linearised.sweep import SweepRange, sweep
+from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_point import along_load
 from mbs.linearised.tracking import Match, ModeSet, assurance, compose, match, tracks
 from mbs.model.body import Inertia, rigid_body
@@ -28,6 +27,7 @@ from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
 from mbs.scene.sweep import read_sweep
+from mbs.settings import SweepRange
 
 RPM = math.pi / 30.0
 Y = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0])

@@ -7,41 +7,17 @@ import math
 import numpy as np
 import pytest
 
-from ehdmaps.errors import InputError
-from mbs.errors import AnalysisError
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.linearised.linear import frequency_response, state_space, with_peaks
 from mbs.linearised.modes import modes, undamped_modes
 from mbs.model.body import Inertia, lever_arm, rigid_body
-from mbs.model.elements import ElementDefaults, Forces, Input, Load, Operation, Port, Sensor, Spring
+from mbs.model.elements import Input, Load, Operation, Port, Sensor, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Constant, Course, HalfSine, Harmonic, SpeedProfile
 from mbs.model.system import System
+from tests.cases.elements import MASS, OneSided, force, stiff
 
 ROUND_OFF = 1e-12
-MASS = Inertia(2.0, 0.01, 0.02)
-
-
-def stiff(**freedoms):
-    order = ("x", "y", "z", "theta_x", "theta_y", "theta_z")
-    return np.diag([freedoms.get(key, 0.0) for key in order])
-
-
-def force(**freedoms):
-    return np.diag(stiff(**freedoms))
-
-
-class OneSided(ElementDefaults):
-    """A contact that only pushes: f = -k max(y - gap, 0)^1.5."""
-
-    def __init__(self, name, on, against="ground", k=1e12, gap=0.0):
-        self.name, self.k, self.gap = name, k, gap
-        self.ports = (Port(on, against),)
-
-    def evaluate(self, displacement, velocity, operation):
-        depth = max(displacement[1] - self.gap, 0.0)
-        f, K = np.zeros(6), np.zeros((6, 6))
-        f[1], K[1, 1] = -self.k * depth**1.5, 1.5 * self.k * depth**0.5
-        return Forces(f, K, np.zeros((6, 6)))
 
 
 class TestBody:
@@ -109,7 +85,7 @@ class TestSystem:
         class Old:
             name, ports = "old", (Port("a"),)
 
-        with pytest.raises(InputError, match=r"'old', excitation: missing; .* mbs\.model\.elements\.ElementDefaults"):
+        with pytest.raises(InputError, match=r"'old', excitation: missing; .*\.model\.elements\.ElementDefaults"):
             System([rigid_body("a", [MASS], ["y"])], (), (), [Old()])
         with pytest.raises(InputError, match="bodies: got none"):
             System([])

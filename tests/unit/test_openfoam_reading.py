@@ -15,7 +15,7 @@ from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.openfoam.results import read_film, read_results
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solution import Status
-from tests.unit import openfoam_fake
+from tests.cases import openfoam_fake
 
 COLUMNS, ROWS = 12, 4
 PARAMETERS = Parameters(

@@ -2,6 +2,7 @@
 
 import os
 import re
+import sys
 import tempfile
 import time
 from dataclasses import replace
@@ -22,7 +23,7 @@ from ehdmaps.openfoam.run import RunError, run
 from ehdmaps.openfoam.solver import OpenFoamSolver
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import Status
-from tests.unit import openfoam_fake
+from tests.cases import openfoam_fake
 
 JOB = read_job("nu308_openfoam")
 CONTACT, OIL = JOB.contacts[0], JOB.lubricant
@@ -377,10 +378,12 @@ def test_everything_that_is_missing_is_named_at_once(tmp_path, monkeypatch):
     monkeypatch.setattr(installed, "_CLONE", tmp_path / "clone")
     monkeypatch.setattr(installed, "_SHARED", tmp_path / "shared")
     monkeypatch.setattr(tempfile, "tempdir", "/tmp/with space")
+    monkeypatch.setitem(sys.modules, "PyFoam", None)
     with pytest.raises(InputError) as raised:
         installed.installation({"PATH": "", "EHDMAPS_OPENFOAM": str(tmp_path)})
     found = "\n".join(raised.value.problems)
     for part in (
+        "the solver 'openfoam': the package PyFoam cannot be loaded",
         "OpenFOAM: blockMesh is not in PATH",
         "setpriv is not in PATH; install the package util-linux",
         "ehlFoam: there is no program",
@@ -388,7 +391,7 @@ def test_everything_that_is_missing_is_named_at_once(tmp_path, monkeypatch):
         "the folder for temporary files: got '/tmp/with space'; OpenFOAM takes no spaces",
     ):
         assert part in found
-    assert len(raised.value.problems) == 5
+    assert len(raised.value.problems) == 6
 
 
 def test_openfoam_without_its_environment(fake, tmp_path, monkeypatch):

@@ -1,6 +1,7 @@
 """Oils: the viscosity family over pressure, the laws over temperature, density, records."""
 
 import dataclasses
+import inspect
 import math
 import pickle
 
@@ -10,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ehdmaps.errors import InputError
-from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant, LubricantState, PressureViscosity
+from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant, LubricantState, OilData, PressureViscosity
 from ehdmaps.physics.pressure_viscosity import Barus, Fva3, Roelands
 from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, VogelViscosity
 
@@ -251,6 +252,16 @@ def test_missing_coefficients():
         Roelands(0.6, 2e-8, None)
     with pytest.raises(InputError, match=r"pressure_viscosity_100: got 0.0 1/Pa; .*> 0 if it varies"):
         Barus(2e-8, 0.0)
+
+
+def test_own_oils_by_name_and_by_word_are_alike():
+    data = {"viscosity": 0.05, "pressure_viscosity": 2e-8, "density": 880.0, "density_slope": -0.6, "name": "mine"}
+    assert Lubricant.barus(**data) == Lubricant.own("barus", {}, **data)
+    assert Lubricant.fva3(**data) == Lubricant.own("fva3", {}, **data)
+    assert Lubricant.roelands(**data) == Lubricant.own("roelands", {}, **data)
+    assert Lubricant.roelands(roelands_z=0.6, **data) == Lubricant.own("roelands", {"exponent": 0.6}, **data)
+    keywords = inspect.getfullargspec(Lubricant.own).kwonlyargs
+    assert list(OilData.__annotations__) == keywords, "the table for type checkers is the signature of `own`"
 
 
 def test_problems_of_viscosity_and_coefficient_come_together():

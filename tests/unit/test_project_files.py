@@ -26,8 +26,12 @@ def test_check_runs_what_contributing_promises():
     check = (ROOT / ".ci" / "check").read_text(encoding="utf-8")
     tools = ("ruff check", "ruff format --check", "codespell", "mypy", "sphinx-build -q -W", "pytest")
     assert [tool for tool in tools if f".venv/bin/{tool}" not in check and f"-m {tool}" not in check] == []
-    extra = " ".join(PROJECT["optional-dependencies"]["test"])
-    assert [name for name in PROJECT["optional-dependencies"]["docs"] if name not in extra] == []
+    assert '.ci/environment --editable ".[test]"' in check
+
+
+def test_the_installation_for_tests_has_all_extras():
+    extras = PROJECT["optional-dependencies"]
+    assert extras["test"][0] == f"ehdmaps[{','.join(name for name in extras if name != 'test')}]"
 
 
 def test_pages_of_the_documentation_are_listed():

@@ -12,21 +12,8 @@ from ehdmaps.jobs import cli, status
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.status import RunStatus, StatusFile, look, status_path
 from ehdmaps.physics.solution import Status
+from tests.cases.jobs import DRY
 
-JOB = """
-schema = 1
-[bearing]
-name = "NU308"
-[lubricant]
-name = "FVA3"
-[grid]
-load = { from = "1 N/mm", to = "1000 N/mm", points = 4, spacing = "log" }
-entrainment_speed = { from = "0.1 m/s", to = "10 m/s", points = 4, spacing = "log" }
-temperature = ["40 degC"]
-[solver]
-name = "hertz"
-structural_law = "iso16281"
-"""
 GOOD = RunStatus("a job", 12, "here", 2, "2026-01-01T00:00:00+00:00", "2026-01-01T01:00:00+00:00", 100, 40, 10)
 
 
@@ -40,7 +27,7 @@ class Line:
 
 @pytest.fixture
 def job():
-    return parse_job(JOB, "mine", "mine.toml")
+    return parse_job(DRY, "mine", "mine.toml")
 
 
 @pytest.fixture
@@ -148,7 +135,7 @@ def left(output, **changes):
 
 @pytest.mark.parametrize("name", ["mine.nc", "mine.nc.store", "mine.nc.store.status", "mine.toml", None])
 def test_an_interrupted_run_by_all_its_names(output, capsys, name):
-    (output.parent / "mine.toml").write_text(JOB)
+    (output.parent / "mine.toml").write_text(DRY)
     left(output, failed={"outside_validity": 3, "failed": 1})
     code, out, err = command(capsys, *([name] if name else []))
     assert (code, err) == (1, "")
@@ -177,7 +164,7 @@ def test_the_time_left_is_told(output, capsys):
 
 
 def test_a_finished_map(output, capsys):
-    (output.parent / "mine.toml").write_text(JOB)
+    (output.parent / "mine.toml").write_text(DRY)
     assert cli.main(["generate", "mine.toml", "--workers", "1"]) == 0
     capsys.readouterr()
     for name in ("mine.nc", "mine.nc.store", "mine.toml"):

@@ -14,7 +14,7 @@ from ehdmaps.ehl.grid import lay_out
 from ehdmaps.ehl.line import Resolution, solve_groups
 from ehdmaps.physics.films import dowson_higginson_minimum, dowson_toyoda_central, moes_central
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
-from tests.verification.ehl_cases import isoviscous_problem, moes_film, solved
+from tests.cases.ehl import isoviscous_problem, moes_film, solved
 
 REFERENCES = tomllib.loads((Path(__file__).parents[1] / "references" / "line_contact.toml").read_text())
 POINTS = REFERENCES["point"]

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from tests.verification.ehl_cases import solved
+from tests.cases.ehl import solved
 
 DENSITIES = (5.0, 10.0)
 FINE = 40.0

@@ -13,7 +13,7 @@ from ehdmaps.ehl.newton import CONVERGED, newton
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import residual, stored_mass, stored_mass_rate
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
-from tests.verification.ehl_cases import roelands_problem, solved
+from tests.cases.ehl import roelands_problem, solved
 
 
 def _profile(result: GroupSolution) -> Profile:

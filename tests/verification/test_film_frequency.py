@@ -11,8 +11,8 @@ from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import contact_solution
-from tests.unit.law_cases import CONTACTS, OIL
-from tests.verification.ehl_cases import solved
+from tests.cases.ehl import solved
+from tests.cases.laws import CONTACTS, OIL
 
 SOLIDS = 1.75
 """Compliance of one contact of an NU308 between film and ring after ISO 16281, at 65 N/mm, in units of 4/E'."""

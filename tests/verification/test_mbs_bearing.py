@@ -12,7 +12,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.kinematics import RingState
 from mbs.bearings.roller_contacts import RollerContacts
-from tests.unit.mbs_cases import AT, PLANE, bearing, equilibrium, map_law, single_law
+from tests.cases.bearings import AT, PLANE, bearing, equilibrium, map_law, single_law
 
 
 def hertz_force(name, slices=41, **keywords):

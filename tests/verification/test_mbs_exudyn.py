@@ -19,8 +19,8 @@ from mbs.model.profiles import Course, SpeedProfile
 from mbs.model.system import System
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
-from mbs.transient.settings import Settings
-from tests.unit.mbs_cases import integrate
+from mbs.settings import Settings
+from tests.cases.bearings import integrate
 
 exu = pytest.importorskip("exudyn", reason="Exudyn is a dependency of the tests alone, and has no wheel everywhere")
 pytestmark = pytest.mark.filterwarnings("ignore")
@@ -134,24 +134,28 @@ def model():
 
 
 def test_statics_and_modes(model):
-    """0.1 % is asked."""
+    """Rest, and the frequencies about it."""
     balance = equilibrium(model.system)
     there = Exudyn(model, start=(6e-6, 6e-6))
     there.mbs.SolveStatic(there.settings, updateInitialValues=True)
     found = there.state()
     ours = balance.displacement[[0, 1, 4, 5, 6, 7]]
-    np.testing.assert_allclose(found[:2] - found[2:4], ours[:2] - ours[2:4], rtol=1e-3)
+    # Both Newton methods stop at 1e-8 of the load or less.
+    np.testing.assert_allclose(found[:2] - found[2:4], ours[:2] - ours[2:4], rtol=1e-7)
     values, *_ = there.mbs.ComputeODE2Eigenvalues(there.settings)
     theirs = np.sort(np.sqrt(np.abs(np.asarray(values))) / (2.0 * math.pi))[-8:]
-    np.testing.assert_allclose(theirs, undamped_modes(balance).frequency, rtol=1e-3)
+    frequency = undamped_modes(balance).frequency
+    # The stiffness there is a difference over 1e-12 m: its rounding is felt where the rings move on their soft mounts.
+    np.testing.assert_allclose(theirs[:4], frequency[:4], rtol=1e-3)
+    np.testing.assert_allclose(theirs[4:], frequency[4:], rtol=1e-6)
 
 
 @pytest.mark.slow
 def test_response_in_time(model):
-    """50 ms at 500 rpm with a pulse of 50 N on the shaft; 1 % of the largest motion is asked.
+    """50 ms at 500 rpm with a pulse of 50 N on the shaft.
 
-    Both integrate by the generalised-alpha method with equal steps, so the error of the steps is common to both; the
-    order of ours is tested by itself.
+    Both integrate by the generalised-alpha method with equal steps, so the error of the steps is common to both (the
+    order of ours is tested by itself), and only the Newton methods differ, which stop at 1e-8 of the forces.
     """
     times, factors = (0.0, 0.002, 0.004, 0.006), (0.0, 50.0, 50.0, 0.0)
     pulse = Course(times, factors)
@@ -178,7 +182,7 @@ def test_response_in_time(model):
     shaft, left, right = (there.mbs.GetSensorStoredData(name)[:, 2:4] for name in names)
     ours = run.states.displacement
     for theirs, mine in ((shaft, ours[:, :2]), (left, ours[:, 4:6]), (right, ours[:, 6:8])):
-        assert np.abs(theirs - mine).max() < 0.01 * np.abs(mine).max()
+        assert np.abs(theirs - mine).max() < 1e-6 * np.abs(mine).max()
     theirs, mine = shaft - left, ours[:, :2] - ours[:, 4:6]
     moved = mine - mine[0]
-    assert np.abs(theirs - mine).max() < 0.01 * np.abs(moved).max()
+    assert np.abs(theirs - mine).max() < 1e-6 * np.abs(moved).max()

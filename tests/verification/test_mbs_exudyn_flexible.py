@@ -37,8 +37,8 @@ from mbs.model.elements import Load, Operation, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Course, SpeedProfile
 from mbs.model.system import System
-from mbs.transient.settings import Settings
-from tests.unit.mbs_cases import integrate
+from mbs.settings import Settings
+from tests.cases.bearings import integrate
 
 exu = pytest.importorskip("exudyn", reason="Exudyn is a dependency of the tests alone, and has no wheel everywhere")
 items, fem = pytest.importorskip("exudyn.utilities"), pytest.importorskip("exudyn.FEM")
@@ -308,7 +308,7 @@ def own_modes(body):
 
 @pytest.mark.parametrize("kind", ["rigid", "averaging"])
 def test_statics_and_modes(solid, elements, kind):
-    """Rest, undamped modes and complex modes; 0.5 % is asked of the frequencies.
+    """Rest, undamped modes and complex modes.
 
     The bearings damp some modes by a tenth of critical, which complex modes show too.
     """
@@ -400,7 +400,7 @@ def pulsed(solid, elements):
     ],
 )
 def test_response_in_time(solid, elements, pulsed, finer, tolerance):
-    """20 ms of the seats, the middle, and the bend between them while the cages turn; 2 % of the peak is asked."""
+    """20 ms of the seats, the middle, and the bend between them while the cages turn."""
     system, ours = pulsed
     there = the_same_there(solid, "rigid", own_modes(system.body("shaft")), elements, PULSE)
     there.settle()

@@ -9,15 +9,16 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from mbs.gears.gear import GearPair, contact_ratio, gear_mesh, pair_harmonics
+from mbs.gears.gear import gear_mesh
 from mbs.gears.gear_kernel import TOUCH
+from mbs.gears.pair import GearPair, contact_ratio, pair_harmonics
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
-from mbs.transient.settings import Settings
-from tests.unit.mbs_cases import integrate
+from mbs.settings import Settings
+from tests.cases.bearings import integrate
 
 ALPHA = math.radians(20.0)
 PAIR = GearPair(

@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ehdmaps.jobs import cli as ehdmaps_cli
 from ehdmaps.maps.emap import open_map
 from mbs.linearised.linear import frequency_response, with_peaks
 from mbs.linearised.modes import modes, undamped_modes
@@ -21,44 +20,25 @@ from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep import sweep
 from mbs.modal.estimation import estimate
 from mbs.modal.fit import identify
-from mbs.modal.hammer import HammerTest, linear_hits
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
+from mbs.settings import Settings
 from mbs.spectral.campbell import run_up_spectra
 from mbs.spectral.run_signal import RunSignal
+from mbs.transient.hammer import HammerTest, linear_hits
 from mbs.transient.run import run
-from mbs.transient.settings import Settings
 
 RPM = math.pi / 30.0
 FROM, TO = 500.0 * RPM, 2500.0 * RPM
 LEAST_SHARE = 0.05
 
-# The shipped job with fewer speeds and temperatures: what the machines need at 40 degC
-JOB = """
-schema = 1
-[bearing]
-name = "NU308"
-[lubricant]
-name = "FVA3"
-[grid]
-load = { from = "0.1 N/mm", to = "1000 N/mm", points = 25, spacing = "log" }
-entrainment_speed = { from = "0.1 m/s", to = "5 m/s", points = 6, spacing = "log" }
-temperature = ["30 degC", "40 degC", "50 degC", "60 degC"]
-[solver]
-name = "reynolds"
-structural_law = "iso16281"
-"""
-
 
 @pytest.fixture(scope="module")
-def emap(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("machines")
-    (folder / "nu308.toml").write_text(JOB)
-    assert ehdmaps_cli.main(["generate", str(folder / "nu308.toml"), "-o", str(folder / "nu308.nc")]) == 0
-    return open_map(folder / "nu308.nc")
+def emap(reynolds_map):
+    return open_map(reynolds_map)
 
 
 def with_load(scene, factor):
@@ -96,7 +76,7 @@ class TestGearbox:
 
     def test_dry_modes_do_not_move_with_the_speed(self):
         result = sweep(assemble(self.scene, "hertz").system, np.linspace(FROM, TO, 3))
-        # 0.1 % is asked. Without gyroscopic terms nothing depends on the speed: what is left is Newton's 1e-10.
+        # Without gyroscopic terms nothing depends on the speed: what is left is Newton's 1e-10.
         np.testing.assert_allclose(result.undamped.frequency[-1], result.undamped.frequency[0], rtol=1e-7)
         # Shaft-bearing modes turn in a plane here, as the bearing is softer across its load: no splitting to speak of.
         shown = np.nanmax(result.damped.bearing_share, axis=0) > 0.3
@@ -108,7 +88,7 @@ class TestGearbox:
         result = films[clearance].undamped
         moved = np.abs(result.shift[-1]) > 2e-3
         assert np.count_nonzero(moved & (result.bearing_share[0] > 0.3)) >= 6
-        # 10 % is asked; the sum over ten steps leaves their squares
+        # the sum over ten steps leaves their squares
         np.testing.assert_allclose(result.summed_shift[-1][moved], result.shift[-1][moved], rtol=0.05)
 
     def test_modes_along_the_load_fall_with_films_and_clearance(self, films):
@@ -161,6 +141,7 @@ class TestGearbox:
         np.testing.assert_allclose(levels[0], levels[1], atol=0.5)
 
 
+@pytest.mark.slow
 class TestFlexibleShaft:
     scene = read_scene("nu308_flexible")
 
@@ -170,7 +151,7 @@ class TestFlexibleShaft:
 
     def test_equilibrium_is_the_preload(self, emap):
         for forces in self.at("map", emap).forces:
-            # 0.1 % is asked; preload between the rings goes through the bearing alone
+            # preload between the rings goes through the bearing alone
             assert np.hypot(forces[1], forces[2]) == pytest.approx(141.42136, rel=1e-7)
 
     def test_a_housing_mode_does_not_care_about_the_law(self, emap):
@@ -181,7 +162,7 @@ class TestFlexibleShaft:
         likeness = np.abs(dry.shapes.T @ mass @ wet.shapes) ** 2
         for k in np.nonzero(housing & (dry.frequency < 3000.0))[0]:
             partner = int(np.argmax(likeness[k]))
-            # 0.5 % is asked of one mode; these have 3 % of their energy elsewhere at most
+            # a third more stiffness in the 3 % of their energy that they have elsewhere at most
             assert wet.frequency[partner] == pytest.approx(dry.frequency[k], rel=5e-3)
 
     @pytest.mark.parametrize("law", ["hertz", "map"])
@@ -196,7 +177,6 @@ class TestFlexibleShaft:
         assert np.all(found[1] > found[0])
         assert np.all(found[2] > found[1])
 
-    @pytest.mark.slow
     def test_no_force_jumps_in_the_run_up(self, emap):
         """A jump would be as large however short the steps are; here it falls with them."""
         model = assemble(self.scene, "map", emap)
@@ -238,11 +218,13 @@ class TestRig:
         fit = identify(estimate(records).responses, "rfp", (1000.0, 2900.0))
         true = modes(balance)
         assert fit.frequency.size >= 2
-        for frequency, ratio in zip(fit.frequency[:2], fit.damping_ratio[:2], strict=True):
-            nearest = int(np.argmin(np.abs(true.frequency - frequency)))
-            # 0.1 % and 5 % are asked at 1 % of noise
-            assert frequency == pytest.approx(true.frequency[nearest], rel=1e-3)
-            assert ratio == pytest.approx(true.damping_ratio[nearest], rel=0.05)
+        for mode in range(2):
+            nearest = int(np.argmin(np.abs(true.frequency - fit.frequency[mode])))
+            # four standard deviations of what the noise of 1 % does, which the fit states, and which are small
+            near, alike = 4.0 * fit.frequency_uncertainty[mode], 4.0 * fit.damping_uncertainty[mode]
+            assert near < 1e-3 * fit.frequency[mode] and alike < 0.05 * fit.damping_ratio[mode]
+            assert fit.frequency[mode] == pytest.approx(true.frequency[nearest], abs=near)
+            assert fit.damping_ratio[mode] == pytest.approx(true.damping_ratio[nearest], abs=alike)
 
 
 def test_a_machine_of_ones_own_is_a_copied_file(tmp_path):

@@ -11,7 +11,7 @@ import pytest
 from scipy import linalg, sparse
 from scipy.sparse.linalg import spsolve
 
-from mbs.errors import AnalysisError
+from ehdmaps.errors import AnalysisError
 from mbs.flexible import held_body
 from mbs.flexible.calculix import read_calculix
 from mbs.flexible.extent import extent
@@ -20,7 +20,7 @@ from mbs.flexible.mesh import read_mesh_nodes
 from mbs.flexible.reduced_body import to_body
 from mbs.flexible.reduction import reduce
 from mbs.flexible.spiders import Interface, nodes_in_plane, nodes_on_cylinder, spider
-from tests.unit.flexible_cases import DENSITY, SIZE, block, ends, rigid_motion
+from tests.cases.flexible import DENSITY, SIZE, block, ends, rigid_motion
 
 ROUND_OFF = 1e-8
 """Of factors and eigenvalues of bodies whose stiffnesses span ten orders of magnitude."""

@@ -21,10 +21,10 @@ from mbs.model.elements import Load, Operation, Sensor, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Course, Harmonic, SpeedProfile
 from mbs.model.system import System
+from mbs.settings import Settings
 from mbs.transient.run import Options, run
-from mbs.transient.settings import Settings
 from mbs.transient.stepping import Method
-from tests.unit.mbs_cases import TEMPERATURE, integrate, map_law
+from tests.cases.bearings import TEMPERATURE, integrate, map_law
 
 RPM = math.pi / 30.0
 TEETH = (21, 23)

@@ -78,7 +78,7 @@ def estimated_time(job: Job, solver: ContactSolver, points: int) -> str:
     job : Job
         What is to be solved.
     solver : ContactSolver
-        By which solver.
+        Solver whose time is estimated.
     points : int
         How many points in all.
     """

@@ -14,7 +14,7 @@ from ehdmaps.jobs.point_report import point_record, point_table
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.operating_point import OIL_TEMPERATURES, OperatingPoint
 from ehdmaps.physics.solution import ContactSolver, FilmSolution, Status
 from ehdmaps.program import tell
 from ehdmaps.units import LENGTH, LOAD, RPM, SPEED, TEMPERATURE, Display, quantity
@@ -90,7 +90,7 @@ def _read(arguments: argparse.Namespace) -> tuple[Job, OperatingPoint, float | N
             f"--speed: got {arguments.speed!r:.60}; allowed: m/s, since the job has a bare contact; rpm are those of "
             "the inner ring of a bearing"
         )
-    temperature = read("--temperature", arguments.temperature, "K", 213.15, 573.15, TEMPERATURE)
+    temperature = read("--temperature", arguments.temperature, "K", *OIL_TEMPERATURES, TEMPERATURE)
     frequency: float | None = 0.0
     if arguments.frequency is not None:
         frequency = read("--frequency", arguments.frequency, "Hz", 0.0, 1e7, Display("kHz", 1e-3))

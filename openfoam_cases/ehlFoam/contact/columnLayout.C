@@ -8,29 +8,61 @@
 #include "positive.H"
 #include <cmath>
 
+namespace Foam
+{
+
+/*-  The numbers of the layout are a choice: they decide how many columns an
+     error takes, and a point is judged by the difference of two layouts
+*/
+
+//- x^2/(2H) at the exit of a film of constant viscosity between rigid
+//  surfaces: 0.475^2, of Reynolds' condition in a parabolic gap
+static constexpr scalar rigidExitSquared = 0.226;
+
+//- How far the exit of a thin film lies behind the Hertz zone [H^(2/3)]: a guess, solutions have 0.1 to 0.45
+static constexpr scalar thinExit = 0.25;
+
+//- Rounding of the Hertz zone's term at its ends, and weight of it, in the contact's own length
+static constexpr scalar blur = 0.1, coreWeight = 0.25;
+
+//- Centre of the finest columns of the inlet, inside the edge [zones], and their weight
+static constexpr scalar inletShift = 0.3, inletWeight = 1;
+
+//- Centre before the exit, width [zones] and weight of the finest columns there
+static constexpr scalar exitShift = 0.25, exitWidth = 0.6, exitWeight = 0.6;
+
+//- Weight of the columns about the pressure spike
+static constexpr scalar spikeWeight = 0.5;
+
+//- Inlet of a film without thickness [b], and outlet where none is given [zones]
+static constexpr scalar leastInlet = 1, usualOutlet = 3;
+
+} // End namespace Foam
+
 Foam::columnLayout::columnLayout(const dictionary& dict)
 {
     const scalar H = positive(dict, "film");
     const scalar inletLength = positive(dict, "inletLength");
-    const scalar outletLength = dict.found("outletLength") ? positive(dict, "outletLength") : 3;
+    const scalar outletLength = dict.found("outletLength") ? positive(dict, "outletLength") : usualOutlet;
     const scalar spikePosition = dict.get<scalar>("spikePosition");
     const scalar spikeWidth = notNegative(dict, "spikeWidth");
 
     const scalar length = Foam::sqrt(2*H);
     const scalar thin = Foam::pow(H, scalar(2)/3);
     const scalar zone = thin/(1 + thin/length);
-    exit_ = Foam::sqrt(1 + 0.226*2*H) + 0.25*thin/(1 + thin);
+    exit_ = Foam::sqrt(1 + rigidExitSquared*2*H) + thinExit*thin/(1 + thin);
+    // pressure rises over half of a thick film's length, and at the edge of the Hertz zone of a thin one
     inletEdge_ = -Foam::sqrt(1 + 0.25*sqr(length));
-    start_ = inletEdge_ - 1 - inletLength*length;
+    start_ = inletEdge_ - leastInlet - inletLength*length;
     end_ = exit_ + outletLength*zone;
-    blur_ = 0.1*Foam::sqrt(1 + sqr(length));
-    core_ = 0.25/Foam::sqrt(1 + 0.25*sqr(length));
+    blur_ = blur*Foam::sqrt(1 + sqr(length));
+    core_ = coreWeight/Foam::sqrt(1 + 0.25*sqr(length));
 
-    terms_.append(FixedList<scalar, 3>({inletEdge_ + 0.3*zone, zone, 1.0}));
-    terms_.append(FixedList<scalar, 3>({exit_ - 0.25*zone, 0.6*zone, 0.6}));
+    terms_.append(FixedList<scalar, 3>({inletEdge_ + inletShift*zone, zone, inletWeight}));
+    terms_.append(FixedList<scalar, 3>({exit_ - exitShift*zone, exitWidth*zone, exitWeight}));
     if (spikeWidth > 0)
     {
-        terms_.append(FixedList<scalar, 3>({spikePosition, spikeWidth, 0.5}));
+        terms_.append(FixedList<scalar, 3>({spikePosition, spikeWidth, spikeWeight}));
     }
 }
 

@@ -5,17 +5,9 @@
 \*---------------------------------------------------------------------------*/
 
 #include "Barus.H"
-#include "positive.H"
-#include "addToRunTimeSelectionTable.H"
+#include "oilLaw.H"
 
-namespace Foam
-{
-namespace viscosityLaws
-{
-    defineTypeNameAndDebug(Barus, 0);
-    addToRunTimeSelectionTable(viscosityLaw, Barus, dictionary);
-}
-}
+addOilLaw(viscosityLaw, Barus)
 
 
 Foam::viscosityLaws::Barus::Barus(const dictionary& dict)

@@ -5,17 +5,9 @@
 \*---------------------------------------------------------------------------*/
 
 #include "DowsonHigginson.H"
-#include "positive.H"
-#include "addToRunTimeSelectionTable.H"
+#include "oilLaw.H"
 
-namespace Foam
-{
-namespace densityLaws
-{
-    defineTypeNameAndDebug(DowsonHigginson, 0);
-    addToRunTimeSelectionTable(densityLaw, DowsonHigginson, dictionary);
-}
-}
+addOilLaw(densityLaw, DowsonHigginson)
 
 
 Foam::densityLaws::DowsonHigginson::DowsonHigginson(const dictionary& dict)

@@ -5,17 +5,9 @@
 \*---------------------------------------------------------------------------*/
 
 #include "Eyring.H"
-#include "positive.H"
-#include "addToRunTimeSelectionTable.H"
+#include "oilLaw.H"
 
-namespace Foam
-{
-namespace shearLaws
-{
-    defineTypeNameAndDebug(Eyring, 0);
-    addToRunTimeSelectionTable(shearLaw, Eyring, dictionary);
-}
-}
+addOilLaw(shearLaw, Eyring)
 
 
 Foam::shearLaws::Eyring::Eyring(const dictionary& dict)

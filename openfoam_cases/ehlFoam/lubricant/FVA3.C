@@ -5,17 +5,9 @@
 \*---------------------------------------------------------------------------*/
 
 #include "FVA3.H"
-#include "positive.H"
-#include "addToRunTimeSelectionTable.H"
+#include "oilLaw.H"
 
-namespace Foam
-{
-namespace viscosityLaws
-{
-    defineTypeNameAndDebug(FVA3, 0);
-    addToRunTimeSelectionTable(viscosityLaw, FVA3, dictionary);
-}
-}
+addOilLaw(viscosityLaw, FVA3)
 
 
 Foam::viscosityLaws::FVA3::FVA3(const dictionary& dict)

@@ -5,21 +5,12 @@
 \*---------------------------------------------------------------------------*/
 
 #include "Newtonian.H"
-#include "positive.H"
-#include "addToRunTimeSelectionTable.H"
+#include "oilLaw.H"
 
-namespace Foam
-{
-namespace shearLaws
-{
-    defineTypeNameAndDebug(Newtonian, 0);
-    addToRunTimeSelectionTable(shearLaw, Newtonian, dictionary);
-}
-}
+addOilLaw(shearLaw, Newtonian)
 
 
 Foam::shearLaws::Newtonian::Newtonian(const dictionary&)
-
 {}
 
 

@@ -5,17 +5,9 @@
 \*---------------------------------------------------------------------------*/
 
 #include "Roelands.H"
-#include "positive.H"
-#include "addToRunTimeSelectionTable.H"
+#include "oilLaw.H"
 
-namespace Foam
-{
-namespace viscosityLaws
-{
-    defineTypeNameAndDebug(Roelands, 0);
-    addToRunTimeSelectionTable(viscosityLaw, Roelands, dictionary);
-}
-}
+addOilLaw(viscosityLaw, Roelands)
 
 
 Foam::viscosityLaws::Roelands::Roelands(const dictionary& dict)

@@ -5,17 +5,9 @@
 \*---------------------------------------------------------------------------*/
 
 #include "freeVolume.H"
-#include "positive.H"
-#include "addToRunTimeSelectionTable.H"
+#include "oilLaw.H"
 
-namespace Foam
-{
-namespace viscosityLaws
-{
-    defineTypeNameAndDebug(freeVolume, 0);
-    addToRunTimeSelectionTable(viscosityLaw, freeVolume, dictionary);
-}
-}
+addOilLaw(viscosityLaw, freeVolume)
 
 
 Foam::viscosityLaws::freeVolume::freeVolume(const dictionary& dict)

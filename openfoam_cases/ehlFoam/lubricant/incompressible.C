@@ -5,17 +5,9 @@
 \*---------------------------------------------------------------------------*/
 
 #include "incompressible.H"
-#include "positive.H"
-#include "addToRunTimeSelectionTable.H"
+#include "oilLaw.H"
 
-namespace Foam
-{
-namespace densityLaws
-{
-    defineTypeNameAndDebug(incompressible, 0);
-    addToRunTimeSelectionTable(densityLaw, incompressible, dictionary);
-}
-}
+addOilLaw(densityLaw, incompressible)
 
 
 Foam::densityLaws::incompressible::incompressible(const dictionary& dict)

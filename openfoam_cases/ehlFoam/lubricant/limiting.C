@@ -5,18 +5,10 @@
 \*---------------------------------------------------------------------------*/
 
 #include "limiting.H"
-#include "positive.H"
+#include "oilLaw.H"
 #include <cmath>
-#include "addToRunTimeSelectionTable.H"
 
-namespace Foam
-{
-namespace shearLaws
-{
-    defineTypeNameAndDebug(limiting, 0);
-    addToRunTimeSelectionTable(shearLaw, limiting, dictionary);
-}
-}
+addOilLaw(shearLaw, limiting)
 
 
 Foam::shearLaws::limiting::limiting(const dictionary& dict)

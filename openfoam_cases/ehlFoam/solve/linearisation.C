@@ -123,7 +123,7 @@ void Foam::linearisation::addCellUnknowns
                 {
                     for (label j = firstRow; j < rows; j += 2*across + 1)
                     {
-                        const label place = i*flow.blockSize() + j*size + kind;
+                        const label place = flow.place(i, j, kind);
                         const scalar step = flow.cellStep(film, kind, i, j);
                         moved.local[place] += step;
                         movedRate.local[place] += rateFactor*step;
@@ -172,7 +172,7 @@ void Foam::linearisation::addColumnUnknowns
     const label n = slice_.columns(), size = flow.blockSize(), stride = 2*columnReach + 1;
     for (label i = 0; i < n; ++i)
     {
-        outer_((i + 1)*size - 1, i) += flow.columnInColumn();
+        outer_(flow.sourcePlace(i), i) += flow.columnInColumn();
     }
     if (!flow.columnInResidual()) return;
 
@@ -244,9 +244,11 @@ void Foam::linearisation::addShift(const List<scalarField>& here)
 }
 
 
+// d(local) = A^-1 (residual - B d(outer)); its rows of the sources have to be what is asked of them
 void Foam::linearisation::reduce(const label isobar)
 {
-    const label n = slice_.columns(), size = slice_.flow().blockSize();
+    const filmFlow& flow = slice_.flow();
+    const label n = slice_.columns();
     inner_.factorise();
     Eigen::MatrixXd response(outer_);
     inner_.solve(response);
@@ -254,7 +256,7 @@ void Foam::linearisation::reduce(const label isobar)
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(outer_.cols(), outer_.cols());
     for (label i = 0; i < n; ++i)
     {
-        matrix.row(i) = response.row((i + 1)*size - 1);
+        matrix.row(i) = response.row(flow.sourcePlace(i));
     }
     matrix.row(n).head(n) = slice_.loadByColumn(state_)/slice_.contact().load;
     if (isobar >= 0)
@@ -274,7 +276,8 @@ Foam::slice::unknowns Foam::linearisation::solve
     const scalar load
 ) const
 {
-    const label n = slice_.columns(), size = slice_.flow().blockSize();
+    const filmFlow& flow = slice_.flow();
+    const label n = slice_.columns();
     Eigen::MatrixXd inner = Eigen::MatrixXd::Zero(outer_.rows(), 1);
     inner.col(0).head(residual.size()) = residual;
     const Eigen::MatrixXd right(inner);
@@ -283,7 +286,7 @@ Foam::slice::unknowns Foam::linearisation::solve
     Eigen::VectorXd reduced = Eigen::VectorXd::Zero(outer_.cols());
     for (label i = 0; i < n; ++i)
     {
-        reduced[i] = inner((i + 1)*size - 1, 0) - source[i];
+        reduced[i] = inner(flow.sourcePlace(i), 0) - source[i];
     }
     reduced[n] = load;
     const Eigen::VectorXd outer = reduced_.solve(rowScale_.cwiseProduct(reduced));

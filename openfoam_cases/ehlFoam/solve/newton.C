@@ -53,7 +53,7 @@ static slice::unknowns stepped
         }
         for (label j = 0; j < flow.film().rows(); ++j)
         {
-            const label place = i*flow.blockSize() + flow.cellSize()*(j + 1) - 1;
+            const label place = flow.place(i, j, flow.cellSize() - 1); // v of the cell
             next.local[place] = edged(u.local[place], next.local[place]);
         }
     }
@@ -74,7 +74,7 @@ static bool crossed(const slice& s, const slice::unknowns& before, const slice::
         }
         for (label j = 0; j < flow.film().rows(); ++j)
         {
-            const label place = i*flow.blockSize() + flow.cellSize()*(j + 1) - 1;
+            const label place = flow.place(i, j, flow.cellSize() - 1); // v of the cell
             if ((before.local[place] > 0) != (after.local[place] > 0)) return true;
         }
     }
@@ -138,7 +138,7 @@ Foam::newtonResult Foam::newton
 {
     const clockTime clock;
     slice::unknowns u(start);
-    const label n = s.columns(), size = s.flow().blockSize();
+    const label n = s.columns();
     scalar previous = GREAT;
     label backAndForth = 0;
     for (label iteration = 1; iteration <= controls.maxIterations; ++iteration)
@@ -148,7 +148,7 @@ Foam::newtonResult Foam::newton
         auto step = [&]()
         {
             Eigen::VectorXd source(n);
-            for (label i = 0; i < n; ++i) source[i] = -u.local[(i + 1)*size - 1];
+            for (label i = 0; i < n; ++i) source[i] = -u.local[s.flow().sourcePlace(i)];
             return kept->solve
             (
                 -s.residual(u, rateOf ? &rate : nullptr),

@@ -180,23 +180,23 @@ Foam::filmState Foam::slice::filmRate(const unknowns& u, const unknowns& rate) c
 
 Eigen::VectorXd Foam::slice::assembled(const List<scalarField>& raw, const unknowns& u) const
 {
-    const label rows = flow_.film().rows(), size = flow_.cellSize(), block = flow_.blockSize();
+    const label rows = flow_.film().rows(), size = flow_.cellSize();
     Eigen::VectorXd result(localSize());
     for (label i = 0; i < columns(); ++i)
     {
-        const scalar source = u.local[(i + 1)*block - 1];
+        const scalar source = u.local[flow_.sourcePlace(i)];
         scalar column = flow_.sourceInColumn()*source + flow_.columnInColumn()*u.column[i];
         for (label j = 0; j < rows; ++j)
         {
             const label c = flow_.film().cell(i, j);
             for (label equation = 0; equation < size; ++equation)
             {
-                result[i*block + j*size + equation] =
+                result[flow_.place(i, j, equation)] =
                     raw[equation][c] + flow_.sourceInCell(j, equation)*source;
             }
             column += raw[size][c];
         }
-        result[(i + 1)*block - 1] = column;
+        result[flow_.sourcePlace(i)] = column;
     }
     return result;
 }

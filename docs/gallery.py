@@ -1,0 +1,87 @@
+"""Pages of the examples: text, code, and the printed lines and figure of a run while the documentation is built.
+
+An example whose text, and the packages it runs on, are as they were at the last build is not run again.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+EXAMPLES = ROOT / "examples"
+PAGES = Path(__file__).parent / "gallery_pages"
+PATIENCE = 300.0
+"""Seconds after which an example is taken to hang; each needs some seconds."""
+
+
+class ExampleError(RuntimeError):
+    """An example fails, or leaves no figure."""
+
+
+def make_gallery() -> None:
+    """Write a page for every example, and remove those of examples that are gone.
+
+    Raises
+    ------
+    ExampleError
+        An example fails, or leaves no figure.
+    """
+    PAGES.mkdir(exist_ok=True)
+    sources = hashlib.sha256()
+    for path in sorted([*ROOT.glob("ehdmaps/**/*.py"), *ROOT.glob("mbs/**/*.py"), *ROOT.glob("mbs/systems/*.toml")]):
+        sources.update(path.read_bytes())
+    examples = sorted(EXAMPLES.glob("[0-9][0-9]_*.py"))
+    for example in examples:
+        _make_page(example, sources.hexdigest())
+    names = {example.stem for example in examples}
+    for page in PAGES.glob("*.md"):
+        if page.stem not in names:
+            page.unlink()
+
+
+def _make_page(example: Path, sources: str) -> None:
+    """Run an example and write its page, if either changed."""
+    code = example.read_text(encoding="utf-8")
+    state = hashlib.sha256(f"{Path(__file__).read_text(encoding='utf-8')}{sources}{code}".encode()).hexdigest()
+    page, folder = PAGES / f"{example.stem}.md", PAGES / example.stem
+    mark = f"% {state}"  # a comment of myst
+    if page.is_file() and page.read_text(encoding="utf-8").startswith(mark):
+        return
+    folder.mkdir(exist_ok=True)
+    for old in folder.iterdir():
+        old.unlink()
+    printed = _run(example, folder)
+    figures = sorted(folder.glob("*.png"))
+    if len(figures) != 1:
+        raise ExampleError(f"{example}: got {len(figures)} figures; an example writes one")
+    title, _, words = (ast.get_docstring(ast.parse(code)) or example.stem).partition("\n")
+    body = code.partition('"""')[2].partition('"""')[2].strip()
+    text = [
+        mark,
+        f"# {title.rstrip('.')}",
+        words.strip(),
+        f"![{title}]({example.stem}/{figures[0].name})",
+        f"```python\n{body}\n```",
+        f"It prints\n\n```text\n{printed.rstrip()}\n```",
+        f"File: `examples/{example.name}`",
+    ]
+    page.write_text("\n\n".join(text) + "\n", encoding="utf-8")
+
+
+def _run(example: Path, folder: Path) -> str:
+    """What an example prints; its figure goes to the folder."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "MPLBACKEND": "Agg"}
+    # small matrices: threads of BLAS that wait for each other on a busy machine cost more than they bring
+    environment |= {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+    command = [sys.executable, "-W", "error", str(example), str(folder)]
+    done = subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=PATIENCE, check=False
+    )
+    if done.returncode != 0:
+        raise ExampleError(f"{example}: exit status {done.returncode}\n{done.stderr.strip()}")
+    return done.stdout

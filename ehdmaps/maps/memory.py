@@ -1,0 +1,189 @@
+"""Films with memory for other programs: a contact law that goes from step to step, with a state for each slice.
+
+::
+
+    at = law.at(entrainment_speed=1.7, temperature=313.15)
+    state = at.memory.settled(delta)
+    for delta in course:
+        w, dw_ddelta, state = at.memory.advance(state, delta, dt)
+
+The equations are in `ehdmaps.maps.memory_table`. `ContactLaw.advance` takes speed and temperature at each call.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
+from ehdmaps.maps import memory_table
+from ehdmaps.maps.memory_table import Film, MemoryTable, advanced, equilibrium_at, fill_memory, step_of
+from ehdmaps.maps.tables import Point
+from ehdmaps.physics.contact import LineContact
+
+_NO_LOAD = 1e-20
+
+
+@dataclass(frozen=True, eq=False)
+class FilmState:
+    """States of films, of any shape.
+
+    Attributes
+    ----------
+    approach : array
+        Approach at which each film would be in equilibrium [m].
+    change : array
+        What the last step changed in its squeezing G [N s/m2], see `ehdmaps.maps.memory_table`.
+    step : float
+        Length of the last step [s]; 0 after a rest.
+    """
+
+    approach: FloatArray
+    change: FloatArray
+    step: float = 0.0
+
+
+class FilmMemory:
+    """A contact law with memory at one speed and temperature.
+
+    Parameters
+    ----------
+    point : Point
+        The law without memory: at rest both are alike, and at low frequency.
+    contacts : sequence of LineContact
+        What is in series.
+    entrainment_speed : float
+        u [m/s], of either sign.
+    check : callable
+        Is told the loads of each step [N/m]; it may raise for those above the map.
+
+    Raises
+    ------
+    InputError
+        With a centrifugal load: films with memory take none.
+    """
+
+    def __init__(
+        self,
+        point: Point,
+        contacts: Sequence[LineContact],
+        entrainment_speed: float,
+        check: Callable[[FloatArray], None],
+    ) -> None:
+        if point.centrifugal_load != 0.0:
+            raise InputError(
+                f"film memory, centrifugal_load: got {point.centrifugal_load:.6g} N/m; allowed: 0; take the law "
+                "without memory for rollers with centrifugal load"
+            )
+        self._check = check
+        film = Film(
+            len(contacts),
+            sum(contact.radius for contact in contacts) / len(contacts),
+            contacts[0].reduced_modulus,
+            abs(entrainment_speed),
+        )
+        cells = np.zeros((2 * memory_table.ROWS, 12))
+        load_cells = np.zeros((memory_table.LOAD_ROWS, 4))
+        self._table = fill_memory(
+            point, film, memory_table.NODES, memory_table.LOAD_NODES, cells, load_cells, np.zeros(4, dtype=np.int64)
+        )
+
+    @property
+    def table(self) -> MemoryTable:
+        """Arrays for compiled code, see `ehdmaps.maps.memory_table`."""
+        return self._table
+
+    def settled(self, delta: npt.ArrayLike) -> FilmState:
+        """Films in equilibrium at an approach.
+
+        Parameters
+        ----------
+        delta : float or array
+            [m].
+
+        Raises
+        ------
+        InputError
+            For approaches that are no finite numbers.
+        """
+        approach = np.maximum(_finite("delta", delta), self._table.lift_off)
+        return FilmState(approach, np.zeros_like(approach))
+
+    def advance(self, state: FilmState, delta: npt.ArrayLike, dt: float) -> tuple[Any, Any, FilmState]:
+        """A step in time. The state that goes in is left as it is: the step may be tried again.
+
+        Parameters
+        ----------
+        state : FilmState
+            At the beginning of the step.
+        delta : float or array
+            Approach at its end [m], in the shape of the state.
+        dt : float
+            Its length [s], > 0. Of second order while steps grow by no more than a fifth.
+
+        Returns
+        -------
+        w, dw_ddelta : float or array
+            Load at the end of the step [N/m], >= 0, and its exact derivative by the approach there [N/m2].
+        state : FilmState
+            At the end of the step.
+
+        Raises
+        ------
+        InputError
+            For values that are no finite numbers, other shapes, and steps that are not longer than zero.
+        OutsideMapError
+            For loads above the map, where the law has the policy "error".
+        """
+        ends = _finite("delta", delta)
+        if ends.shape != state.approach.shape:
+            raise InputError(
+                f"film memory, delta: got the shape {ends.shape}; the state has {state.approach.shape}; "
+                "they must be alike"
+            )
+        if not (isinstance(dt, int | float) and 0.0 < dt < math.inf):
+            raise InputError(f"film memory, dt: got {dt!r} s; allowed: finite and > 0 s")
+        flat = np.ascontiguousarray(ends).reshape(-1)
+        found = np.empty((4, flat.size))
+        before, change = (np.ascontiguousarray(part).reshape(-1) for part in (state.approach, state.change))
+        _advance_many(self._table, float(dt), state.step, flat, before, change, found)
+        w, tangent, approach, changed = (row.reshape(ends.shape) for row in found)
+        self._check(w)
+        return w[()], tangent[()], FilmState(approach, changed, float(dt))
+
+
+@njit(cache=True, error_model="numpy")
+def _advance_many(
+    table: MemoryTable,
+    h: float,
+    last: float,
+    delta: FloatArray,
+    before: FloatArray,
+    change: FloatArray,
+    found: FloatArray,
+) -> None:
+    """Advance flat arrays: loads, tangents, states and changes of G, into `found` (4, n)."""
+    step = step_of(h, last)
+    for i in range(delta.size):
+        g = equilibrium_at(table, before[i])[4]
+        w, tangent, xi = advanced(table, step, delta[i], g, change[i], before[i])
+        found[0, i], found[1, i], found[2, i] = (w if w > _NO_LOAD else 0.0), tangent, xi
+        found[3, i] = equilibrium_at(table, xi)[4] - g
+
+
+def _finite(name: str, values: npt.ArrayLike) -> FloatArray:
+    """Finite doubles, or an error."""
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"film memory, {name}: got {values!r}; allowed: real numbers") from None
+    if not np.all(np.isfinite(array)):
+        raise InputError(f"film memory, {name}: got {array[~np.isfinite(array)].flat[0]}; allowed: finite numbers")
+    return array

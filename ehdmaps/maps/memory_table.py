@@ -1,0 +1,431 @@
+"""A contact whose film has a memory, as arrays at one speed and temperature.
+
+A film answers a change of load with a delay. Its state is xi, the approach at which it would be in equilibrium; the
+load of that equilibrium is p(xi). Approach and load w of the contact are
+
+    delta = a(w) + y(p),          w = x + sqrt(x^2 + p^2),    x = G',    dG/dxi = C = c k_s/(k_s - k).
+
+a is what answers at once: the structure, and the little by which oil that cannot leave the inlet stiffens it,
+da/dw = 1/k_s. y is what follows: y(p) = xi - a(p), so that at rest w = p and delta = xi, the law of the map. To first
+order w = p + x, and a small oscillation sees k + i omega c/(1 + i omega c/(k_s - k)): k and c of the map at low
+frequency, k_s at high frequency. w follows the exact load of rigid rollers that are squeezed while they roll
+(x + sqrt(x^2 + p^2) within 3 %), is never a tension, and rises with x.
+
+Why it is passive: a and y rise with their arguments (k_s > k > 0), and w - p has the sign of x, which is that of p'.
+So the work is w da + p dy + (w - p) dy: the first two are stored, the last one is never negative. Taken by backward
+Euler, or by any rate x with the sign of the change of G, this holds for steps of any size.
+
+The table has p, y and G over xi in cells which are the binary digits of 1 + |z|, z = (xi - centre)/scale, and a over w
+in cells which are those of 1 + w/`LIGHTEST`: no logarithm is needed to find one. All are cubics through values and
+slopes that rise.
+
+The stiffness k_s of the locked film and its bound are closed formulas, fitted to the linear response of the isothermal
+Newtonian line contact: see `LOCKED` and `LONGEST`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.maps.kernel import evaluate_at
+from ehdmaps.maps.lines import FAST
+from ehdmaps.maps.tables import HALF_SPACE, Point
+
+LOCKED = 0.035
+"""Compliance that locked oil takes off a contact, in 4/E' for each ln(1 + 2 h R/b^2). Fitted: the complex stiffness is
+right within 10 % up to ten natural frequencies."""
+
+LONGEST = 1.4
+"""Longest relaxation time c/(k_s - k) in natural times sqrt(b^2 + 2 h R)/u. Fitted likewise."""
+
+MOST_LOCKED = 0.6
+"""Part of the structure's compliance that locked oil takes off at most."""
+
+LIGHTEST = 1.0
+"""Load up to which the cells of a over w are even [N/m]."""
+
+_BITS = 5
+OCTAVES, LOAD_OCTAVES = 14, 24
+SHIFT = np.uint64(52 - _BITS)
+FIRST = np.int64(np.float64(1.0).view(np.int64) >> (52 - _BITS))
+ROWS, LOAD_ROWS = OCTAVES << _BITS, LOAD_OCTAVES << _BITS
+
+
+def _nodes(rows: int) -> FloatArray:
+    """Ends of cells, as values from 1 on."""
+    bits: FloatArray = ((FIRST + np.arange(rows + 1)) << np.int64(52 - _BITS)).view(np.float64)
+    return bits
+
+
+NODES, LOAD_NODES = _nodes(ROWS), _nodes(LOAD_ROWS)
+_LAST, _LAST_LOAD = float(np.nextafter(NODES[-1], 0.0)), float(np.nextafter(LOAD_NODES[-1], 0.0))
+_LEAST_DAMPING, _LEAST_FILM = 1e-12, 1e-9
+_STEPS = 60
+_EXACT = 1e-13
+_NOTHING = 1e-60
+
+
+class MemoryTable(NamedTuple):
+    """A contact with memory at one speed and temperature.
+
+    Attributes
+    ----------
+    cells : array (2 ROWS, 12)
+        Cubics over the distance in scales from the end of a cell that is nearer to the centre: four coefficients of p
+        [N/m], of y [m] and of G [N s/m2].
+    load_cells : array (LOAD_ROWS, 4)
+        Cubics of a [m] over the distance from the lower end of a cell, in `LIGHTEST`.
+    centre, inverse_scale : float
+        Of the cells [m], [1/m].
+    lift_off : float
+        Highest xi without load [m].
+    """
+
+    cells: FloatArray
+    load_cells: FloatArray
+    centre: float
+    inverse_scale: float
+    lift_off: float
+
+
+class Film(NamedTuple):
+    """What the closed formula of the locked film needs besides the law.
+
+    Attributes
+    ----------
+    contacts : int
+        Number of contacts in series.
+    radius : float
+        Mean reduced radius R [m].
+    modulus : float
+        E' [Pa].
+    speed : float
+        u [m/s], >= 0.
+    """
+
+    contacts: int
+    radius: float
+    modulus: float
+    speed: float
+
+
+@njit(cache=True, error_model="numpy")
+def structure_at(structure: FloatArray, load: float) -> tuple[float, float]:
+    """Structural approach [m] of contacts in series at a load [N/m], and its derivative."""
+    approach = compliance = 0.0
+    if load > 0.0:
+        for i in range(structure.shape[0]):
+            kind, a, b = structure[i, 0], structure[i, 1], structure[i, 2]
+            if kind == HALF_SPACE:
+                part = a * load * (b - 0.5 * math.log(load))
+                compliance += part / load - 0.5 * a
+            else:
+                part = a * math.pow(load, b)
+                compliance += b * part / load
+            approach += part
+    return approach, compliance
+
+
+@njit(cache=True, error_model="numpy")
+def locked_stiffness(film: Film, xi: float, p: float, k: float, c: float, dry: float, compliance: float) -> float:
+    """Stiffness k_s of a contact whose film cannot give way [N/m2], by closed formula.
+
+    Parameters
+    ----------
+    film : Film
+        Geometry, moduli, speed.
+    xi, p, k, c : float
+        Approach [m], load [N/m], stiffness [N/m2] and damping [N s/m2] at rest, p > 0.
+    dry, compliance : float
+        Structural approach [m] and its derivative [m2/N] at p.
+    """
+    each = max(dry - xi, 0.0) / film.contacts
+    square = 8.0 * p * film.radius / (math.pi * film.modulus)
+    locked = film.contacts * LOCKED * 4.0 / film.modulus * math.log1p(2.0 * each * film.radius / square)
+    stiff = 1.0 / (compliance - min(locked, MOST_LOCKED * compliance))
+    per_natural = film.speed / math.sqrt(square + 2.0 * each * film.radius)
+    return max(stiff, k, k + c * per_natural / LONGEST)
+
+
+@njit(cache=True, error_model="numpy")
+def _cubic(y0: float, y1: float, s0: float, s1: float, h: float, out: FloatArray) -> None:
+    """Cubic through values and slopes at the ends of a cell; slopes are held so that it rises if the values do."""
+    secant = (y1 - y0) / h
+    s0, s1 = min(max(s0, 0.0), 3.0 * secant), min(max(s1, 0.0), 3.0 * secant)
+    out[0], out[1] = y0, s0
+    out[2] = (3.0 * secant - 2.0 * s0 - s1) / h
+    out[3] = (s0 + s1 - 2.0 * secant) / (h * h)
+
+
+@njit(cache=True, error_model="numpy")
+def fill_memory(
+    point: Point, film: Film, nodes: FloatArray, load_nodes: FloatArray, cells: FloatArray, load_cells: FloatArray,
+    counts: IntArray,
+) -> MemoryTable:  # fmt: skip
+    """Fill a table with the law of a point.
+
+    Parameters
+    ----------
+    point : Point
+        The law at one speed and temperature, without centrifugal load.
+    film : Film
+        For the stiffness of the locked film.
+    nodes, load_nodes : array (ROWS + 1,), (LOAD_ROWS + 1,)
+        `NODES`, `LOAD_NODES`.
+    cells, load_cells : array (2 ROWS, 12), (LOAD_ROWS, 4)
+        Filled.
+    counts : array (4,)
+        int64, counted up outside the map.
+    """
+    rows = nodes.size - 1
+    size = 2 * rows + 1
+    # a faded film takes its part of the offset, and of the approach of lift-off
+    centre, inverse = point.film * point.own.offset, point.own.inverse_scale
+    z, xi = np.empty(size), np.empty(size)
+    p, k, c = np.zeros(size), np.zeros(size), np.zeros(size)
+    y, sum_g, by_y, by_c = np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size)
+    beyond, slope_beyond = np.zeros(size), np.zeros(size)
+    for i in range(size):
+        z[i] = nodes[i - rows] - 1.0 if i >= rows else 1.0 - nodes[rows - i]
+        xi[i] = centre + z[i] / inverse
+        p[i], k[i], c[i] = evaluate_at(point, xi[i], 0.0, counts)
+        y[i], by_y[i] = xi[i], 1.0
+        if p[i] > 0.0:
+            dry, compliance = structure_at(point.structure, p[i])
+            c[i] = max(c[i], _LEAST_DAMPING * k[i])
+            stiff = locked_stiffness(film, xi[i], p[i], k[i], c[i], dry, compliance)
+            by_y[i] = 1.0 - k[i] / stiff
+            # without film nothing is squeezed
+            by_c[i] = c[i] / by_y[i] if by_y[i] > _LEAST_FILM else 0.0
+            slope_beyond[i] = 1.0 / stiff - compliance
+            before = p[i - 1] if i > 0 else 0.0
+            slope_before = slope_beyond[i - 1] if before > 0.0 else slope_beyond[i]
+            last = beyond[i - 1] if i > 0 else 0.0
+            beyond[i] = last + 0.5 * (slope_before + slope_beyond[i]) * (p[i] - before)
+            y[i] = xi[i] - dry - beyond[i]
+        if i > 0:
+            y[i] = max(y[i], y[i - 1])  # it rises, but for rounding where the film hardly gives way
+            sum_g[i] = sum_g[i - 1] + 0.5 * (by_c[i - 1] + by_c[i]) * (xi[i] - xi[i - 1])
+    for side in range(2):
+        for row in range(rows):
+            near, far = (rows + row, rows + row + 1) if side == 0 else (rows - row, rows - row - 1)
+            h = z[far] - z[near]
+            out = cells[side * rows + row]
+            _cubic(p[near], p[far], k[near] / inverse, k[far] / inverse, h, out[0:4])
+            _cubic(y[near], y[far], by_y[near] / inverse, by_y[far] / inverse, h, out[4:8])
+            _cubic(sum_g[near], sum_g[far], by_c[near] / inverse, by_c[far] / inverse, h, out[8:12])
+    _fill_loads(point, p, beyond, slope_beyond, load_nodes, load_cells)
+    return MemoryTable(cells, load_cells, centre, inverse, point.film * point.lift_off)
+
+
+@njit(cache=True, error_model="numpy")
+def _fill_loads(
+    point: Point, p: FloatArray, beyond: FloatArray, slopes: FloatArray, nodes: FloatArray, load_cells: FloatArray
+) -> None:
+    """Cells of a(w), the structure and what is `beyond` it: a function of the loads p with these slopes."""
+    first = 0
+    while first < p.size - 1 and p[first + 1] <= 0.0:
+        first += 1
+    i, before, slope_before = first, 0.0, math.inf
+    for row in range(1, nodes.size):
+        load = LIGHTEST * (nodes[row] - 1.0)
+        while i + 2 < p.size and p[i + 1] < load:
+            i += 1
+        dry, compliance = structure_at(point.structure, load)
+        begin = slopes[i] if p[i] > 0.0 else slopes[i + 1]
+        # straight between two nodes, and the last slope goes on
+        t = min((load - p[i]) / (p[i + 1] - p[i]), 1.0)
+        slope = begin + t * (slopes[i + 1] - begin)
+        more = beyond[i] + 0.5 * (begin + slope) * min(load - p[i], p[i + 1] - p[i]) + slope * max(load - p[i + 1], 0.0)
+        value, per_load = dry + more, (compliance + slope) * LIGHTEST
+        _cubic(before, value, slope_before, per_load, nodes[row] - nodes[row - 1], load_cells[row - 1])
+        before, slope_before = value, per_load
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def state_cell(table: MemoryTable, xi: float) -> tuple[int, float]:
+    """Row of the cells in which a state is, and its place there."""
+    z = (xi - table.centre) * table.inverse_scale
+    a = 1.0 + abs(z)
+    a = a if a < _LAST else _LAST
+    cell = np.uint64(np.float64(a).view(np.uint64) >> SHIFT)
+    t = a - np.uint64(cell << SHIFT).view(np.float64)
+    row = int(np.int64(cell) - FIRST)
+    return (row, t) if z >= 0.0 else (row + ROWS, -t)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def cubic_at(c: FloatArray, first: int, t: float) -> tuple[float, float]:
+    """Value and slope of a cubic.
+
+    Parameters
+    ----------
+    c : array
+        Coefficients of a cell.
+    first : int
+        Where those of this cubic begin.
+    t : float
+        Place in the cell.
+    """
+    high = c[first + 3]
+    bend = c[first + 2] + t * high
+    mean = c[first + 1] + t * bend
+    return c[first] + t * mean, mean + t * (bend + t * high)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def load_cell(load: float) -> tuple[int, float]:
+    """Row of the cells of a in which a load w >= 0 is, and its place there."""
+    a = 1.0 + load / LIGHTEST
+    a = a if a < _LAST_LOAD else _LAST_LOAD
+    cell = np.uint64(np.float64(a).view(np.uint64) >> SHIFT)
+    return int(np.int64(cell) - FIRST), a - np.uint64(cell << SHIFT).view(np.float64)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def approach_at(table: MemoryTable, load: float) -> tuple[float, float]:
+    """Approach a of a load w >= 0, and da/dw = 1/k_s."""
+    row, t = load_cell(load)
+    a, slope = cubic_at(table.load_cells[row], 0, t)
+    return a, slope / LIGHTEST
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def load_of(p: float, dp: float, x: float, dx: float) -> tuple[float, float]:
+    """w = x + sqrt(x^2 + p^2), without cancellation, and its derivative.
+
+    Parameters
+    ----------
+    p, dp : float
+        Load of the equilibrium [N/m], and its derivative.
+    x, dx : float
+        Rate of squeezing G' [N/m], and its derivative.
+    """
+    root = math.sqrt(x * x + p * p + _NOTHING)
+    w = x + root if x >= 0.0 else p * p / (root - x)
+    return w, (w * dx + p * dp) / root
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def equilibrium_at(table: MemoryTable, xi: float) -> tuple[float, float, float, float, float, float]:
+    """p, y and G of a state, each with its slope."""
+    row, t = state_cell(table, xi)
+    c, per = table.cells[row], table.inverse_scale
+    p, dp = cubic_at(c, 0, t)
+    y, dy = cubic_at(c, 4, t)
+    g, dg = cubic_at(c, 8, t)
+    return p, dp * per, y, dy * per, g, dg * per
+
+
+class Step(NamedTuple):
+    """A step in time, as the method of integration sees it.
+
+    Attributes
+    ----------
+    rate : float
+        1/h [1/s].
+    ahead, back : float
+        Weights of the change of G over this step and over the last one: (1 + 2 r)/(1 + r) and r^2/(1 + r) with the
+        ratio r of the steps for backward differences of second order; 1 and 0 for backward Euler.
+    """
+
+    rate: float
+    ahead: float
+    back: float
+
+
+MOST_GROWTH = 1.2
+"""Ratio of a step to the last one above which backward Euler takes it: what follows would no longer rise."""
+
+
+@njit(cache=True, error_model="numpy")
+def step_of(h: float, last: float) -> Step:
+    """Weights of a step of h [s] after one of `last` [s]; 0 or less if there was none."""
+    if last <= 0.0 or h > MOST_GROWTH * last:
+        return Step(1.0 / h, 1.0, 0.0)
+    r = h / last
+    return Step(1.0 / h, (1.0 + 2.0 * r) / (1.0 + r), r * r / (1.0 + r))
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def rate_of(step: Step, change: float, last: float) -> tuple[float, float]:
+    """x = G' at the end of a step by the changes of G over it and over the last step, and dx/dG.
+
+    Backward differences of second order, but where the change falls below two thirds of the last one, at turning
+    points, the share of the last one fades with it. So x has the sign of the change, whatever the step, and rises with
+    it.
+
+    Parameters
+    ----------
+    step : Step
+        How long.
+    change, last : float
+        Of G over this step and over the last one [N s/m2].
+    """
+    size = abs(last)
+    t = 1.5 * abs(change) / size if size > 1.5 * abs(change) else 1.0
+    fade = t * t * (3.0 - 2.0 * t)
+    slope = 9.0 * t * (1.0 - t) * (1.0 if change >= 0.0 else -1.0) * (1.0 if last >= 0.0 else -1.0)
+    return (
+        step.rate * (step.ahead * change - step.back * last * fade),
+        step.rate * (step.ahead - step.back * slope),
+    )
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def advanced(
+    table: MemoryTable, step: Step, delta: float, before: float, last: float, start: float
+) -> tuple[float, float, float]:
+    """Load, its derivative by the approach, and the state, at the end of a step.
+
+    Parameters
+    ----------
+    table : MemoryTable
+        The contact.
+    step : Step
+        How long.
+    delta : float
+        Approach at the end of the step [m].
+    before : float
+        G at its beginning [N s/m2].
+    last : float
+        Change of G over the step before [N s/m2].
+    start : float
+        Where to look for the state first [m].
+
+    Returns
+    -------
+    w, tangent, xi : float
+        [N/m], dw/ddelta [N/m2], [m].
+    """
+    left, right = table.lift_off, math.inf
+    xi = start if start > left else left
+    w = tangent = 0.0
+    before_last = math.inf
+    moved = math.inf
+    for _ in range(_STEPS):
+        p, dp, y, dy, g, dg = equilibrium_at(table, xi)
+        x, dx = rate_of(step, g - before, last)
+        w, slope = load_of(p, dp, x, dx * dg)
+        stretched, compliance = approach_at(table, w)
+        rise = compliance * slope + dy
+        short = delta - stretched - y
+        tangent = slope / rise
+        if short > 0.0:
+            left = xi
+        else:
+            right = xi
+        following = xi + short / rise
+        # bisection where Newton's steps leave the bracket or do not shrink
+        if not (left <= following <= right and 2.0 * abs(following - xi) <= before_last):
+            following = 0.5 * (left + right) if right < math.inf else max(delta, 2.0 * xi - left)
+        before_last, moved = moved, abs(following - xi)
+        if moved * table.inverse_scale <= _EXACT * (1.0 + abs(xi - table.centre) * table.inverse_scale):
+            break
+        xi = following
+    return w, tangent, xi

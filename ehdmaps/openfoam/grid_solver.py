@@ -1,0 +1,175 @@
+"""One grid of a point by `ehlFoam`, in as many tries as it takes."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ehdmaps.errors import SolverError
+from ehdmaps.openfoam.case import working_case
+from ehdmaps.openfoam.fields import FilmFields, read_fields
+from ehdmaps.openfoam.installation import Installation
+from ehdmaps.openfoam.parameters import Parameters, Start
+from ehdmaps.openfoam.results import FilmTable, Results, read_film, read_results
+from ehdmaps.openfoam.run import KilledError, RunError, log_tail, run
+from ehdmaps.physics.solution import Status
+
+MOVED_COLUMNS = 1.1
+"""Columns of a second try, over those asked for."""
+
+BETWEEN = 0.75
+"""Cells each way of a grid between the coarse one and the fine one, over those of the fine one."""
+
+
+@dataclass(frozen=True)
+class GridSolution:
+    """What one run gave; `note` says so where it took two tries."""
+
+    results: Results
+    film: FilmTable
+    fields: FilmFields | None
+    note: str = ""
+
+    @property
+    def start(self) -> Start:
+        """What another grid starts from."""
+        return Start(self.film.x, self.film.pressure, self.results.central_film)
+
+
+@dataclass(frozen=True)
+class GridSolver:
+    """Runs of single grids.
+
+    Attributes
+    ----------
+    installed : Installation
+        The programs.
+    keep_cases : Path or None
+        Folder in which the cases of all runs are kept, with their fields.
+    """
+
+    installed: Installation
+    keep_cases: Path | None = None
+
+    def solve(
+        self, parameters: Parameters, name: str, with_fields: bool, end: float, start: Start | None = None
+    ) -> GridSolution:
+        """Run one grid from `start`; where that stagnates over a grid between, from its own start, on other columns.
+
+        Behind a steep pressure spike, whether Newton's method converges depends on the positions of the columns, and
+        the spike of a grid twice as coarse may be too far from that of the fine one.
+
+        Parameters
+        ----------
+        parameters : Parameters
+            Parameters of the run, with its own start.
+        name : str
+            Name of the folder, if cases are kept.
+        with_fields : bool
+            Whether to read the fields.
+        end : float
+            Time on the clock `time.monotonic` after which a run is stopped [s].
+        start : Start, optional
+            What to start from first, such as the solution on a coarser grid.
+
+        Raises
+        ------
+        RunError
+            If the last try gives no converged solution, or one fails in another way than by stagnating.
+        SolverError
+            If no case can be made.
+        """
+        moved = _resized(parameters, MOVED_COLUMNS, 1.0)
+        tries: list[tuple[Parameters, ...]] = [(parameters,), (moved,)]
+        if start is not None:
+            begun = replace(parameters, start=start)
+            tries = [(begun,), (_resized(begun, BETWEEN, BETWEEN), parameters), *tries]
+        for attempt in tries:
+            try:
+                grid = self._in_turn(attempt, name, with_fields, end)
+            except RunError as error:
+                if error.status is not Status.STAGNATED or attempt is tries[-1]:
+                    raise
+                self._forget(error)
+            else:
+                note = "" if attempt is not tries[-1] else f"solved on {moved.columns} columns"
+                return replace(grid, note="; ".join(filter(None, [grid.note, note])))
+        raise AssertionError("unreachable: the last try returns or raises")
+
+    def run_case(self, parameters: Parameters, name: str, with_fields: bool, end: float) -> GridSolution:
+        """Run one case; one that was killed from outside is tried a second time.
+
+        Parameters
+        ----------
+        parameters : Parameters
+            Parameters of the run.
+        name : str
+            Name of the folder, if cases are kept.
+        with_fields : bool
+            Whether to read the fields.
+        end : float
+            Time on the clock `time.monotonic` after which it is stopped [s].
+
+        Raises
+        ------
+        RunError
+            If it gives no converged solution.
+        SolverError
+            If no case can be made.
+        """
+        try:
+            return self._run_once(parameters, name, with_fields, end)
+        except KilledError as first:
+            self._forget(first)
+            try:
+                second = self._run_once(parameters, name, with_fields, end)
+            except KilledError as error:
+                raise RunError(f"killed twice: {error}", case=error.case) from error
+            # Its log is gone.
+            return replace(second, note=f"solved at the second try, the first {str(first).partition(';')[0]}")
+
+    def _run_once(self, parameters: Parameters, name: str, with_fields: bool, end: float) -> GridSolution:
+        """One run in a folder of its own."""
+        kept = self.keep_cases
+        text = replace(parameters, write_fields=with_fields or kept is not None).text()
+        folder = f"{name}_{parameters.columns}x{parameters.rows}"
+        environment = self.installed.full_environment()
+        with working_case(self.installed.template, text, folder, kept) as case:
+            run(self.installed.block_mesh, case, environment, end)
+            log = run(self.installed.solver, case, environment, end)
+            try:
+                results = read_results(case)
+                if results.status is Status.CONVERGED and len(results.frequencies) != len(parameters.frequencies):
+                    raise SolverError(
+                        f"{case / 'results'}: got responses at {results.frequencies} Hz; allowed: as asked"
+                    )
+                if results.status is Status.CONVERGED:
+                    return GridSolution(
+                        results, read_film(case, parameters.columns), read_fields(case) if with_fields else None
+                    )
+            except SolverError as error:
+                raise RunError(f"{error}; {log_tail(log)}") from error
+            message = f"ehlFoam {results.status.word}: {results.reason}; {log_tail(log)}"
+            raise RunError(message, results.status, results.iterations)
+
+    def _in_turn(self, grids: tuple[Parameters, ...], name: str, with_fields: bool, end: float) -> GridSolution:
+        """Run the last of some grids, from the solution of the one before if there is one."""
+        *before, last = grids
+        for grid in before:
+            last = replace(last, start=self.run_case(grid, name, False, end).start)
+        return self.run_case(last, name, with_fields, end)
+
+    def _forget(self, error: RunError) -> None:
+        """Remove the folder of a failed run after which another one follows, unless cases are kept."""
+        if self.keep_cases is None and error.case is not None:
+            shutil.rmtree(error.case, ignore_errors=True)
+
+
+def _resized(parameters: Parameters, columns: float, rows: float) -> Parameters:
+    """The same on so many times the cells, even numbers of them."""
+    return replace(
+        parameters,
+        columns=2 * round(columns * parameters.columns / 2),
+        rows=max(2 * round(rows * parameters.rows / 2), 2),
+    )

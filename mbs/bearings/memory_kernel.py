@@ -1,0 +1,245 @@
+"""Slices whose films have a memory, in compiled code: one time step of all slices of a bearing.
+
+The law is that of `ehdmaps.maps.memory_table`. Each slice carries parabolas of p, y and G around a state and of a
+around a load; they stand for the cubics of its cells, from which they differ in third order, and are read anew where
+the slice leaves their reach, and every `KEPT` steps. So Newton's method for the states is arithmetic alone, in vector
+instructions over all slices. A slice that leaves them within a step is solved from the table itself, with a bracket.
+
+A step is `begin`, `loads` as often as the system asks for them, and `commit`.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.maps.lines import FAST
+from ehdmaps.maps.memory_table import (
+    LIGHTEST,
+    MemoryTable,
+    Step,
+    advanced,
+    equilibrium_at,
+    load_cell,
+    state_cell,
+)
+
+LATEST, BEFORE, CHANGE, FADE, LOAD, TRIAL, AROUND, REACH, LOADED, LOAD_REACH = range(10)
+P, Y, G, A = 10, 13, 16, 19
+MEMORY = 22
+"""Rows of the memory of the slices: states after the last two steps, change of G over the last one and 1.5 by its size,
+load after it; state of the trial; where the parabolas lie and how far they reach, in the state and in the load;
+parabolas. G counts from the last state."""
+
+KEPT = 8
+"""Steps for which parabolas are kept at most: the law follows the speed."""
+
+_PART = 2.0**-7
+"""How far a parabola reaches, as a part of the distance from the centre of the table: half a cell or less."""
+
+_LOAD_PART = 2.0**-5
+_TOLERANCE = 3e-4
+_SMALL = 30.0
+"""A slice has its state when the last move changed its load by less than `_TOLERANCE` of the load and this [N/m]: what
+is left is the square."""
+
+_ROUNDS = 12
+_LEAST = 1e-30
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def settle(table: MemoryTable, delta: FloatArray, memory: FloatArray) -> None:
+    """Films in equilibrium, as at the start of a run.
+
+    Parameters
+    ----------
+    table : MemoryTable
+        The law.
+    delta : array (n,)
+        Approaches [m].
+    memory : array (MEMORY, n)
+        Of the slices; written.
+    """
+    memory[:] = 0.0
+    for i in range(delta.size):
+        xi = max(delta[i], table.lift_off)
+        memory[LATEST, i] = memory[BEFORE, i] = memory[TRIAL, i] = xi
+        memory[LOAD, i] = equilibrium_at(table, xi)[0]
+        memory[FADE, i] = 1.0 / _LEAST
+        _read(table, memory, i)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def begin(table: MemoryTable, growth: float, count: int, memory: FloatArray) -> None:
+    """Begin a step.
+
+    Parameters
+    ----------
+    table : MemoryTable
+        The law at the end of the step.
+    growth : float
+        Length of the step by that of the last one; 0 at the first.
+    count : int
+        Number of the step.
+    memory : array (MEMORY, n)
+        Of the slices; states are foretold, parabolas read where they are used up.
+    """
+    latest, before, trial, load = memory[LATEST], memory[BEFORE], memory[TRIAL], memory[LOAD]
+    around, reach, loaded, load_reach = memory[AROUND], memory[REACH], memory[LOADED], memory[LOAD_REACH]
+    lowest = table.lift_off
+    for i in range(latest.size):
+        guess = latest[i] + growth * (latest[i] - before[i])
+        trial[i] = guess if guess > lowest else lowest
+    for i in range(latest.size):
+        moved, more = abs(trial[i] - around[i]), abs(load[i] - loaded[i])
+        if 2.0 * moved > reach[i] or 2.0 * more > load_reach[i] or (count + i) % KEPT == 0:
+            _read(table, memory, i)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _read(table: MemoryTable, memory: FloatArray, i: int) -> None:
+    """Parabolas of a slice around the state of the trial and the last load."""
+    per, per_load = table.inverse_scale, 1.0 / LIGHTEST
+    xi, load = memory[TRIAL, i], memory[LOAD, i]
+    row, t = state_cell(table, xi)
+    c = table.cells[row]
+    reach = _PART / per * (1.0 + abs((xi - table.centre) * per))
+    memory[AROUND, i], memory[REACH, i] = xi, reach
+    memory[P, i] = c[0] + t * (c[1] + t * (c[2] + t * c[3]))
+    memory[P + 1, i] = (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])) * per
+    memory[P + 2, i] = (c[2] + 3.0 * t * c[3]) * per * per
+    memory[Y, i] = c[4] + t * (c[5] + t * (c[6] + t * c[7]))
+    memory[Y + 1, i] = (c[5] + t * (2.0 * c[6] + 3.0 * t * c[7])) * per
+    memory[Y + 2, i] = (c[6] + 3.0 * t * c[7]) * per * per
+    slope = (c[9] + t * (2.0 * c[10] + 3.0 * t * c[11])) * per
+    bend = (c[10] + 3.0 * t * c[11]) * per * per
+    ahead = xi - memory[LATEST, i]
+    if abs(ahead) <= reach:
+        change = ahead * (slope - ahead * bend)
+    else:
+        change = c[8] + t * (c[9] + t * (c[10] + t * c[11])) - equilibrium_at(table, memory[LATEST, i])[4]
+    memory[G, i], memory[G + 1, i], memory[G + 2, i] = change, slope, bend
+    row, t = load_cell(load)
+    c = table.load_cells[row]
+    slope = (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])) * per_load
+    memory[LOADED, i] = load
+    memory[A, i] = c[0] + t * (c[1] + t * (c[2] + t * c[3]))
+    memory[A + 1, i], memory[A + 2, i] = slope, (c[2] + 3.0 * t * c[3]) * per_load * per_load
+    # the structure matters the less, the softer the film is beside it
+    memory[LOAD_REACH, i] = _LOAD_PART * (load + LIGHTEST) / math.sqrt(slope * memory[P + 1, i] + _LEAST)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _round(step: Step, memory: FloatArray, delta: FloatArray, load: FloatArray, tangent: FloatArray) -> float:
+    """A Newton step for the states of all slices, with loads and tangents there; how many still move."""
+    trial, around, change, fading, loaded = memory[TRIAL], memory[AROUND], memory[CHANGE], memory[FADE], memory[LOADED]
+    p0, p1, p2 = memory[P], memory[P + 1], memory[P + 2]
+    y0, y1, y2 = memory[Y], memory[Y + 1], memory[Y + 2]
+    g0, g1, g2 = memory[G], memory[G + 1], memory[G + 2]
+    a0, a1, a2 = memory[A], memory[A + 1], memory[A + 2]
+    rate, forth, back = step.rate, step.ahead, step.back
+    left = 0.0
+    for i in range(delta.size):
+        s = trial[i] - around[i]
+        p, dp = p0[i] + s * (p1[i] + s * p2[i]), p1[i] + 2.0 * s * p2[i]
+        y, dy = y0[i] + s * (y1[i] + s * y2[i]), y1[i] + 2.0 * s * y2[i]
+        g, dg = g0[i] + s * (g1[i] + s * g2[i]), g1[i] + 2.0 * s * g2[i]
+        # as `ehdmaps.maps.memory_table.rate_of`
+        last = change[i]
+        t = abs(g) * fading[i]
+        t = t if t < 1.0 else 1.0
+        x = rate * (forth * g - back * last * t * t * (3.0 - 2.0 * t))
+        turn = 9.0 * t * (1.0 - t)
+        dx = rate * (forth - back * (turn if g * last >= 0.0 else -turn)) * dg
+        root = math.sqrt(x * x + p * p + _LEAST)
+        w = x + root
+        slope = (w * dx + p * dp) / root
+        v = w - loaded[i]
+        a, compliance = a0[i] + v * (a1[i] + v * a2[i]), a1[i] + 2.0 * v * a2[i]
+        stiff = slope / (compliance * slope + dy)
+        gained = (delta[i] - a - y) * stiff
+        trial[i] += gained / slope
+        load[i] = w + gained
+        tangent[i] = stiff
+        left += 1.0 if abs(gained) > _TOLERANCE * (w + _SMALL) else 0.0
+    return left
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def loads(
+    table: MemoryTable, step: Step, memory: FloatArray, delta: FloatArray, load: FloatArray, tangent: FloatArray
+) -> None:
+    """Loads of all slices at the end of a step, and their derivatives by the approach.
+
+    Parameters
+    ----------
+    table : MemoryTable
+        The law.
+    step : Step
+        How long.
+    memory : array (MEMORY, n)
+        Of the slices; the states of the trial are written.
+    delta : array (n,)
+        Approaches [m].
+    load, tangent : array (n,)
+        Written: [N/m], [N/m2].
+    """
+    for _ in range(_ROUNDS):
+        if _round(step, memory, delta, load, tangent) == 0.0:
+            break
+    trial, around, reach, loaded, load_reach = (
+        memory[TRIAL],
+        memory[AROUND],
+        memory[REACH],
+        memory[LOADED],
+        memory[LOAD_REACH],
+    )
+    far = 0.0
+    for i in range(delta.size):
+        inside = (abs(trial[i] - around[i]) <= reach[i]) & (abs(load[i] - loaded[i]) <= load_reach[i])
+        far += 0.0 if inside else 1.0
+    if far == 0.0:
+        return
+    for i in range(delta.size):
+        if not (abs(trial[i] - around[i]) <= reach[i] and abs(load[i] - loaded[i]) <= load_reach[i]):
+            xi = memory[LATEST, i]
+            before = equilibrium_at(table, xi)[4]
+            load[i], tangent[i], trial[i] = advanced(table, step, delta[i], before, memory[CHANGE, i], xi)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def commit(table: MemoryTable, memory: FloatArray, load: FloatArray) -> None:
+    """Make the step: the trial becomes the state.
+
+    Parameters
+    ----------
+    table : MemoryTable
+        The law.
+    memory : array (MEMORY, n)
+        Of the slices.
+    load : array (n,)
+        What `loads` found last [N/m].
+    """
+    trial, around, reach = memory[TRIAL], memory[AROUND], memory[REACH]
+    latest, before, change, fading = memory[LATEST], memory[BEFORE], memory[CHANGE], memory[FADE]
+    g0, g1, g2 = memory[G], memory[G + 1], memory[G + 2]
+    far = 0.0
+    for i in range(load.size):
+        far += 0.0 if abs(trial[i] - around[i]) <= reach[i] else 1.0
+    for i in range(load.size):
+        s = trial[i] - around[i]
+        g = g0[i] + s * (g1[i] + s * g2[i])
+        change[i] = g
+        g0[i] -= g
+        fading[i] = 1.5 / (abs(g) + _LEAST)
+    if far > 0.0:
+        for i in range(load.size):
+            if not abs(trial[i] - around[i]) <= reach[i]:
+                change[i] = equilibrium_at(table, trial[i])[4] - equilibrium_at(table, latest[i])[4]
+                fading[i] = 1.5 / (abs(change[i]) + _LEAST)
+                around[i] = math.inf
+    for i in range(load.size):
+        before[i], latest[i] = latest[i], trial[i]
+    memory[LOAD] = load

@@ -1,0 +1,625 @@
+"""How the figures of a block follow from what its commands print.
+
+A recipe is a function of the printed texts. It gives the lines of a block (`printed`), or the numbers of a text in
+their order: figures, times, and numbers that are given, which must stand as they are. Words on a page are written by
+hand; a recipe does not look at them.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from tests.benchmarks.page_block import (
+    Block,
+    Compared,
+    Figure,
+    Given,
+    Time,
+    compared_in_order,
+    compared_texts,
+    with_figures,
+)
+
+NUMBER = r"([-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?)"
+
+TIMES = tuple(
+    re.compile(pattern)
+    for pattern in (
+        r"\b(\d[\d.]*) (?:ms|s|us)\b(?! of)",  # with its unit
+        r"^ +\d+\.\d +(\d+)  ",  # points a second, of bench_ehl
+        r"\bx +(\d[\d.]*)  ",  # ratio of times, of bench_ehl
+        r"^(?:law|scipy|xarray)[^\d\n]*?(?:grid 25x12x6)? +(\d[\d.]* +\d[\d.]*)",  # bench_law
+        r"(\d+) times reynolds",
+        r"distance to the solution (\S+)",  # round-off
+        r"made (\d{4}-\S+)",  # date of a map
+    )
+)
+"""What is exempt in printed texts: times, ratios of times, and what round-off leaves."""
+
+
+@dataclass(frozen=True)
+class Output:
+    """A command and what it prints."""
+
+    command: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A row of a mode in a sweep: frequency at the first and last speed [Hz]; energy in the bearings if undamped."""
+
+    first: float
+    last: float
+    energy: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def change(self) -> float:
+        """Change over the speeds [%]."""
+        return 100.0 * (self.last / self.first - 1.0)
+
+
+@dataclass(frozen=True)
+class Along:
+    """Stiffness [N/um] and damping [N s/m] of the first bearing along the load, at the first and last speed."""
+
+    k: tuple[float, float]
+    c: tuple[float, float]
+
+    @property
+    def changes(self) -> tuple[float, float]:
+        """Changes of k and c [%]."""
+        return (100.0 * (self.k[1] / self.k[0] - 1.0), 100.0 * (self.c[1] / self.c[0] - 1.0))
+
+
+@dataclass(frozen=True)
+class Case:
+    """A case of `mbs sweep`."""
+
+    title: str
+    along: Along
+    undamped: dict[int, Mode]
+    complex: dict[int, Mode]
+    text: str
+
+    def steepest(self) -> float:
+        """Change of the complex mode that falls most [%]."""
+        return min(mode.change for mode in self.complex.values())
+
+    def highest_rise(self) -> float:
+        """Change of the complex mode that rises most [%]."""
+        return max(mode.change for mode in self.complex.values())
+
+    def bearing_modes(self) -> list[Mode]:
+        """Complex modes that fall and have half and more of their energy in the bearings (0.45 at either end)."""
+        return [
+            mode
+            for number, mode in self.complex.items()
+            if number in self.undamped and max(self.undamped[number].energy) >= 0.45 and mode.change < -0.5
+        ]
+
+
+def sweep_cases(text: str) -> list[Case]:
+    """Read the cases that `mbs sweep` prints."""
+    found = []
+    for part in re.split(r"(?m)^(?=\S.*: law )", text)[1:]:
+        along = re.search(rf"along the load k {NUMBER} to {NUMBER} N/um \([^)]*\), c {NUMBER} to {NUMBER} N s/m", part)
+        assert along is not None
+        k0, k1, c0, c1 = map(float, along.groups())
+        tables = part.split("complex modes  ")
+        row = rf"(?m)^ +(\d+) +{NUMBER} to +{NUMBER} +[-+][\d.]+ %"
+        undamped = {
+            int(number): Mode(float(first), float(last), (float(low), float(high)))
+            for number, first, last, low, high in re.findall(
+                row + rf" .*%.*%.* {NUMBER} to {NUMBER}$", tables[0].rstrip()
+            )
+        }
+        modes = {int(n): Mode(float(first), float(last)) for n, first, last in re.findall(row, tables[1])}
+        case = re.search(r"(?m)^  case: (.*)$", part)
+        found.append(
+            Case(case[1] if case else part.partition("\n")[0], Along((k0, k1), (c0, c1)), undamped, modes, part)
+        )
+    return found
+
+
+def one_case(texts: Sequence[str], title: str) -> Case:
+    """The case with a title, of several sweeps.
+
+    Raises
+    ------
+    ValueError
+        There is none, or there are several.
+    """
+    found = [case for text in texts for case in sweep_cases(text) if title in case.title]
+    if len(found) != 1:
+        raise ValueError(f"{len(found)} cases are called '{title}'")
+    return found[0]
+
+
+def given(text: str) -> list[Figure]:
+    """Numbers that are no figures, separated by blanks."""
+    return [Given(part) for part in text.split()]
+
+
+def significant(value: float, digits: int) -> float:
+    """A value rounded to so many digits, as prose does."""
+    return float(f"{value:.{digits - 1}e}")
+
+
+# --- the gearbox, linear
+
+
+def shaft_bearing_modes(outputs: Sequence[Output]) -> list[Figure]:
+    """Modes that fall, over clearance, load and cage angle."""
+    clearances, loads, *angles = (output.text for output in outputs)
+    middle = one_case([clearances], "Reynolds map, 30 um")
+    found: list[Figure] = given("30")
+    for mode in middle.bearing_modes():
+        found += [mode.first, mode.last, mode.change]
+    for clearance in ("40", "20"):
+        found += given(clearance)
+        found += [mode.change for mode in one_case([clearances], f"Reynolds map, {clearance} um").bearing_modes()]
+    found += [*given("75 30"), one_case([loads], "0.9146 x").steepest()]
+    across = max(mode.change for mode in middle.complex.values() if mode.first < 1200.0)
+    found += [*given("1.2"), across, *given("30 0 7.5 15 22.5 30")]
+    turned = [sweep_cases(text)[0] for text in angles]
+    return [*found, *(case.steepest() for case in turned), *(case.highest_rise() for case in turned)]
+
+
+def without_clearance(outputs: Sequence[Output]) -> list[Figure]:
+    """Largest rise without clearance."""
+    return [one_case([outputs[0].text], "Reynolds map, 0 um").highest_rise()]
+
+
+def stiffness_of_bearings(outputs: Sequence[Output]) -> list[Figure]:
+    """k along the load, by clearance and map."""
+    own, other = (one_case([outputs[0].text], f"Reynolds map, {c} um").along for c in ("30", "0"))
+    cfd = one_case([outputs[1].text], "OpenFOAM").along
+    return [*given("30"), own.changes[0], *own.k, *given("0"), other.changes[0], *given("30"), cfd.changes[0]]
+
+
+def damping_of_bearings(outputs: Sequence[Output]) -> list[Figure]:
+    """c along the load, by clearance and map."""
+    own, other = (one_case([outputs[0].text], f"Reynolds map, {c} um").along for c in ("30", "0"))
+    cfd = one_case([outputs[1].text], "OpenFOAM").along
+    ends = [significant(value, 3) for value in own.c]
+    return [*given("30"), own.changes[1], *ends, *given("0"), other.changes[1], *given("30"), cfd.changes[1]]
+
+
+def dry_shift(outputs: Sequence[Output]) -> list[Figure]:
+    """Largest change of an undamped mode of the dry cases; complex ones, with gyroscopic terms, lie below the limit."""
+    dry = [case for case in sweep_cases(outputs[0].text) if "dry Hertz" in case.title]
+    shift = max(abs(mode.change) for case in dry for mode in case.undamped.values())
+    limit = max(abs(mode.change) for case in dry for mode in case.complex.values())
+    return [shift, Given("0.01") if limit < 0.01 else limit]
+
+
+def loads_of_the_gearbox(outputs: Sequence[Output]) -> list[Figure]:
+    """Changes of k, c and of the mode that falls most, at three torques."""
+    cases = sweep_cases(outputs[0].text)
+    return [
+        *given("75 150 305"),
+        *(case.along.changes[0] for case in cases),
+        *(case.along.changes[1] for case in cases),
+        *(case.steepest() for case in cases),
+    ]
+
+
+def energy_theorem(outputs: Sequence[Output]) -> list[Figure]:
+    """Check that changes and those by energy, summed, agree as printed (30 um); a wrong pair is a figure too many."""
+    case = one_case([outputs[0].text], "Reynolds map, 30 um")
+    rows = re.findall(rf"(?m)^ +\d+ +\S+ to +\S+ +{NUMBER} % +{NUMBER} %, ", case.text)
+    wrong: list[Figure] = [float(first) for first, second in rows if first != second]
+    return [*given("1 2 30"), *wrong]
+
+
+# --- other machines, linear
+
+
+def mode_rows(text: str) -> list[tuple[float, float, str]]:
+    """Frequency, damping ratio and energies that `mbs modes` prints."""
+    rows = re.findall(rf"(?m)^ +\d+ +{NUMBER} +{NUMBER}   (.*)$", text)
+    return [(float(frequency), float(ratio), energy) for frequency, ratio, energy in rows]
+
+
+def housing_modes(outputs: Sequence[Output]) -> list[Figure]:
+    """Dry and with the map, of the five modes of the housing below 3 kHz."""
+    dry, film = (
+        [row[0] for row in mode_rows(output.text) if float(re.search(r"housing ([\d.]+)", row[2])[1]) >= 98.0]  # type: ignore[index]
+        for output in (
+            Output(output.command, "\n".join(line for line in output.text.splitlines() if "housing" in line))
+            for output in outputs
+        )
+    )
+    pairs = list(zip(dry, film, strict=False))[:5]
+    found: list[Figure] = given("98 2000")
+    for index, (first, last) in enumerate(pairs):
+        found += [first, last]
+        if index >= 2:
+            found.append(100.0 * (last / first - 1.0))
+    return found
+
+
+def run_of_flexible(outputs: Sequence[Output]) -> list[Figure]:
+    """Range of the force of a bearing, and its largest change between samples."""
+    found = re.search(rf"begin\w*, {NUMBER} to {NUMBER} N,.* {NUMBER} N below .* and {NUMBER} N above", outputs[0].text)
+    assert found is not None
+    low, high, *changes = map(float, found.groups())
+    return [*given("0"), low, high, *given("0 2000 40"), max(changes)]
+
+
+def _along_load(text: str, title: str) -> Mode:
+    """The undamped mode of nu308_flexible along its load: the fifth."""
+    return one_case([text], title).undamped[5]
+
+
+def loads_of_the_flexible(outputs: Sequence[Output]) -> list[Figure]:
+    """Mode along the load at three loads, with the map and dry, at the lowest speed; with the map at the highest."""
+    film, dry = (
+        [_along_load(outputs[0].text, f"{law}, {factor} x") for factor in ("1", "1.5", "2")]
+        for law in ("Reynolds map", "dry Hertz")
+    )
+    slow = [mode.first for mode in (*film, *dry)]
+    return [*given("200 20"), *slow, *given("2000"), *(mode.last for mode in film)]
+
+
+def lower_than_dry(outputs: Sequence[Output]) -> list[Figure]:
+    """Mode along the load, dry and with the map."""
+    dry, film = (_along_load(outputs[0].text, f"{law}, 1 x") for law in ("dry Hertz", "Reynolds map"))
+    return [*given("20"), dry.first, film.first, *given("200"), film.last, *given("2000 141")]
+
+
+def highest_peak(text: str) -> tuple[float, float]:
+    """Frequency and height of the highest peak of sensor S1 that `mbs lsa` prints."""
+    found = re.search(r"(?m)^  S1 .*: peaks at (.*)$", text)
+    assert found is not None
+    peaks = [tuple(map(float, peak)) for peak in re.findall(rf"{NUMBER} Hz \({NUMBER}\)", found[1])]
+    frequency, height = max(peaks, key=lambda peak: peak[1])
+    return frequency, height
+
+
+def amplitudes_of_the_rig(outputs: Sequence[Output]) -> list[Figure]:
+    """Highest peaks with the constants of the thesis and with laws of this project."""
+    constants = [highest_peak(output.text) for output in outputs[:3]]
+    dry, film = (highest_peak(output.text) for output in outputs[3:])
+    heights, frequencies = zip(*constants, strict=True)
+    return [*frequencies, *heights, *given("16281"), *dry, *film]
+
+
+def constants_of_the_rigid(outputs: Sequence[Output]) -> list[Figure]:
+    """Two modes of n1014_rigid with the constants of the thesis: those next to the frequencies shown."""
+    columns = [[row[0] for row in mode_rows(output.text)] for output in outputs]
+    found: list[Figure] = []
+    for near in (285.0, 2910.0):
+        found += [min(column, key=lambda frequency: abs(frequency - near)) for column in columns]
+    return found
+
+
+def shaft_mode_of_the_rigid(outputs: Sequence[Output]) -> list[Figure]:
+    """Mode of nu308_rigid nearest to the thesis' 4771 Hz among those along the load: the seventh."""
+    return [mode_rows(outputs[0].text)[6][0]]
+
+
+def hammer_test(outputs: Sequence[Output]) -> list[Figure]:
+    """Fitted modes beside eigenvalues."""
+    eigenvalues = [
+        (float(f), 100.0 * float(zeta))
+        for f, zeta in re.findall(rf"(?m)^ +\d+ +{NUMBER} Hz   damping ratio {NUMBER}", outputs[0].text)
+    ]
+    first = outputs[1].text.partition("p-LSCF")[0]
+    fitted = [
+        (float(f), 100.0 * float(zeta)) for f, zeta in re.findall(rf"(?m)^ +\d+ +{NUMBER} +\S+ +{NUMBER} ", first)
+    ]
+    pairs = [(fit, min(eigenvalues, key=lambda each: abs(each[0] - fit[0]))) for fit in (fitted[0], fitted[-1])]
+    (strong, strong_exact), (weak, weak_exact) = pairs
+    return [*given("1"), *strong, *strong_exact, *weak_exact, *weak]
+
+
+# --- run-ups of the gearbox
+
+
+def differences_at_speed(text: str, name: str) -> tuple[float, ...]:
+    """Median, 5 and 95 % quantile, and difference of the highest levels [dB] that `mbs campbell` prints."""
+    found = re.search(
+        rf"  {name} beside .*: median {NUMBER} dB, 5 to 95 % of the windows {NUMBER} to {NUMBER} dB; .* {NUMBER} dB",
+        text,
+    )
+    assert found is not None
+    return tuple(map(float, found.groups()))
+
+
+def highest_levels(text: str) -> list[float]:
+    """Highest sum levels [dB] that `mbs campbell` prints, law by law."""
+    return [float(level) for level in re.findall(rf"highest sum level {NUMBER} dB", text)]
+
+
+def clearances(outputs: Sequence[Output]) -> list[Figure]:
+    """The table of differences over clearance."""
+    found: list[Figure] = given("5 95")
+    for output in outputs:
+        clearance = re.search(r"(\d+) um", output.command)
+        assert clearance is not None
+        found += [Given(clearance[1]), *differences_at_speed(output.text, "Reynolds map")]
+    return found
+
+
+def levels_of_laws(outputs: Sequence[Output]) -> list[Figure]:
+    """Highest sum levels: dry, Reynolds map, OpenFOAM map."""
+    dry, _, reynolds, openfoam = highest_levels(outputs[0].text)
+    return [dry, reynolds, openfoam]
+
+
+def level_of_the_formula(outputs: Sequence[Output]) -> list[Figure]:
+    """By how much the film formula lies below dry bearings."""
+    return [-differences_at_speed(outputs[0].text, ".*formula")[0], *given("30")]
+
+
+def formula_beside_films(outputs: Sequence[Output]) -> list[Figure]:
+    """Highest sum level of the formula; distance of both maps."""
+    _, formula, reynolds, openfoam = highest_levels(outputs[0].text)
+    return [formula, abs(reynolds - openfoam)]
+
+
+def peaks_beside_modes(text: str, law: str) -> list[tuple[float, float]]:
+    """Frequencies of the strongest peaks along the orders and of the modes beside them, of a law [Hz]."""
+    part = re.split(rf"(?m)^{law}: ", text)[1]
+    part = re.split(r"(?m)^\w", part.partition("\n")[2])[0]
+    rows = re.findall(rf"(?m)^ +{NUMBER} +{NUMBER} +{NUMBER} .* mode {NUMBER} Hz", part)
+    return [(float(row[2]), float(row[3])) for row in rows]
+
+
+def peaks_with_films(outputs: Sequence[Output]) -> list[Figure]:
+    """Peaks beside modes, with the Reynolds map."""
+    return [value for pair in peaks_beside_modes(outputs[0].text, "Reynolds map") for value in pair]
+
+
+def peaks_dry(outputs: Sequence[Output]) -> list[Figure]:
+    """The dry peak farthest from its mode, within 5 %; and how much a start moved by 10 nm changes single windows."""
+    farthest = max(peaks_beside_modes(outputs[0].text, "dry Hertz"), key=lambda pair: abs(pair[0] / pair[1] - 1.0))
+    apart = 100.0 * abs(farthest[0] / farthest[1] - 1.0)
+    dry = outputs[1].text.partition("law hertz: ")[2]
+    moved = re.search(r"(?m)^start moved by 10 nm (.*)$", dry)
+    assert moved is not None
+    values = [float(value) for value in re.findall(NUMBER, moved[1])]
+    return [Given("5") if 4.0 < apart < 5.0 else apart, *farthest, *given("10"), max(values[8], values[10], values[12])]
+
+
+def readme_of_the_gearbox(outputs: Sequence[Output]) -> list[Figure]:
+    """Levels with and without clearance; largest falls and rises over speed, by cage angle and clearance."""
+    levels, tight, clearances, *angles = (output.text for output in outputs)
+    median, low, high, _ = differences_at_speed(levels, "Reynolds map")
+    middle = one_case([clearances], "Reynolds map, 30 um")
+    cases = [middle, *(sweep_cases(text)[0] for text in angles)]
+    falls, rises = ([getattr(case, name)() for case in cases] for name in ("steepest", "highest_rise"))
+    return [
+        -median,
+        *given("5 95"),
+        -high,
+        significant(-low, 2),
+        *given("500 2500 40 30"),
+        -differences_at_speed(tight, "Reynolds map")[0],
+        -max(falls),
+        -min(falls),
+        -one_case([clearances], "Reynolds map, 20 um").steepest(),
+        *given("20"),
+        min(rises),
+        max(rises),
+    ]
+
+
+# --- benchmarks
+
+
+def frequency_limit(outputs: Sequence[Output]) -> list[Figure]:
+    """Share of the damping that is left at omega b/u of 0.5 and 1 [%]."""
+    rows = {}
+    for line in outputs[0].text.splitlines():
+        found = re.match(rf" +{NUMBER} +{NUMBER} +{NUMBER} to {NUMBER} ", line)
+        if found is not None:
+            ratio, *shares = map(float, found.groups())
+            rows[ratio] = [100.0 * share for share in shares]
+    half, whole = rows[0.5], rows[1.0]
+    return [half[0], whole[0], *half[1:], *whole[1:]]
+
+
+def share_of_damping(outputs: Sequence[Output]) -> list[Figure]:
+    """As the glossary says it: with the places between."""
+    half, whole, *bounds = frequency_limit(outputs)
+    return [half, *given("0.5"), whole, *given("1 5 95"), *bounds]
+
+
+def share_of_damping_in_the_gearbox(outputs: Sequence[Output]) -> list[Figure]:
+    """The largest omega b/u of the gearbox, and what is left above the limit."""
+    case = one_case([outputs[0].text], "Reynolds map, 30 um")
+    found = re.search(rf"omega b/u is up to {NUMBER} \({NUMBER} Hz at {NUMBER} rpm\)", case.text)
+    assert found is not None
+    ratio, frequency, speed = map(float, found.groups())
+    half, whole, *bounds = frequency_limit(outputs[1:])
+    return [ratio, 1e-3 * frequency, speed, *given("0.3 0.5 1"), half, whole, *given("5 95"), *bounds]
+
+
+def solvers(outputs: Sequence[Output]) -> list[Figure]:
+    """Stiffness [N/m] and damping [N s/m] of a slice, inner and outer contact, of `ehdmaps solve --json`."""
+    found: list[Figure] = []
+    for output in outputs:
+        length = re.search(r'--length "([\d.]+) mm"', output.command)
+        assert length is not None
+        contacts = json.loads(output.text)
+        values = [
+            [1e-3 * float(length[1]) * contact[name] for contact in contacts] for name in ("stiffness", "damping")
+        ]
+        dry = not any(values[1])
+        found += [*values[0], *([0.0] if dry else values[1])]
+    return found
+
+
+def show_of_a_map(outputs: Sequence[Output]) -> list[Figure]:
+    """Medians of the estimated errors [%], and shares of the laws within their bars: the smaller of both, whole [%]."""
+    text = outputs[0].text
+
+    def median(name: str) -> float:
+        found = re.search(rf"(?m)^  {name} +{NUMBER} +{NUMBER} +{NUMBER}$", text)
+        assert found is not None
+        return 100.0 * float(found[1])
+
+    def share(prefix: str) -> float:
+        return min(
+            float(each)
+            for each in re.findall(rf"(?m)^  {prefix}(?:film compliance|damping) within bar +{NUMBER}%", text)
+        )
+
+    return [
+        *(significant(median(name), 1) for name in ("film offset", "film compliance", "damping")),
+        *given("1 5"),
+        float(int(share(""))),
+        float(int(share("valley "))),
+    ]
+
+
+def gearbox_runs(outputs: Sequence[Output]) -> list[Figure]:
+    """Rows of `bench_gearbox --whole` as the page has them."""
+    laws = re.split(r"(?m)^(?=law \w+: \d+ coordinates)", outputs[0].text)[1:]
+    rows = [
+        (laws[0], "shipped: 10 us, 21", "10 21"),
+        (laws[0], "  10 us", "10 41"),
+        (laws[0], "  20 us", "20 41"),
+        (laws[1], "shipped: 10 us, 21", "10 21"),
+        (laws[1], "start moved by 10 nm", "10"),
+    ]
+    found: list[Figure] = given("1 2.5 5 1 5")
+    for law, label, settings in rows:
+        line = re.search(rf"(?m)^{re.escape(label)} (.*)$", law)
+        assert line is not None
+        step, processor, _, _, *values = (float(value) for value in re.findall(NUMBER, line[1]))
+        # signal to three frequencies; levels to 1 kHz, to 2.5 kHz (not shown), to 5 kHz, of the sum, each twice
+        signal = [significant(value, 2) for value in values[:3]]
+        levels = [significant(value, 2) for value in (*values[3:5], *values[7:9], *values[9:11])]
+        found += [*given(settings), Time(processor), Time(step), *signal, *levels]
+    return found
+
+
+def periods(outputs: Sequence[Output]) -> list[Figure]:
+    """By how much periods at 5 kHz are too long [%]; error of the blended tables, as a part of the signal."""
+    text = outputs[0].text
+    rows = {
+        float(step): float(shift)
+        for step, shift in re.findall(rf"(?m)^ +{NUMBER} +0\.9 +\S+ +{NUMBER}%$", text.partition("period of a mode")[2])
+    }
+    blending = re.search(rf"largest difference of S1 {NUMBER} of", text)
+    assert blending is not None
+    return [*given("5"), rows[10.0], *given("10"), rows[20.0], *given("20"), significant(float(blending[1]), 1)]
+
+
+def cutoffs(outputs: Sequence[Output]) -> list[Figure]:
+    """The table of cut-offs of the housing."""
+    text = outputs[0].text.partition("cut-off of the housing beside")[2]
+    found: list[Figure] = given("2.5 5 5")
+    for cutoff in ("5", "6", "8"):
+        line = re.search(rf"(?m)^housing {cutoff} kHz: (\d+) +(.*)$", text)
+        shift = re.search(rf"(?m)^  housing {cutoff} kHz: (.*)$", text)
+        assert line is not None
+        assert shift is not None
+        step, *values = (float(value) for value in re.findall(NUMBER, line[2]))
+        # after step: processor, clock, Newton, three signals, and pairs to 1 kHz, 2.5 kHz, 5 kHz
+        found += [Given(cutoff), float(line[1]), Time(step), values[10], significant(values[11], 2)]
+        shifts = [float(value) for value in re.findall(NUMBER, shift[1])]
+        found += shifts if "missing" in shift[1] else shifts[-2:-1] if cutoff == "6" else shifts[-2:]
+    return found
+
+
+def speed_sweep(outputs: Sequence[Output]) -> list[Figure]:
+    """Cost and errors of a sweep; what slices and cage angles change."""
+    film, dry = outputs[0].text.split("\nlaw ")[1:]
+    seconds = re.search(rf"inputs: {NUMBER} s", film)
+    assert seconds is not None
+    response = max(float(each) for each in re.findall(rf"responses within {NUMBER} ", outputs[0].text))
+
+    def slices(text: str) -> dict[int, list[float]]:
+        rows = re.findall(rf"(?m)^ +(\d+): +{NUMBER}% +{NUMBER}% +{NUMBER}%$", text)
+        return {int(count): [float(value) for value in values] for count, *values in rows}
+
+    def angles(text: str) -> tuple[float, float]:
+        found = re.search(rf"f {NUMBER}% at most, {NUMBER}% in the median", text)
+        assert found is not None
+        return float(found[1]), float(found[2])
+
+    own, other = slices(film)[21], [slices(dry)[count] for count in (21, 41)]
+    k, f = (sorted(row[column] for row in other) for column in (0, 2))
+    (film_most, film_median), (dry_most, dry_median) = angles(film), angles(dry)
+    return [
+        *[*given("40 1000"), Time(float(seconds[1])), significant(response, 1), *given("21 161")],
+        *[*own, *k, *f],
+        *[film_most, dry_most, film_median, dry_median],
+    ]
+
+
+RECIPES: dict[str, Callable[[Sequence[Output]], list[Figure]]] = {
+    recipe.__name__.replace("_", "-"): recipe
+    for recipe in (
+        shaft_bearing_modes,
+        without_clearance,
+        stiffness_of_bearings,
+        damping_of_bearings,
+        dry_shift,
+        loads_of_the_gearbox,
+        energy_theorem,
+        housing_modes,
+        run_of_flexible,
+        loads_of_the_flexible,
+        lower_than_dry,
+        amplitudes_of_the_rig,
+        constants_of_the_rigid,
+        shaft_mode_of_the_rigid,
+        hammer_test,
+        clearances,
+        levels_of_laws,
+        level_of_the_formula,
+        formula_beside_films,
+        share_of_damping,
+        share_of_damping_in_the_gearbox,
+        solvers,
+        show_of_a_map,
+        gearbox_runs,
+        peaks_with_films,
+        peaks_dry,
+        readme_of_the_gearbox,
+        periods,
+        cutoffs,
+        speed_sweep,
+    )
+}
+"""Recipes that give figures in their order; beside them `printed[FROM:TO]`, lines of what one command prints."""
+
+
+def printed(block: Block, outputs: Sequence[Output]) -> str:
+    """Lines of what a command prints, in a fence; which ones says the marker, as a slice.
+
+    Raises
+    ------
+    ValueError
+        The block has several commands.
+    """
+    if len(outputs) != 1:
+        raise ValueError(f"{block.name}: got {len(outputs)} commands; allowed: one for printed lines")
+    first, _, last = block.recipe.partition("[")[2].rstrip("]").partition(":")
+    lines = outputs[0].text.rstrip("\n").splitlines()[int(first) if first else None : int(last) if last else None]
+    text = "\n".join(line.rstrip() for line in lines).strip("\n")
+    opening = block.text.lstrip().partition("\n")[0]
+    return f"{opening}\n{text}\n```\n" if opening.startswith("```") else f"{text}\n"
+
+
+def rewritten(block: Block, outputs: Sequence[Output]) -> str:
+    """The text of a block with the figures that its commands give now."""
+    if block.recipe.startswith("printed"):
+        return printed(block, outputs)
+    return with_figures(block.text, RECIPES[block.recipe.partition("/")[0]](outputs))
+
+
+def compared(block: Block, outputs: Sequence[Output]) -> Compared:
+    """Compare a block as it stands with the figures that its commands give now."""
+    if block.recipe.startswith("printed"):
+        return compared_texts(block.text, printed(block, outputs), TIMES)
+    return compared_in_order(block.text, RECIPES[block.recipe.partition("/")[0]](outputs))

@@ -1,0 +1,169 @@
+"""The base installation does the main path; what needs an extra says so, in words and with exit status 2."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tomllib
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+
+from ehdmaps.errors import DependencyError
+from ehdmaps.extras import lacking, needs
+
+ROOT = Path(__file__).parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+RUN = """
+import importlib, sys
+
+class Absent:
+    def __init__(self, names):
+        self.names = names
+
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in self.names:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+sys.meta_path.insert(0, Absent(set(sys.argv[1].split(","))))
+sys.exit(importlib.import_module(sys.argv[2]).main(sys.argv[3:]))
+"""
+"""Runs a program with packages that cannot be imported."""
+
+JOB = """
+schema = 1
+[bearing]
+name = "NU308"
+[lubricant]
+name = "FVA3"
+[grid]
+load = { from = "0.1 N/mm", to = "1000 N/mm", points = 7, spacing = "log" }
+entrainment_speed = { from = "0.4 m/s", to = "1.8 m/s", points = 2, spacing = "log" }
+temperature = ["40 degC"]
+[solver]
+name = "reynolds"
+backbone = "none"
+density = 4.5
+structural_law = "iso16281"
+"""
+
+
+def plain(name: str) -> str:
+    """Name of a distribution as all spellings of it have it."""
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def base_distributions() -> set[str]:
+    """What `pip install .` brings: the requirements of the project, and theirs, without any extra."""
+    found: set[str] = set()
+    waiting = list(PROJECT["dependencies"])
+    while waiting:
+        requirement = waiting.pop()
+        name = plain(re.match(r"[\w.-]+", requirement)[0])
+        if name in found or "extra ==" in requirement:
+            continue
+        try:
+            waiting += metadata.requires(name) or []
+        except metadata.PackageNotFoundError:
+            continue  # of another system or version of Python
+        found.add(name)
+    return found
+
+
+def foreign_modules() -> set[str]:
+    """Modules that are installed here and are not in the base installation."""
+    base = base_distributions()
+    return {
+        module
+        for module, owners in metadata.packages_distributions().items()
+        if not {plain(owner) for owner in owners} & (base | {"ehdmaps"})
+    }
+
+
+def run(folder: Path, program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run a program in a folder, with the base installation alone."""
+    command = [sys.executable, "-c", RUN, ",".join(sorted(foreign_modules())), program, *arguments]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=300)
+
+
+def test_what_is_blocked():
+    blocked = foreign_modules()
+    assert {"PyFoam", "meshio", "h5py", "pymetis", "gmsh", "pyuff", "sdypy", "pytest", "rich"} <= blocked
+    assert not {"numpy", "scipy", "numba", "xarray", "netCDF4", "pint", "tqdm", "matplotlib", "ehdmaps"} & blocked
+
+
+@pytest.mark.slow
+def test_from_a_job_to_the_modes_of_a_machine(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    (tmp_path / "job.toml").write_text(JOB)
+    for program, *arguments in (
+        ("ehdmaps.jobs.cli", "generate", "job.toml", "-o", "map.nc", "--workers", "1"),
+        ("ehdmaps.jobs.cli", "plot", "map.nc", "-o", "map.png"),
+        ("mbs.cli", "modes", "nu308_rigid", "--map", "map.nc", "-o", "modes.nc", "--plot", "modes.png"),
+    ):
+        done = run(tmp_path, program, *arguments)
+        assert done.returncode == 0, done.stderr
+    # a shipped housing is read without what has reduced it
+    assert run(tmp_path, "mbs.cli", "modes", "gearbox", "--law", "hertz").returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("extra", "package", "program", "arguments"),
+    [
+        ("openfoam", "PyFoam", "ehdmaps.jobs.cli", ["generate", "nu308_openfoam"]),
+        ("openfoam", "PyFoam", "ehdmaps.jobs.cli", ["check", "nu308_openfoam"]),
+        ("modal", "pyuff", "mbs.cli", ["modal-fit", "hits.uff"]),
+        ("modal", "pyuff", "mbs.cli", ["hammer", "n1014_testrig", "--law", "hertz", "-o", "new.uff"]),
+    ],
+)
+def test_what_needs_an_extra_names_it(tmp_path, monkeypatch, extra, package, program, arguments):
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    (tmp_path / "hits.uff").write_text("any")
+    done = run(tmp_path, program, *arguments)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert f"the package {package} cannot be loaded (No module named '{package}'); install it: " in done.stderr
+    assert f'pip install "ehdmaps[{extra}]", or pip install {package}' in done.stderr
+    assert "Traceback" not in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["hits.uff"]
+
+
+def test_all_that_openfoam_misses_is_named_at_once(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    monkeypatch.setenv("EHDMAPS_OPENFOAM", str(tmp_path / "none"))
+    told = run(tmp_path, "ehdmaps.jobs.cli", "generate", "nu308_openfoam").stderr
+    assert "needs more than is here: the solver 'openfoam': the package PyFoam cannot be loaded" in told
+    assert "needs more than is here: ehlFoam: there is no program" in told
+
+
+def test_extras_that_messages_name_exist():
+    sources = [
+        path.read_text(encoding="utf-8")
+        for room in ("ehdmaps", "mbs", "examples")
+        for path in ROOT.glob(f"{room}/**/*.py")
+    ]
+    named = {call for text in sources for call in re.findall(r'(?:needs|lacking)\("(\w+)", "([\w-]+)"', text)}
+    assert {package for _, package in named} >= {"PyFoam", "meshio", "pymetis", "gmsh", "pyuff", "sdypy-EMA"}
+    for extra, package in named:
+        assert any(re.match(rf"{package}\b", entry) for entry in PROJECT["optional-dependencies"][extra]), package
+
+
+@pytest.mark.parametrize("error", [ImportError("none"), OSError("libGLU.so.1: cannot open")])
+def test_a_package_that_cannot_be_loaded(error):
+    told = r'^a mesh: the package gmsh .*\((none|libGLU.*)\); install it: pip install "'
+    with pytest.raises(DependencyError, match=told), needs("housings", "gmsh", "a mesh"):
+        raise error
+
+
+def test_other_errors_pass():
+    with pytest.raises(ZeroDivisionError), needs("housings", "gmsh", "a mesh"):
+        raise ZeroDivisionError
+
+
+def test_a_package_that_is_there_lacks_nothing(monkeypatch):
+    assert lacking("openfoam", "json", "a test") == ()
+    monkeypatch.setitem(sys.modules, "json", None)
+    (problem,) = lacking("openfoam", "json", "a test")
+    assert problem.startswith("a test: the package json cannot be loaded (import of json halted")

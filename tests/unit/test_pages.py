@@ -1,0 +1,143 @@
+"""Marked blocks of the pages, and the comparison of their figures with what commands print."""
+
+from __future__ import annotations
+
+import re
+import shlex
+
+import pytest
+
+from tests.benchmarks.page_block import (
+    Block,
+    Given,
+    Time,
+    blocks,
+    compared_in_order,
+    compared_texts,
+    numbers,
+    shown_as,
+    with_figures,
+)
+from tests.benchmarks.page_recipes import RECIPES, TIMES, Output, compared, printed, rewritten, sweep_cases
+from tests.benchmarks.pages import PAGES, PROGRAMS, ROOT, whole_outputs
+
+ALL = [block for page in PAGES for block in blocks(page, (ROOT / page).read_text(encoding="utf-8"))]
+SWEEP = """Gearbox: law map of NU308
+  case: Reynolds map, 30 um
+  left: 923.21 N; along the load k 296.4 to 277.1 N/um (-6.50 %), c 4070 to 1984 N s/m (-51.25 %)
+  undamped modes      frequency/Hz        change  by energy: summed, one step   damping ratio   energy in the bearings
+    14       2449.9 to    2395.9     -2.20 %          -2.20 %,    -1.56 %    0.0587 to 0.0446         0.50 to 0.77
+  complex modes       frequency/Hz        change   damping ratio   whirl d omega/d Omega   oscillates
+     2       684.39 to     695.3     +1.59 %      0.053 to 0.0344       -5.5e-07           everywhere
+    14       2469.1 to    2398.9     -2.84 %     0.0892 to 0.0456       +0.00014           everywhere
+"""
+
+
+def test_every_block_has_a_recipe_and_commands_that_can_be_run():
+    assert len(ALL) >= 35
+    for block in ALL:
+        assert block.recipe.startswith("printed") or block.recipe.partition("/")[0] in RECIPES, block.name
+        assert {shlex.split(command)[0] for command in block.commands} <= set(PROGRAMS), block.name
+
+
+def test_printed_output_on_pages_has_a_marker():
+    for page in PAGES:
+        text = (ROOT / page).read_text(encoding="utf-8")
+        fences = re.findall(r"(?ms)^```(\w*)\n(.*?)^```$", text)
+        bare = [body for language, body in fences if not language]
+        assert sum(block.page == page and "```" in block.text for block in ALL) == len(bare), page
+
+
+@pytest.mark.parametrize("block", ALL, ids=lambda block: block.name)
+def test_a_block_is_equal_to_itself(block):
+    if block.recipe.startswith("printed"):
+        same = compared_texts(block.text, block.text, TIMES)
+        assert not same.different
+        assert same.figures > 0
+    else:
+        assert numbers(block.text)
+
+
+def test_a_wrong_digit_is_found():
+    found = compared_texts("k 1.528e7, 37.3 N s/m in 2.1 s", "k 1.529e7, 37.3 N s/m in 3.9 s", TIMES)
+    assert (found.figures, found.times) == (2, 1)
+    assert [(each.shown, each.found) for each in found.different] == [("1.528e7", "1.529e7")]
+
+
+def test_other_words_and_missing_lines_are_found():
+    assert compared_texts("a 1\nb 2", "a 1\nc 2").different
+    assert "2 lines are shown, 1 found" in compared_texts("a 1\nb 2", "a 1").problem
+
+
+def test_numbers_are_those_of_the_text_only():
+    text = "**-2.8 %** of NU308 at `--speed 3`, 500-2500 rpm, [page](a/b2.md), 1.5e-3, +4"
+    assert [match[0] for match in numbers(text)] == ["-2.8", "500", "2500", "1.5e-3", "+4"]
+
+
+@pytest.mark.parametrize(
+    ("value", "like", "text"),
+    [
+        (1.5284e7, "1.528e7", "1.528e7"),
+        (9.16e-5, "9.2e-5", "9.2e-5"),
+        (-0.004, "-0.01", "0.00"),
+        (58.21, "+58", "+58"),
+        (2469.1, "2400", "2469"),
+    ],
+)
+def test_values_are_shown_with_the_digits_of_the_page(value, like, text):
+    assert shown_as(value, like) == text
+
+
+def test_figures_are_compared_and_replaced_in_their_order():
+    text = "30 um: -2.8 % in 1.5 s"
+    same = compared_in_order(text, [Given("30"), -2.84, Time(9.9)])
+    assert (same.figures, same.equal, same.times) == (1, 1, 1)
+    other = [Given("30"), -2.94, Time(9.9)]
+    assert [(each.shown, each.found) for each in compared_in_order(text, other).different] == [("-2.8", "-2.9")]
+    assert with_figures(text, other) == "30 um: -2.9 % in 9.9 s"
+    assert "3 numbers, the recipe 1" in compared_in_order(text, [1.0]).problem
+    assert compared_in_order(text, [Given("20"), -2.84, Time(9.9)]).different
+
+
+def test_a_printed_block_is_made_of_lines_of_the_output():
+    page = "x\n<!-- figures printed[1:-1], quick: `mbs modes a` -->\n```\nk 1\n```\n<!-- end of figures -->\n"
+    (block,) = blocks("page.md", page)
+    made = [Output("mbs modes a", "title\nk 2\nend\n")]
+    assert printed(block, made) == rewritten(block, made) == "```\nk 2\n```\n"
+    assert [each.found for each in compared(block, made).different] == ["2"]
+
+
+def test_rows_take_their_commands_from_the_list():
+    page = "<!-- figures of rows\nname/a, long: `mbs modes a`; `mbs modes b`\n-->\n| <!-- row name/a --> 1 | 2 |\n"
+    (block,) = blocks("page.md", page)
+    assert block == Block(
+        "page.md", "name/a", "long", ("mbs modes a", "mbs modes b"), " 1 | 2 |", block.begin, block.end, 4
+    )
+
+
+@pytest.mark.parametrize(
+    ("page", "message"),
+    [
+        ("<!-- figures printed, quick: `mbs modes a` -->\nk 1\n", "has no '<!-- end of figures -->'"),
+        ("<!-- figures printed, quick: mbs -->\nk 1\n<!-- end of figures -->\n", "names no command in backticks"),
+        ("<!-- figures printed, slow: `mbs modes a` -->\nk 1\n<!-- end of figures -->\n", "not all of them markers"),
+        ("| <!-- row name --> 1 |\n", r"rows \['name'\], but the list of their commands has \[\]"),
+    ],
+)
+def test_wrong_markers_are_named(page, message):
+    with pytest.raises(ValueError, match=message):
+        blocks("page.md", page)
+
+
+def test_sweeps_are_read():
+    (case,) = sweep_cases(SWEEP)
+    assert case.title == "Reynolds map, 30 um"
+    assert case.along.k == (296.4, 277.1)
+    assert case.undamped[14].energy == (0.5, 0.77)
+    assert [mode.first for mode in case.bearing_modes()] == [2469.1]
+    assert (case.steepest(), case.highest_rise()) == pytest.approx((-2.843, 1.594), abs=1e-3)
+
+
+def test_whole_outputs_name_lines_that_only_one_has():
+    found = whole_outputs("a 1\nb 2\n", "a 1\nb 3\nc 4\n")
+    assert [(each.shown, each.found) for each in found.different] == [("2", "3"), ("(no such line)", "c 4")]
