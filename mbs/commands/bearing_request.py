@@ -28,7 +28,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import FilmSource, FormulaFilms, MapFilms
 from mbs.commands.cases import WIDEST, read_clearance
 from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, result_kind
-from mbs.scene.assembly import geometry_problems
+from mbs.scene.contact_laws import geometry_problems
 from mbs.scene.fields import FORCE, MICROMETRE
 
 LAWS = ("hertz", "formula", "map")

@@ -20,7 +20,8 @@ from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
 from ehdmaps.units import quantity
 from mbs.analyses.case import Case, common_clearance
 from mbs.output.results import RESULT
-from mbs.scene.assembly import Model, assemble, find_problems, law_label
+from mbs.scene.assembly import Model, assemble
+from mbs.scene.contact_laws import law_label
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
@@ -100,15 +101,15 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
             f"--law, --map, --clearance, --load-factor, --start-angle: got {count} combinations; allowed: at most "
             f"{MOST_CASES}"
         )
-    elif scene is not None:
-        for law, clearance in itertools.product(laws, clearances):
-            found = find_problems(scene, law.name, law.emap, clearance)
-            problems += [problem if problem.startswith("--") else f"{scene.name}: {problem}" for problem in found]
-    if problems or scene is None:
+    if scene is None or count > MOST_CASES:
         raise InputError(tuple(dict.fromkeys(problems)))
     cases = []
     for law, clearance, factor, angle in itertools.product(laws, clearances, factors, angles):
-        model = assemble(_turned(_loaded(scene, factor), angle), law.name, law.emap, clearance)
+        try:
+            model = assemble(_turned(_loaded(scene, factor), angle), law.name, law.emap, clearance)
+        except InputError as error:
+            problems += scene_problems(scene, error)
+            continue
         words = [
             *([law.label] if len(laws) > 1 or count == 1 else []),
             *([MICROMETRE.text(clearance)] if len(clearances) > 1 and clearance is not None else []),
@@ -116,7 +117,14 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
             *([f"cage at {DEGREE.text(angle)}"] if len(angles) > 1 and angle is not None else []),
         ]
         cases.append(Case(", ".join(words), model, common_clearance(model), factor, angle))
+    if problems:
+        raise InputError(tuple(dict.fromkeys(problems)))
     return cases
+
+
+def scene_problems(scene: Scene, error: InputError) -> list[str]:
+    """What is wrong about a scene, under its name; problems of an option say that themselves."""
+    return [problem if problem.startswith("--") else f"{scene.name}: {problem}" for problem in error.problems]
 
 
 def scene_output_problems(
@@ -210,9 +218,7 @@ def _turned(scene: Scene, angle: float | None) -> Scene:
     """The scene with all cages at another angle."""
     if angle is None:
         return scene
-    return dataclasses.replace(
-        scene, bearings=tuple(dataclasses.replace(entry, start_angle=angle) for entry in scene.bearings)
-    )
+    return scene.with_bearings(dataclasses.replace(entry, start_angle=angle) for entry in scene.bearings)
 
 
 def _loaded(scene: Scene, factor: float) -> Scene:

@@ -55,9 +55,9 @@ def test_from_a_scene_to_its_modes(here, capsys):
         # five standard deviations of what the noise of 1 % does, which the fit states, and half of the last digit
         for name, true, digit in (
             ("frequency", [1606.39, 1630.23], 0.01),
-            ("damping", [0.004191, 0.004254], 1e-6),
+            ("damping_ratio", [0.004191, 0.004254], 1e-6),
         ):
-            value = data["damping_ratio" if name == "damping" else name].values
+            value = data[name].values
             room = 5.0 * data[f"{name}_uncertainty"].values + 0.5 * digit
             assert np.all(room < (0.001 if name == "frequency" else 0.05) * value)
             assert np.all(np.abs(value - true) < room)

@@ -108,8 +108,8 @@ def test_solver_keys_and_the_rest_are_kept():
         ({"loads": (2e4, 1e4)}, r"Job.build: \[grid\] load: got 10 N/mm after 20 N/mm; allowed: rising values"),
         ({"solver": "reynold"}, r"Job.build: \[solver\] name: got 'reynold'"),
         (
-            {"bearing": estimate_from_dimensions(30e-3, 62e-3, 16e-3, 38e3)},
-            "estimated from more than its designation; allowed: a bearing of known geometry",
+            {"bearing": dataclasses.replace(estimate_from_dimensions(30e-3, 62e-3, 16e-3, 38e3), rollers=9)},
+            "estimated from more than its designation, or dimensions, and its static rating; allowed: a",
         ),
         (
             {"lubricant": dataclasses.replace(OILS[2], thermal_conductivity=0.14)},
