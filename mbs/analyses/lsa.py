@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +10,6 @@ import xarray as xr
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
 from mbs.analyses.film_limits import film_limits
-from mbs.analyses.reach import calls_at
 from mbs.linearised.linear import StateSpace, frequency_response, state_space, with_peaks
 from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
@@ -61,8 +59,6 @@ class LsaResult:
         Up to which frequency the films of each bearing follow; empty for laws without films.
     lifting : tuple of DynamicLoad
         Loads that exceed the static ones, so that contacts lift off.
-    outside : mapping of str to int
-        Calls outside the map at the equilibrium, by bearing.
     dataset : xarray.Dataset
         What `mbs lsa -o` writes.
     """
@@ -75,7 +71,6 @@ class LsaResult:
     responses: ComplexArray
     limits: tuple[FilmLimit, ...]
     lifting: tuple[DynamicLoad, ...]
-    outside: Mapping[str, int]
     dataset: xr.Dataset
 
 
@@ -123,7 +118,6 @@ def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
     space = state_space(balance, scene.inputs, scene.sensors)
     limits = tuple(film_limits(model, balance.displacement, balance.operation))
     lifting = tuple(load for load in dynamic_loads(balance, scene.inputs, frequencies) if load.exceeds)
-    outside = calls_at(model, balance.displacement, balance.operation)
     dataset = linear_dataset(balance, space, responses, frequencies, scene.inputs, scene.sensors)
     return LsaResult(
         model=model,
@@ -134,6 +128,5 @@ def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
         responses=responses,
         limits=limits,
         lifting=lifting,
-        outside=outside,
         dataset=described(dataset, **law_attributes(model)),
     )

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import xarray as xr
 
 from mbs.analyses.film_limits import film_limits
-from mbs.analyses.reach import calls_at
 from mbs.linearised.modes import Modes
 from mbs.linearised.modes import modes as modes_at
 from mbs.linearised.steady import steady_system
@@ -33,8 +31,6 @@ class ModesResult:
         Eigenvalues, shapes and strain-energy shares.
     limits : tuple of FilmLimit
         Up to which frequency the films of each bearing follow; empty for laws without films.
-    outside : mapping of str to int
-        Calls outside the map at the equilibrium, by bearing.
     dataset : xarray.Dataset
         What `mbs modes -o` writes.
     """
@@ -43,7 +39,6 @@ class ModesResult:
     balance: Equilibrium
     modes: Modes
     limits: tuple[FilmLimit, ...]
-    outside: Mapping[str, int]
     dataset: xr.Dataset
 
 
@@ -72,6 +67,5 @@ def modes(model: Model, operation: Operation | None = None) -> ModesResult:
     balance = equilibrium(steady_system(model.system), operation or model.operation)
     found = modes_at(balance)
     limits = tuple(film_limits(model, balance.displacement, balance.operation))
-    outside = calls_at(model, balance.displacement, balance.operation)
     dataset = described(modes_dataset(found, balance), **law_attributes(model))
-    return ModesResult(model, balance, found, limits, outside, dataset)
+    return ModesResult(model, balance, found, limits, dataset)

@@ -11,21 +11,16 @@ from ehdmaps.errors import InputError
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.roller_loads import RollerLoads
-from mbs.model.elements import Operation, Port
+from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port
+
+HARMONICS = 3
+"""Multiples of the order of passing rollers that are worth following."""
 
 
 class RingForce(Protocol):
-    """What a `BearingForce` does; a test or a study may put something else in its place.
+    """What a `BearingForce` does; a test or a study may put something else in its place."""
 
-    A force without a map has ``outside_calls = 0`` as an attribute of its class.
-    """
-
-    @property
-    def outside_calls(self) -> int:
-        """Calls outside the map so far; 0 for a force that has none."""
-        ...
-
-    def __call__(
+    def evaluate(
         self,
         pose: FloatArray,
         velocity: FloatArray,
@@ -34,13 +29,20 @@ class RingForce(Protocol):
         entrainment_speed: float,
         temperature: float,
         centrifugal_load: float = 0.0,
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Force on the inner ring, and its stiffness and damping."""
+    ) -> Forces:
+        """Force on the inner ring, its stiffness and damping, and whether it lies outside a map."""
         ...
 
 
+class RingElement(ElementDefaults):
+    """What is listed as a bearing: an element whose first six displacements are those of an inner ring.
+
+    `mbs.model.system.System.select` finds bearings by this class; a bearing of your own inherits from it.
+    """
+
+
 @dataclass(frozen=True, eq=False)
-class BearingElement:
+class BearingElement(RingElement):
     """A bearing between an inner and an outer ring.
 
     Attributes
@@ -80,9 +82,10 @@ class BearingElement:
         return (Port(self.inner, self.outer),)
 
     @property
-    def outside_calls(self) -> int:
-        """Calls outside the map so far."""
-        return self.force.outside_calls
+    def excitation(self) -> Excitation | None:
+        """The passing of the rollers; None for a cage that stands."""
+        order = self.bearing.geometry.rollers * abs(self.rates[0])
+        return Excitation(order, HARMONICS, rank=1) if order > 0.0 else None
 
     @cached_property
     def rates(self) -> tuple[float, float, float]:
@@ -123,11 +126,9 @@ class BearingElement:
             centrifugal_load=self.centrifugal_load(operation),
         )
 
-    def evaluate(
-        self, displacement: FloatArray, velocity: FloatArray, operation: Operation
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on the inner ring, stiffness and damping, see `Element.evaluate`."""
-        return self.force(
+        return self.force.evaluate(
             displacement,
             velocity,
             cage_angle=self.cage_angle(operation),

@@ -12,10 +12,10 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_element import BearingElement, RingElement
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.model.body import Body
-from mbs.model.elements import Operation, Port
+from mbs.model.elements import Excitation, Forces, Operation, Port
 
 
 def roller_body(name: str, bearing: Bearing) -> Body:
@@ -34,7 +34,7 @@ def roller_body(name: str, bearing: Bearing) -> Body:
 
 
 @dataclass(frozen=True, eq=False)
-class RollerElement:
+class RollerElement(RingElement):
     """A bearing between two rings and its rollers.
 
     Attributes
@@ -62,24 +62,22 @@ class RollerElement:
         return Port(self.plain.inner), Port(self.plain.outer), Port(self.rollers, coordinates=True)
 
     @property
-    def outside_calls(self) -> int:
-        """Calls outside the map so far."""
-        return self.contacts.outside_calls
+    def excitation(self) -> Excitation | None:
+        """The passing of the rollers."""
+        return self.plain.excitation
 
-    def evaluate(
-        self, displacement: FloatArray, velocity: FloatArray, operation: Operation
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Forces on rings and rollers, stiffness and damping, see `Element.evaluate`."""
         plain = self.plain
-        f, K, C = self.contacts(
+        found = self.contacts.evaluate(
             displacement,
             velocity,
             cage_angle=plain.cage_angle(operation),
             entrainment_speed=plain.entrainment_speed(operation),
             temperature=plain.temperature,
         )
-        f[12:] += plain.centrifugal_load(operation) * plain.bearing.geometry.roller_length
-        return f, K, C
+        found.force[12:] += plain.centrifugal_load(operation) * plain.bearing.geometry.roller_length
+        return found
 
 
 def ring_matrices(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import xarray as xr
@@ -136,7 +136,7 @@ def read_option(
     return value
 
 
-def outside_at(model: Model, balance: Equilibrium, calls: Mapping[str, int]) -> list[str]:
+def outside_at(model: Model, balance: Equilibrium) -> list[str]:
     """Lines on bearings whose equilibrium lies outside the map.
 
     Parameters
@@ -145,17 +145,15 @@ def outside_at(model: Model, balance: Equilibrium, calls: Mapping[str, int]) -> 
         The machine with its law.
     balance : Equilibrium
         The equilibrium.
-    calls : mapping of str to int
-        How often each bearing called its law outside the map there.
     """
-    if not any(calls.values()):
+    if not any(balance.outside.values()):
         return []
     loads = {
         bearing.name: float(bearing.rollers(motion, balance.operation).load_per_length.max())
         for bearing, motion in ring_motions(model, balance.displacement)
         if isinstance(bearing.force, BearingForce)
     }
-    return outside_lines(calls, "lies outside the map", axes_outside(model, balance.operation.speed, loads))
+    return outside_lines(balance.outside, "lies outside the map", axes_outside(model, balance.operation.speed, loads))
 
 
 def write(arguments: argparse.Namespace, dataset: xr.Dataset, figure: Figure | None) -> list[str]:

@@ -28,7 +28,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if arguments.plot:
         limit = min((entry.frequency for entry in found.limits), default=math.inf)
         figure = response_figure(model, frequencies, found.responses, limit, _lifting_notes(found.lifting))
-    outside = outside_at(model, found.balance, found.outside)
+    outside = outside_at(model, found.balance)
     amplitudes = {
         entry.name: f"{entry.amplitude:.4g} {'N m' if np.any(entry.direction[3:]) else 'N'}" for entry in scene.inputs
     }

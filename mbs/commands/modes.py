@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if arguments.plot:
         limit = min((entry.frequency for entry in limits), default=math.inf)
         figure = modes_figure(model, found, shown, limit, "; ".join([*notes, *_overdamped_count(overdamped)]))
-    outside = outside_at(model, result.balance, result.outside)
+    outside = outside_at(model, result.balance)
     lines = [
         *heading(model, model.scene.speed),
         *_table(found, shown),

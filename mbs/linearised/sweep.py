@@ -103,6 +103,7 @@ def sweep(
         speeds=speeds,
         displacement=np.array([point.displacement for point in points]),
         forces=tuple(np.array(part) for part in zip(*(point.forces for point in points), strict=True)),
+        outside={name: np.array([point.outside[name] for point in points]) for name in first.balance.outside},
         parts=tuple(first.balance.parts),
         undamped=straightened(_undamped(points, links, first, before)),
         damped=_damped(points, links, bearing_parts(first.balance)),
@@ -118,6 +119,7 @@ class _Recorded:
 
     displacement: FloatArray
     forces: tuple[FloatArray, ...]
+    outside: dict[str, bool]
     frequency: FloatArray
     damping_ratio: FloatArray
     shares: FloatArray
@@ -133,6 +135,7 @@ def _record(point: Point, cage_angles: int) -> _Recorded:
     return _Recorded(
         point.balance.displacement,
         point.balance.forces,
+        point.balance.outside,
         point.undamped.frequency,
         point.undamped.damping_ratio,
         point.undamped.shares,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from mbs.linearised.modes import damping_ratio
@@ -153,7 +154,9 @@ class Sweep:
     displacement : array, shape (speeds, n)
         Equilibrium [m or rad].
     forces : tuple of array, shape (speeds, m)
-        Forces of each element in its ports [N or N m].
+        Of each element in its ports [N or N m].
+    outside : dict of str to array of bool, shape (speeds,)
+        Whether each element lies outside its map at the equilibrium, by name.
     parts : tuple of str
         Flexible bodies, springs, elements.
     undamped, damped, bearings, responses
@@ -165,6 +168,7 @@ class Sweep:
     speeds: FloatArray
     displacement: FloatArray
     forces: tuple[FloatArray, ...]
+    outside: dict[str, npt.NDArray[np.bool_]]
     parts: tuple[str, ...]
     undamped: UndampedSweep
     damped: ComplexSweep

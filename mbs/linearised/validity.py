@@ -12,6 +12,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.solids import reduced_modulus
 from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import RingElement
 from mbs.linearised.linear import responses
 from mbs.model.elements import Input
 from mbs.model.equilibrium import Equilibrium
@@ -116,7 +117,7 @@ def dynamic_loads(balance: Equilibrium, inputs: Sequence[Input], frequencies: Fl
         return ()
     motion = responses(balance, inputs, frequencies) * np.array([entry.amplitude for entry in inputs])
     omega = 2.0 * np.pi * frequencies[:, None, None]
-    for index in balance.system.bearings:
+    for index in balance.system.select(RingElement):
         connected = balance.system.elements[index]
         ports = np.einsum("mn,fni->fmi", connected.transform, motion)
         stiffness, damping = balance.element_stiffness[index], balance.element_damping[index]

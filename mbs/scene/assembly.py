@@ -21,8 +21,9 @@ from mbs.model.system import System
 from mbs.scene import kinds
 from mbs.scene.bodies import build_bodies
 from mbs.scene.contact_laws import ContactLaws, choose_law
-from mbs.scene.kinds import Built, ElementKind, Surroundings
+from mbs.scene.kinds import ElementKind
 from mbs.scene.scene import Scene
+from mbs.scene.surroundings import Built, Surroundings
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,11 +60,6 @@ class Model:
     def operation(self) -> Operation:
         """The operating speed of the scene, at the start angles of its bearings."""
         return Operation(self.scene.speed)
-
-    @property
-    def outside_calls(self) -> dict[str, int]:
-        """Calls outside the map so far, by element; 0 for one without a map."""
-        return {connected.element.name: connected.element.outside_calls or 0 for connected in self.system.elements}
 
 
 def assemble(

@@ -12,7 +12,7 @@ from mbs.scene.fields import DEGREE
 from mbs.scene.specs import BearingSpec
 
 if TYPE_CHECKING:
-    from mbs.scene.kinds import Built, Surroundings
+    from mbs.scene.surroundings import Built, Surroundings
 
 
 def read_bearing(section: Table, name: str) -> BearingSpec | None:
@@ -81,7 +81,7 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
     from mbs.bearings.bearing_force import BearingForce
     from mbs.bearings.roller_contacts import RollerContacts
     from mbs.bearings.roller_element import RollerElement, roller_body
-    from mbs.scene.kinds import Built
+    from mbs.scene.surroundings import Built
 
     bearing = Bearing(spec.geometry, spec.profile, spec.slices)
     laws = surroundings.laws.of(bearing)
