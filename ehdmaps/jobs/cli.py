@@ -12,6 +12,8 @@ from ehdmaps.program import Parser, run
 _KEEP = "openfoam: keep the case folders of all runs; default folder: ehdmaps-cases"
 _SOLVER = "hertz | formula | reynolds | openfoam; instead of the job's, with its default settings"
 
+_STRUCTURE = "law of the solids in approach, k and c: iso16281 | palmgren | half_space; default: that of the job"
+
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
@@ -45,10 +47,12 @@ def parser() -> argparse.ArgumentParser:
 
     show = commands.add_parser("show", help="what a map holds")
     show.add_argument("map", metavar="MAP.nc")
+    show.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
 
     plot = commands.add_parser("plot", help="stiffness, damping and films on one page")
     plot.add_argument("map", metavar="MAP.nc")
     plot.add_argument("-o", "--output", metavar="FIG.png", help="default: the map's name with .png; also .pdf, .svg")
+    plot.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
 
     solve = commands.add_parser("solve", help="one operating point, as a table")
     solve.add_argument("job", metavar="JOB")
@@ -86,6 +90,7 @@ def parser() -> argparse.ArgumentParser:
         "--contact", metavar="NAME", help="series | inner | outer | line; default: series, of a bare contact line"
     )
     export.add_argument("--points", metavar="N", type=_workers, default=200, help="loads of a curve; default: 200")
+    export.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
 
     compare = commands.add_parser("compare", help="differences between two maps")
     compare.add_argument("first", metavar="A.nc")

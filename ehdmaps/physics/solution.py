@@ -18,6 +18,7 @@ from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.structure import structured
 
 
 class Status(IntEnum):
@@ -117,7 +118,7 @@ class FilmSpectrum:
 
 @dataclass(frozen=True)
 class ContactSolution:
-    """One point of a map: approach, stiffness, damping and films of one contact, per unit length.
+    """One point of a map: films, approach, stiffness and damping of one contact, per unit length.
 
     Attributes
     ----------
@@ -130,6 +131,9 @@ class ContactSolution:
     film_offset_error, film_compliance_error, stiffness_error, damping_error : float
     central_film_error, minimum_film_error, max_pressure_error : float
         Estimated relative numerical errors.
+    loss_compliance_error : float
+        The same, positive where the error of the loss has the sign of that of the film compliance: the two can cancel
+        in the damping.
 
     The other attributes are those of `FilmSolution`.
     """
@@ -138,6 +142,8 @@ class ContactSolution:
     reason: str
     approach: float
     film_offset: float
+    film_compliance: float
+    loss_compliance: float
     stiffness: float
     damping: float
     central_film: float
@@ -145,6 +151,7 @@ class ContactSolution:
     max_pressure: float
     film_offset_error: float
     film_compliance_error: float
+    loss_compliance_error: float
     stiffness_error: float
     damping_error: float
     central_film_error: float
@@ -320,11 +327,7 @@ def no_spectrum(film: FilmSolution, frequencies: FloatArray) -> FilmSpectrum:
 def contact_solution(film: FilmSolution, contact: LineContact, point: OperatingPoint) -> ContactSolution:
     """Add the structural part to a film, in the limit of slow motion.
 
-    k = 1/(d(delta_el)/dw + film compliance), c = loss_compliance k^2; for other frequencies see
-    `ehdmaps.physics.spectrum`.
-
-    Errors are carried over to first order: 1/k has the absolute error of the film compliance, and c = loss k^2 has that
-    of the loss plus twice that of k, with their signs, and a twentieth of both magnitudes in case they cancel.
+    See `ehdmaps.physics.structure`; for other frequencies `ehdmaps.physics.spectrum`.
 
     Parameters
     ----------
@@ -335,27 +338,32 @@ def contact_solution(film: FilmSolution, contact: LineContact, point: OperatingP
     point : OperatingPoint
         Load, speed and temperature of the film.
     """
-    dry = contact.structural_compliance(point.load)
-    compliance = dry + film.film_compliance
-    stiffness = 1.0 / compliance
-    damping = film.loss_compliance / compliance**2
-    stiffness_error = -film.film_compliance * film.film_compliance_error / compliance
-    loss_error = film.loss_compliance_error
-    damping_error = abs(loss_error + 2.0 * stiffness_error) + 0.05 * (abs(loss_error) + 2.0 * abs(stiffness_error))
+    solids = structured(
+        contact,
+        point.load,
+        film.film_offset,
+        film.film_compliance,
+        film.loss_compliance,
+        film.film_compliance_error,
+        film.loss_compliance_error,
+    )
     return ContactSolution(
         status=film.status,
         reason=film.reason,
-        approach=contact.structural_approach(point.load) - film.film_offset,
+        approach=solids.approach,
         film_offset=film.film_offset,
-        stiffness=stiffness,
-        damping=damping,
+        film_compliance=film.film_compliance,
+        loss_compliance=film.loss_compliance,
+        stiffness=solids.stiffness,
+        damping=solids.damping,
         central_film=film.central_film,
         minimum_film=film.minimum_film,
         max_pressure=film.max_pressure,
         film_offset_error=abs(film.film_offset_error),
         film_compliance_error=abs(film.film_compliance_error),
-        stiffness_error=abs(stiffness_error),
-        damping_error=damping_error,
+        loss_compliance_error=film.loss_compliance_error * math.copysign(1.0, film.film_compliance_error),
+        stiffness_error=solids.stiffness_error,
+        damping_error=solids.damping_error,
         central_film_error=film.central_film_error,
         minimum_film_error=film.minimum_film_error,
         max_pressure_error=film.max_pressure_error,
