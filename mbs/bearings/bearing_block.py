@@ -288,7 +288,7 @@ def _course(steps: int, films: int) -> Course:
     return Course(np.zeros(shape, dtype=np.int64), np.zeros(shape), np.zeros(shape, dtype=np.int64))
 
 
-def _padded(rows: Sequence[FloatArray]) -> FloatArray:
+def padded(rows: Sequence[FloatArray]) -> FloatArray:
     """Rows of several lengths as one array, with zeros behind."""
     padded = np.zeros((len(rows), max((row.size for row in rows), default=0)))
     for place, row in zip(padded, rows, strict=True):
@@ -296,7 +296,7 @@ def _padded(rows: Sequence[FloatArray]) -> FloatArray:
     return padded
 
 
-def _whole(numbers: Iterable[int]) -> IntArray:
+def whole(numbers: Iterable[int]) -> IntArray:
     """Whole numbers as an array."""
     return np.array(list(numbers), dtype=np.int64)
 
@@ -309,18 +309,18 @@ def _arrays(members: Sequence[Member], films_of: Sequence[int], films: Sequence[
     slices = [work.slices.shape[1] for work in works]
     cells = max((z * n for z, n in zip(rollers, slices, strict=True)), default=0)
     return Bearings(
-        firsts=_whole(member.first for member in members),
-        places=_whole(member.place for member in members),
-        films_of=_whole(films_of),
-        rollers=_whole(rollers),
-        slices=_whole(slices),
+        firsts=whole(member.first for member in members),
+        places=whole(member.place for member in members),
+        films_of=whole(films_of),
+        rollers=whole(rollers),
+        slices=whole(slices),
         start_angles=np.array([element.start_angle for element in elements], dtype=np.float64),
         cage_rates=np.array([element.rates[0] for element in elements], dtype=np.float64),
         sizes=np.array([work.sizes for work in works], dtype=np.float64).reshape(len(works), 6),
-        positions=_padded([work.slices[0] for work in works]),
-        profiles=_padded([work.slices[1] for work in works]),
-        cos=_padded([work.angles[0] for work in works]),
-        sin=_padded([work.angles[1] for work in works]),
+        positions=padded([work.slices[0] for work in works]),
+        profiles=padded([work.slices[1] for work in works]),
+        cos=padded([work.angles[0] for work in works]),
+        sin=padded([work.angles[1] for work in works]),
         rows=np.zeros(cells, dtype=np.int64),
         states=np.zeros(4 * cells),
         films=_room(len(films), any(film.varies for film in films)),

@@ -160,8 +160,18 @@ class Plane(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def _roller(motion: RingMotion, shape: Shape, j: int) -> Roller:
-    """Where a roller stands, and how it moves."""
+def roller_of(motion: RingMotion, shape: Shape, j: int) -> Roller:
+    """Where a roller stands, and how it moves.
+
+    Parameters
+    ----------
+    motion : RingMotion
+        Motion of the ring.
+    shape : Shape
+        The bearing.
+    j : int
+        Which roller.
+    """
     cos = motion.cage_cos * shape.cos[j] - motion.cage_sin * shape.sin[j]
     sin = motion.cage_sin * shape.cos[j] + motion.cage_cos * shape.sin[j]
     sizes = shape.sizes
@@ -184,7 +194,7 @@ def _find_cells(motion: RingMotion, shape: Shape, numbers: LawNumbers, rows: Int
     x, lost = shape.positions, shape.profile
     inverse = numbers.inverse_scale
     for j in range(rows.shape[0]):
-        roller = _roller(motion, shape, j)
+        roller = roller_of(motion, shape, j)
         start, tilt = (roller.gap - numbers.centre) * inverse, roller.tilt * inverse
         row, place = rows[j], places[j]
         for i in range(x.size):
@@ -203,7 +213,7 @@ def _power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states:
     x, lost = shape.positions, shape.profile
     a, b, damping = numbers.coefficient, numbers.exponent, numbers.damping
     for j in range(shape.cos.size):
-        roller = _roller(motion, shape, j)
+        roller = roller_of(motion, shape, j)
         w, dw, c, dc = states[0, j], states[1, j], states[2, j], states[3, j]
         if roller.deepest <= 0.0:
             for i in range(x.size):
@@ -309,10 +319,23 @@ def _write(plane: Plane, length: float, out: FloatArray) -> None:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _assemble(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray, out: FloatArray) -> int:
+def assemble(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray, out: FloatArray) -> int:
     """Force, stiffness and damping, into `out` (13, 6); returns how many rollers are above the mapped load.
 
     The loads are those at the rate of each slice, see `ehdmaps.physics.unilateral`.
+
+    Parameters
+    ----------
+    motion : RingMotion
+        Where the ring is, and how it moves.
+    shape : Shape
+        The bearing.
+    numbers : LawNumbers
+        The limits of the law, and what slopes are multiplied by.
+    states : array (4, Z, n)
+        As of `Work`.
+    out : array (13, 6)
+        Force, six rows of stiffness, six rows of damping.
     """
     w, dw, c, dc = states[0], states[1], states[2], states[3]
     slope, length = numbers.slope, shape.sizes.slice_length
@@ -320,7 +343,7 @@ def _assemble(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: Flo
     y = z = a = b = 0.0
     stiffness = damping = Plane(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for j in range(shape.cos.size):
-        roller = _roller(motion, shape, j)
+        roller = roller_of(motion, shape, j)
         if roller.deepest <= numbers.lift_off:
             continue
         rates = roller.rate, roller.tilt_rate
@@ -344,8 +367,8 @@ def _assemble(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: Flo
 
 
 @njit(cache=True, error_model="numpy")
-def _check(motion: RingMotion, sizes: Sizes) -> int:
-    """Zero, or what is wrong about the motion."""
+def check_motion(motion: RingMotion, sizes: Sizes) -> int:
+    """Zero, or what is wrong about the motion: `NOT_FINITE`, `TOO_FAR`."""
     total = abs(motion.y) + abs(motion.z) + abs(motion.theta_y) + abs(motion.theta_z)
     total += abs(motion.y_rate) + abs(motion.z_rate) + abs(motion.theta_y_rate) + abs(motion.theta_z_rate)
     if not total + abs(motion.cage_cos) < math.inf:
@@ -378,7 +401,7 @@ def bearing_force(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work
     int
         A code: zero; 1 if some slice was above the mapped load; NOT_FINITE or TOO_FAR, with `out` left alone.
     """
-    wrong = _check(motion, shape.sizes)
+    wrong = check_motion(motion, shape.sizes)
     if wrong != 0:
         return wrong
     states = work.states
@@ -388,7 +411,7 @@ def bearing_force(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work
         read_cells(law.cells, work.rows.reshape(-1), states.reshape(4, -1))
     else:
         _power_states(motion, shape, law.numbers, states)
-    above = _assemble(motion, shape, law.numbers, states, out)
+    above = assemble(motion, shape, law.numbers, states, out)
     return 1 if above > 0 else 0
 
 
@@ -419,12 +442,12 @@ def bearing_force_of_point(
     out : array (13, 6)
         Result, see `bearing_force`.
     """
-    wrong = _check(motion, shape.sizes)
+    wrong = check_motion(motion, shape.sizes)
     if wrong != 0:
         return wrong
     before = counts[LOAD]
     for j in range(shape.cos.size):
-        roller = _roller(motion, shape, j)
+        roller = roller_of(motion, shape, j)
         for i in range(shape.positions.size):
             delta = roller.gap + shape.positions[i] * roller.tilt - shape.profile[i]
             rate = roller.rate + shape.positions[i] * roller.tilt_rate
@@ -435,7 +458,7 @@ def bearing_force_of_point(
         y=motion.y, z=motion.z, theta_y=motion.theta_y, theta_z=motion.theta_z, y_rate=0.0, z_rate=0.0,
         theta_y_rate=0.0, theta_z_rate=0.0, cage_cos=motion.cage_cos, cage_sin=motion.cage_sin,
     )  # fmt: skip
-    _assemble(still, shape, numbers, states, out)
+    assemble(still, shape, numbers, states, out)
     return 1 if counts[LOAD] > before else 0
 
 
@@ -545,6 +568,6 @@ def rollers_of_arrays(state: FloatArray, sizes: FloatArray, slices: FloatArray, 
     motion = _ring_motion(state)
     found = np.empty((4, shape.cos.size))
     for j in range(shape.cos.size):
-        roller = _roller(motion, shape, j)
+        roller = roller_of(motion, shape, j)
         found[0, j], found[1, j], found[2, j], found[3, j] = roller.gap, roller.tilt, roller.rate, roller.tilt_rate
     return found

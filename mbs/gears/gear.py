@@ -20,7 +20,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_force
 from mbs.gears.pair import GearPair
-from mbs.model.elements import Excitation, Forces, Operation, Port
+from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port
 
 HARMONICS = 5
 """Multiples of the meshing order that are worth following."""
@@ -30,7 +30,7 @@ PLACED = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class GearMesh:
+class GearMesh(ElementDefaults):
     """A gear pair in a system; make it by `gear_mesh`.
 
     Attributes

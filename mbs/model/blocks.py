@@ -141,6 +141,9 @@ class Kind:
         Makes the block of some members; there may be none.
     takes : callable
         Whether compiled code has this element of the class.
+    accept : callable or None
+        Compiled function (arrays, Moment) that is called when a step is made, for elements with states of their own;
+        the last answer was then that of the step.
     """
 
     arrays: type
@@ -148,3 +151,4 @@ class Kind:
     feels: Callable[[Any], FloatArray]
     gather: Callable[[Sequence[Member]], Block]
     takes: Callable[[Element], bool] = _always
+    accept: Callable[..., None] | None = None

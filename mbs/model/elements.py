@@ -7,7 +7,7 @@ are at the same point of the system, so that forces and moments balance without 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 
@@ -97,8 +97,8 @@ class Excitation(NamedTuple):
 class Element(Protocol):
     """A nonlinear element. Its force is linear algebra in its ports; what happens in there is its own.
 
-    An element has every member; a class that inherits from `ElementDefaults` leaves out `excitation`. Runs in time
-    call it from Python, unless `mbs.transient.kinds` lists it with a block for compiled code.
+    An element has every member; a class that inherits from `ElementDefaults` leaves out `excitation` and `advance`.
+    Runs in time call it from Python, unless `mbs.transient.kinds` lists it with a block for compiled code.
     """
 
     @property
@@ -133,9 +133,33 @@ class Element(Protocol):
         """
         ...
 
+    def advance(
+        self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> tuple[Forces, Any]:
+        """The same at the end of a step in time, for an element with states of its own.
+
+        Parameters
+        ----------
+        states : object
+            What the element returned at the end of the last step that was made; None at the beginning of a run.
+        displacement, velocity, operation
+            As of `evaluate`, at the end of the step.
+        """
+        ...
+
 
 class ElementDefaults:
-    """What an element that does not excite the system says of itself, to inherit from."""
+    """What an element without states that does not excite the system says of itself, to inherit from."""
+
+    def advance(
+        self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> tuple[Forces, Any]:
+        """What `evaluate` says: there are no states."""
+        return self.evaluate(displacement, velocity, operation), None
+
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
+        """See `Element.evaluate`."""
+        raise NotImplementedError
 
     @property
     def excitation(self) -> Excitation | None:

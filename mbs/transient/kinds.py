@@ -11,12 +11,14 @@ from __future__ import annotations
 
 from mbs.bearings.bearing_block import BEARINGS
 from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.memory_block import MEMORY_BEARINGS
+from mbs.bearings.memory_element import MemoryBearing
 from mbs.gears.gear import GearMesh
 from mbs.gears.gear_block import GEAR_MESHES
 from mbs.model.blocks import Kind
 from mbs.model.elements import Element
 
-KINDS: dict[type, Kind] = {BearingElement: BEARINGS, GearMesh: GEAR_MESHES}
+KINDS: dict[type, Kind] = {BearingElement: BEARINGS, MemoryBearing: MEMORY_BEARINGS, GearMesh: GEAR_MESHES}
 """Kind by the class of its elements. ``KINDS[Coupling] = COUPLINGS`` adds one."""
 
 

@@ -38,12 +38,15 @@ class RunElements:
         How often each was evaluated outside its map so far.
     ours : bool
         Whether all kinds are of this package.
+    has_states : bool
+        Whether some elements have states of their own.
     """
 
     blocks: tuple[Block, ...]
     expand: FloatArray
     outside: IntArray
     ours: bool
+    has_states: bool
 
     @classmethod
     def of(cls, connected: Sequence[Connected]) -> RunElements:
@@ -64,6 +67,7 @@ class RunElements:
             expand=np.asarray(expand, dtype=np.float64),
             outside=np.zeros(len(connected), dtype=np.int64),
             ours=all(map(is_ours, used)),
+            has_states=any(found and kind.accept is not None for kind, found in members.items()),
         )
 
     def begin(self, speeds: FloatArray) -> None:

@@ -161,6 +161,43 @@ def _all_answer(blocks: Any, moment: Any, motion: Any, answers: Any) -> Callable
     return first_and_rest
 
 
+def all_accept(blocks: tuple[Any, ...], moment: Moment) -> None:
+    """Tell all elements with states of their own that a step is made, in compiled code only.
+
+    Parameters
+    ----------
+    blocks : tuple of NamedTuple
+        Arrays of all blocks.
+    moment : Moment
+        The step.
+    """
+    raise NotImplementedError
+
+
+@overload(all_accept, jit_options={"error_model": "numpy"})
+def _all_accept(blocks: Any, moment: Any) -> Callable[..., None]:
+    """Compile for the types of some blocks: the first one, and then the rest likewise."""
+    if len(blocks) == 0:
+
+        def none(blocks: Any, moment: Any) -> None:
+            return
+
+        return none
+    accept = {kind.arrays: kind.accept for kind in KINDS.values()}[blocks[0].instance_class]
+    if accept is None:
+
+        def rest(blocks: Any, moment: Any) -> None:
+            all_accept(blocks[1:], moment)
+
+        return rest
+
+    def first_and_rest(blocks: Any, moment: Any) -> None:
+        accept(blocks[0], moment)
+        all_accept(blocks[1:], moment)
+
+    return first_and_rest
+
+
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def _jacobian(slopes: FloatArray, receptance: FloatArray, out: FloatArray) -> None:
     """1 + (by_q K + by_v C) R; the slopes are zero but for blocks on the diagonal."""
@@ -322,10 +359,43 @@ def advance(
             carried[i], a[i] = known[i] + numbers.ratio * found_a[i], found_a[i]
         for i in range(m):
             earlier[i], before[i], latest[i] = before[i], latest[i], u[i]
+        all_accept(blocks, moment)
         if course.rows[step] >= 0:
             observe(state, records, course.rows[step])
     return course.speeds.size, DONE, error
 
 
+@njit(cache=True, error_model="numpy")
+def start(linear: Linear, blocks: tuple[Any, ...], moment: Moment, state: State, outside: IntArray) -> int:
+    """Tell elements with states of their own where a run begins: as a step that ends there.
+
+    Parameters
+    ----------
+    linear, blocks
+        As of `advance`, for the first steps.
+    moment : Moment
+        The beginning of the run.
+    state : State
+        State there.
+    outside : array (elements,), of int
+        Evaluations outside the map; scratch.
+
+    Returns
+    -------
+    int
+        `FOUND`, or what keeps elements from an answer.
+    """
+    m = linear.ports.shape[0]
+    motion, answers = np.empty((2, m)), Answers(np.zeros(m), np.zeros((m, m)), outside)
+    _times(linear.ports, state.motion[0], motion[0])
+    _times(linear.ports, state.motion[1], motion[1])
+    status: int = all_answer(blocks, moment, motion, answers)
+    if status == FOUND:
+        all_accept(blocks, moment)
+    return status
+
+
 advance_anew = njit(error_model="numpy")(advance.py_func)
-"""`advance`, compiled anew in each process: for kinds of elements from elsewhere, see `mbs.transient.kinds`."""
+start_anew = njit(error_model="numpy")(start.py_func)
+"""`advance` and `start`, compiled anew in each process: for kinds of elements from elsewhere, see
+`mbs.transient.kinds`."""
