@@ -17,13 +17,9 @@ from ehdmaps.outputs import write_figure
 from mbs import BearingForce, BearingSpec, Inertia, Load, RigidSpec, Scene, assemble, modes
 from mbs.analyses.bearing_point import bearing_point
 
-shaft = RigidSpec(  # all in SI
-    "shaft",
-    parts=[Inertia.cylinder(-0.15, 0.15, diameter=0.04), Inertia.cylinder(-0.02, 0.02, diameter=0.2)],
-    freedoms=["y", "z", "theta_y", "theta_z"],
-    frames={"left": (-0.1, 0.0, 0.0), "right": (0.1, 0.0, 0.0)},
-    spin=1.0,
-)
+parts = [Inertia.cylinder(-0.15, 0.15, diameter=0.04), Inertia.cylinder(-0.02, 0.02, diameter=0.2)]  # all in SI
+frames = {"left": (-0.1, 0.0, 0.0), "right": (0.1, 0.0, 0.0)}
+shaft = RigidSpec("shaft", parts, ["y", "z", "theta_y", "theta_z"], frames=frames, spin=1.0)
 pull, nu308 = Load("pull", "shaft", np.array([0.0, 0.0, -300.0, 0.0, 0.0, 0.0])), BearingGeometry.named("NU308")
 bearings = [BearingSpec(side, f"shaft:{side}", "ground", nu308) for side in ("left", "right")]
 scene = Scene(name="disc", speed=52.36, temperature=313.15, bodies=[shaft], loads=[pull], elements=bearings)

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ehdmaps.errors import EhdmapsError, InputError
-from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.jobs.opening import open_given
+from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
 from ehdmaps.units import quantity
 from mbs.analyses.case import Case, common_clearance
@@ -28,6 +29,9 @@ from mbs.scene.scene import Scene
 
 WIDEST = 1e-2
 """Largest clearance of --clearance, either way [m]."""
+
+NO_MAP = "--structure: got {!r:.60} without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`"
+"""What is said where a structural law is given for no map."""
 
 MOST_FACTOR = 1e3
 MOST_CASES = 24
@@ -59,8 +63,8 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
     Parameters
     ----------
     arguments : argparse.Namespace
-        Arguments with `scene`, `output`, `plot`, and `law`, `map`, `clearance`, `load_factor`, `start_angle`: each a
-        text, a list of texts, None, or left out.
+        Arguments with `scene`, `output`, `plot`, and `law`, `map`, `structure`, `clearance`, `load_factor`,
+        `start_angle`: each a text, a list of texts (but for `structure`), None, or left out.
     several : bool
         Whether laws and maps stand side by side; else a law goes before a map.
     kind : Kind
@@ -77,7 +81,8 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
         scene = read_scene(arguments.scene)
     except InputError as error:
         problems += error.problems
-    laws = _laws(_given(arguments, "law"), _given(arguments, "map"), problems)
+    structure = getattr(arguments, "structure", None)
+    laws = _laws(_given(arguments, "law"), _given(arguments, "map"), structure, problems)
     if not several:
         problems += [
             f"--{option}: got {len(given)} of them; allowed: one; `mbs sweep` and `mbs campbell` compare more"
@@ -156,8 +161,10 @@ def _given(arguments: argparse.Namespace, name: str) -> list[str]:
     return [] if value is None else [value] if isinstance(value, str) else list(value)
 
 
-def _laws(names: list[str], paths: list[str], problems: list[str]) -> list[_Law]:
+def _laws(names: list[str], paths: list[str], structure: str | None, problems: list[str]) -> list[_Law]:
     """The laws that are meant: those named, and each map; dry Hertz without either."""
+    if structure is not None and not paths:
+        problems.append(NO_MAP.format(structure))
     for option, texts in (("--law", names), ("--map", paths)):
         problems += [
             f"{option}: got {text!r:.60} twice; allowed: each once"
@@ -168,7 +175,9 @@ def _laws(names: list[str], paths: list[str], problems: list[str]) -> list[_Law]
     maps: list[tuple[str, EHDMap]] = []
     for path in paths:
         try:
-            maps.append((path, open_map(path)))
+            maps.append((path, open_given(path, structure)))
+        except InputError as error:
+            problems += error.problems
         except EhdmapsError as error:
             problems += [f"--map: {line}" for line in str(error).splitlines()]
     solvers = [str(emap.dataset.attrs.get("solver", "")) for _, emap in maps]

@@ -36,6 +36,11 @@ def law_label(law: str, emap: EHDMap | None = None) -> str:
     return _LABELS.get(law, law.replace(":", " "))
 
 
+def structure_words(emap: EHDMap) -> str:
+    """The structural law of a map as the end of a sentence; nothing where it is that of the dry law, ISO 16281."""
+    return "" if emap.structural_law == "iso16281" else f", structural law {emap.structural_law}"
+
+
 def constant_name(law: str) -> str | None:
     """NAME of a law constant:NAME, else None."""
     return law.removeprefix(_CONSTANT) if law.startswith(_CONSTANT) else None
@@ -117,7 +122,7 @@ class ContactLaws:
         if self.chosen == "map" and self.emap is not None:
             solver = self.emap.dataset.attrs.get("solver", "")
             made_for = self.emap.bearing.title if self.emap.bearing else ""
-            return f"map of {made_for}, {self.emap.lubricant.title}, solver {solver}"
+            return f"map of {made_for}, {self.emap.lubricant.title}, solver {solver}{structure_words(self.emap)}"
         if self.chosen == "formula":
             return f"film formula moes, {self.lubricant.title}"
         name = constant_name(self.chosen)

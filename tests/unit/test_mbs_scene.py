@@ -393,7 +393,8 @@ def built_systems(monkeypatch):
 
 
 def test_a_model_is_one_system_and_models_share_their_bodies(built_systems):
-    options = {"scene": "nu308_flexible", "output": None, "plot": None, "law": ["hertz", "formula"], "map": None}
+    laws = ["hertz", "constant:hertz"]
+    options = {"scene": "nu308_rigid", "output": None, "plot": None, "law": laws, "map": None}
     cases = load_cases(argparse.Namespace(**options, clearance=["10 um", "20 um"], load_factor=["1", "2"]))
     assert len(cases) == len(built_systems) == 8
     first = cases[0].model.system.bodies
