@@ -154,7 +154,7 @@ class Sweep:
     displacement : array, shape (speeds, n)
         Equilibrium [m or rad].
     forces : tuple of array, shape (speeds, m)
-        Of each element in its ports [N or N m].
+        Forces of each element in its ports [N or N m].
     outside : dict of str to array of bool, shape (speeds,)
         Whether each element lies outside its map at the equilibrium, by name.
     parts : tuple of str
