@@ -327,13 +327,13 @@ def assemble(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: Floa
     Parameters
     ----------
     motion : RingMotion
-        Where the ring is, and how it moves.
+        Motion of the ring.
     shape : Shape
         The bearing.
     numbers : LawNumbers
         The limits of the law, and what slopes are multiplied by.
     states : array (4, Z, n)
-        As of `Work`.
+        States of the slices, as of `Work`.
     out : array (13, 6)
         Force, six rows of stiffness, six rows of damping.
     """

@@ -57,9 +57,9 @@ class MemoryBearings(NamedTuple):
     sizes : array (bearings, 6)
         `Sizes` in their order.
     positions, profiles : array (bearings, n)
-        As of `Shape` [m].
+        Slices, as of `Shape` [m].
     cos, sin : array (bearings, Z)
-        As of `Shape`.
+        Directions of the rollers, as of `Shape`.
     memory : array (bearings, MEMORY Z n)
         Memory of all slices, see `mbs.bearings.memory_kernel`.
     approaches : array (Z n,)
@@ -71,7 +71,7 @@ class MemoryBearings(NamedTuple):
     films : MemoryFilms
         Tables of the laws.
     course : Course
-        Where on them the steps are.
+        Places of the steps on them.
     """
 
     firsts: IntArray
@@ -211,7 +211,7 @@ def memory_answer(bearings: MemoryBearings, moment: Moment, motion: FloatArray, 
     motion : array (2, m)
         Displacements and their rates, among what all elements feel.
     answers : Answers
-        Filled.
+        Answers of all elements, filled.
     """
     if bearings.firsts.size == 0:
         return FOUND

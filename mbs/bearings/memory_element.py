@@ -25,7 +25,7 @@ class FilmStates(NamedTuple):
     Attributes
     ----------
     films : FilmState
-        Of all slices of all rollers, shape (Z, n).
+        Films of all slices of all rollers, shape (Z, n).
     time : float
         End of the step [s].
     """
@@ -76,9 +76,9 @@ class MemoryBearing(BearingElement):
         Parameters
         ----------
         states : FilmStates or None
-            After the last step; None for films in equilibrium.
+            States after the last step; None for films in equilibrium.
         displacement, velocity : array, shape (6,)
-            Of the inner ring against the outer one at the end of the step; the rates have no effect.
+            Motion of the inner ring against the outer one at the end of the step; the rates have no effect.
         operation : Operation
             Speed, angle and time there.
 

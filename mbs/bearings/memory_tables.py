@@ -29,9 +29,9 @@ class MemoryFilms(NamedTuple):
     Attributes
     ----------
     cells, load_cells, numbers : array (films, NODES, 2 ROWS, 12), (films, NODES, LOAD_ROWS, 4), (films, NODES, 4)
-        As of `ehdmaps.maps.memory_table`.
+        Tables, as of `ehdmaps.maps.memory_table`.
     mixed_cells, mixed_load_cells, mixed : array (films, 2 ROWS, 12), (films, LOAD_ROWS, 4), (films, 4)
-        In use.
+        The table in use.
     in_use : array (films, 2)
         Node and weight of those; negative for none.
     """
@@ -99,7 +99,7 @@ class MemoryTables:
         nodes, weights : array (n,)
             Nodes and weights from `places`.
         films : MemoryFilms
-            Where the tables are kept.
+            Room for the tables.
         film : int
             Index of this law there.
 

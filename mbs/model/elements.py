@@ -154,7 +154,7 @@ class ElementDefaults:
     def advance(
         self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> tuple[Forces, Any]:
-        """What `evaluate` says: there are no states."""
+        """What `evaluate` says: there are no states; see `Element.advance`."""
         return self.evaluate(displacement, velocity, operation), None
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:

@@ -372,7 +372,7 @@ def start(linear: Linear, blocks: tuple[Any, ...], moment: Moment, state: State,
     Parameters
     ----------
     linear, blocks
-        As of `advance`, for the first steps.
+        What moves, as of `advance`, for the first steps.
     moment : Moment
         The beginning of the run.
     state : State
