@@ -8,10 +8,13 @@ from typing import Protocol
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.maps.law import ContactLaw
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.film_relaxation import Films, bearing_relaxation
 from mbs.bearings.roller_loads import RollerLoads
 from mbs.model.elements import Operation, Port
+from mbs.model.relaxation import Relaxation
 
 
 class RingForce(Protocol):
@@ -61,6 +64,8 @@ class BearingElement:
         Angle of the first roller from y at the beginning [rad].
     centrifugal : bool
         Whether the rollers' centrifugal load is taken into account.
+    films : {"slow", "memory"}
+        Whether small oscillations see the films of slow motion at any frequency, or films that relax.
     """
 
     name: str
@@ -73,6 +78,7 @@ class BearingElement:
     outer_spin: float = 0.0
     start_angle: float = 0.0
     centrifugal: bool = False
+    films: Films = "slow"
 
     @property
     def ports(self) -> tuple[Port, ...]:
@@ -122,6 +128,25 @@ class BearingElement:
             temperature=self.temperature,
             centrifugal_load=self.centrifugal_load(operation),
         )
+
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """How the films relax, where they do, see `Element.relaxation`."""
+        return self.film_relaxation(displacement, operation) if self.films == "memory" else None
+
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """How the films relax; None for laws without films, and for rollers with centrifugal load.
+
+        Parameters
+        ----------
+        displacement, operation
+            As of `relaxation`.
+        """
+        if not isinstance(self.force, BearingForce) or not isinstance(self.force.law, ContactLaw):
+            return None
+        if self.centrifugal_load(operation) != 0.0:
+            return None
+        law = self.force.law.at(self.entrainment_speed(operation), self.temperature)
+        return bearing_relaxation(law, self.rollers(displacement, operation), self.bearing.slice_length)
 
     def evaluate(
         self, displacement: FloatArray, velocity: FloatArray, operation: Operation

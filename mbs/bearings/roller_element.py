@@ -16,6 +16,7 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.model.body import Body
 from mbs.model.elements import Operation, Port
+from mbs.model.relaxation import Relaxation
 
 
 def roller_body(name: str, bearing: Bearing) -> Body:
@@ -65,6 +66,26 @@ class RollerElement:
     def outside_calls(self) -> int:
         """Calls outside the map so far."""
         return self.contacts.outside_calls
+
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """How the films of both contacts relax, where they do, see `Element.relaxation`."""
+        return self.film_relaxation(displacement, operation) if self.plain.films == "memory" else None
+
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """How the films relax; None for laws without films.
+
+        Parameters
+        ----------
+        displacement, operation
+            As of `relaxation`.
+        """
+        plain = self.plain
+        return self.contacts.relaxation(
+            displacement,
+            cage_angle=plain.cage_angle(operation),
+            entrainment_speed=plain.entrainment_speed(operation),
+            temperature=plain.temperature,
+        )
 
     def evaluate(
         self, displacement: FloatArray, velocity: FloatArray, operation: Operation

@@ -48,7 +48,7 @@ def modal_response(
     """
     n = balance.system.size
     seen = sensor_matrix(balance, sensors) @ states.right[:n]
-    driven = states.left[:, n:] @ np.linalg.solve(balance.system.mass, input_matrix(balance, inputs))
+    driven = states.left[:, n : 2 * n] @ np.linalg.solve(balance.system.mass, input_matrix(balance, inputs))
     omega = 2.0 * np.pi * np.asarray(frequencies, dtype=np.float64)
     resonance = 1.0 / (1j * omega[:, None] - states.eigenvalues)
     residues = (seen.T[:, :, None] * driven[:, None, :]).reshape(states.eigenvalues.size, -1)

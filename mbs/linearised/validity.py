@@ -12,6 +12,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.solids import reduced_modulus
 from mbs.bearings.bearing import Bearing
+from mbs.linearised.dynamic import element_dynamic_stiffness
 from mbs.linearised.linear import responses
 from mbs.model.elements import Input
 from mbs.model.equilibrium import Equilibrium
@@ -115,12 +116,10 @@ def dynamic_loads(balance: Equilibrium, inputs: Sequence[Input], frequencies: Fl
     if not inputs or not frequencies.size:
         return ()
     motion = responses(balance, inputs, frequencies) * np.array([entry.amplitude for entry in inputs])
-    omega = 2.0 * np.pi * frequencies[:, None, None]
     for index in balance.system.bearings:
         connected = balance.system.elements[index]
         ports = np.einsum("mn,fni->fmi", connected.transform, motion)
-        stiffness, damping = balance.element_stiffness[index], balance.element_damping[index]
-        force = np.einsum("ab,fbi->fai", stiffness, ports) + 1j * omega * np.einsum("ab,fbi->fai", damping, ports)
+        force = element_dynamic_stiffness(balance, index, 2j * np.pi * frequencies) @ ports
         # The first port of a bearing is the inner ring, its rows 1 and 2 are y and z.
         size = np.linalg.norm(force[:, 1:3], axis=1)
         static = float(np.linalg.norm(balance.forces[index][1:3]))

@@ -13,6 +13,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from mbs.model.profiles import Constant, LoadProfile
+from mbs.model.relaxation import Relaxation
 
 GROUND = "ground"
 """The place that does not move."""
@@ -97,6 +98,18 @@ class Element(Protocol):
         """
         ...
 
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """What of its stiffness needs time, for small oscillations about a rest; None for K and C at any frequency.
+
+        Parameters
+        ----------
+        displacement : array, shape (m,)
+            Of all ports, at rest [m or rad].
+        operation : Operation
+            Speed, angle and time.
+        """
+        ...
+
 
 class ElementDefaults:
     """What an element without a map says of itself, to inherit from."""
@@ -104,6 +117,10 @@ class ElementDefaults:
     @property
     def outside_calls(self) -> int | None:
         """None: there is no map to leave."""
+        return None
+
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """None: stiffness and damping are the same at any frequency."""
         return None
 
 
