@@ -7,8 +7,6 @@ the law which films with memory follow in time, for small oscillations about an 
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 from numba import njit
 
@@ -17,12 +15,6 @@ from ehdmaps.maps.law import LawAtPoint
 from ehdmaps.maps.memory_table import MemoryTable, equilibrium_at
 from mbs.bearings.roller_loads import RollerLoads
 from mbs.model.relaxation import Relaxation
-
-Films = Literal["slow", "memory"]
-"""Whether films have stiffness and damping of slow motion at any frequency, or relax."""
-
-DEFAULT_FILMS: Films = "slow"
-"""Which films linear analyses have where none are asked for."""
 
 
 @njit(cache=True, error_model="numpy")

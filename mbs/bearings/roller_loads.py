@@ -12,7 +12,6 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.maps.emap import EHDMap
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_kernel import GAP, RATE, TILT, TILT_RATE
 from mbs.bearings.laws import unilateral_forces
 
 
@@ -114,25 +113,26 @@ class RollerLoads:
 def roller_loads(
     bearing: Bearing, slices: FloatArray, states: FloatArray, rollers: FloatArray, cage_angle: float
 ) -> RollerLoads:
-    """Make the record from the work space that a call of `bearing_force` leaves.
+    """Make the record from what a call of `bearing_force` leaves.
 
     Parameters
     ----------
     bearing : Bearing
         The bearing.
-    slices : ndarray
-        Constants of the slices.
-    states : ndarray
-        States of the slices' contacts.
-    rollers : ndarray
-        Sums over each roller.
+    slices : array (2, n)
+        Positions of the slices, and twice the profile there [m].
+    states : array (4, Z, n)
+        As of `mbs.bearings.bearing_kernel.Work`.
+    rollers : array (4, Z)
+        As of `mbs.bearings.bearing_kernel.rollers_of_arrays`.
     cage_angle : float
         Angle of the first roller [rad].
     """
     count = bearing.geometry.rollers
     x, lost = slices
-    approach = rollers[GAP][:, None] + x * rollers[TILT][:, None] - lost
-    rate = rollers[RATE][:, None] + x * rollers[TILT_RATE][:, None]
+    gap, tilt, gap_rate, tilt_rate = (part[:, None] for part in rollers)
+    approach = gap + x * tilt - lost
+    rate = gap_rate + x * tilt_rate
     load, _, _ = unilateral_forces(states[0], states[1], states[2], states[3], rate)
     angle = cage_angle + 2.0 * math.pi * np.arange(count) / count
     return RollerLoads(

@@ -1,7 +1,7 @@
 """What a command compares: contact laws and maps, clearances, load factors, in every combination.
 
-Each law of --law and each map of --map counts as one law. The clearances of --clearance, the factors of --load-factor
-and the angles of --start-angle may each be given more than once, too.
+Each law of --law and each map of --map counts as one law; of laws with films, each kind of --films. The clearances of
+--clearance, the factors of --load-factor and the angles of --start-angle may each be given more than once, too.
 """
 
 from __future__ import annotations
@@ -17,16 +17,20 @@ from pathlib import Path
 from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
-from ehdmaps.units import quantity
+from ehdmaps.units import closest, quantity
 from mbs.analyses.case import Case, common_clearance
+from mbs.model.relaxation import Films
 from mbs.output.results import RESULT
-from mbs.scene.assembly import Model, assemble, find_problems, law_label
+from mbs.scene.assembly import MEMORY_WORDS, Model, assemble, find_problems, law_label
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 
 WIDEST = 1e-2
 """Largest clearance of --clearance, either way [m]."""
+
+FILMS = ("memory", "slow", "dry")
+"""What --films takes: films that relax, those of slow motion, and none."""
 
 MOST_FACTOR = 1e3
 MOST_CASES = 24
@@ -39,6 +43,7 @@ class _Law:
     label: str
     name: str | None
     emap: EHDMap | None = None
+    films: Films | None = None
 
 
 def load_model(arguments: argparse.Namespace, kind: Kind = RESULT) -> Model:
@@ -58,8 +63,8 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
     Parameters
     ----------
     arguments : argparse.Namespace
-        Arguments with `scene`, `output`, `plot`, and `law`, `map`, `clearance`, `load_factor`, `start_angle`: each a
-        text, a list of texts, None, or left out.
+        Arguments with `scene`, `output`, `plot`, and `law`, `map`, `films`, `clearance`, `load_factor`, `start_angle`:
+        each a text, a list of texts, None, or left out.
     several : bool
         Whether laws and maps stand side by side; else a law goes before a map.
     kind : Kind
@@ -80,10 +85,11 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
     if not several:
         problems += [
             f"--{option}: got {len(given)} of them; allowed: one; `mbs sweep` and `mbs campbell` compare more"
-            for option in ("law", "map", "clearance")
+            for option in ("law", "map", "clearance", "films")
             if len(given := _given(arguments, option)) > 1
         ]
         laws = laws[:1] if _given(arguments, "law") else laws
+    laws = _with_films(laws, _given(arguments, "films"), problems)
     clearances = [read_clearance(text, problems) for text in _given(arguments, "clearance")] or [None]
     factors = [_factor(text, problems) for text in _given(arguments, "load_factor")] or [1.0]
     angles = [_angle(text, problems) for text in _given(arguments, "start_angle")] or [None]
@@ -102,13 +108,13 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
         )
     elif scene is not None:
         for law, clearance in itertools.product(laws, clearances):
-            found = find_problems(scene, law.name, law.emap, clearance)
+            found = find_problems(scene, law.name, law.emap, clearance, law.films)
             problems += [problem if problem.startswith("--") else f"{scene.name}: {problem}" for problem in found]
     if problems or scene is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     cases = []
     for law, clearance, factor, angle in itertools.product(laws, clearances, factors, angles):
-        model = assemble(_turned(_loaded(scene, factor), angle), law.name, law.emap, clearance)
+        model = assemble(_turned(_loaded(scene, factor), angle), law.name, law.emap, clearance, law.films)
         words = [
             *([law.label] if len(laws) > 1 or count == 1 else []),
             *([MICROMETRE.text(clearance)] if len(clearances) > 1 and clearance is not None else []),
@@ -168,6 +174,35 @@ def _laws(names: list[str], paths: list[str], problems: list[str]) -> list[_Law]
         name = law_label("map", emap)
         laws.append(_Law(name if solvers.count(solver) == 1 else f"{name} {Path(path).stem}", "map", emap))
     return laws if names or paths else [_Law(law_label("hertz"), None)]
+
+
+def _with_films(laws: list[_Law], given: list[str], problems: list[str]) -> list[_Law]:
+    """Each law that has films with the films that are meant, or dry; laws without films as they are."""
+    wrong = [text for text in given if text not in FILMS]
+    problems += [f"--films: got {text!r:.60}{closest(text, FILMS)}; allowed: {', '.join(FILMS)}" for text in wrong]
+    twice = sorted(text for text in set(given) if given.count(text) > 1)
+    problems += [f"--films: got {text!r:.60} twice; allowed: each once" for text in twice]
+    if wrong or twice or not given:
+        return laws
+    found: list[_Law] = []
+    dry = _Law(law_label("hertz"), "hertz")
+    having = [law for law in laws if law.name in ("map", "formula")]
+    if not having:
+        problems.append(
+            f"--films: got {', '.join(given)} with laws without films; allowed: with --map or --law formula"
+        )
+    for law in laws:
+        chosen = [dry if text == "dry" else _filmed(law, text, len(given) > 1) for text in given]
+        found += chosen if law in having else [law]
+    # A dry law stands for all maps, and for --law hertz.
+    return [law for index, law in enumerate(found) if law.label not in {other.label for other in found[:index]}]
+
+
+def _filmed(law: _Law, films: str, compared: bool) -> _Law:
+    """A law with its films."""
+    words = MEMORY_WORDS if films == "memory" else "slow films"
+    label = f"{law.label}, {words}" if compared or films == "memory" else law.label
+    return dataclasses.replace(law, label=label, films="memory" if films == "memory" else "slow")
 
 
 def read_clearance(text: str, problems: list[str]) -> float | None:

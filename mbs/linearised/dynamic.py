@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ehdmaps.arrays import ComplexArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.linearised.film_states import FilmStates, film_states, together
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.relaxation import Relaxation
@@ -49,35 +49,29 @@ def dynamic_stiffness(balance: Equilibrium, s: ComplexArray) -> ComplexArray:
     """
     place = s[:, None, None]
     found = balance.stiffness + place * balance.damping + place**2 * balance.system.mass
-    return np.asarray(found + more_of_films(balance, s), dtype=np.complex128)
+    for transform, relaxation in relaxing_elements(balance):
+        found = found + transform.T @ relaxation.more(s) @ transform
+    return np.asarray(found, dtype=np.complex128)
 
 
 def dynamic_slope(balance: Equilibrium, s: ComplexArray) -> ComplexArray:
     """Derivative of `dynamic_stiffness` by s, shape (k, n, n); arguments as there."""
     found = balance.damping + 2.0 * s[:, None, None] * balance.system.mass
-    for transform, relaxation in _relaxing(balance):
+    for transform, relaxation in relaxing_elements(balance):
         found = found + transform.T @ relaxation.slope(s) @ transform
     return np.asarray(found, dtype=np.complex128)
-
-
-def more_of_films(balance: Equilibrium, s: ComplexArray) -> ComplexArray:
-    """What relaxing films add to stiffness and damping of slow motion, shape (k, n, n); arguments as there."""
-    found = np.zeros((s.size, balance.system.size, balance.system.size), dtype=np.complex128)
-    for transform, relaxation in _relaxing(balance):
-        found += transform.T @ relaxation.more(s) @ transform
-    return found
 
 
 def system_film_states(balance: Equilibrium) -> FilmStates | None:
     """The relaxing films of all elements as few states in the coordinates of the system; None without any."""
     found = []
-    for transform, relaxation in _relaxing(balance):
+    for transform, relaxation in relaxing_elements(balance):
         few = film_states(relaxation)
-        found.append(FilmStates(few.relaxation.seen_by(transform), few.lift))
+        found.append(FilmStates(few.relaxation.seen_by(transform), few.lift, few.slowest))
     return together(found)
 
 
-def _relaxing(balance: Equilibrium) -> list[tuple[np.ndarray, Relaxation]]:
+def relaxing_elements(balance: Equilibrium) -> list[tuple[FloatArray, Relaxation]]:
     """Elements that relax: how their ports follow the coordinates, and what relaxes."""
     return [
         (connected.transform, relaxation)

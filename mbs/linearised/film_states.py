@@ -5,9 +5,9 @@ Thousands of slices relax, but what they add to a bearing is a matrix of its few
     F(s) = V' (1 + s Theta)^-1 V,    rows v of V and times Theta of `mbs.model.relaxation`.
 
 Projected on the space of V and of both parts of (1 + i w_j Theta)^-1 V for some frequencies w_j, F and its derivative
-are exact at s = 0 and at each i w_j (rational Krylov). The projected Theta has its eigenvalues among those of Theta, so that what is left are
-springs in series with dampers again: they take up energy at every frequency. The w_j are placed where F is worst on the
-frequency axis, until it is within `TOLERANCE` of all slices there.
+are exact at s = 0 and at each i w_j (rational Krylov). The projected Theta has its eigenvalues among those of Theta, so
+that what is left are springs in series with dampers again: they take up energy at every frequency. The w_j are placed
+where F is worst on the frequency axis, until it is within `TOLERANCE` of all slices there.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from scipy.linalg import block_diag, svd
 from ehdmaps.arrays import FloatArray
 from mbs.model.relaxation import Relaxation
 
-TOLERANCE = 1e-10
+TOLERANCE = 1e-6
 """Error of F on the frequency axis, as a part of F(0)."""
 
 _MOST_POLES = 16
@@ -39,10 +39,13 @@ class FilmStates:
         The few, q of them.
     lift : array, shape (r, q)
         Orthonormal columns: forces of the many, in the roots of their springs, by those of the few.
+    slowest : float
+        Longest time of the many [s].
     """
 
     relaxation: Relaxation
     lift: FloatArray
+    slowest: float = 0.0
 
     @property
     def size(self) -> int:
@@ -77,7 +80,8 @@ def film_states(relaxation: Relaxation) -> FilmStates:
         seen = begin / (1.0 + place**2)[:, None]
         space = _extended(space, np.hstack([seen, place[:, None] * seen]))
     lift = space @ turned
-    return FilmStates(Relaxation(lift.T @ begin @ ports, found), lift)
+    slowest = float(times[np.any(rows != 0.0, axis=1)].max())
+    return FilmStates(Relaxation(lift.T @ begin @ ports, found), lift, slowest)
 
 
 def together(parts: Iterable[FilmStates]) -> FilmStates | None:
@@ -87,7 +91,8 @@ def together(parts: Iterable[FilmStates]) -> FilmStates | None:
         return None
     rows = np.concatenate([part.relaxation.rows for part in given])
     times = np.concatenate([part.relaxation.times for part in given])
-    return FilmStates(Relaxation(rows, times), block_diag(*(part.lift for part in given)))
+    lift = np.asarray(block_diag(*(part.lift for part in given)), dtype=np.float64)
+    return FilmStates(Relaxation(rows, times), lift, max(part.slowest for part in given))
 
 
 def _transfer(rows: FloatArray, times: FloatArray, omega: FloatArray) -> FloatArray:

@@ -146,7 +146,7 @@ def responses(balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatA
     frequencies : array, shape (frequencies,)
         [Hz].
     """
-    s = 2j * np.pi * np.asarray(frequencies, dtype=np.float64)
+    s = np.asarray(2j * np.pi * np.asarray(frequencies), dtype=np.complex128)
     load = input_matrix(balance, inputs)
     found = np.empty((s.size, balance.system.size, len(inputs)), dtype=np.complex128)
     for first in range(0, s.size, _AT_ONCE):

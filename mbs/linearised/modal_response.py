@@ -2,7 +2,8 @@
 
     H(omega) = sum_k (c . r_k)(l_k . b)/(i omega - lambda_k)
 
-with right and left vectors r and l, all of them, so that nothing is cut off. Where two modes are nearly one, as beside
+with right and left vectors r and l, all of them, so that nothing is cut off. Where films relax, all frequencies are
+solved directly. Where two modes are nearly one, as beside
 critical damping, the vectors grow and digits are lost: some frequencies are solved directly to see how many.
 """
 
@@ -70,8 +71,8 @@ def checked_response(
     Returns
     -------
     responses : array, shape (frequencies, sensors, inputs)
-        Responses by modes, or by direct solution where the error was above `TOLERANCE`, or a mode lies on the frequency
-        axis.
+        Responses by modes, or by direct solution where the error was above `TOLERANCE`, a mode lies on the frequency
+        axis, or films relax.
     error : float
         Error of the responses, as a part of them or of a millionth of how the whole system moves, whichever is more; 0
         if they were solved directly.
@@ -100,6 +101,9 @@ def _checked(
     frequencies: FloatArray,
 ) -> tuple[ComplexArray, float]:
     """What `checked_response` returns, or numpy's error for a singular system."""
+    if states.films is not None:
+        # A few states stand for the films in the modes, all slices in the direct solution.
+        return frequency_response(balance, inputs, sensors, frequencies), 0.0
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         found = modal_response(balance, states, inputs, sensors, frequencies)
     checked = np.unique(np.linspace(0, frequencies.size - 1, _CHECKED + 2).astype(np.int64))

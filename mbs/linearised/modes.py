@@ -126,9 +126,8 @@ class StateModes:
         """Which do not oscillate and are at least as quick as the slowest film relaxes, shape (N,)."""
         if self.films is None or not self.films.size:
             return np.zeros(self.eigenvalues.shape, dtype=np.bool_)
-        slowest = 1.0 / float(self.films.relaxation.times.max())
         still = np.abs(self.eigenvalues.imag) <= _REAL * np.abs(self.eigenvalues)
-        return np.asarray(still & (self.eigenvalues.real <= -(1.0 - _REAL) * slowest))
+        return np.asarray(still & (self.eigenvalues.real <= -(1.0 - _REAL) / self.films.slowest))
 
     def comparable(self, which: IntArray) -> tuple[ComplexArray, ComplexArray]:
         """Right and left vectors of some modes in a state that is the same at every speed: of all slices of the films.

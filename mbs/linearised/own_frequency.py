@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, ComplexArray
-from mbs.linearised.dynamic import dynamic_slope, dynamic_stiffness, more_of_films
+from mbs.linearised.dynamic import dynamic_slope, dynamic_stiffness, relaxing_elements
 from mbs.linearised.film_states import FilmStates
 from mbs.model.equilibrium import Equilibrium
 
@@ -26,7 +26,6 @@ FARTHEST = 0.05
 
 _CONVERGED = 1e-10
 _STEPS = 20
-_AT_ONCE = 32
 
 
 class Reason(enum.Enum):
@@ -149,11 +148,7 @@ def _first_order(
     balance: Equilibrium, films: FilmStates, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray
 ) -> ComplexArray:
     """First-order change of eigenvalues from the films of a few states to all slices, shape (modes,) [1/s]."""
-    change = np.empty(eigenvalues.size, dtype=np.complex128)
-    weights = np.linalg.solve(balance.system.mass, left.T)
-    for first in range(0, eigenvalues.size, _AT_ONCE):
-        part = slice(first, first + _AT_ONCE)
-        differing = more_of_films(balance, eigenvalues[part]) - films.relaxation.more(eigenvalues[part])
-        moved = np.einsum("kab,bk->ak", differing, right[:, part])
-        change[part] = -np.sum(weights[:, part] * moved, axis=0)
-    return change
+    differing = -films.relaxation.more_of(eigenvalues, right)
+    for transform, relaxation in relaxing_elements(balance):
+        differing = differing + transform.T @ relaxation.more_of(eigenvalues, transform @ right)
+    return np.asarray(-np.sum(np.linalg.solve(balance.system.mass, left.T) * differing, axis=0))

@@ -56,10 +56,50 @@ class Port:
     coordinates: bool = False
 
 
+class Forces(NamedTuple):
+    """What a nonlinear element answers to a motion of its ports.
+
+    Attributes
+    ----------
+    force : array, shape (m,)
+        Generalised force on the `on` side of each port [N or N m]; the `against` side gets the opposite.
+    stiffness, damping : array, shape (m, m)
+        -d force/d displacement and -d force/d velocity.
+    outside : bool
+        Whether a contact was outside its map, in load, speed or temperature, and its law held at the edge; False for
+        an element without a map.
+    """
+
+    force: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    outside: bool = False
+
+
+class Excitation(NamedTuple):
+    """How often an element excites its system, for what follows orders.
+
+    Attributes
+    ----------
+    order : float
+        How often for each turn of the system, > 0.
+    harmonics : int
+        How many multiples are worth following.
+    rank : int
+        Where elements of several ranks are in a system only those of the highest are followed: gear meshes drown the
+        rollers that pass.
+    """
+
+    order: float
+    harmonics: int
+    rank: int
+
+
 class Element(Protocol):
     """A nonlinear element. Its force is linear algebra in its ports; what happens in there is its own.
 
-    An element has every member; a class that inherits from `ElementDefaults` leaves out `outside_calls`.
+    An element has every member; a class that inherits from `ElementDefaults` leaves out what it does not do. Runs in
+    time call it from Python, unless `mbs.transient.kinds` lists it with a block for compiled code.
     """
 
     @property
@@ -73,14 +113,12 @@ class Element(Protocol):
         ...
 
     @property
-    def outside_calls(self) -> int | None:
-        """Calls outside the map so far; None for an element without a map."""
+    def excitation(self) -> Excitation | None:
+        """How often it excites the system; None for an element that does not by itself."""
         ...
 
-    def evaluate(
-        self, displacement: FloatArray, velocity: FloatArray, operation: Operation
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Generalised force on the ports and how it falls with their motion.
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
+        """Generalised force on the ports, how it falls with their motion, and whether it lies outside a map.
 
         Parameters
         ----------
@@ -89,12 +127,10 @@ class Element(Protocol):
         operation : Operation
             Speed, angle and time.
 
-        Returns
-        -------
-        force : array, shape (m,)
-            On the `on` side of each port [N or N m]; the `against` side gets the opposite.
-        stiffness, damping : array, shape (m, m)
-            -d force/d displacement and -d force/d velocity.
+        Raises
+        ------
+        OutsideMapError
+            Outside a map whose law has the policy "error".
         """
         ...
 
@@ -112,11 +148,11 @@ class Element(Protocol):
 
 
 class ElementDefaults:
-    """What an element without a map says of itself, to inherit from."""
+    """What an element says of itself that does not excite the system and does not relax, to inherit from."""
 
     @property
-    def outside_calls(self) -> int | None:
-        """None: there is no map to leave."""
+    def excitation(self) -> Excitation | None:
+        """None: it answers motion only."""
         return None
 
     def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:

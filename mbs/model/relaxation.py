@@ -12,10 +12,17 @@ element takes up energy at every frequency if C is at least the sum of v v' thet
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
+
+Films = Literal["slow", "memory"]
+"""Whether films have stiffness and damping of slow motion at any frequency, or relax."""
+
+DEFAULT_FILMS: Films = "slow"
+"""Which films linear analyses have where none are asked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,12 +43,18 @@ class Relaxation:
     def more(self, s: ComplexArray) -> ComplexArray:
         """What is added to K + s C at complex frequencies s (k,) [1/s], shape (k, m, m)."""
         place = np.multiply.outer(s, self.times)
-        return self._summed(-(place**2) / (1.0 + place))
+        return self._summed(np.asarray(-(place**2) / (1.0 + place), dtype=np.complex128))
+
+    def more_of(self, s: ComplexArray, shapes: ComplexArray) -> ComplexArray:
+        """`more` times a shape (m,) at each frequency s (k,), in columns: shapes (m, k), result (m, k)."""
+        place = np.multiply.outer(self.times, s)
+        return np.asarray(self.rows.T @ (-(place**2) / (1.0 + place) * (self.rows @ shapes)), dtype=np.complex128)
 
     def slope(self, s: ComplexArray) -> ComplexArray:
         """Derivative of `more` by s, shape (k, m, m)."""
         place = np.multiply.outer(s, self.times)
-        return self._summed(-self.times * place * (2.0 + place) / (1.0 + place) ** 2)
+        weights = -self.times * place * (2.0 + place) / (1.0 + place) ** 2
+        return self._summed(np.asarray(weights, dtype=np.complex128))
 
     @property
     def damping(self) -> FloatArray:

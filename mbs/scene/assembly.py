@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import closest
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_element import NO_CENTRIFUGAL, BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import DryLaw, Law
@@ -28,8 +29,12 @@ from mbs.gears.gear import GearMesh, gear_mesh
 from mbs.gears.pair import GearPair
 from mbs.model.body import CENTRE, Body
 from mbs.model.elements import GROUND, Element, Operation
+from mbs.model.relaxation import DEFAULT_FILMS, Films
 from mbs.model.system import System
 from mbs.scene.scene import Scene, SceneBearing
+
+MEMORY_WORDS = "films with memory"
+"""How people are told that films relax in linear analyses."""
 
 _SAME = 1e-9
 _COMPARED = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
@@ -58,6 +63,9 @@ class Model:
         What knows pressures and films of the contacts, by bearing.
     label : str
         The law in two words, as the legend of a figure has it.
+    memory : str
+        Whether films relax in linear analyses, "memory", or have the stiffness and damping of slow motion there,
+        "slow", as laws without films always have.
     """
 
     scene: Scene
@@ -67,16 +75,12 @@ class Model:
     gears: tuple[GearMesh, ...]
     films: Mapping[str, FilmSource]
     label: str
+    memory: Films = "slow"
 
     @property
     def operation(self) -> Operation:
         """The operating speed of the scene, at the start angles of its bearings."""
         return Operation(self.scene.speed)
-
-    @property
-    def outside_calls(self) -> dict[str, int]:
-        """Calls outside the map so far, by element; 0 for one without a map."""
-        return {connected.element.name: connected.element.outside_calls or 0 for connected in self.system.elements}
 
 
 def choose_law(name: str | None, emap: EHDMap | None) -> str:
@@ -96,6 +100,7 @@ def assemble(
     law: str | None = None,
     emap: EHDMap | str | Path | None = None,
     clearance: float | None = None,
+    films: Films | None = None,
 ) -> Model:
     """Make a system from a scene.
 
@@ -109,6 +114,9 @@ def assemble(
         For the law `map`: a map, or the path of its file.
     clearance : float, optional
         Diametral clearance of all bearings [m], in place of the scene's.
+    films : {"slow", "memory"}, optional
+        Whether films have the stiffness and damping of slow motion in linear analyses, or relax there; `DEFAULT_FILMS`
+        of `mbs.model.relaxation` if left out, where the law allows it. Statics and runs in time do not change.
 
     Returns
     -------
@@ -132,7 +140,7 @@ def assemble(
     if isinstance(emap, (str, Path)):
         emap = open_map(emap)
     chosen = choose_law(law, emap)
-    problems = find_problems(scene, law, emap, clearance)
+    problems = find_problems(scene, law, emap, clearance, films)
     if problems:
         raise InputError(problems)
     if clearance is not None:
@@ -140,6 +148,7 @@ def assemble(
             scene, bearings=tuple(_with_clearance(entry, clearance, []) for entry in scene.bearings)
         )
 
+    memory = films or ("slow" if _memory_problems(chosen, scene) else DEFAULT_FILMS)
     made: dict[BearingGeometry, _Laws] = {}
     bearings: list[BearingElement] = []
     elements: list[Element] = []
@@ -160,27 +169,37 @@ def assemble(
             outer_spin=_spin(entry.outer, scene.bodies),
             start_angle=entry.start_angle,
             centrifugal=entry.centrifugal,
+            films="slow" if entry.rollers_as_bodies else memory,
         )
         bearings.append(plain)
         if entry.rollers_as_bodies:
             body = roller_body(f"{entry.name}_rollers", bearing)
             rollers.append(body)
-            elements.append(RollerElement(plain, RollerContacts(bearing, *made[key].single), body.name))
+            elements.append(RollerElement(plain, RollerContacts(bearing, *made[key].single), body.name, memory))
         else:
             elements.append(plain)
     gears = tuple(_meshing(pair, scene.bodies) for pair in scene.gears)
     system = System((*scene.bodies, *rollers), scene.springs, scene.loads, (*elements, *gears))
-    films = {entry.name: _films(chosen, entry.bearing, scene, emap) for entry in bearings}
-    words = _words(chosen, scene, emap)
-    return Model(scene, system, words, tuple(bearings), gears, films, law_label(chosen, emap))
+    sources = {entry.name: _films(chosen, entry.bearing, scene, emap) for entry in bearings}
+    words = _words(chosen, scene, emap) + (f", {MEMORY_WORDS}" if memory == "memory" else "")
+    label = law_label(chosen, emap) + (f", {MEMORY_WORDS}" if memory == "memory" else "")
+    return Model(scene, system, words, tuple(bearings), gears, sources, label, memory)
 
 
 def find_problems(
-    scene: Scene, law: str | None = None, emap: EHDMap | None = None, clearance: float | None = None
+    scene: Scene,
+    law: str | None = None,
+    emap: EHDMap | None = None,
+    clearance: float | None = None,
+    films: str | None = None,
 ) -> list[str]:
     """Everything that does not fit together; arguments as of `assemble`."""
     chosen = choose_law(law, emap)
     problems = _law_problems(chosen, scene, emap)
+    if films not in (None, *get_args(Films)):
+        problems.append(f"--films: got {films!r:.60}; allowed: {', '.join(get_args(Films))}")
+    elif films == "memory":
+        problems += _memory_problems(chosen, scene)
     for entry in scene.bearings:
         if clearance is not None:
             _with_clearance(entry, clearance, problems)
@@ -255,6 +274,16 @@ def _law_problems(chosen: str, scene: Scene, emap: EHDMap | None) -> list[str]:
             "formula, which bring a roller into equilibrium; or centrifugal = false"
         ]
     return []
+
+
+def _memory_problems(chosen: str, scene: Scene) -> list[str]:
+    """Why films cannot relax."""
+    if chosen not in ("map", "formula"):
+        return [
+            f"--films: got 'memory' with the law {chosen!r:.60}; allowed: the laws map and formula, which have films"
+        ]
+    centrifugal = [entry.name for entry in scene.bearings if entry.centrifugal and not entry.rollers_as_bodies]
+    return [f"--films: {NO_CENTRIFUGAL}, in {', '.join(centrifugal)}"] if centrifugal else []
 
 
 def _with_clearance(entry: SceneBearing, clearance: float, problems: list[str]) -> SceneBearing:

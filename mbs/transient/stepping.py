@@ -80,6 +80,8 @@ class Stepper:
         Algorithmic acceleration, which the method carries along.
     iterations : int
         Newton iterations so far.
+    outside : array of int, shape (elements,)
+        How often each element was evaluated outside its map so far.
     """
 
     def __init__(
@@ -106,6 +108,7 @@ class Stepper:
         self._weight = 1.0 / np.sqrt(np.diag(system.mass))
         self.q, self.v = displacement.copy(), velocity.copy()
         self.iterations = 0
+        self.outside = np.zeros(len(self._elements), dtype=np.int64)
         self._residual(self.q, self.v, np.zeros(system.size), 0.0)
         self.acceleration = np.asarray(np.linalg.solve(system.mass, -self._unbalanced), dtype=np.float64)
         self.carried = self.acceleration.copy()
@@ -158,11 +161,13 @@ class Stepper:
             self._linear_steps = (math.nan, math.nan)
         port_motion(self._transform, q, v, self._motion)
         x, rate = self._motion
-        for evaluate, rows in self._elements:
-            f, k, c = evaluate(x[rows], rate[rows], operation)
+        for index, (evaluate, rows) in enumerate(self._elements):
+            f, k, c, outside = evaluate(x[rows], rate[rows], operation)
             self._port_force[rows] = f
             self._port_stiffness[rows, rows] = k
             self._port_damping[rows, rows] = c
+            if outside:
+                self.outside[index] += 1
         matrices = (system.mass, self._damping, system.stiffness, self._transform, self._weight)
         state = (q, v, acceleration)
         sizes: tuple[float, float] = unbalanced(

@@ -29,6 +29,7 @@ def test_thin_film(place: Place) -> None:
     assert not agrees(found), found.row()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", STRESSED, ids=str)
 def test_full_stress(place: Place) -> None:
     """Every point agrees with all stresses too."""
@@ -37,13 +38,14 @@ def test_full_stress(place: Place) -> None:
     assert not agrees(found), found.row()
 
 
+@pytest.mark.slow
 def test_error_estimate_explains_the_film() -> None:
     """What the CFD says of its own grid is what it differs by: a sixth of it at most is left unexplained."""
     left = [
         abs(found.difference("film_offset") - found.cfd.film_offset_error) / abs(found.difference("film_offset"))
         for found in (compare(place, "thin_film") for place in THIN)
     ]
-    assert sorted(left)[len(left) // 2] < 1 / 6
+    assert max(left) < 1 / 6
 
 
 def test_steep_spike_has_no_newtonian_slow_flow() -> None:

@@ -44,6 +44,7 @@ def test_order_of_the_film_along_it(M: float, L: float, flow: Flow) -> None:
     assert _order(*found) > 1.7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quantity", ["film_compliance", "loss_compliance"])
 @pytest.mark.parametrize(("M", "L"), POINTS)
 def test_error_of_the_response_along_the_film(M: float, L: float, quantity: str) -> None:
