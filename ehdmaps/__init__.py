@@ -8,16 +8,17 @@
     law = emap.law("series")
     w, dw_ddelta, dw_drate = law(delta, rate, entrainment_speed, temperature)
 
-=================  =================================================================================
-open_map           a map file, as `EHDMap`
-generate           make a map: of a job file, a shipped job, or a `Job`; `read_job`, `Job.build`
-compare            two maps, as a `Comparison`
-solve              one contact at one operating point, without a map
-solve_points       contacts at many operating points: dataset in, dataset out
-physics types      `BearingGeometry`, `LineContact`, `Material`, `STEEL`, `Lubricant`, `OperatingPoint`,
-                   `ContactSolution`, `Status`
-law                `EHDMap`, `ContactLaw`, `LawAtPoint`
-=================  =================================================================================
+==================  ================================================================================
+open_map            a map file, as `EHDMap`
+generate            make a map: of a job file, a shipped job, or a `Job`; `read_job`, `Job.build`
+compare             two maps, as a `Comparison`
+solve               one contact at one operating point, without a map
+solve_points        contacts at many operating points: dataset in, dataset out
+frequency_response  stiffness and damping of contacts over frequency, as a dataset
+physics types       `BearingGeometry`, `LineContact`, `Material`, `STEEL`, `Lubricant`, `OperatingPoint`,
+                    `ContactSolution`, `Status`
+law                 `EHDMap`, `ContactLaw`, `LawAtPoint`
+==================  ================================================================================
 
 The names are loaded when they are first used, so that importing the package is quick.
 """
@@ -29,7 +30,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     __version__: str
-    from ehdmaps.jobs.calls import compare, generate, solve, solve_points
+    from ehdmaps.jobs.calls import compare, frequency_response, generate, solve, solve_points
     from ehdmaps.jobs.compare import Comparison
     from ehdmaps.jobs.job import Job
     from ehdmaps.jobs.reader import read_job
@@ -57,6 +58,7 @@ __all__ = [
     "OperatingPoint",
     "Status",
     "compare",
+    "frequency_response",
     "generate",
     "open_map",
     "read_job",
@@ -66,6 +68,7 @@ __all__ = [
 
 _HOMES = {
     "compare": "jobs.calls",
+    "frequency_response": "jobs.calls",
     "generate": "jobs.calls",
     "solve": "jobs.calls",
     "solve_points": "jobs.calls",

@@ -12,7 +12,7 @@ import contextlib
 import hashlib
 import os
 import stat
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -200,6 +200,23 @@ def write_figure(figure: Any, path: str | Path, resolution: float) -> None:
     with written_aside(path, FIGURE) as aside:
         ending = aside.suffix.lower()
         figure.savefig(aside, format=ending[1:], dpi=resolution, metadata={_FIGURE_KEYS[ending]: MARK})
+
+
+def cache_folder(name: str, variable: str, environment: Mapping[str, str]) -> Path:
+    """Return the folder in which something is kept that can be made again.
+
+    Parameters
+    ----------
+    name : str
+        Name of the folder in our part of the user's folder for caches, `${XDG_CACHE_HOME:-~/.cache}/ehdmaps`.
+    variable : str
+        Environment variable that names another folder.
+    environment : mapping of str to str
+        The environment.
+    """
+    if own := environment.get(variable):
+        return Path(own).expanduser()
+    return Path(environment.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "ehdmaps" / name
 
 
 def sealed(text: str) -> str:

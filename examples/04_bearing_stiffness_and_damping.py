@@ -25,10 +25,9 @@ grid: Any = {"loads": np.geomspace(1e2, 1e6, 17), "entrainment_speeds": [0.8 * u
 job = ehdmaps.Job.build(bearing=bearing.geometry, lubricant=oil, **grid, solver_options={"density": 4.5})
 emap, loads = ehdmaps.EHDMap(ehdmaps.generate(job)), np.geomspace(500.0, 10e3, 9)
 dry = hertz(bearing), DryContacts(bearing.geometry.contacts(bearing.material, "iso16281"))
-film = emap.law("series", outside="asymptote"), MapFilms(emap)
+laws: dict[str, Any] = {"dry": dry, "film": (emap.law("series", outside="asymptote"), MapFilms(emap))}
 figure, (left, right) = plt.subplots(1, 2, figsize=(7.0, 3.0), layout="constrained")
-pairs: dict[str, Any] = {"dry": dry, "film": film}
-for name, (law, films) in pairs.items():
+for name, (law, films) in laws.items():
     points = [row[0] for row in bearing_points(bearing, law, films, [(0.0, f) for f in loads], [SPEED], T)]
     K, C = np.array([(point.stiffness[1, 1], point.damping[1, 1]) for point in points]).T  # along the load
     left.plot(loads, 1e-6 * K, "--" if name == "dry" else "-")

@@ -10,28 +10,21 @@ import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+import numpy as np
 
+from ehdmaps import BearingGeometry
 from ehdmaps.outputs import write_figure
-from mbs import BearingForce, assemble, modes, parse_scene
+from mbs import BearingForce, BearingSpec, Inertia, Load, RigidSpec, Scene, assemble, modes
 from mbs.analyses.bearing_point import bearing_point
 
-SCENE = """
-schema = 1
-operation = { speed = "500 rpm", temperature = "40 degC" }
-loads = [{ name = "pull", on = "shaft", force = ["0 N", "0 N", "-300 N"] }]
-bearings = [
-    { name = "left", inner = "shaft:left", outer = "ground", geometry = { name = "NU308" } },
-    { name = "right", inner = "shaft:right", outer = "ground", geometry = { name = "NU308" } }]
-[[bodies]]
-name = "shaft"
-freedoms = ["y", "z", "theta_y", "theta_z"]
-position = ["0 mm", "0 mm", "0 mm"]
-spin = 1
-cylinders = [{ from = "-15 cm", to = "15 cm", diameter = "4 cm" }, { from = "-2 cm", to = "2 cm", diameter = "20 cm" }]
-frames = { left = ["-10 cm", "0 cm", "0 cm"], right = ["10 cm", "0 cm", "0 cm"] }
-"""
-model = assemble(parse_scene(SCENE, "disc", "the scene"), clearance=-2e-6)  # preloaded a little
-scene, force, found = model.scene, model.bearings[0].force, modes(model).dataset["frequency"].values
+parts = [Inertia.cylinder(-0.15, 0.15, diameter=0.04), Inertia.cylinder(-0.02, 0.02, diameter=0.2)]  # all in SI
+frames = {"left": (-0.1, 0.0, 0.0), "right": (0.1, 0.0, 0.0)}
+shaft = RigidSpec("shaft", parts, ["y", "z", "theta_y", "theta_z"], frames=frames, spin=1.0)
+pull, nu308 = Load("pull", "shaft", np.array([0.0, 0.0, -300.0, 0.0, 0.0, 0.0])), BearingGeometry.named("NU308")
+bearings = [BearingSpec(side, f"shaft:{side}", "ground", nu308) for side in ("left", "right")]
+scene = Scene(name="disc", speed=52.36, temperature=313.15, bodies=[shaft], loads=[pull], elements=bearings)
+model = assemble(scene, clearance=-2e-6)  # preloaded a little
+force, found = model.bearings[0].force, modes(model).dataset["frequency"].values
 assert isinstance(force, BearingForce)
 one = bearing_point(force, model.films["left"], (0.0, -150.0), scene.speed, scene.temperature)
 expected = math.sqrt(2.0 * one.stiffness[1, 1] / model.system.mass[0, 0]) / (2.0 * math.pi)

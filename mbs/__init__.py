@@ -17,7 +17,7 @@ and of a whole scene::
 What is where, in the order of the data:
 
 ==================  ====================================================================================
-scene file          `scene`: reader -> scene -> assembly
+scene file          `scene`: reader -> specs -> scene -> assembly; `kinds`: the machine elements; `settings`
 the system          `model`: bodies, elements, what is prescribed; the system and its equilibrium
 what bodies are     `flexible` (beams, finite elements, reduction)
 what connects them  `bearings` (the bearing force), `gears`
@@ -51,25 +51,48 @@ if TYPE_CHECKING:
     from mbs.analyses.sweep import SweepSettings, sweep
     from mbs.bearings.bearing import Bearing
     from mbs.bearings.bearing_force import BearingForce
-    from mbs.model.elements import Operation
+    from mbs.flexible.attached import Attached
+    from mbs.flexible.plan import ReductionPlan
+    from mbs.flexible.shaft_parts import Disc, Section
+    from mbs.gears.pair import GearPair
+    from mbs.model.body import Inertia
+    from mbs.model.elements import Input, Load, Operation, Sensor, Spring
+    from mbs.model.profiles import SpeedProfile
     from mbs.scene.assembly import Model, assemble
     from mbs.scene.reader import parse_scene, read_scene, shipped_systems
     from mbs.scene.scene import Scene
-    from mbs.settings import CampbellSettings, RunUp, SweepRange
+    from mbs.scene.specs import BearingSpec, FlexibleSpec, RigidSpec, ShaftSpec
+    from mbs.settings import CampbellSettings, RunUp, Settings, SweepRange
 
 __all__ = [
     "AnalysisError",
+    "Attached",
     "Bearing",
     "BearingForce",
+    "BearingSpec",
     "CampbellSettings",
     "Case",
+    "Disc",
+    "FlexibleSpec",
+    "GearPair",
     "HammerSettings",
+    "Inertia",
+    "Input",
+    "Load",
     "LsaSettings",
     "Model",
     "Operation",
     "PlanSettings",
+    "ReductionPlan",
+    "RigidSpec",
     "RunUp",
     "Scene",
+    "Section",
+    "Sensor",
+    "Settings",
+    "ShaftSpec",
+    "SpeedProfile",
+    "Spring",
     "SweepRange",
     "SweepSettings",
     "assemble",
@@ -87,17 +110,33 @@ __all__ = [
 ]
 
 _HOMES = {
+    "Attached": "flexible.attached",
     "Bearing": "bearings.bearing",
     "BearingForce": "bearings.bearing_force",
+    "BearingSpec": "scene.specs",
     "CampbellSettings": "settings",
     "Case": "analyses.case",
+    "Disc": "flexible.shaft_parts",
+    "FlexibleSpec": "scene.specs",
+    "GearPair": "gears.pair",
     "HammerSettings": "analyses.hammer",
+    "Inertia": "model.body",
+    "Input": "model.elements",
+    "Load": "model.elements",
     "LsaSettings": "analyses.lsa",
     "Model": "scene.assembly",
     "Operation": "model.elements",
     "PlanSettings": "analyses.plan",
+    "ReductionPlan": "flexible.plan",
+    "RigidSpec": "scene.specs",
     "RunUp": "settings",
     "Scene": "scene.scene",
+    "Section": "flexible.shaft_parts",
+    "Sensor": "model.elements",
+    "Settings": "settings",
+    "ShaftSpec": "scene.specs",
+    "SpeedProfile": "model.profiles",
+    "Spring": "model.elements",
     "SweepRange": "settings",
     "SweepSettings": "analyses.sweep",
     "assemble": "scene.assembly",

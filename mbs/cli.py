@@ -14,6 +14,7 @@ from mbs.model.relaxation import DEFAULT_FILMS
 
 _MORE = "; more than once to compare"
 _LAW = "hertz | formula | constant:NAME | map; default: map with --map, else hertz. NAME is a table [laws.NAME]"
+_STRUCTURE = "law of the solids in the contacts of a map: iso16281 | palmgren | half_space; default: that of its job"
 
 
 def parser() -> argparse.ArgumentParser:
@@ -138,6 +139,7 @@ def _bearing(commands: Any) -> None:
     )
     command.add_argument("--temperature", metavar="TEMPERATURE", help='of the oil, such as "60 degC" (40 degC)')
     command.add_argument("--map", metavar="MAP.nc", help="made by `ehdmaps generate` for this bearing")
+    command.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
     command.add_argument("--law", metavar="LAW", help="hertz | formula | map; default: map with --map, else hertz")
     command.add_argument(
         "--oil", metavar="NAME", help="oil without a map: FVA3, Spirax MA 80W; default: the file's, else FVA3"
@@ -215,6 +217,7 @@ def _scene_command(commands: Any, name: str, words: str, compares: bool) -> argp
     command.add_argument(
         "--map", metavar="MAP.nc", action="append", help=f"made by `ehdmaps generate` for the same bearing{more}"
     )
+    command.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
     command.add_argument("--law", metavar="LAW", action="append", help=f"{_LAW}{more}")
     command.add_argument(
         "--clearance",

@@ -1,6 +1,7 @@
 """Settings of all tests, maps that several of them read, and the report of those that take long unmarked."""
 
 import os
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,6 +14,14 @@ from tests.cases.jobs import FINE, WIDE_AXES, map_job
 settings.register_profile("ci", derandomize=True, deadline=None)
 settings.register_profile("developer", deadline=None)
 settings.load_profile("ci" if os.environ.get("CI") else "developer")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def own_reductions() -> Iterator[None]:
+    """Keep reductions of finite-element bodies out of the user's folder, in programs that tests start too."""
+    with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
+        patch.setenv("EHDMAPS_REDUCED", folder)
+        yield
 
 
 QUICK = 5.0

@@ -7,8 +7,11 @@
 | `reynolds` | the discrete equations, their exact Jacobian, and the mass they store |
 | `newton` | damped Newton with the dense Jacobian |
 | `profile` | a converged solution, and how it starts the next one |
-| `linearisation` | stiffness and damping: linear response, on a grid that follows the spike |
+| `linearisation` | the equations to first order, on a grid that follows the spike; response to slow motion |
+| `spectrum` | response at many frequencies from one Krylov space |
 | `line` | the story of one solve: coarse grid, place of the spike, fine grid, response, error estimate |
+| `frequency` | film compliance over frequency, with its error from both grids |
+| `transient` | the film in time under a load that moves: the check of the linear response |
 | `limits` | allowed settings of the solver |
 | `solver` | `ReynoldsSolver`: operating points in SI, one line of loads after another |
 | `start` | what the solution of a point gives to another solver |

@@ -13,7 +13,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid, GridShape, Layout, Spike, lay_out, thick_film_exit, zone_width
-from ehdmaps.ehl.linearisation import Neighbour, Response, film_response
+from ehdmaps.ehl.linearisation import Linearisation, Neighbour, Response, linearised
 from ehdmaps.ehl.newton import CONVERGED, hertz_start, newton
 from ehdmaps.ehl.profile import Profile, films_of, front, front_node, moved, refined
 from ehdmaps.ehl.reynolds import LineProblem
@@ -85,11 +85,12 @@ class GroupSolution:
     """Film of one point in units of b, p_H, b^2/R and b/u, with estimated relative errors.
 
     Those of film offset, film compliance and loss are positive where the value is too large, the others always.
-    `profile` is the fine solution, None where there is none.
+    `profile` is the fine solution and `rough` the coarse one, None where there is none.
     """
 
     outcome: int
     profile: Profile | None
+    rough: Profile | None = None
     film_offset: float = math.nan
     film_compliance: float = math.nan
     loss: float = math.nan
@@ -116,9 +117,8 @@ def solve_groups(
     L: float,
     resolution: Resolution,
     previous: Profile | None = None,
-    frequency: float = 0.0,
 ) -> GroupSolution:
-    """Film and linear response of one point.
+    """Film of one point and its response to slow motion.
 
     Parameters
     ----------
@@ -130,17 +130,15 @@ def solve_groups(
         Accuracy and cost.
     previous : Profile, optional
         Solution at a neighbouring load, a better start than none.
-    frequency : float
-        Omega = omega b/u of the response.
     """
     if _at_valley_bottom(M, L):
         resolution = replace(resolution, density=VALLEY_REFINEMENT * resolution.density)
-    solution = _solve_once(problem, M, L, resolution, previous, frequency)
+    solution = _solve_once(problem, M, L, resolution, previous)
     if solution.outcome == CONVERGED and (solution.loss > 0.0 or M < THIN_FILM):
         return solution
     # a grid too coarse for the inlet of a heavily loaded contact does not converge, or shows a negative loss
     finer = replace(resolution, density=2.0 * resolution.density)
-    again = _solve_once(problem, M, L, finer, solution.profile, frequency)
+    again = _solve_once(problem, M, L, finer, solution.profile)
     steps = solution.steps + again.steps
     return replace(again if again.outcome == CONVERGED else solution, steps=steps)
 
@@ -156,7 +154,6 @@ def _solve_once(
     L: float,
     resolution: Resolution,
     previous: Profile | None,
-    frequency: float,
 ) -> GroupSolution:
     """One solve at one resolution."""
     coarse, steps, outcome = _coarse(problem, M, L, resolution, previous)
@@ -169,8 +166,8 @@ def _solve_once(
     steps += more
     if fine is None:
         return GroupSolution(outcome=outcome, profile=None, steps=steps)
-    response = _response(fine, resolution, frequency)
-    rough = _response(coarse, resolution, frequency)
+    response = linearised_profile(fine, resolution).slow_response()
+    rough = linearised_profile(coarse, resolution).slow_response()
     return _assembled(M, L, fine, coarse, response, rough, resolution, steps)
 
 
@@ -280,8 +277,16 @@ def _with_spike(
     return solution, total, CONVERGED
 
 
-def _response(profile: Profile, resolution: Resolution, frequency: float) -> Response:
-    """Linear response of one profile, its grid following the spike where there is one."""
+def linearised_profile(profile: Profile, resolution: Resolution) -> Linearisation:
+    """The equations to first order about a profile, its grid following the spike where there is one.
+
+    Parameters
+    ----------
+    profile : Profile
+        A converged solution.
+    resolution : Resolution
+        Settings of the solve that gave it.
+    """
     neighbour = None
     spike = profile.spike
     if spike is not None:
@@ -289,7 +294,7 @@ def _response(profile: Profile, resolution: Resolution, frequency: float) -> Res
         moved_spike = Spike(spike.position + shift, spike.width)
         layout = lay_out(profile.layout.film, resolution.inlet_length, resolution.shape, moved_spike)
         neighbour = Neighbour(layout.grid(profile.cells), shift, front_node(profile))
-    return film_response(profile.problem, profile.grid, profile.kernel, profile.unknowns, LOAD, neighbour, frequency)
+    return linearised(profile.problem, profile.grid, profile.kernel, profile.unknowns, LOAD, neighbour)
 
 
 def _assembled(
@@ -303,7 +308,8 @@ def _assembled(
     steps: int,
 ) -> GroupSolution:
     """Numbers and error estimates from the fine and the coarse solution."""
-    by_offset, by_response = _grid_share(M, L, fine.spike is not None)
+    by_offset = _offset_share(M, fine.spike is not None)
+    by_response = response_share(M, L, fine.spike is not None)
     inlet = 1.0 / resolution.inlet_length**2
     central, minimum = films_of(fine)
     central_error, minimum_error = _film_errors(fine, coarse, by_offset)
@@ -316,6 +322,7 @@ def _assembled(
     return GroupSolution(
         outcome=CONVERGED,
         profile=fine,
+        rough=coarse,
         film_offset=fine.film_offset,
         film_compliance=response.compliance,
         loss=response.loss,
@@ -363,18 +370,31 @@ def _peak_error(fine: Profile, coarse: Profile) -> float:
     return 1.5 * between + 1.5 / 15.0 * abs(rough / highest - 1.0 - between)
 
 
-def _grid_share(M: float, L: float, spike: bool) -> tuple[float, float]:
-    """Share of the difference between both grids that is left as error of the finer one: film offset, response.
+FOURTH, SECOND = 1.5 / 15.0, 1.5 / 3.0
+"""Share of the difference between both grids that is left where the order is four or two: 1/(2^p - 1), and half as much
+again for safety."""
 
-    1/(2^p - 1) and half as much again for safety. p = 4; p = 2 where the order is lost: the film offset where a front
-    narrower than a cell carries load, the response at the valley, where it is a small difference of large parts whose
-    errors have either sign. A sharp front (L > 12) leaves the response between the two.
+
+def _offset_share(M: float, spike: bool) -> float:
+    """Share that is left as error of the film offset: p = 4, and 2 where a front narrower than a cell carries load."""
+    return SECOND if spike and M < 20.0 else FOURTH
+
+
+def response_share(M: float, L: float, spike: bool) -> float:
+    """Share of the difference between both grids that is left as error of the response on the finer one.
+
+    p = 4; p = 2 at the valley, where the response is a small difference of large parts whose errors have either sign. A
+    sharp front (L > 12) leaves it between the two.
+
+    Parameters
+    ----------
+    M, L : float
+        Moes' load and lubricant parameters of the point.
+    spike : bool
+        Whether the grid has a spike term.
     """
-    fourth, second = 1.5 / 15.0, 1.5 / 3.0
-    by_offset = second if spike and M < 20.0 else fourth
-    by_response = fourth
     if 0.6 < M < 2.0 or L > 30.0:
-        by_response = 1.0 / 3.0
-    elif (spike and L > 12.0) or 0.2 < M < 0.6:
-        by_response = 1.5 * fourth
-    return by_offset, by_response
+        return 1.0 / 3.0
+    if (spike and L > 12.0) or 0.2 < M < 0.6:
+        return 1.5 * FOURTH
+    return FOURTH

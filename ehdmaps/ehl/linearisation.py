@@ -11,6 +11,8 @@ response does not depend on how the grid moves.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -32,22 +34,101 @@ class Neighbour(NamedTuple):
 
 
 class Response(NamedTuple):
-    """Film compliance a - ln(2)/pi and loss b, dimensionless; at Omega > 0 real part and -imaginary part over Omega."""
+    """Film compliance a - ln(2)/pi and loss b, dimensionless, of slow motion."""
 
     compliance: float
     loss: float
 
 
-def film_response(
+@dataclass(frozen=True)
+class Linearisation:
+    """The transient equations to first order about a steady solution: matrix z + storage(dz/dT) = unit dW.
+
+    Attributes
+    ----------
+    problem : LineProblem
+        Dimensionless groups.
+    grid : Grid
+        The grid of the solution.
+    kernel : ndarray, shape (n + 1, n + 1)
+        Deflection at the nodes by the pressures at the nodes.
+    unknowns : ndarray, shape (n + 2,)
+        Converged unknowns on `grid`.
+    matrix : ndarray, shape (size, size)
+        Derivative of the steady equations; size is n + 2, or n + 3 where the grid follows the spike.
+    grid_mass : ndarray, shape (n + 1,), or None
+        Stored mass per shift of the spike.
+    """
+
+    problem: LineProblem
+    grid: Grid
+    kernel: FloatArray
+    unknowns: FloatArray
+    matrix: FloatArray
+    grid_mass: FloatArray | None
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns, that of the spike's place included."""
+        return int(self.matrix.shape[0])
+
+    @property
+    def height(self) -> int:
+        """Index of H0 among the unknowns, and of the load among the equations."""
+        return self.unknowns.size - 1
+
+    @property
+    def unit(self) -> FloatArray:
+        """Right-hand side of a unit load, shape (size,)."""
+        unit = np.zeros(self.size)
+        unit[self.height] = 1.0
+        return unit
+
+    @cached_property
+    def _carried(self) -> FloatArray:
+        """Mass per length that a face which moves with the exit sweeps."""
+        return stored_mass(self.problem, self.grid.x, self.grid.step, self.kernel, self.unknowns)[1]
+
+    @cached_property
+    def _factors(self) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
+        """Scale of the rows, and LU factors of the scaled matrix."""
+        scale = 1.0 / np.max(np.abs(self.matrix), axis=1)
+        return scale, lu_factor(self.matrix * scale[:, None], overwrite_a=True, check_finite=False)
+
+    def storage(self, rate: FloatArray) -> FloatArray:
+        """What the time derivative adds to the equations for a rate of the unknowns, both of shape (size,)."""
+        size = self.unknowns.size
+        n = size - 2
+        added = np.zeros(self.size)
+        mass_rate = stored_mass_rate(self.problem, self.grid.x, self.grid.step, self.kernel, self.unknowns, rate[:size])
+        mass_rate -= self._carried * rate[n]
+        if self.grid_mass is not None:
+            mass_rate += self.grid_mass * rate[size]
+        added[:n] = -mass_rate[:n]
+        added[n] = mass_rate[n]
+        return added
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Solve matrix z = right, both of shape (size,)."""
+        scale, factors = self._factors
+        return np.asarray(lu_solve(factors, scale * right, check_finite=False))
+
+    def slow_response(self) -> Response:
+        """Film compliance and loss in the limit of slow motion."""
+        static = self.solve(self.unit)
+        slow = self.solve(-self.storage(static))
+        return Response(compliance=-float(static[self.height]) - DRY_COMPLIANCE, loss=float(slow[self.height]))
+
+
+def linearised(
     problem: LineProblem,
     grid: Grid,
     kernel: FloatArray,
     unknowns: FloatArray,
     load: float,
     neighbour: Neighbour | None = None,
-    frequency: float = 0.0,
-) -> Response:
-    """Film and loss compliance at a converged solution.
+) -> Linearisation:
+    """The transient equations to first order about a converged solution.
 
     Parameters
     ----------
@@ -63,11 +144,8 @@ def film_response(
         Integral of the dimensionless pressure.
     neighbour : Neighbour, optional
         Needed where the grid has a spike term: the grid then follows the spike.
-    frequency : float
-        Omega = omega b/u; 0 is the low-frequency limit.
     """
     size = unknowns.size
-    n = size - 2
     total = size + (neighbour is not None)
     matrix = np.zeros((total, total))
     out = np.empty(size)
@@ -79,29 +157,7 @@ def film_response(
         by_grid, grid_mass = _by_grid(problem, grid, kernel, unknowns, load, out, neighbour)
         matrix[:size, size] = by_grid
         matrix[size, neighbour.node - 1] = 1.0
-    unit = np.zeros(total)
-    unit[n + 1] = 1.0
-    _, carried = stored_mass(problem, grid.x, grid.step, kernel, unknowns)
-
-    def storage(rate: FloatArray) -> FloatArray:
-        """What the time derivative adds to the residual for a rate of the unknowns (and of the spike)."""
-        added = np.zeros(total)
-        mass_rate = stored_mass_rate(problem, grid.x, grid.step, kernel, unknowns, rate[:size]) - carried * rate[n]
-        if grid_mass is not None:
-            mass_rate += grid_mass * rate[size]
-        added[:n] = -mass_rate[:n]
-        added[n] = mass_rate[n]
-        return added
-
-    if frequency == 0.0:
-        scale = 1.0 / np.max(np.abs(matrix), axis=1)
-        factors = lu_factor(matrix * scale[:, None], overwrite_a=True, check_finite=False)
-        static = lu_solve(factors, scale * unit, check_finite=False)
-        slow = lu_solve(factors, -scale * storage(static), check_finite=False)
-        return Response(compliance=-float(static[n + 1]) - DRY_COMPLIANCE, loss=float(slow[n + 1]))
-    rates = np.column_stack([storage(column) for column in np.eye(total)])
-    dynamic = np.linalg.solve(matrix + 1j * frequency * rates, unit.astype(complex))[n + 1]
-    return Response(compliance=-float(dynamic.real) - DRY_COMPLIANCE, loss=float(dynamic.imag) / frequency)
+    return Linearisation(problem, grid, kernel, unknowns, matrix, grid_mass)
 
 
 def _by_grid(

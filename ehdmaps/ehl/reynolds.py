@@ -269,6 +269,28 @@ def stored_mass_rate(
 
 
 @njit(cache=True)
+def stored_mass_jacobian(
+    problem: LineProblem, x: FloatArray, step: FloatArray, kernel: FloatArray, unknowns: FloatArray
+) -> FloatArray:
+    """Derivative of `stored_mass`[0] by the unknowns, shape (n + 1, n + 2), on a grid that moves with the exit."""
+    n = x.size - 1
+    pressure = node_pressure(unknowns)
+    log_eta, slope, rho, rho_slope = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
+    oil(problem, pressure, log_eta, slope, rho, rho_slope)
+    gap = film(x, kernel, unknowns)
+    weight = rho * step
+    by_unknowns = np.empty((n + 1, n + 2))
+    for j in range(1, n):
+        column = -weight * kernel[:, j]
+        column[j] += step[j] * rho_slope[j] * gap[j]
+        by_unknowns[:, j - 1] = _accumulate(column)
+    by_unknowns[:, n - 1] = 0.0
+    by_unknowns[:, n] = _accumulate(weight * (unknowns[n] + x))
+    by_unknowns[:, n + 1] = _accumulate(weight)
+    return by_unknowns
+
+
+@njit(cache=True)
 def _accumulate(density: FloatArray) -> FloatArray:
     """Minus the integral over s from each face (and from the exit: 0) to the exit; fourth order inside.
 

@@ -9,6 +9,8 @@ import math
 import time
 from dataclasses import dataclass
 
+from ehdmaps.arrays import FloatArray
+from ehdmaps.ehl.frequency import group_spectrum
 from ehdmaps.ehl.grid import GridShape
 from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.ehl.line import GroupSolution, Resolution, solve_groups
@@ -22,7 +24,14 @@ from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status
+from ehdmaps.physics.solution import (
+    ContactSolverDefaults,
+    FilmSolution,
+    FilmSpectrum,
+    Status,
+    no_spectrum,
+    slow_spectrum,
+)
 
 HEAVIEST_LOAD_NUMBER = 2e6
 """Moes' M above which the film is too thin for double precision to see it beside the elastic deflection."""
@@ -98,7 +107,6 @@ class ReynoldsSolver(ContactSolverDefaults):
         loads: tuple[float, ...],
         entrainment_speed: float,
         temperature: float,
-        frequency: float = 0.0,
     ) -> tuple[FilmSolution, ...]:
         """Films at each load, each from the one before it; arguments as of `ContactSolver.solve_line`."""
         state = lubricant.at(temperature)
@@ -106,38 +114,50 @@ class ReynoldsSolver(ContactSolverDefaults):
         previous: Profile | None = None
         for load in loads:
             OperatingPoint(load, entrainment_speed, temperature)
-            film, previous = self._solve(contact, state, load, entrainment_speed, frequency, previous)
+            film, groups = self._solve(contact, state, OperatingPoint(load, entrainment_speed, temperature), previous)
             films.append(film)
+            previous = previous if groups is None else groups.profile
         return tuple(films)
 
+    def film_spectrum(
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: FloatArray
+    ) -> FilmSpectrum:
+        """Film of one point over frequency, from one solution; arguments as of `ContactSolver.film_spectrum`."""
+        state = lubricant.at(point.temperature)
+        film, groups = self._solve(contact, state, point, None)
+        if not film.status.usable:
+            return no_spectrum(film, frequencies)
+        if groups is None:
+            return slow_spectrum(film, frequencies)
+        load, speed = point.load, point.entrainment_speed
+        _, M, L = line_problem(contact, state, load, speed)
+        half = float(half_width(load, contact.radius, contact.reduced_modulus))
+        found = group_spectrum(M, L, groups, self.resolution, 2.0 * math.pi * frequencies * half / speed)
+        unit = 4.0 / contact.reduced_modulus  # b/(p_H R)
+        return FilmSpectrum(film, frequencies, unit * found.compliance, unit * found.errors)
+
     def _solve(
-        self,
-        contact: LineContact,
-        state: LubricantState,
-        load: float,
-        speed: float,
-        frequency: float,
-        previous: Profile | None,
-    ) -> tuple[FilmSolution, Profile | None]:
-        """One point, and its profile for the next one."""
+        self, contact: LineContact, state: LubricantState, point: OperatingPoint, previous: Profile | None
+    ) -> tuple[FilmSolution, GroupSolution | None]:
+        """One point, and its solution in groups where it was solved."""
+        load, speed = point.load, point.entrainment_speed
         peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
         if speed == 0.0:
-            return dry_film(peak, "no entrainment: dry contact"), previous
+            return dry_film(peak, "no entrainment: dry contact"), None
         problem, M, L = line_problem(contact, state, load, speed)
         beyond = _beyond_reach(peak, M, L)
         if beyond:
-            return FilmSolution(Status.OUTSIDE_VALIDITY, beyond), previous
+            return FilmSolution(Status.OUTSIDE_VALIDITY, beyond), None
         started = time.perf_counter()
-        half = float(half_width(load, contact.radius, contact.reduced_modulus))
-        omega = 2.0 * math.pi * frequency * half / speed
-        groups = solve_groups(problem, M, L, self.resolution, previous, omega)
+        groups = solve_groups(problem, M, L, self.resolution, previous)
         seconds = time.perf_counter() - started
         if groups.outcome != CONVERGED:
             word = "diverged" if groups.outcome == DIVERGED else "stagnated"
             status = Status.DIVERGED if groups.outcome == DIVERGED else Status.STAGNATED
             reason = f"Newton {word} at M = {M:.4g}, L = {L:.4g} on every grid tried"
-            return FilmSolution(status, reason, iterations=groups.steps, solve_seconds=seconds), None
-        return _in_si(groups, contact, state, half, peak, speed, seconds), groups.profile
+            return FilmSolution(status, reason, iterations=groups.steps, solve_seconds=seconds), groups
+        half = float(half_width(load, contact.radius, contact.reduced_modulus))
+        return _in_si(groups, contact, state, half, peak, speed, seconds), groups
 
 
 def line_problem(

@@ -26,8 +26,11 @@ progress     a bar on a terminal, lines elsewhere
 status       how far a map is, for others to look at while it is made
 report       statuses by cause and error estimates, for the next two
 summary      what happened, in words
+opening      the map of a command, by the structural law that it names
 describe     what a map file holds, in words
 plot         what a map file holds, on one page
+plot_curves  one panel of that page
+plot_curves  one panel of that page
 film_output  files with the film itself, beside the numbers of one point
 film_plot    pressure, film and velocities of one point, on one page
 compare      differences between two maps

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
 import platform
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
@@ -12,16 +11,16 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from ehdmaps.arrays import BoolArray
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.jobs.holes import filled, isolated_holes
 from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask, solver_version
 from ehdmaps.maps import schema
+from ehdmaps.maps.records import contacts_json
+from ehdmaps.maps.structure import derived
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.solids import STEEL
-from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
+from ehdmaps.physics.solution import ContactSolver, Status
 from ehdmaps.version import version
 
 _PACKAGES = ("ehdmaps", "numpy", "scipy", "numba", "xarray", "netCDF4", "PyFoam")
@@ -35,10 +34,6 @@ _FILLED_FIELDS = (
 )
 _ALWAYS = ("status", "reason", "iterations", "solve_seconds", "viscosity_extrapolated")
 """Fields of a film that a hole keeps."""
-
-_CONTACT_FIELDS = tuple(
-    field.name for field in dataclasses.fields(ContactSolution) if field.name in {v.name for v in schema.VARIABLES}
-)
 
 
 def assemble(job: Job, solver: ContactSolver, tasks: Sequence[LineTask], results: Mapping[str, Arrays]) -> xr.Dataset:
@@ -64,7 +59,7 @@ def assemble(job: Job, solver: ContactSolver, tasks: Sequence[LineTask], results
     holes_filled = np.zeros(job.shape, dtype=bool)
     if job.fill == "neighbours":
         films, holes_filled = _fill(job, films)
-    values = _with_structure(job, films)
+    values = with_structure(films, job.contacts, np.array(job.loads)[:, None, None])
     values["filled"] = holes_filled.astype(np.int8)
     coordinates = {
         "contact": [contact.name for contact in job.contacts],
@@ -110,46 +105,31 @@ def _fill(job: Job, films: dict[str, npt.NDArray[Any]]) -> tuple[dict[str, npt.N
     return result, along_load | along_speed
 
 
-def _with_structure(job: Job, films: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
-    """Add the structural part to the films of a job."""
-
-    def at(index: tuple[int, ...]) -> tuple[LineContact, OperatingPoint]:
-        contact, load, speed, temperature = index
-        point = OperatingPoint(job.loads[load], job.entrainment_speeds[speed], job.temperatures[temperature])
-        return job.contacts[contact], point
-
-    return with_structure(films, at)
-
-
 def with_structure(
-    films: Mapping[str, npt.NDArray[Any]], at: Callable[[tuple[int, ...]], tuple[LineContact, OperatingPoint]]
+    films: Mapping[str, npt.NDArray[Any]], contacts: Sequence[LineContact], loads: FloatArray
 ) -> dict[str, npt.NDArray[Any]]:
-    """Add the structural part, point by point, by the one function that defines it.
+    """Add the structural part to films.
 
     Parameters
     ----------
-    films : mapping
-        Arrays of one shape by the names of `FilmSolution`.
-    at : callable
-        Gives the contact and the operating point of an index.
+    films : mapping of str to array (contacts, ...)
+        Arrays by the names of `FilmSolution`.
+    contacts : sequence of LineContact
+        The contacts.
+    loads : array
+        w [N/m], that broadcasts to the films of one contact.
 
     Returns
     -------
     dict
         Arrays of that shape by the names of the map's variables.
     """
-    shape = films["status"].shape
-    values: dict[str, npt.NDArray[Any]] = {
-        name: np.empty(shape, dtype=films[name].dtype if name in films else np.float64) for name in _CONTACT_FIELDS
-    }
-    names = tuple(films)
-    for index in np.ndindex(shape):
-        film: dict[str, Any] = {name: films[name][index] for name in names}
-        film["status"] = Status(int(film["status"]))
-        solution = contact_solution(FilmSolution(**film), *at(index))
-        for name, array in values.items():
-            array[index] = getattr(solution, name)
-    return values
+    values = dict(films) | derived(contacts, loads, films)
+    # As in `ContactSolution`: of the signs only that of the loss against the film compliance is kept.
+    values["loss_compliance_error"] = films["loss_compliance_error"] * np.copysign(1.0, films["film_compliance_error"])
+    for name in ("film_offset_error", "film_compliance_error"):
+        values[name] = np.abs(films[name])
+    return {entry.name: values[entry.name] for entry in schema.table() if entry.name in values}
 
 
 def _attributes(job: Job, solver: ContactSolver) -> dict[str, Any]:
@@ -166,23 +146,15 @@ def _attributes(job: Job, solver: ContactSolver) -> dict[str, Any]:
         "solver_version": solver_version(solver),
         **solver.provenance,
         "structural_law": job.contacts[0].structural_law,
-        "structural_scaling": _structural_scaling(job.contacts[0]),
+        "structural_scaling": job.contacts[0].structural_scaling,
         "fill": job.fill,
-        "contacts": record_json([dataclasses.asdict(contact) for contact in job.contacts]),
+        "contacts": contacts_json(job.contacts),
         "geometry": record_json(job.bearing.record() if job.bearing else None),
         "lubricant": record_json(job.lubricant.record()),
         "lubricant_verified": int(job.lubricant.verified),
         "package_versions": record_json(package_versions()),
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
     }
-
-
-def _structural_scaling(contact: LineContact) -> float:
-    """Return the factor on steel's structural approach; 1 for half_space, which knows the material."""
-    if contact.structural_law == "half_space":
-        return 1.0
-    load = 1e5  # any: the laws are power laws of the load
-    return contact.structural_approach(load) / dataclasses.replace(contact, material=STEEL).structural_approach(load)
 
 
 def package_versions() -> dict[str, str]:

@@ -1,4 +1,6 @@
-"""What the commands do, as functions of Python: `ehdmaps.generate`, `compare`, `solve` and `solve_points`."""
+"""What the commands do, as functions of Python: `ehdmaps.generate`, `compare`, `solve`, `solve_points`,
+`frequency_response`.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +9,7 @@ from collections.abc import Callable, Sequence
 from os import PathLike, fspath
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 
 from ehdmaps.errors import InputError
@@ -16,6 +19,7 @@ from ehdmaps.jobs import points as many
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.reader import read_job
+from ehdmaps.jobs.spectrum import spectrum_dataset
 from ehdmaps.jobs.sweep import Progress
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.outputs import MAP, Output, check_outputs
@@ -190,6 +194,47 @@ def solve_points(
     """
     contacts = (contact,) if isinstance(contact, LineContact) else tuple(contact)
     return many.solve_points(contacts, lubricant, points, _solver(solver), workers)
+
+
+def frequency_response(
+    contact: LineContact | Sequence[LineContact],
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    frequencies: Sequence[float] | np.ndarray,
+    solver: str | ContactSolver = "reynolds",
+) -> xr.Dataset:
+    """Response of one contact or several to a small oscillation, at many frequencies from one solution.
+
+    Parameters
+    ----------
+    contact : LineContact or sequence of LineContact
+        The contacts; `BearingGeometry.contacts` gives those of a bearing.
+    lubricant : Lubricant
+        The oil.
+    point : OperatingPoint
+        Load, entrainment speed and temperature.
+    frequencies : sequence of float or ndarray, shape (k,)
+        [Hz], > 0.
+    solver : str or ContactSolver
+        Name of a solver with its default settings, or a solver. Films of "hertz" and "formula" have no memory: the same
+        film compliance and loss compliance at each frequency.
+
+    Returns
+    -------
+    xarray.Dataset
+        Response over contact and frequency, per unit length: `dynamic_stiffness` K = k + i omega c of film and solids,
+        complex [N/m2], its parts `stiffness` [N/m2] and `damping` [N s/m2], `film_compliance` S, complex [m2/N], and
+        `film_stiffness` 1/S, complex [N/m2], with 1/K = d(delta_el)/dw + S; estimated relative numerical errors;
+        `omega_b_over_u`. Over contact: `slow_stiffness` and `slow_damping`, which a map has, `status` and `reason`. A
+        contact without a solution has NaN.
+
+    Raises
+    ------
+    InputError
+        For frequencies that are not allowed, and for a solver that does not exist or lacks a member of `ContactSolver`.
+    """
+    contacts = (contact,) if isinstance(contact, LineContact) else tuple(contact)
+    return spectrum_dataset(contacts, lubricant, point, frequencies, _solver(solver))
 
 
 def _solver(solver: str | ContactSolver) -> ContactSolver:

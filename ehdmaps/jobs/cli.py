@@ -12,6 +12,8 @@ from ehdmaps.program import Parser, run
 _KEEP = "openfoam: keep the case folders of all runs; default folder: ehdmaps-cases"
 _SOLVER = "hertz | formula | reynolds | openfoam; instead of the job's, with its default settings"
 
+_STRUCTURE = "law of the solids in approach, k and c: iso16281 | palmgren | half_space; default: that of the job"
+
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
@@ -45,10 +47,12 @@ def parser() -> argparse.ArgumentParser:
 
     show = commands.add_parser("show", help="what a map holds")
     show.add_argument("map", metavar="MAP.nc")
+    show.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
 
     plot = commands.add_parser("plot", help="stiffness, damping and films on one page")
     plot.add_argument("map", metavar="MAP.nc")
     plot.add_argument("-o", "--output", metavar="FIG.png", help="default: the map's name with .png; also .pdf, .svg")
+    plot.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
 
     solve = commands.add_parser("solve", help="one operating point, as a table")
     solve.add_argument("job", metavar="JOB")
@@ -59,6 +63,12 @@ def parser() -> argparse.ArgumentParser:
     )
     solve.add_argument("--temperature", required=True, help='of the oil, such as "40 degC"')
     solve.add_argument("--frequency", help='of small oscillations, such as "1 kHz"; default: the low-frequency limit')
+    solve.add_argument(
+        "--frequencies",
+        nargs=3,
+        metavar=("FROM", "TO", "POINTS"),
+        help='response at many frequencies, spaced logarithmically: "10 Hz" "20 kHz" 60; with --plot as a picture',
+    )
     solve.add_argument("--solver", metavar="NAME", help=_SOLVER)
     solve.add_argument("--json", action="store_true", help="one object a contact, SI, per unit length")
     solve.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
@@ -66,7 +76,9 @@ def parser() -> argparse.ArgumentParser:
         "--fields", metavar="FILE", help="openfoam: fields of the film as .vtu or .xdmf, a file a contact"
     )
     solve.add_argument(
-        "--plot", metavar="FIG.png", help="openfoam: pressure, film and velocity profiles; also .pdf, .svg"
+        "--plot",
+        metavar="FIG.png",
+        help="with --frequencies: complex stiffness; else openfoam: pressure, film and velocity; also .pdf, .svg",
     )
 
     export = commands.add_parser("export", help="curves over load as a table (csv)")
@@ -78,6 +90,7 @@ def parser() -> argparse.ArgumentParser:
         "--contact", metavar="NAME", help="series | inner | outer | line; default: series, of a bare contact line"
     )
     export.add_argument("--points", metavar="N", type=_workers, default=200, help="loads of a curve; default: 200")
+    export.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
 
     compare = commands.add_parser("compare", help="differences between two maps")
     compare.add_argument("first", metavar="A.nc")

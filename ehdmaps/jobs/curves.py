@@ -10,7 +10,6 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
-from ehdmaps.maps.usable import check_backbone
 from ehdmaps.physics.contact import LineContact
 
 
@@ -40,7 +39,6 @@ def law_field(emap: EHDMap) -> FilmField | None:
     if emap.backbone is None:
         return None
     try:
-        check_backbone(emap.backbone)
         return emap.film_field()
     except MapError:
         return None

@@ -11,7 +11,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.jobs.curves import curves
 from ehdmaps.jobs.report import plain
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.usable import check_backbone, check_usable
+from ehdmaps.maps.usable import check_grid
 from ehdmaps.outputs import MARK
 
 COLUMNS = (
@@ -71,16 +71,15 @@ def _lines(emap: EHDMap, chosen: Chosen, name: str) -> Iterator[str]:
     """Yield comment, header and rows."""
     names = ("inner", "outer") if chosen.contact == "series" else (chosen.contact,)
     contacts = tuple(contact for contact in emap.contacts if contact.name in names)
-    check_usable(emap.dataset, names)
-    if emap.backbone is not None:
-        check_backbone(emap.backbone)
     field = emap.film_field(names)
+    films = FILMS if len(contacts) == 1 else ()
+    if films:
+        check_grid(emap.dataset, contacts)
     axis = emap.dataset["load"].values
     loads = np.geomspace(axis[0], axis[-1], chosen.points if axis.size > 1 else 1)
     title = plain(emap.dataset.attrs.get("title", "EHD map")).replace('"', "'")
     of = "inner and outer contact in series" if chosen.contact == "series" else f"{chosen.contact} contact"
     yield f"# {MARK}: {plain(name)}, {title}; {of}, per unit length of contact; films of the contact laws"
-    films = FILMS if len(contacts) == 1 else ()
     yield ",".join([*COLUMNS, *(f"{film} [m]" for film in films)])
     for temperature in chosen.temperatures:
         for speed in chosen.speeds:

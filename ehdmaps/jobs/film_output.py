@@ -31,9 +31,7 @@ class FilmOutputs:
     fields: Path | None
     plot: Path | None
 
-    def solve(
-        self, solver: ContactSolver, job: Job, point: OperatingPoint, frequency: float
-    ) -> tuple[list[FilmSolution], list[str]]:
+    def solve(self, solver: ContactSolver, job: Job, point: OperatingPoint) -> tuple[list[FilmSolution], list[str]]:
         """Solve a point for every contact and write the files.
 
         Parameters
@@ -44,8 +42,6 @@ class FilmOutputs:
             The job.
         point : OperatingPoint
             Load, speed and temperature.
-        frequency : float
-            Frequency of the oscillation [Hz]; 0 is the low-frequency limit.
 
         Returns
         -------
@@ -63,7 +59,7 @@ class FilmOutputs:
         rows: list[FilmRow] = []
         written: list[str] = []
         for contact in job.contacts:
-            film, grid = solver.solve_fields(contact, job.lubricant, point, frequency, with_fields=True)
+            film, grid = solver.solve_fields(contact, job.lubricant, point, with_fields=True)
             films.append(film)
             if grid is None or grid.fields is None:
                 written.append(f"{contact.name}: {film.status.word}, no film to write")
@@ -106,8 +102,8 @@ def film_outputs(job: Job, fields: str | None, plot: str | None, read: str) -> F
         the file of the job.
     """
     problems = [
-        f"{option}: the solver {job.solver!r} has no fields across the film; allowed: with --solver openfoam"
-        for option, name in (("--fields", fields), ("--plot", plot))
+        f"{option}: the solver {job.solver!r} has no fields across the film; allowed: with --solver openfoam{also}"
+        for option, name, also in (("--fields", fields, ""), ("--plot", plot, ", or --frequencies beside it"))
         if name is not None and not solvers.SOLVERS[job.solver].keeps_cases
     ]
     files = [Output("--plot", plot, FIGURE)]

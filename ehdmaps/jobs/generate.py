@@ -84,7 +84,7 @@ def generate(
         result = sweep(everything, store, processes, told, [status])
         status.write()
         dataset, group = _finished(planned, result, str(output))
-        write_map(dataset, output, {schema.BACKBONE_GROUP: group} if group is not None else None)
+        write_map(dataset, output, {schema.BACKBONE: group} if group is not None else None)
     return Generated(dataset, group, result)
 
 

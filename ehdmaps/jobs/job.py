@@ -160,12 +160,7 @@ class Job:
             },
         )
         job = parse_job(text, name, "Job.build")
-        lost = _differing(lubricant.record(), job.lubricant.record())
-        if lost:
-            raise InputError(
-                f"Job.build, lubricant: {', '.join(lost)} of {lubricant.name!r} cannot be said in a job file; allowed: "
-                "a named oil, or one made by Lubricant.barus, roelands or fva3"
-            )
+        check_oil(lubricant, job, "Job.build, ")
         return job
 
     @property
@@ -189,6 +184,31 @@ class Job:
         if self.bearing is None:
             return f"line contact R = {self.contacts[0].radius * 1e3:.4g} mm"
         return self.bearing.title
+
+
+def check_oil(oil: Lubricant, job: Job, where: str = "") -> None:
+    """Make sure that a job that was written for an oil has this oil.
+
+    Parameters
+    ----------
+    oil : Lubricant
+        The oil that was meant.
+    job : Job
+        The job, read back from its text.
+    where : str
+        What the message begins with.
+
+    Raises
+    ------
+    InputError
+        With what of the oil a job file cannot say.
+    """
+    lost = _differing(oil.record(), job.lubricant.record())
+    if lost:
+        raise InputError(
+            f"{where}lubricant: {', '.join(lost)} of {oil.name!r} cannot be said in a job file; allowed: a named oil, "
+            "or one made by Lubricant.barus, roelands, fva3 or own"
+        )
 
 
 _NAMES = ("name", "label", "verified")

@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
-from ehdmaps.physics.catalogue import estimate
+from ehdmaps.physics.catalogue import estimate, estimate_from_dimensions, static_rating
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
+from ehdmaps.physics.pressure_viscosity import PRESSURE_LAWS
 from ehdmaps.physics.solids import Material
+from ehdmaps.units import quantity
 
 Entry = str | int | float | bool
+BearingKeys = dict[str, Entry | Mapping[str, str]]
 
 _BEARING_LENGTHS = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
+_NAMED_SIZES = re.compile(r"bearing (\S+) x (\S+) x (\S+) mm")
+"""Name of a bearing that was estimated from dimensions."""
+
 _OIL_UNITS = {
     "viscosity": "Pa s",
     "viscosity_40": "m^2/s",
@@ -52,18 +59,21 @@ def job_text(
     Raises
     ------
     InputError
-        For an estimated bearing whose designation is not known.
+        For an estimated bearing, see `bearing_keys`.
     """
-    name, keys = ("contact", _contact(solids)) if isinstance(solids, LineContact) else ("bearing", _bearing(solids))
     loads, speeds, temperatures = axes
-    tables: dict[str, dict[str, Entry | list[str]]] = {
-        name: dict(keys),
+    tables: dict[str, Mapping[str, Entry | Sequence[str] | Mapping[str, str]]] = {}
+    if isinstance(solids, LineContact):
+        tables["contact"] = dict(_contact(solids))
+    else:
+        tables["bearing"] = bearing_keys(solids)
+    tables |= {
         "material": {
             "youngs_modulus": _quantity(material.youngs_modulus, "Pa"),
             "poisson_ratio": material.poisson_ratio,
             "density": _quantity(material.density, "kg/m^3"),
         },
-        "lubricant": dict(_lubricant(lubricant)),
+        "lubricant": lubricant_keys(lubricant),
         "grid": {
             "load": [_quantity(value, "N/m") for value in loads],
             "entrainment_speed": [_quantity(value, "m/s") for value in speeds],
@@ -73,13 +83,29 @@ def job_text(
     }
     lines = ["schema = 1"]
     for name, table in tables.items():
-        lines += ["", f"[{name}]", *(f"{key} = {_toml(value)}" for key, value in table.items())]
+        lines += table_lines(name, table)
     return "\n".join(lines) + "\n"
+
+
+def table_lines(name: str, table: Mapping[str, Entry | Sequence[str] | Mapping[str, str]]) -> list[str]:
+    """Return the lines of a table, with an empty one before it.
+
+    Parameters
+    ----------
+    name : str
+        Name of the table.
+    table : mapping
+        Keys with their values.
+    """
+    return ["", f"[{name}]", *(f"{key} = {_toml(value)}" for key, value in table.items())]
 
 
 def _toml(value: object) -> str:
     """Return a value as TOML; its basic strings, numbers, switches and lists of strings are those of JSON."""
-    return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(f'{key} = {_toml(entry)}' for key, entry in value.items())} }}"
+    # JSON escapes all that TOML wants escaped, but for this one.
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _quantity(value: float, unit: str) -> str:
@@ -93,30 +119,58 @@ def _label(label: str | None) -> Iterator[tuple[str, Entry]]:
         yield "label", label
 
 
-def _bearing(geometry: BearingGeometry) -> Iterator[tuple[str, Entry]]:
-    """Yield the keys of [bearing]."""
+def bearing_keys(geometry: BearingGeometry) -> BearingKeys:
+    """Return the keys of [bearing].
+
+    Parameters
+    ----------
+    geometry : BearingGeometry
+        A named bearing, one by dimensions, or an estimated one.
+
+    Raises
+    ------
+    InputError
+        For an estimated bearing that is not what a designation, or dimensions and a rating, give.
+    """
     plain = replace(geometry, diametral_clearance=0.0)
-    yield from _label(geometry.label)
     if plain == BEARINGS.get(geometry.name):
-        yield "name", geometry.name
+        keys: BearingKeys = {"name": geometry.name}
     elif geometry.estimated is None:
-        for key in _BEARING_LENGTHS:
-            yield key, _quantity(getattr(geometry, key), "m")
-        yield "rollers", geometry.rollers
-    elif _is_estimate(plain):
-        yield "estimate", geometry.name
+        keys = {key: _quantity(getattr(geometry, key), "m") for key in _BEARING_LENGTHS}
+        keys["rollers"] = geometry.rollers
     else:
-        raise InputError(
-            f"bearing: got {geometry.name!r}, estimated from more than its designation; allowed: a bearing of known "
-            "geometry, or one estimated by its designation; write a job file with estimate for this one"
-        )
-    yield "diametral_clearance", _quantity(geometry.diametral_clearance, "m")
+        keys = _estimate_keys(plain)
+    keys["diametral_clearance"] = _quantity(geometry.diametral_clearance, "m")
+    return dict(_label(geometry.label)) | keys
 
 
-def _is_estimate(plain: BearingGeometry) -> bool:
-    """Whether a bearing is what its designation alone gives."""
+def _estimate_keys(plain: BearingGeometry) -> BearingKeys:
+    """Return the keys of an estimated bearing, found back from its name and its rollers, and tried."""
+    # The static rating is what gave the roller length; a rating is not stated to more than nine digits.
+    rating = float(f"{static_rating(plain):.9g}")
+    sizes = _NAMED_SIZES.fullmatch(plain.name)
+    found: BearingKeys = {"basic_static_rating": _quantity(rating, "N")}
+    if sizes:
+        bore, outside, width = (quantity(f"{size} mm", "m") for size in sizes.groups())
+        found["estimate"] = {
+            key: f"{size} mm" for key, size in zip(("bore", "outside_diameter", "width"), sizes.groups(), strict=True)
+        }
+        if _gives(plain, lambda: estimate_from_dimensions(bore, outside, width, rating)):
+            return found
+    elif _gives(plain, lambda: estimate(plain.name)):
+        return {"estimate": plain.name}
+    elif _gives(plain, lambda: estimate(plain.name, rating)):
+        return {**found, "estimate": plain.name}
+    raise InputError(
+        f"bearing: got {plain.name!r}, estimated from more than its designation, or dimensions, and its static rating; "
+        "allowed: a bearing of known geometry, or one estimated from these; write a job file with estimate for this one"
+    )
+
+
+def _gives(plain: BearingGeometry, make: Callable[[], BearingGeometry]) -> bool:
+    """Whether an estimate is this bearing."""
     try:
-        return estimate(plain.name) == plain
+        return make() == plain
     except InputError:
         return False
 
@@ -127,6 +181,17 @@ def _contact(contact: LineContact) -> Iterator[tuple[str, Entry]]:
     for key, value in (("reference_depth", contact.reference_depth), ("roller_length", contact.roller_length)):
         if value is not None:
             yield key, _quantity(value, "m")
+
+
+def lubricant_keys(oil: Lubricant) -> dict[str, Entry]:
+    """Return the keys of [lubricant]: the name of a known oil, or the data of an own one.
+
+    Parameters
+    ----------
+    oil : Lubricant
+        The oil. What a job file cannot say of it is left out, see `ehdmaps.jobs.job.check_oil`.
+    """
+    return dict(_lubricant(oil))
 
 
 def _lubricant(oil: Lubricant) -> Iterator[tuple[str, Entry]]:
@@ -141,8 +206,10 @@ def _lubricant(oil: Lubricant) -> Iterator[tuple[str, Entry]]:
     yield "density_law", oil.density_law
     if oil.correlation is not None:
         yield "pressure_viscosity", oil.correlation
-    if "roelands_z" in record:
-        yield "roelands_z", float(record["roelands_z"])
+    for parameter in PRESSURE_LAWS[str(record["viscosity_law"])].parameters:
+        if parameter.key in record:
+            value = float(record[parameter.key])
+            yield parameter.key, _quantity(value, parameter.unit) if parameter.unit else value
     for key, unit in _OIL_UNITS.items():
         if key in record and not (oil.correlation and key.startswith("pressure_viscosity")):
             yield from _oil_quantity(key, float(record[key]), unit)

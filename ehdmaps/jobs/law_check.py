@@ -193,7 +193,7 @@ def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> FloatArra
     _, stiffness, damping = law(approach, 0.0, speed, temperature)
     solved_k = np.array([one.stiffness for one in fresh])
     solved_c = np.maximum([one.damping for one in fresh], 0.0)
-    compliance = 1.0 / solved_k - dry
+    compliance = np.array([one.film_compliance for one in fresh])
     wrong = np.abs(1.0 / stiffness - 1.0 / solved_k)
     wrong_c = np.abs(damping - solved_c)
     relative = wrong / np.maximum(np.abs(compliance), 1e-300)

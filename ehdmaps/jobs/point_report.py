@@ -13,18 +13,21 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.solution import ContactSolution, FilmSolution, contact_solution
+from ehdmaps.physics.solution import ContactSolution
 from ehdmaps.units import FILM, LENGTH, LOAD, PRESSURE, RPM, TEMPERATURE, Display
 
 _SOLUTION_FIELDS = (
     "approach",
     "film_offset",
+    "film_compliance",
+    "loss_compliance",
     "stiffness",
     "damping",
     "central_film",
     "minimum_film",
     "max_pressure",
     *ERRORS,
+    "loss_compliance_error",
     "iterations",
     "solve_seconds",
     "viscosity_extrapolated",
@@ -32,14 +35,14 @@ _SOLUTION_FIELDS = (
 
 
 def point_record(
-    film: FilmSolution, contact: LineContact, oil: Lubricant, point: OperatingPoint, frequency: float
+    solution: ContactSolution, contact: LineContact, oil: Lubricant, point: OperatingPoint, frequency: float
 ) -> dict[str, Any]:
     """Return one contact's solution as plain values, SI; None where there is no number.
 
     Parameters
     ----------
-    film : FilmSolution
-        What the solver gave.
+    solution : ContactSolution
+        What the solver and the solids give.
     contact : LineContact
         The contact.
     oil : Lubricant
@@ -49,23 +52,38 @@ def point_record(
     frequency : float
         [Hz].
     """
-    solution = contact_solution(film, contact, point, frequency)
-    modulus = contact.reduced_modulus
     record: dict[str, Any] = {
         "contact": contact.name,
-        "load_per_length": point.load,
-        "entrainment_speed": point.entrainment_speed,
-        "temperature": point.temperature,
+        **point_place(contact, oil, point),
         "frequency": frequency,
-        **_groups(contact, oil, point),
-        "hertz_half_width": hertz.half_width(point.load, contact.radius, modulus),
-        "hertz_pressure": hertz.max_pressure(point.load, contact.radius, modulus),
         **_numbers(solution),
         "status": solution.status.word,
         "reason": solution.reason,
     }
     return {
         key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in record.items()
+    }
+
+
+def point_place(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> dict[str, float | None]:
+    """Return where a contact works, SI: the point, Moes' groups, and the dry contact.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    oil : Lubricant
+        The oil.
+    point : OperatingPoint
+        Load, entrainment speed, temperature.
+    """
+    return {
+        "load_per_length": point.load,
+        "entrainment_speed": point.entrainment_speed,
+        "temperature": point.temperature,
+        **_groups(contact, oil, point),
+        "hertz_half_width": float(hertz.half_width(point.load, contact.radius, contact.reduced_modulus)),
+        "hertz_pressure": float(hertz.max_pressure(point.load, contact.radius, contact.reduced_modulus)),
     }
 
 
@@ -112,6 +130,8 @@ def point_table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, 
     place = f"{LOAD.text(point.load)}, {_speed(job, point)}, {TEMPERATURE.text(point.temperature)}"
     if length is not None:
         place += f", slice of {LENGTH.text(length)} ({point.load * length:.5g} N)"
+    if records and records[0]["frequency"]:
+        place += f", oscillating at {records[0]['frequency']:.6g} Hz"
     lines = [header, place, f"{'':38s}" + "".join(f"{record['contact']:>14s}" for record in records)]
     for label, unit, values in rows:
         shown = "".join(f"{_shown(value):>14s}" for value in values)

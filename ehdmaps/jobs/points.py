@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Hashable, Sequence
 from typing import Any
 
@@ -18,6 +17,7 @@ from ehdmaps.jobs.store import NoStore
 from ehdmaps.jobs.sweep import sweep
 from ehdmaps.jobs.tasks import LONGEST_LINE, LineTask, solver_version
 from ehdmaps.maps import schema
+from ehdmaps.maps.records import contacts_json
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
@@ -78,12 +78,9 @@ def solve_points(
                 films[name] = np.empty((len(contacts), values[0].size), dtype=dtype)
             films[name][index, line] = array
 
-    def at(index: tuple[int, ...]) -> tuple[LineContact, OperatingPoint]:
-        load, speed, temperature = (float(value.flat[index[1]]) for value in values)
-        return contacts[index[0]], OperatingPoint(load, speed, temperature)
-
     shape = (len(contacts), *values[0].shape)
-    solved = {name: array.reshape(shape) for name, array in with_structure(only_usable(films), at).items()}
+    structured = with_structure(only_usable(films), contacts, values[0].ravel())
+    solved = {name: array.reshape(shape) for name, array in structured.items()}
     return _dataset(points, ("contact", *dims), [contact.name for contact in contacts], solved).assign_attrs(
         _attributes(contacts, lubricant, solver)
     )
@@ -166,7 +163,7 @@ def _attributes(contacts: Sequence[LineContact], lubricant: Lubricant, solver: C
         "solver": solver.name,
         "solver_settings": record_json(solver.settings()),
         "solver_version": solver_version(solver),
-        "contacts": record_json([dataclasses.asdict(contact) for contact in contacts]),
+        "contacts": contacts_json(contacts),
         "lubricant": record_json(lubricant.record()),
         "package_versions": record_json(package_versions()),
     }

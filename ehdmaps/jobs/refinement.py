@@ -12,6 +12,7 @@ from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
 from ehdmaps.maps import schema
+from ehdmaps.maps.backbone import FILMS
 from ehdmaps.maps.backbone_plan import BackbonePlan, plan_backbone
 from ehdmaps.physics.solution import ContactSolver, Status
 
@@ -54,7 +55,7 @@ def backbone_group(refined: Refinement, results: Mapping[str, Arrays]) -> xr.Dat
     """Put the lines in their places: the group "backbone" of the map file."""
     plan = refined.plan
     shape = (len(plan.zeta), len(plan.speeds), len(plan.temperatures))
-    values = {entry.name: np.full(shape, np.nan) for entry in schema.BACKBONE_VARIABLES if not entry.flags}
+    values = {name: np.full(shape, np.nan) for name in FILMS}
     status = np.full(shape, schema.NOT_NEEDED, dtype=np.int8)
     for line, task in zip(plan.lines, refined.tasks, strict=True):
         first, speed, temperature = line.place

@@ -4,6 +4,7 @@ The modules in the order in which data pass through them:
 
 =============  =======================================================================================
 schema         names, units and types of everything in a map file
+structure      films of a map -> approach, stiffness, damping, by a structural law
 records        contacts, bearing and oil from the attributes of a map
 validation     whether a file or a dataset is a map
 reading        a map file as datasets

@@ -49,7 +49,8 @@ valley it runs through zero, where a logarithm has no slope to follow."""
 LATTICE_STEP = 0.02
 """Step of zeta to which lines are refined for reading."""
 
-GROUP_VARIABLES = ("film_offset", "film_compliance", "loss_compliance")
+FILMS = ("film_offset", "film_compliance", "loss_compliance")
+"""Variables of the group that a law is made from."""
 
 
 @dataclass(frozen=True)
@@ -139,7 +140,7 @@ class BackboneField:
         zeta = np.asarray(group["zeta"].values, dtype=float)
         self._first = float(zeta[0])
         nodes = 2 + math.ceil((zeta[-1] - zeta[0]) / LATTICE_STEP)
-        offset, compliance, loss = (np.asarray(group[name].values, dtype=float) for name in GROUP_VARIABLES)
+        offset, compliance, loss = (np.asarray(group[name].values, dtype=float) for name in FILMS)
         self._lattice = np.array(
             [
                 self._line(nodes, zeta, offset[:, j, k], compliance[:, j, k], loss[:, j, k], j, k)

@@ -99,7 +99,7 @@ def plan_backbone(
     speed_axis = _log_axis(min(positive) * min(ratios), max(positive) * max(ratios), SPEED_STEP)
     temperature_axis = _linear_axis(min(temperatures), max(temperatures), TEMPERATURE_STEP)
     span = {
-        (j, k): _zeta_span(contacts, lubricant, reference, loads, u, T)
+        (j, k): zeta_span(contacts, lubricant, reference, loads, u, T)
         for j, u in enumerate(speed_axis)
         for k, T in enumerate(temperature_axis)
     }
@@ -138,7 +138,7 @@ def plan_backbone(
     return BackbonePlan(reference, zeta, speed_axis, temperature_axis, tuple(lines))
 
 
-def _zeta_span(
+def zeta_span(
     contacts: Sequence[LineContact],
     lubricant: Lubricant,
     reference: LineContact,
@@ -146,7 +146,21 @@ def _zeta_span(
     u: float,
     T: float,
 ) -> tuple[float, float]:
-    """Range of zeta that the loads of a map cover at one reference speed and temperature, over all contacts."""
+    """Range of zeta that the loads of a map cover at one reference speed and temperature, over all contacts.
+
+    Parameters
+    ----------
+    contacts : sequence of LineContact
+        The contacts.
+    lubricant : Lubricant
+        The oil.
+    reference : LineContact
+        The reference contact.
+    loads : sequence of float
+        Loads of the map [N/m]; only the lowest and the highest count.
+    u, T : float
+        Speed of the reference contact [m/s] and temperature [K].
+    """
     state = lubricant.at(T)
     ends = []
     for contact in contacts:

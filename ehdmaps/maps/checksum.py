@@ -1,8 +1,8 @@
 """Checksum of what a map holds, so that values changed after the map was made are noticed.
 
-Over names, dims, shapes and values of all variables of the table, of the grid and of the backbone, and over the
-attributes that laws are made from. Not over the way they are stored: compression, chunks and the form of texts may
-change.
+Over names, dims, shapes and values of all variables of the table of the map's version, of the grid and of the backbone,
+and over the attributes that laws are made from. Not over the way they are stored: compression, chunks and the form of
+texts may change.
 """
 
 from __future__ import annotations
@@ -27,19 +27,16 @@ def content_sha256(dataset: xr.Dataset, backbone: xr.Dataset | None) -> str:
     dataset : xarray.Dataset
         The map.
     backbone : xarray.Dataset or None
-        Its group of refinement lines.
+        Group of its refinement lines.
     """
     digest = hashlib.sha256()
-    tables = (
-        ("", dataset, schema.COORDINATES + schema.VARIABLES),
-        (schema.BACKBONE_GROUP, backbone, schema.BACKBONE_COORDINATES + schema.BACKBONE_VARIABLES),
-    )
-    for group, held, entries in tables:
+    version = schema.version_of(dataset)
+    for group, held in ((schema.GRID, dataset), (schema.BACKBONE, backbone)):
         if held is None:
             continue
         for name in _ATTRIBUTES:
             digest.update(_header(group, name, held.attrs.get(name)))
-        for entry in entries:
+        for entry in schema.table(group, version):
             if entry.name in held.variables:
                 found = held[entry.name]
                 digest.update(_header(group, entry.name, [*map(str, found.dims), *found.shape, entry.dtype]))
@@ -55,7 +52,7 @@ def check_content(dataset: xr.Dataset, backbone: xr.Dataset | None, where: str) 
     dataset : xr.Dataset
         The map.
     backbone : xr.Dataset or None
-        Its group of refinement lines, if it has one.
+        Group of its refinement lines, if it has one.
     where : str
         How messages call the map.
 
@@ -68,7 +65,7 @@ def check_content(dataset: xr.Dataset, backbone: xr.Dataset | None, where: str) 
     if stated is not None and stated != content_sha256(dataset, backbone):
         raise MapError(
             f"{where}: was changed since it was made: variables, contacts, geometry, oil or group "
-            f"{schema.BACKBONE_GROUP} do not match its attribute {schema.CHECKSUM}; generate it again; or, if the "
+            f"{schema.BACKBONE} do not match its attribute {schema.CHECKSUM}; generate it again; or, if the "
             "change is meant, delete that attribute, and the map counts as yours"
         )
 

@@ -97,9 +97,9 @@ def compile_table(
     field : FilmField
         Film of each contact.
     contacts : sequence of LineContact
-        In series.
+        Contacts in series.
     lubricant : Lubricant
-        For the alignment of the table.
+        Oil for the alignment of the table.
     speeds : (float, float)
         Lowest and highest entrainment speed [m/s], > 0.
     held_load : float

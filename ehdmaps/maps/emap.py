@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from os import PathLike, fspath
 from typing import get_args
@@ -11,15 +12,23 @@ import xarray as xr
 
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.maps import schema
-from ehdmaps.maps.backbone import BackboneField
-from ehdmaps.maps.checksum import check_content
+from ehdmaps.maps.backbone import FILMS, BackboneField
+from ehdmaps.maps.checksum import check_content, content_sha256
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
 from ehdmaps.maps.reading import read_map
-from ehdmaps.maps.records import bearing_from_json, check_oil, contacts_from_json, lubricant_from_json
-from ehdmaps.maps.usable import check_backbone, check_usable
-from ehdmaps.maps.validation import validate
+from ehdmaps.maps.records import (
+    bearing_from_json,
+    check_oil,
+    contacts_from_json,
+    contacts_of,
+    lubricant_from_json,
+)
+from ehdmaps.maps.structure import completed, restructured
+from ehdmaps.maps.usable import check_backbone, check_grid
+from ehdmaps.maps.validation import check_tables, validate
+from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
@@ -31,7 +40,7 @@ class EHDMap:
     Parameters
     ----------
     dataset : xarray.Dataset
-        As `ehdmaps.maps.schema` describes it.
+        Points as `ehdmaps.maps.schema` describes them, of any version.
     backbone : xarray.Dataset, optional
         The group of refinement lines of the law.
     where : str
@@ -40,7 +49,9 @@ class EHDMap:
     Attributes
     ----------
     dataset : xarray.Dataset
-        All that the map holds.
+        All that the map holds; of an old map also the films that follow from it.
+    backbone : xarray.Dataset or None
+        The refinement lines.
 
     Raises
     ------
@@ -50,21 +61,57 @@ class EHDMap:
 
     def __init__(self, dataset: xr.Dataset, backbone: xr.Dataset | None = None, where: str = "map") -> None:
         validate(dataset, where, backbone)
-        self.dataset = dataset
+        self.dataset = completed(dataset, contacts_of(dataset))
         self.backbone = backbone
+
+    def with_structure(
+        self, structural_law: StructuralLaw, reference_depth: float | None = None, roller_length: float | None = None
+    ) -> EHDMap:
+        """The same films between solids of another structural law.
+
+        Approach, stiffness, damping and their errors are derived from the films by that law, and so are the laws of
+        the map that is returned; it is a map like any other, which may be saved. The errors of damping of a map of
+        schema 1 are not known by another law, hence NaN.
+
+        Parameters
+        ----------
+        structural_law : {"iso16281", "palmgren", "half_space"}
+            Law of the elastic part of the approach, see `ehdmaps.physics.approach`.
+        reference_depth : float, optional
+            d* of half_space [m]; that of the map's contacts if left out. Those of a bearing have D/e.
+        roller_length : float, optional
+            Length of the whole roller, for iso16281 and palmgren [m]; that of the map's contacts if left out.
+
+        Raises
+        ------
+        InputError
+            If there is no such law, if it lacks a length, or if it does not hold for the loads of the map.
+        """
+        contacts = tuple(
+            replace(
+                contact,
+                structural_law=structural_law,
+                reference_depth=contact.reference_depth if reference_depth is None else reference_depth,
+                roller_length=contact.roller_length if roller_length is None else roller_length,
+            )
+            for contact in self.contacts
+        )
+        if contacts == self.contacts:
+            return self
+        dataset = restructured(self.dataset, contacts)
+        if schema.CHECKSUM in dataset.attrs:
+            dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, self.backbone)
+        return EHDMap(dataset, self.backbone)
 
     @cached_property
     def contacts(self) -> tuple[LineContact, ...]:
-        """The line contacts, in the order of the contact axis."""
-        contacts = contacts_from_json(self.dataset.attrs["contacts"])
-        axis = tuple(str(name) for name in self.dataset["contact"].values)
-        names = tuple(contact.name for contact in contacts)
-        if names != axis:
-            raise MapError(
-                f"map, attribute contacts: names {', '.join(names)}; the contact axis has {', '.join(axis)}; "
-                "they must be alike; generate the map again"
-            )
-        return contacts
+        """The line contacts, in the order of the contact axis, with their structural law."""
+        return contacts_of(self.dataset)
+
+    @property
+    def structural_law(self) -> StructuralLaw:
+        """The law of the elastic part of the approach."""
+        return self.contacts[0].structural_law
 
     @cached_property
     def lubricant(self) -> Lubricant:
@@ -93,73 +140,109 @@ class EHDMap:
         InputError
             For a kind that the map does not have.
         MapError
-            If the map has holes left, or clusters of filled ones, or its backbone has.
+            If what the law is made from has holes left, or clusters of filled points.
         """
         by_name = {contact.name: contact for contact in self.contacts}
         allowed = [name for name in get_args(LawKind) if name in by_name or (name == "series" and "inner" in by_name)]
         if kind not in allowed:
             raise InputError(f"contact law, kind: got {kind!r}; allowed in this map: {', '.join(allowed)}")
         names = ("inner", "outer") if kind == "series" else (kind,)
-        check_usable(self.dataset, names)
-        if self.backbone is not None:
-            check_backbone(self.backbone)
         return ContactLaw(kind, tuple(by_name[name] for name in names), self.lubricant, self.film_field(names), outside)
 
     def film_field(self, contacts: tuple[str, ...] | None = None) -> FilmField:
-        """Film between the solved points, what a law is made from.
+        """Film between the solved points, what a law is made from: of the backbone, or of the map's own grid.
 
         Parameters
         ----------
         contacts : tuple of str, optional
             Those that are wanted; all if left out.
+
+        Raises
+        ------
+        MapError
+            If it has holes left, or clusters of filled points.
         """
         chosen = tuple(contact for contact in self.contacts if contacts is None or contact.name in contacts)
+        self.check_usable(contacts)
         if self.backbone is not None:
-            return self._backbone_field(self.backbone, chosen)
+            return BackboneField(
+                self.backbone,
+                self._reference(self.backbone),
+                chosen,
+                self.lubricant,
+                load_range=self._range("load"),
+                speed_range=self._range("entrainment_speed"),
+                temperature_range=self._range("temperature"),
+            )
         data = self.dataset.sel(contact=[contact.name for contact in chosen]).transpose(*schema.DIMS, ...)
-        loads = data["load"].values.astype(np.float64)
-        dry = np.array([contact.structural_compliance(loads) for contact in chosen])[:, :, None, None]
-        stiffness = data["stiffness"].values.astype(np.float64)
         return GridField(
             line_contacts=chosen,
             lubricant=self.lubricant,
-            loads=loads,
+            loads=data["load"].values.astype(np.float64),
             speeds=data["entrainment_speed"].values.astype(np.float64),
             temperatures=data["temperature"].values.astype(np.float64),
-            film_offset=data["film_offset"].values.astype(np.float64),
-            film_compliance=1.0 / stiffness - dry,
-            loss_compliance=data["damping"].values / stiffness**2,
+            **{name: data[name].values.astype(np.float64) for name in FILMS},
         )
 
-    def _backbone_field(self, group: xr.Dataset, contacts: tuple[LineContact, ...]) -> FilmField:
-        """Field from the group of refinement lines."""
+    def check_usable(self, contacts: tuple[str, ...] | None = None) -> None:
+        """Refuse a map of whose films no law of these contacts can be made; only what the law reads is looked at.
+
+        Parameters
+        ----------
+        contacts : tuple of str, optional
+            Those of the law; all if left out.
+
+        Raises
+        ------
+        MapError
+            With every reason.
+        """
+        chosen = tuple(contact for contact in self.contacts if contacts is None or contact.name in contacts)
+        if self.backbone is None:
+            check_grid(self.dataset, chosen)
+        else:
+            reference = self._reference(self.backbone)
+            ranges = self._range("load"), self._range("entrainment_speed")
+            check_backbone(self.backbone, reference, chosen, self.lubricant, *ranges)
+
+    def _reference(self, group: xr.Dataset) -> LineContact:
+        """The contact of the refinement lines."""
         (reference,) = contacts_from_json(f"[{group.attrs[schema.REFERENCE_CONTACT]}]")
-        loads, speeds, temperatures = (
-            self.dataset[name].values.astype(np.float64) for name in ("load", "entrainment_speed", "temperature")
-        )
-        positive = speeds[speeds > 0.0]
-        return BackboneField(
-            group,
-            reference,
-            contacts,
-            self.lubricant,
-            load_range=(float(loads[0]), float(loads[-1])),
-            speed_range=(float(positive[0]), float(positive[-1])),
-            temperature_range=(float(temperatures[0]), float(temperatures[-1])),
-        )
+        return reference
+
+    def _range(self, axis: str) -> tuple[float, float]:
+        """Lowest value above zero, and highest value, of an axis."""
+        values = self.dataset[axis].values.astype(np.float64)
+        positive = values[values > 0.0]
+        if not positive.size:
+            raise MapError(f"map: has a backbone and no {axis} above zero; generate the map again")
+        return float(positive[0]), float(positive[-1])
 
 
-def open_map(path: str | PathLike[str]) -> EHDMap:
+def open_map(path: str | PathLike[str], structural_law: StructuralLaw | None = None) -> EHDMap:
     """Read a map file written by `ehdmaps generate`; all of it, the file is closed again.
 
     Variables that are not in the table of `ehdmaps.maps.schema` are left alone.
+
+    Parameters
+    ----------
+    path : str or path
+        The file.
+    structural_law : {"iso16281", "palmgren", "half_space"}, optional
+        Law by which approach, stiffness and damping are derived from the films; that of the map's job if left out. A
+        map of a bare contact has the length of one law only: see `EHDMap.with_structure`.
 
     Raises
     ------
     MapError
         If it cannot be read, is no map, or was changed since it was made.
+    InputError
+        If there is no such structural law, or it does not suit the map.
     """
     name = fspath(path)
-    emap = EHDMap(*read_map(name), name)
-    check_content(emap.dataset, emap.backbone, name)
-    return emap
+    dataset, backbone = read_map(name)
+    check_tables(dataset, name, backbone)
+    # Before anything is derived: who changed a film is told that, and not what follows from it.
+    check_content(dataset, backbone, name)
+    emap = EHDMap(dataset, backbone, name)
+    return emap if structural_law is None else emap.with_structure(structural_law)

@@ -30,7 +30,7 @@ class Excursion:
     extreme : float
         The one farthest outside [N/m], [m/s], [K]; loads without the part of damping.
     limit : float
-        Where the map ends.
+        End of the map on this axis.
     """
 
     axis: Axis

@@ -60,7 +60,7 @@ class GridField:
     Attributes
     ----------
     line_contacts : tuple of LineContact
-        In the order of the first axis of the arrays.
+        Contacts in the order of the first axis of the arrays.
     lubricant : Lubricant
         The oil.
     loads, speeds, temperatures : array

@@ -200,7 +200,7 @@ def evaluate_at(point: Point, delta: float, rate: float, counts: IntArray) -> Fo
     Parameters
     ----------
     point : Point
-        From `collapse`, or `LawAtPoint.point`.
+        Point from `collapse`, or `LawAtPoint.point`.
     delta, rate : float
         Approach [m] and its rate [m/s].
     counts : array (4,)
@@ -267,7 +267,7 @@ def collapse(
     table : LawTable
         `ContactLaw.table`.
     workspace : array (4, n, 8)
-        From `ContactLaw.workspace`; the `Point` lives in it until the next call with it.
+        Workspace from `ContactLaw.workspace`; the `Point` lives in it until the next call with it.
     entrainment_speed, temperature, centrifugal_load : float
         u [m/s], T [K], q >= 0 [N/m]; finite.
     counts : array (4,)

@@ -224,7 +224,7 @@ class ContactLaw:
         temperature : float
             T [K].
         centrifugal_load : float
-            Of the roller, per unit length [N/m].
+            Centrifugal load of the roller, per unit length [N/m].
 
         Raises
         ------
@@ -252,11 +252,11 @@ class ContactLaw:
         Parameters
         ----------
         state : FilmState or None
-            At the beginning of the step; None for films in equilibrium at `delta`.
+            State at the beginning of the step; None for films in equilibrium at `delta`.
         delta : float or array
             Approach at its end [m].
         dt : float
-            Its length [s], > 0.
+            Length of the step [s], > 0.
         entrainment_speed, temperature : float
             u [m/s] and T [K] at its end; a change from call to call costs some tenths of a millisecond.
 
@@ -265,7 +265,7 @@ class ContactLaw:
         w, dw_ddelta : float or array
             Load [N/m] and its exact derivative by the approach at the end of the step [N/m2].
         state : FilmState
-            At the end of the step.
+            State at the end of the step.
 
         Raises
         ------

@@ -87,11 +87,11 @@ def state_of(g: float, dg: float, log_ratio: float, dlog_ratio: float) -> State:
     g : float
         g, the cube root of the load [(N/m)^(1/3)]; no load below 0.
     dg : float
-        Its derivative by the approach.
+        Derivative of g by the approach.
     log_ratio : float
         ln(c/w).
     dlog_ratio : float
-        Its derivative by the approach.
+        Derivative of the logarithm of the ratio by the approach.
     """
     g = g if g > 0.0 else 0.0
     w, dw = g * g * g, 3.0 * g * g * dg
@@ -134,7 +134,7 @@ def cubics(coefficients: FloatArray, cell: int, t: float) -> tuple[float, float,
     Parameters
     ----------
     coefficients : ndarray
-        Of the line, cell by cell.
+        Coefficients of the line, cell by cell.
     cell : int
         Index of the cell.
     t : float
@@ -196,9 +196,9 @@ def collapsed_line(
     table : ApproachTable
         The table.
     cubics : ndarray
-        Where the cubics of the line are written to.
+        Array that the cubics of the line are written to.
     sums : ndarray
-        Scratch.
+        Scratch space.
     log_speed : float
         ln u, u in m/s.
     temperature : float

@@ -122,18 +122,18 @@ class FilmMemory:
         Parameters
         ----------
         state : FilmState
-            At the beginning of the step.
+            State at the beginning of the step.
         delta : float or array
             Approach at its end [m], in the shape of the state.
         dt : float
-            Its length [s], > 0. Of second order while steps grow by no more than a fifth.
+            Length of the step [s], > 0. The method is of second order while steps grow by no more than a fifth.
 
         Returns
         -------
         w, dw_ddelta : float or array
             Load at the end of the step [N/m], >= 0, and its exact derivative by the approach there [N/m2].
         state : FilmState
-            At the end of the step.
+            State at the end of the step.
 
         Raises
         ------

@@ -81,7 +81,7 @@ class MemoryTable(NamedTuple):
     load_cells : array (LOAD_ROWS, 4)
         Cubics of a [m] over the distance from the lower end of a cell, in `LIGHTEST`.
     centre, inverse_scale : float
-        Of the cells [m], [1/m].
+        Centre and inverse scale of the cells [m], [1/m].
     lift_off : float
         Highest xi without load [m].
     """
@@ -174,11 +174,11 @@ def fill_memory(
     point : Point
         The law at one speed and temperature, without centrifugal load.
     film : Film
-        For the stiffness of the locked film.
+        Film for the stiffness of the locked film.
     nodes, load_nodes : array (ROWS + 1,), (LOAD_ROWS + 1,)
         `NODES`, `LOAD_NODES`.
     cells, load_cells : array (2 ROWS, 12), (LOAD_ROWS, 4)
-        Filled.
+        Cells, which are filled.
     counts : array (4,)
         int64, counted up outside the map.
     """
@@ -268,7 +268,7 @@ def cubic_at(c: FloatArray, first: int, t: float) -> tuple[float, float]:
     c : array
         Coefficients of a cell.
     first : int
-        Where those of this cubic begin.
+        Index of the first coefficient of this cubic.
     t : float
         Place in the cell.
     """
@@ -365,7 +365,7 @@ def rate_of(step: Step, change: float, last: float) -> tuple[float, float]:
     step : Step
         How long.
     change, last : float
-        Of G over this step and over the last one [N s/m2].
+        Change of G over this step and over the last one [N s/m2].
     """
     size = abs(last)
     t = 1.5 * abs(change) / size if size > 1.5 * abs(change) else 1.0
@@ -396,7 +396,7 @@ def advanced(
     last : float
         Change of G over the step before [N s/m2].
     start : float
-        Where to look for the state first [m].
+        Place to look for the state first [m].
 
     Returns
     -------

@@ -29,7 +29,7 @@ def mix_lines(
     lines, weights : ndarray, shape (m,)
         Which lines, how much of each.
     zeta : ndarray, shape (n,)
-        Where.
+        Places on the line.
     out : ndarray, shape (3, n)
         Filled with ln(film number), its slope, scaled loss.
     """

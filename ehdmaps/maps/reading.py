@@ -1,4 +1,5 @@
-"""A map file as datasets: only what the table names is read, and nothing before its declared shape is known.
+"""A map file as datasets: only what the table of its version names is read, and nothing before its declared shape is
+known.
 
 Read with netCDF4 itself: xarray would load every axis of a file and decode every variable, foreign ones too, before
 anybody could look at their sizes.
@@ -56,12 +57,12 @@ def _read(file: Any, where: str) -> tuple[xr.Dataset, xr.Dataset | None]:
     """Read an open file: first all that it declares, then the values."""
     attributes = _attributes(file)
     refuse(version_problems(attributes), where)
-    grid = schema.COORDINATES + schema.VARIABLES
-    refined = schema.BACKBONE_COORDINATES + schema.BACKBONE_VARIABLES
-    group = file.groups.get(schema.BACKBONE_GROUP)
+    version = int(attributes["schema_version"])
+    grid, refined = schema.table(schema.GRID, version), schema.table(schema.BACKBONE, version)
+    group = file.groups.get(schema.BACKBONE)
     problems = [*attribute_problems(attributes), *_declared_problems(file, grid)]
     if group is not None:
-        problems += [f"group {schema.BACKBONE_GROUP}: {problem}" for problem in _declared_problems(group, refined)]
+        problems += [f"group {schema.BACKBONE}: {problem}" for problem in _declared_problems(group, refined)]
     refuse(problems, where)
     backbone = None if group is None else _dataset(group, refined, _attributes(group))
     return _dataset(file, grid, attributes), backbone
@@ -96,7 +97,7 @@ def _is_characters(variable: Any) -> bool:
 def _dataset(group: Any, entries: Sequence[Variable], attributes: dict[str, Any]) -> xr.Dataset:
     """Read the variables of the table."""
     variables = {entry.name: _variable(group.variables[entry.name], entry) for entry in entries if _has(group, entry)}
-    axes = {entry.name for entry in entries if entry.dims == (entry.name,)}
+    axes = {entry.name for entry in entries if entry.axis}
     return xr.Dataset(
         {name: found for name, found in variables.items() if name not in axes},
         coords={name: found for name, found in variables.items() if name in axes},

@@ -1,11 +1,15 @@
-"""Contacts, bearing and oil from the records in a map's attributes, so that a map stands alone."""
+"""Contacts, bearing and oil as the records in a map's attributes, so that a map stands alone."""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
+
+import numpy as np
+import xarray as xr
 
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.physics.bearing import BearingGeometry
@@ -28,9 +32,9 @@ def read_json(text: str, attribute: str) -> Any:
     Parameters
     ----------
     text : str
-        Of the attribute.
+        Text of the attribute.
     attribute : str
-        Its name, for the message.
+        Name of the attribute, for the message.
 
     Raises
     ------
@@ -71,6 +75,30 @@ def contacts_from_json(text: str) -> tuple[LineContact, ...]:
         return tuple(_contact(record) for record in read_json(text, "contacts"))
     except _UNREADABLE as error:
         raise _broken("contacts", error) from error
+
+
+def contacts_json(contacts: Sequence[LineContact]) -> str:
+    """The attribute `contacts` of a map, see `contacts_from_json`."""
+    return json.dumps([asdict(contact) for contact in contacts], sort_keys=True, allow_nan=False, ensure_ascii=False)
+
+
+def contacts_of(dataset: xr.Dataset) -> tuple[LineContact, ...]:
+    """Contacts of a map, in the order of its contact axis.
+
+    Raises
+    ------
+    MapError
+        If its attribute `contacts` does not read, or has other names than the axis.
+    """
+    contacts = contacts_from_json(dataset.attrs["contacts"])
+    axis = tuple(str(name) for name in np.atleast_1d(dataset["contact"].values))
+    names = tuple(contact.name for contact in contacts)
+    if names != axis:
+        raise MapError(
+            f"map, attribute contacts: names {', '.join(names)}; the contact axis has {', '.join(axis)}; "
+            "they must be alike; generate the map again"
+        )
+    return contacts
 
 
 def bearing_from_json(text: str) -> BearingGeometry | None:

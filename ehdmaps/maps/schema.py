@@ -1,11 +1,36 @@
 """The map file: names, dims, units, types and meanings of everything in it, in one table.
 
-Both sides stand on this table: `jobs` writes by it, `maps` and `mbs` read by it, and `validation` holds a file to it.
+Both sides stand on this table: `jobs` writes by it, `maps` and `mbs` read by it, and `validation` holds a file to it,
+the grid and the group "backbone" alike.
+
+What a solver finds is the film: film offset, film compliance and loss compliance. They are stored, and laws are made
+from them. Approach, stiffness and damping also contain the solids, by a structural law that the reader may choose:
+they are derived, see `ehdmaps.maps.structure`. They are written too, for other programs, by the structural law of the
+job; no law reads them.
+
+Versions
+--------
+Every change of the table raises `SCHEMA_VERSION`, and each row says since which version it is there. A file is read by
+the table of its own version:
+
+- a file of a higher version is refused, since nobody can know what its new rows mean;
+- a file of a lower version is read as it was written; what it lacks is derived or missing;
+- a variable, group or attribute that the table of the file's version does not name belongs to somebody else: it is
+  neither read nor checked, whatever it is called.
+
+Version 2 added film compliance, loss compliance and its error to the grid; version 1 had approach, stiffness and
+damping in their place.
+
+To add a variable, write one row in `TABLE` with ``since=`` the new version, and raise `SCHEMA_VERSION`. With
+``required=False`` a map may lack it. It is then written, where `dataset` or `backbone` is given values for it, read,
+checked and sealed by the checksum. To add an axis (a frequency, a slide-to-roll ratio), write one row whose only dim is
+its own name, with the limits of its values, and ``required=False``; the variables over it are rows of their own that
+name it in their dims. The dims of a row that is there already never change: old readers of old rows stay right.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,8 +38,8 @@ import xarray as xr
 
 from ehdmaps.physics.solution import Status
 
-SCHEMA_VERSION = 1
-"""Raised when a reader of the old file would misread the new one."""
+SCHEMA_VERSION = 2
+"""Version of the table; files of this and of all lower versions are read."""
 
 DIMS = ("contact", "load", "entrainment_speed", "temperature")
 """Order of the dims of every map variable."""
@@ -22,7 +47,10 @@ DIMS = ("contact", "load", "entrainment_speed", "temperature")
 CONTACT_NAMES = (("inner", "outer"), ("line",))
 """What the contact axis may hold: both raceways of a bearing, or one bare line contact."""
 
-BACKBONE_GROUP = "backbone"
+GRID = ""
+"""The group of the map's points: the root of the file."""
+
+BACKBONE = "backbone"
 """netCDF group with the refinement lines of the contact law, where a map has them."""
 
 BACKBONE_DIMS = ("zeta", "reference_speed", "temperature")
@@ -38,14 +66,17 @@ LONGEST_TEXTS = 2**31
 """Most bytes of one variable of texts."""
 
 
+_DERIVED = "derived from the films by the structural law of the map; contact laws do not read it"
+
+
 @dataclass(frozen=True)
 class Variable:
-    """One variable of the map file.
+    """One variable or axis of the map file: a row of the table.
 
     Attributes
     ----------
     name, units, long_name : str
-        As in the file; units in UDUNITS form, "1" for a pure number.
+        Words as in the file; units in UDUNITS form, "1" for a pure number.
     dtype : str
         numpy type, or "str".
     required : bool
@@ -53,7 +84,16 @@ class Variable:
     flags : tuple of (int, str)
         CF flag values and meanings, where the variable is a flag.
     dims : tuple of str
-        Its dims; a coordinate has itself.
+        Names of its dims; an axis has itself.
+    group : str
+        `GRID` or `BACKBONE`.
+    since : int
+        Version from which on it is in the table.
+    derived_since : int, optional
+        Version from which on it follows from the others by the structural law: a file may lack it then.
+    limits : (float, float), optional
+        Limits of an axis of numbers: far outside of what a job may ask for; what lies beyond is damage, and would
+        overflow somewhere.
     """
 
     name: str
@@ -63,6 +103,24 @@ class Variable:
     required: bool = True
     flags: tuple[tuple[int, str], ...] = ()
     dims: tuple[str, ...] = DIMS
+    group: str = GRID
+    since: int = 1
+    derived_since: int | None = None
+    limits: tuple[float, float] | None = None
+
+    @property
+    def axis(self) -> bool:
+        """Whether it is an axis."""
+        return self.dims == (self.name,)
+
+    @property
+    def derived(self) -> bool:
+        """Whether it follows from other variables by the structural law."""
+        return self.derived_since is not None
+
+    def required_in(self, version: int) -> bool:
+        """Whether a file of that version has to have it."""
+        return self.required and not (self.derived_since is not None and version >= self.derived_since)
 
     def attributes(self) -> dict[str, Any]:
         """Return the CF attributes of the variable."""
@@ -70,6 +128,8 @@ class Variable:
         if self.flags:
             attributes["flag_values"] = np.array([value for value, _ in self.flags], dtype=self.dtype)
             attributes["flag_meanings"] = " ".join(meaning for _, meaning in self.flags)
+        if self.derived:
+            attributes["comment"] = _DERIVED
         return attributes
 
     def encoding(self) -> dict[str, Any]:
@@ -82,31 +142,61 @@ class Variable:
 
 _NO_YES = ((0, "no"), (1, "yes"))
 
-COORDINATES = (
-    Variable("contact", "1", "contact of the roller with this raceway", "str", dims=("contact",)),
-    Variable("load", "N m-1", "load per unit length", dims=("load",)),
-    Variable("entrainment_speed", "m s-1", "mean of the two surface speeds", dims=("entrainment_speed",)),
-    Variable("temperature", "K", "oil temperature", dims=("temperature",)),
-)
+_STATUS = tuple((int(status), status.word) for status in Status)
 
-VARIABLES = (
-    Variable("approach", "m", "mutual approach of the bodies, positive together"),
+
+def _axis(name: str, units: str, long_name: str, limits: tuple[float, float], group: str = GRID) -> Variable:
+    """Row of an axis of numbers."""
+    return Variable(name, units, long_name, dims=(name,), group=group, limits=limits)
+
+
+def _derived(name: str, units: str, long_name: str) -> Variable:
+    """Row of a variable that contains the solids; version 1 had it in place of the film's own."""
+    return Variable(name, units, long_name, derived_since=2)
+
+
+def _error(name: str, of: str, required: bool = True) -> Variable:
+    """Row of an error estimate."""
+    return Variable(name, "1", f"estimated relative numerical error of {of}", required=required)
+
+
+def _of_backbone(name: str, units: str, long_name: str) -> Variable:
+    """Row of a film of the reference contact."""
+    return Variable(name, units, f"{long_name}, reference contact", dims=BACKBONE_DIMS, group=BACKBONE)
+
+
+_KELVINS = (1.0, 1e4)
+
+TABLE = (
+    Variable("contact", "1", "contact of the roller with this raceway", "str", dims=("contact",)),
+    _axis("load", "N m-1", "load per unit length", (1e-6, 1e12)),
+    _axis("entrainment_speed", "m s-1", "mean of the two surface speeds", (0.0, 1e6)),
+    _axis("temperature", "K", "oil temperature", _KELVINS),
+    _derived("approach", "m", "mutual approach of the bodies, positive together"),
     Variable("film_offset", "m", "dry minus lubricated approach at equal load"),
-    Variable("stiffness", "N m-2", "stiffness per unit length, derivative of load by approach"),
-    Variable("damping", "N s m-2", "damping per unit length, low-frequency limit"),
+    Variable("film_compliance", "m2 N-1", "minus the derivative of the film offset by load", since=2),
+    Variable("loss_compliance", "m2 s N-1", "damping over squared stiffness, low-frequency limit", since=2),
+    _derived("stiffness", "N m-2", "stiffness per unit length, derivative of load by approach"),
+    _derived("damping", "N s m-2", "damping per unit length, low-frequency limit"),
     Variable("central_film", "m", "film thickness at the contact centre"),
     Variable("minimum_film", "m", "smallest film thickness"),
     Variable("max_pressure", "Pa", "largest pressure"),
     Variable("friction_force", "N m-1", "friction force per unit length", required=False),
-    Variable("status", "1", "how the point ended", "int8", flags=tuple((int(s), s.word) for s in Status)),
+    Variable("status", "1", "how the point ended", "int8", flags=_STATUS),
     Variable("reason", "1", "cause of the status, in words", "str"),
-    Variable("film_offset_error", "1", "estimated relative numerical error of film_offset"),
-    Variable("film_compliance_error", "1", "estimated relative numerical error of 1/stiffness minus its dry part"),
-    Variable("stiffness_error", "1", "estimated relative numerical error of stiffness"),
-    Variable("damping_error", "1", "estimated relative numerical error of damping"),
-    Variable("central_film_error", "1", "estimated relative numerical error of central_film", required=False),
-    Variable("minimum_film_error", "1", "estimated relative numerical error of minimum_film", required=False),
-    Variable("max_pressure_error", "1", "estimated relative numerical error of max_pressure", required=False),
+    _error("film_offset_error", "film_offset"),
+    _error("film_compliance_error", "film_compliance"),
+    Variable(
+        "loss_compliance_error",
+        "1",
+        "estimated relative numerical error of loss_compliance, positive where that of film_compliance has its sign",
+        since=2,
+    ),
+    replace(_error("stiffness_error", "stiffness"), derived_since=2),
+    replace(_error("damping_error", "damping"), derived_since=2),
+    _error("central_film_error", "central_film", required=False),
+    _error("minimum_film_error", "minimum_film", required=False),
+    _error("max_pressure_error", "max_pressure", required=False),
     Variable("iterations", "1", "iterations of the solver, all grids together", "int32"),
     Variable("solve_seconds", "s", "time to solve the point"),
     Variable(
@@ -117,37 +207,23 @@ VARIABLES = (
         flags=_NO_YES,
     ),
     Variable("filled", "1", "values interpolated from neighbours; status keeps the cause", "int8", flags=_NO_YES),
-)
-
-BACKBONE_COORDINATES = (
-    Variable("zeta", "1", "ln(M/M_valley(L))", dims=("zeta",)),
-    Variable("reference_speed", "m s-1", "entrainment speed of the reference contact", dims=("reference_speed",)),
-    Variable("temperature", "K", "oil temperature", dims=("temperature",)),
-)
-
-BACKBONE_VARIABLES = (
-    Variable("film_offset", "m", "dry minus lubricated approach at equal load, reference contact", dims=BACKBONE_DIMS),
-    Variable(
-        "film_compliance",
-        "m2 N-1",
-        "minus the derivative of the film offset by load, reference contact",
-        dims=BACKBONE_DIMS,
-    ),
-    Variable(
-        "loss_compliance",
-        "m2 s N-1",
-        "damping over squared stiffness, low-frequency limit, reference contact",
-        dims=BACKBONE_DIMS,
-    ),
+    _axis("zeta", "1", "ln(M/M_valley(L))", (-100.0, 100.0), BACKBONE),
+    _axis("reference_speed", "m s-1", "entrainment speed of the reference contact", (1e-12, 1e6), BACKBONE),
+    _axis("temperature", "K", "oil temperature", _KELVINS, BACKBONE),
+    _of_backbone("film_offset", "m", "dry minus lubricated approach at equal load"),
+    _of_backbone("film_compliance", "m2 N-1", "minus the derivative of the film offset by load"),
+    _of_backbone("loss_compliance", "m2 s N-1", "damping over squared stiffness, low-frequency limit"),
     Variable(
         "status",
         "1",
         "how the point ended; -1: no contact of the map comes here",
         "int8",
-        flags=((NOT_NEEDED, "not_needed"), *((int(s), s.word) for s in Status)),
+        flags=((NOT_NEEDED, "not_needed"), *_STATUS),
         dims=BACKBONE_DIMS,
+        group=BACKBONE,
     ),
 )
+"""All rows, in the order in which they are written."""
 
 ATTRIBUTES = {
     "schema_version": "version of this file format",
@@ -176,18 +252,29 @@ REFERENCE_CONTACT = "reference_contact"
 """Attribute of the backbone, JSON: the contact that it was solved for."""
 
 
-def variable(name: str) -> Variable:
-    """Return the table's entry of a variable or coordinate.
+def table(group: str = GRID, version: int | None = None) -> tuple[Variable, ...]:
+    """Return the rows of a group in files of a version, of the latest one if left out."""
+    latest = SCHEMA_VERSION if version is None else version
+    return tuple(entry for entry in TABLE if entry.group == group and entry.since <= latest)
+
+
+def version_of(dataset: xr.Dataset) -> int:
+    """Version of the table that a dataset of the root group was made by."""
+    return int(dataset.attrs["schema_version"])
+
+
+def variable(name: str, group: str = GRID) -> Variable:
+    """Return the row of a variable or axis.
 
     Raises
     ------
     KeyError
         If the table has no such name.
     """
-    return _BY_NAME[name]
-
-
-_BY_NAME = {entry.name: entry for entry in COORDINATES + VARIABLES}
+    for entry in table(group):
+        if entry.name == name:
+            return entry
+    raise KeyError(name)
 
 
 def dataset(coordinates: dict[str, Any], values: dict[str, Any], attributes: dict[str, Any]) -> xr.Dataset:
@@ -202,30 +289,24 @@ def dataset(coordinates: dict[str, Any], values: dict[str, Any], attributes: dic
     attributes : dict
         Attributes of the file (see `ATTRIBUTES`).
     """
-    return _built(_BY_NAME, coordinates, values, attributes)
+    return _built(GRID, coordinates, values, attributes)
 
 
 def backbone(coordinates: dict[str, Any], values: dict[str, Any], attributes: dict[str, Any]) -> xr.Dataset:
     """Build the group of refinement lines; arguments as for `dataset`, dims in the order of `BACKBONE_DIMS`."""
-    entries = {entry.name: entry for entry in BACKBONE_COORDINATES + BACKBONE_VARIABLES}
-    return _built(entries, coordinates, values, attributes)
+    return _built(BACKBONE, coordinates, values, attributes)
 
 
-def _built(
-    entries: dict[str, Variable], coordinates: dict[str, Any], values: dict[str, Any], attributes: dict[str, Any]
-) -> xr.Dataset:
-    """Build a dataset by a table."""
-    built = xr.Dataset(
-        {name: _typed(entries[name], data) for name, data in values.items()},
-        coords={name: _typed(entries[name], data) for name, data in coordinates.items()},
+def typed(entry: Variable, data: Any) -> xr.Variable:
+    """Give an array the dims, type, attributes and encoding of its row."""
+    array = np.asarray(data, dtype=object if entry.dtype == "str" else entry.dtype)
+    return xr.Variable(entry.dims, array, entry.attributes(), entry.encoding())
+
+
+def _built(group: str, coordinates: dict[str, Any], values: dict[str, Any], attributes: dict[str, Any]) -> xr.Dataset:
+    """Build a dataset by the rows of a group."""
+    return xr.Dataset(
+        {name: typed(variable(name, group), data) for name, data in values.items()},
+        coords={name: typed(variable(name, group), data) for name, data in coordinates.items()},
         attrs=attributes,
     )
-    for name in built.variables:
-        built[name].encoding = entries[str(name)].encoding()
-    return built
-
-
-def _typed(entry: Variable, data: Any) -> xr.Variable:
-    """Give an array the dims, type and attributes of its entry."""
-    array = np.asarray(data, dtype=object if entry.dtype == "str" else entry.dtype)
-    return xr.Variable(entry.dims, array, entry.attributes())

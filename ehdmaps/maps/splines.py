@@ -56,14 +56,14 @@ def spline_weights(nodes: FloatArray, wanted: FloatArray) -> FloatArray:
     Parameters
     ----------
     nodes : array (n,)
-        Rising.
+        Nodes, rising.
     wanted : array (m,)
-        Where values are wanted.
+        Places where values are wanted.
 
     Returns
     -------
     array (m, n)
-        Weights.
+        Weights of the values at the nodes.
     """
     if nodes.size == 1:
         return np.ones((wanted.size, 1))
@@ -84,7 +84,7 @@ def hermite(
     Parameters
     ----------
     left, right : (values, slopes)
-        At the ends of the piece.
+        Values and slopes at the ends of the piece.
     part : array
         Place in the piece, 0 to 1.
     step : float or array

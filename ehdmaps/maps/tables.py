@@ -31,7 +31,7 @@ class ApproachTable(NamedTuple):
     Attributes
     ----------
     coefficients : array (n_u, n_T, 2 n_s)
-        Of g [(N/m)^(1/3)] and ln(c/w) [c/w in s/m], in turns.
+        Coefficients of g [(N/m)^(1/3)] and ln(c/w) [c/w in s/m], in turns.
     place : array (n_u, n_T, 2)
         Coefficients of the offset [m] and of 1/scale [1/m].
     log_speed_start, log_speed_step : float
@@ -67,13 +67,13 @@ class LawTable(NamedTuple):
     film_speed : float
         Speed below which the film is faded [m/s]; inf for a map without films.
     lowest_speed, highest_speed : float
-        Of the table [m/s], > 0.
+        Speed range of the table [m/s], > 0.
     lowest_temperature, highest_temperature : float
-        Of the table [K].
+        Temperature range of the table [K].
     highest_load : float
         Highest mapped load [N/m]; loads above it are counted.
     highest_root : float
-        Its cube root.
+        Cube root of the highest load.
     held_load : float
         Load above which the law is its dry tangent [N/m].
     counted_speed : float
@@ -105,7 +105,7 @@ class Line(NamedTuple):
     offset, inverse_scale : float
         [m], [1/m].
     start, step : float
-        As in the table.
+        The same as in the table.
     """
 
     coefficients: FloatArray
@@ -121,9 +121,9 @@ class Point(NamedTuple):
     Attributes
     ----------
     own, inner, outer : Line
-        As in the table.
+        Lines as in the table.
     structure : array (n, 3)
-        As in the table.
+        The same as in the table.
     film : float
         Part of the film that is there, 1 at and above the lowest mapped speed, 0 at standstill.
     centrifugal_load : float
@@ -135,7 +135,7 @@ class Point(NamedTuple):
     highest_load : float
         Loads above it are counted [N/m].
     held_load, held_approach, held_stiffness, held_damping : float
-        Above this load the law is the tangent with this stiffness, and this damping.
+        Load and approach above which the law is the tangent with this stiffness and this damping.
     """
 
     own: Line

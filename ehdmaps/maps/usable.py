@@ -1,31 +1,38 @@
 """Whether a law can be made from a map: no holes, no clusters of filled points, films and stiffness positive.
 
-Of a map with a backbone both are looked at: the backbone is what laws read, the grid is what the map promises.
+Only what the law reads is looked at: the backbone where a map has one, else the grid, of the law's own contacts.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 
 from ehdmaps.arrays import BoolArray
 from ehdmaps.errors import MapError
-from ehdmaps.maps.schema import BACKBONE_DIMS, BACKBONE_VARIABLES, DIMS, NOT_NEEDED
+from ehdmaps.maps.backbone import FILMS
+from ehdmaps.maps.backbone_plan import zeta_span
+from ehdmaps.maps.schema import BACKBONE_DIMS, DIMS, NOT_NEEDED
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solution import Status
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
-_NEEDED = ("film_offset", "stiffness", "damping")
 _SHOWN = 3
+_ROUND_OFF = 1e-9
+"""Relative: what an axis of the backbone differs by from the axis of the map that it was laid for."""
 
 
-def check_usable(dataset: xr.Dataset, contacts: tuple[str, ...]) -> None:
-    """Refuse a map that a law of these contacts cannot stand on.
+def check_grid(dataset: xr.Dataset, contacts: Sequence[LineContact]) -> None:
+    """Refuse a map without a backbone that a law of these contacts cannot stand on.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        The map.
-    contacts : tuple of str
+        The map, with its films.
+    contacts : sequence of LineContact
         Contacts that the law uses.
 
     Raises
@@ -33,10 +40,11 @@ def check_usable(dataset: xr.Dataset, contacts: tuple[str, ...]) -> None:
     MapError
         With every reason, each with places and what to do.
     """
-    chosen = dataset.sel(contact=list(contacts)).transpose(*DIMS, ...)
+    names = [contact.name for contact in contacts]
+    chosen = dataset.sel(contact=names).transpose(*DIMS, ...)
     filled = chosen["filled"].values.astype(bool) if "filled" in chosen else np.zeros(_shape(chosen), bool)
     usable = np.isin(chosen["status"].values, [int(status) for status in Status if status.usable]) | filled
-    for name in _NEEDED:
+    for name in FILMS:
         usable &= np.isfinite(chosen[name].values)
     problems = []
     if not np.all(usable):
@@ -52,21 +60,36 @@ def check_usable(dataset: xr.Dataset, contacts: tuple[str, ...]) -> None:
             "nothing is known there; solve them again with other settings of the solver"
         )
     if not problems:
-        problems = _unphysical(chosen)
+        problems = _unphysical(chosen, contacts)
     if problems:
-        raise MapError("\n".join(f"law of {', '.join(contacts)}: the map has {problem}" for problem in problems))
+        raise MapError("\n".join(f"law of {', '.join(names)}: the map has {problem}" for problem in problems))
 
 
-def check_backbone(group: xr.Dataset) -> None:
+def check_backbone(
+    group: xr.Dataset,
+    reference: LineContact,
+    contacts: Sequence[LineContact],
+    lubricant: Lubricant,
+    loads: tuple[float, float],
+    speeds: tuple[float, float],
+) -> None:
     """Refuse a backbone that holds no numbers where it says that it was solved, or two unsolved points in a row.
 
-    One unsolved point between solved ones is bridged as one of the grid is filled; the ends of a line, where the last
-    points may be beyond reach, are continued.
+    One unsolved point is bridged as one of the grid is filled. The ends of a line are continued as far as they lie
+    beyond the loads of the map; within them, every place of a contact of the law counts.
 
     Parameters
     ----------
     group : xarray.Dataset
         Group "backbone" of a map.
+    reference : LineContact
+        Contact of that group.
+    contacts : sequence of LineContact
+        Contacts that the law uses.
+    lubricant : Lubricant
+        The oil.
+    loads, speeds : tuple of float
+        Range of the map's axes [N/m], [m/s]; speeds > 0.
 
     Raises
     ------
@@ -77,8 +100,8 @@ def check_backbone(group: xr.Dataset) -> None:
     status = group["status"].values
     usable = np.isin(status, [int(known) for known in Status if known.usable])
     solved = usable & (group["film_offset"].values > 0.0)
-    for entry in BACKBONE_VARIABLES:
-        solved &= np.isfinite(group[entry.name].values)
+    for name in FILMS:
+        solved &= np.isfinite(group[name].values)
     problems = []
     if np.any(usable & ~solved):
         problems.append(
@@ -86,7 +109,7 @@ def check_backbone(group: xr.Dataset) -> None:
             f"{_lines(group, usable & ~solved)}"
         )
     between = np.logical_or.accumulate(solved, 0) & np.logical_or.accumulate(solved[::-1], 0)[::-1]
-    missing = ~solved & between
+    missing = ~solved & (between | _within(group, reference, contacts, lubricant, loads, speeds))
     clusters = missing & (status == NOT_NEEDED)
     clusters[1:] |= missing[1:] & missing[:-1]
     if np.any(clusters):
@@ -95,6 +118,26 @@ def check_backbone(group: xr.Dataset) -> None:
         )
     if problems:
         raise MapError("\n".join(f"backbone of the map: has {problem}; generate the map again" for problem in problems))
+
+
+def _within(
+    group: xr.Dataset,
+    reference: LineContact,
+    contacts: Sequence[LineContact],
+    lubricant: Lubricant,
+    loads: tuple[float, float],
+    speeds: tuple[float, float],
+) -> BoolArray:
+    """Places of the backbone that are points within the map for one of the contacts."""
+    zeta = group["zeta"].values
+    found = np.zeros(group["status"].shape, bool)
+    low, high = speeds[0] * (1.0 - _ROUND_OFF), speeds[1] * (1.0 + _ROUND_OFF)
+    for j, speed in enumerate(group["reference_speed"].values):
+        here = [contact for contact in contacts if low <= speed * contact.radius / reference.radius <= high]
+        for k, temperature in enumerate(group["temperature"].values if here else ()):
+            first, last = zeta_span(here, lubricant, reference, loads, float(speed), float(temperature))
+            found[:, j, k] = (zeta >= first) & (zeta <= last)
+    return found
 
 
 def _lines(group: xr.Dataset, where: BoolArray) -> str:
@@ -124,7 +167,7 @@ def _clusters(filled: BoolArray) -> BoolArray:
     return found
 
 
-def _unphysical(chosen: xr.Dataset) -> list[str]:
+def _unphysical(chosen: xr.Dataset, contacts: Sequence[LineContact]) -> list[str]:
     """Values of which no law can be made; a map without any film is a dry one, which is fine.
 
     A damping that is negative at the bottom of its valley is for the film field to lift.
@@ -133,8 +176,10 @@ def _unphysical(chosen: xr.Dataset) -> list[str]:
         return []
     moving = np.broadcast_to((chosen["entrainment_speed"].values > 0.0)[:, None], _shape(chosen))
     problems = []
-    for name, word in (("film_offset", "film offset"), ("stiffness", "stiffness")):
-        wrong = moving & ~(chosen[name].values > 0.0)
+    dry = np.array([contact.structural_compliance(chosen["load"].values) for contact in contacts])[:, :, None, None]
+    compliance = dry + chosen["film_compliance"].values
+    for values, word in ((chosen["film_offset"].values, "film offset"), (compliance, "stiffness")):
+        wrong = moving & ~(values > 0.0)
         if np.any(wrong):
             problems.append(
                 f"{np.count_nonzero(wrong)} points whose {word} is not positive, {_places(chosen, wrong)}; "

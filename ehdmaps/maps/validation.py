@@ -1,4 +1,5 @@
-"""Whether a file or a dataset is a map: attributes, axes and variables held to the table of `schema`.
+"""Whether a file or a dataset is a map: attributes, axes and variables held to the table of `schema`, and what is
+derived to the films that it is derived from.
 
 The shape that a file declares is checked before anything is loaded, so that a damaged or foreign file costs neither
 memory nor time; values are checked when they are there.
@@ -16,7 +17,9 @@ import xarray as xr
 
 from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
+from ehdmaps.maps.records import contacts_of
 from ehdmaps.maps.schema import Variable
+from ehdmaps.maps.structure import contradictions
 
 _AGAIN = "generate the map again"
 _WHOLE, _REAL, _TEXT = "iu", "iuf", "OSUT"
@@ -27,7 +30,7 @@ _MULTILINE = ("job_toml",)
 
 
 def validate(dataset: xr.Dataset, where: str = "map", backbone: xr.Dataset | None = None) -> None:
-    """Hold a dataset to the table.
+    """Hold a dataset to the table, and what is derived to its films.
 
     Parameters
     ----------
@@ -36,7 +39,19 @@ def validate(dataset: xr.Dataset, where: str = "map", backbone: xr.Dataset | Non
     where : str
         File name, for the message.
     backbone : xarray.Dataset, optional
-        Its group of refinement lines.
+        Group of its refinement lines.
+
+    Raises
+    ------
+    MapError
+        With every problem found, one a line.
+    """
+    check_tables(dataset, where, backbone)
+    refuse(contradictions(dataset, contacts_of(dataset)), where)
+
+
+def check_tables(dataset: xr.Dataset, where: str = "map", backbone: xr.Dataset | None = None) -> None:
+    """Hold a dataset to the table of its version; arguments as of `validate`.
 
     Raises
     ------
@@ -44,9 +59,10 @@ def validate(dataset: xr.Dataset, where: str = "map", backbone: xr.Dataset | Non
         With every problem found, one a line.
     """
     refuse(version_problems(dataset.attrs), where)
-    problems = [*attribute_problems(dataset.attrs), *_grid_problems(dataset)]
+    version = schema.version_of(dataset)
+    problems = [*attribute_problems(dataset.attrs), *_grid_problems(dataset, version)]
     if backbone is not None:
-        problems += [f"group {schema.BACKBONE_GROUP}: {problem}" for problem in _backbone_problems(backbone)]
+        problems += [f"group {schema.BACKBONE}: {problem}" for problem in _backbone_problems(backbone, version)]
     refuse(problems, where)
 
 
@@ -64,8 +80,9 @@ def version_problems(attributes: Mapping[str, Any]) -> Iterator[str]:
         yield "has no attribute schema_version; expected a map written by `ehdmaps generate`"
     elif not isinstance(version, (int, np.integer)):
         yield f"attribute schema_version is {version!r:.60}, no whole number; {_AGAIN}"
-    elif version != schema.SCHEMA_VERSION:
-        yield f"schema_version is {version}; this ehdmaps reads {schema.SCHEMA_VERSION}; {_AGAIN}"
+    elif not 1 <= version <= schema.SCHEMA_VERSION:
+        newer = "it was made by a newer one: update ehdmaps, or " if version > schema.SCHEMA_VERSION else ""
+        yield f"schema_version is {version}; this ehdmaps reads 1 to {schema.SCHEMA_VERSION}; {newer}{_AGAIN}"
 
 
 def attribute_problems(attributes: Mapping[str, Any]) -> Iterator[str]:
@@ -94,7 +111,7 @@ def shape_problems(entry: Variable, dims: Sequence[str], shape: Sequence[int], k
     Parameters
     ----------
     entry : Variable
-        Of the table.
+        Row of the table.
     dims, shape : sequence
         Names and lengths of its dims, without that of the characters of a text.
     kind : str
@@ -110,30 +127,28 @@ def shape_problems(entry: Variable, dims: Sequence[str], shape: Sequence[int], k
         yield f"{what} has {' x '.join(map(str, shape))} values; allowed: at most {schema.MOST_POINTS}; {_AGAIN}"
 
 
-def _grid_problems(dataset: xr.Dataset) -> Iterator[str]:
+def _grid_problems(dataset: xr.Dataset, version: int) -> Iterator[str]:
     """Yield what is wrong with the axes and variables of a map."""
-    yield from _table_problems(dataset, schema.COORDINATES, schema.VARIABLES)
+    yield from _table_problems(dataset, schema.GRID, version)
     if "contact" in dataset.coords:
         names = tuple(str(name) for name in np.atleast_1d(dataset["contact"].values))
         if names not in schema.CONTACT_NAMES:
             yield f"contact holds {', '.join(names):.60}; expected inner, outer or line"
 
 
-def _backbone_problems(group: xr.Dataset) -> Iterator[str]:
+def _backbone_problems(group: xr.Dataset, version: int) -> Iterator[str]:
     """Yield what is wrong with the group of refinement lines."""
     if not isinstance(group.attrs.get(schema.REFERENCE_CONTACT), str):
         yield f"attribute {schema.REFERENCE_CONTACT} is missing or no text; {_AGAIN}"
-    yield from _table_problems(group, schema.BACKBONE_COORDINATES, schema.BACKBONE_VARIABLES)
+    yield from _table_problems(group, schema.BACKBONE, version)
 
 
-def _table_problems(
-    dataset: xr.Dataset, coordinates: Sequence[Variable], variables: Sequence[Variable]
-) -> Iterator[str]:
-    """Yield what is wrong with a dataset, by a table."""
-    for entry in (*coordinates, *variables):
-        held = dataset.coords if entry in coordinates else dataset.data_vars
+def _table_problems(dataset: xr.Dataset, group: str, version: int) -> Iterator[str]:
+    """Yield what is wrong with a dataset, by the rows of a group."""
+    for entry in schema.table(group, version):
+        held = dataset.coords if entry.axis else dataset.data_vars
         if entry.name not in held:
-            if entry.required:
+            if entry.required_in(version):
                 yield f"{_what(entry)} is missing; {_AGAIN}"
             continue
         found = held[entry.name]
@@ -143,12 +158,12 @@ def _table_problems(
         if found.attrs.get("units") != entry.units:
             yield f"{_what(entry)} has units {found.attrs.get('units')!r:.60}; expected {entry.units!r}"
         if found.dtype.kind in _REAL:
-            yield from _value_problems(entry, found.values, entry in coordinates)
+            yield from _value_problems(entry, found.values)
 
 
-def _value_problems(entry: Variable, values: npt.NDArray[Any], axis: bool) -> Iterator[str]:
+def _value_problems(entry: Variable, values: npt.NDArray[Any]) -> Iterator[str]:
     """Yield what is wrong with the numbers of an axis or a flag."""
-    if axis:
+    if entry.axis:
         yield from _axis_problems(entry, np.atleast_1d(values))
     elif entry.flags:
         known = [value for value, _ in entry.flags]
@@ -157,15 +172,10 @@ def _value_problems(entry: Variable, values: npt.NDArray[Any], axis: bool) -> It
             yield f"{entry.name} holds {unknown[:5].tolist()}; expected {known}"
 
 
-_LOWEST = {"load": 1e-6, "entrainment_speed": 0.0, "reference_speed": 1e-12, "temperature": 1.0, "zeta": -100.0}
-_HIGHEST = {"load": 1e12, "entrainment_speed": 1e6, "reference_speed": 1e6, "temperature": 1e4, "zeta": 100.0}
-"""Far outside of what a job may ask for; what lies beyond is damage, and would overflow somewhere."""
-
-
 def _axis_problems(entry: Variable, values: npt.NDArray[Any]) -> Iterator[str]:
     """Yield what is wrong with a numeric axis."""
     what = _what(entry)
-    low, high = _LOWEST[entry.name], _HIGHEST[entry.name]
+    low, high = entry.limits or (-math.inf, math.inf)
     if values.size == 0 or not np.all(np.isfinite(values)):
         yield f"{what} is empty or holds values that are not finite numbers"
     elif np.any(np.diff(values) <= 0):
@@ -177,4 +187,4 @@ def _axis_problems(entry: Variable, values: npt.NDArray[Any]) -> Iterator[str]:
 
 def _what(entry: Variable) -> str:
     """What a variable is called in a message."""
-    return f"{'coordinate' if entry.dims == (entry.name,) else 'variable'} {entry.name}"
+    return f"{'coordinate' if entry.axis else 'variable'} {entry.name}"

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.extras import lacking
+from ehdmaps.outputs import cache_folder
 
 BUILD_COMMAND = "openfoam_cases/build"
 """Command in a clone of the project that installs what is needed and builds `ehlFoam`."""
@@ -147,10 +148,7 @@ def missing() -> tuple[str, ...]:
 
 def build_folder(environment: Mapping[str, str]) -> Path:
     """Return the folder of the build, as the build command has it."""
-    if own := environment.get(FOLDER_VARIABLE):
-        return Path(own).expanduser()
-    cache = environment.get("XDG_CACHE_HOME") or "~/.cache"
-    return Path(cache).expanduser() / "ehdmaps" / "openfoam"
+    return cache_folder("openfoam", FOLDER_VARIABLE, environment)
 
 
 def _hash(template: Path) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import SolverError
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.physics.solution import Status
@@ -48,6 +48,8 @@ class Results:
         1/k - 1/k_dry at each frequency [m2/N].
     loss_compliance : tuple of float
         Loss compliance at each frequency [m2 s/N].
+    response_residual : tuple of float
+        What the Krylov space leaves of the equations at each frequency, relative to the response at rest.
     load_defect, flux_defect, outlet_defect, cell_continuity : float
         Relative defects of the balances: load, mass flux before and behind the rupture of the film, mass of the cells.
     seconds : float
@@ -66,6 +68,7 @@ class Results:
     frequencies: tuple[float, ...] = ()
     film_compliance: tuple[float, ...] = ()
     loss_compliance: tuple[float, ...] = ()
+    response_residual: tuple[float, ...] = ()
     load_defect: float = math.nan
     flux_defect: float = math.nan
     outlet_defect: float = math.nan
@@ -73,6 +76,12 @@ class Results:
     seconds: float = math.nan
     oscillation_film_compliance: float | None = None
     oscillation_loss_compliance: float | None = None
+
+    @property
+    def complex_compliance(self) -> ComplexArray:
+        """Film compliance - i omega loss compliance at each frequency, shape (k,) [m2/N]."""
+        omega = 2.0 * math.pi * np.array(self.frequencies)
+        return np.asarray(np.array(self.film_compliance) - 1j * omega * np.array(self.loss_compliance))
 
 
 @dataclass(frozen=True)
@@ -134,6 +143,7 @@ def read_results(case: Path) -> Results:
         frequencies=frequencies,
         film_compliance=_numbers(path, entries, "filmCompliance", len(frequencies)),
         loss_compliance=_numbers(path, entries, "lossCompliance", len(frequencies)),
+        response_residual=_numbers(path, entries, "responseResidual", len(frequencies)),
         load_defect=_number(path, entries, "loadDefect"),
         flux_defect=_number(path, entries, "fluxDefect"),
         outlet_defect=_number(path, entries, "outletDefect"),

@@ -10,6 +10,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal, Protocol
 
+import numpy as np
+
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
@@ -19,12 +21,20 @@ from ehdmaps.openfoam.run import RunError
 from ehdmaps.physics.closed_form import THIN_FILM_LIMIT, HertzSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import moes_central
-from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
+from ehdmaps.physics.hertz import DRY_COMPLIANCE, LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import film_from_moes, moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.peak import peak_sampling_error
-from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status
+from ehdmaps.physics.solution import (
+    ContactSolverDefaults,
+    FilmSolution,
+    FilmSpectrum,
+    Status,
+    no_spectrum,
+    slow_spectrum,
+)
+from ehdmaps.physics.spectrum import neighbours, read_beside
 
 CAVITATION_RANGE = 1e-6
 """Pressure over which liquid turns into the cavitated mixture, over the largest of the film (about)."""
@@ -214,23 +224,43 @@ class OpenFoamSolver(ContactSolverDefaults):
         loads: tuple[float, ...],
         entrainment_speed: float,
         temperature: float,
-        frequency: float = 0.0,
     ) -> tuple[FilmSolution, ...]:
         """Films at each load, each on its own; arguments as of `ContactSolver.solve_line`.
 
         A run that fails is a point with a status and its cause.
         """
         return tuple(
-            self.solve_fields(contact, lubricant, OperatingPoint(load, entrainment_speed, temperature), frequency)[0]
+            self.solve_fields(contact, lubricant, OperatingPoint(load, entrainment_speed, temperature))[0]
             for load in loads
         )
+
+    def film_spectrum(
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: FloatArray
+    ) -> FilmSpectrum:
+        """Film of one point over frequency, from one run a grid; arguments as of `ContactSolver.film_spectrum`.
+
+        The error is a third of the difference between both grids at the same frequency, as at rest, or what the Krylov
+        space leaves of the equations.
+        """
+        where, index = np.unique(neighbours(frequencies), return_inverse=True)
+        film, coarse, fine = self._solve(contact, lubricant, point, tuple(where.tolist()))
+        if not film.status.usable:
+            return no_spectrum(film, frequencies)
+        if coarse is None or fine is None:
+            return slow_spectrum(film, frequencies)
+        found, rough = (grid.results.complex_compliance[1:] for grid in (fine, coarse))
+        index = index.reshape(frequencies.size, -1)
+        errors = read_beside((rough - found) / 3.0, where, index, frequencies)
+        # at very high frequencies the Krylov space ends before its residual is small
+        at_rest = abs(film.film_compliance) + 4.0 * DRY_COMPLIANCE / contact.reduced_modulus
+        left = at_rest * np.array(fine.results.response_residual)[1:][index[:, :1]]
+        return FilmSpectrum(film, frequencies, found[index[:, 0]], np.hstack([errors, left, 1j * left]))
 
     def solve_fields(
         self,
         contact: LineContact,
         lubricant: Lubricant,
         point: OperatingPoint,
-        frequency: float = 0.0,
         with_fields: bool = False,
     ) -> tuple[FilmSolution, GridSolution | None]:
         """Solve one point.
@@ -239,8 +269,6 @@ class OpenFoamSolver(ContactSolverDefaults):
         ----------
         contact, lubricant, point
             What is solved.
-        frequency : float
-            Frequency of the response [Hz]; 0 is the low-frequency limit.
         with_fields : bool
             Whether to read the fields of the fine grid.
 
@@ -251,19 +279,31 @@ class OpenFoamSolver(ContactSolverDefaults):
         grid : GridSolution or None
             What the run on the fine grid gave; None where there is none.
         """
+        film, _, fine = self._solve(contact, lubricant, point, (), with_fields)
+        return film, fine
+
+    def _solve(
+        self,
+        contact: LineContact,
+        lubricant: Lubricant,
+        point: OperatingPoint,
+        frequencies: tuple[float, ...],
+        with_fields: bool = False,
+    ) -> tuple[FilmSolution, GridSolution | None, GridSolution | None]:
+        """One point with its responses at rest and at some frequencies [Hz]: film, coarse and fine grid."""
         if point.entrainment_speed == 0.0:
             (dry,) = HertzSolver().solve_line(contact, lubricant, (point.load,), 0.0, point.temperature)
-            return replace(dry, status=Status.ASYMPTOTE, reason="no entrainment: dry contact"), None
+            return replace(dry, status=Status.ASYMPTOTE, reason="no entrainment: dry contact"), None, None
         peak = float(max_pressure(point.load, contact.radius, contact.reduced_modulus))
         if not peak <= LARGEST_PRESSURE:
             reason = f"Hertz pressure {peak / 1e9:.3g} GPa above {LARGEST_PRESSURE / 1e9:g} GPa"
-            return FilmSolution(Status.OUTSIDE_VALIDITY, reason), None
+            return FilmSolution(Status.OUTSIDE_VALIDITY, reason), None, None
         state = lubricant.at(point.temperature)
         began = time.perf_counter()
         end = time.monotonic() + self.timeout
         stage, done = "coarse grid", 0
         try:
-            fine = self.parameters(contact, lubricant, point, frequency)
+            fine = self.parameters(contact, lubricant, point, frequencies)
             halved = replace(fine, columns=fine.columns // 2, rows=fine.rows // 2)
             name = _case_name(contact, point)
             grids = GridSolver(self.installed, self.keep_cases)
@@ -272,17 +312,21 @@ class OpenFoamSolver(ContactSolverDefaults):
             stage = "fine grid"
             grid = grids.solve(fine, name, with_fields, end, coarse.start)
         except InputError as error:
-            return FilmSolution(Status.OUTSIDE_VALIDITY, str(error)), None
+            return FilmSolution(Status.OUTSIDE_VALIDITY, str(error)), None, None
         except SolverError as error:
             seconds = time.perf_counter() - began
             status, iterations = Status.FAILED, done
             if isinstance(error, RunError):
                 status, iterations = error.status, done + error.iterations
-            return FilmSolution(status, f"{stage}: {error}", iterations=iterations, solve_seconds=seconds), None
-        return _film(contact, state, coarse, grid, time.perf_counter() - began), grid
+            return FilmSolution(status, f"{stage}: {error}", iterations=iterations, solve_seconds=seconds), None, None
+        return _film(contact, state, coarse, grid, time.perf_counter() - began), coarse, grid
 
     def parameters(
-        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequency: float = 0.0
+        self,
+        contact: LineContact,
+        lubricant: Lubricant,
+        point: OperatingPoint,
+        frequencies: tuple[float, ...] = (),
     ) -> Parameters:
         """Return the parameters of a run on the fine grid, with the starter's start if there is one.
 
@@ -294,8 +338,8 @@ class OpenFoamSolver(ContactSolverDefaults):
             The oil.
         point : OperatingPoint
             Load, speed and temperature.
-        frequency : float
-            Frequency of the oscillation [Hz]; 0 is the low-frequency limit.
+        frequencies : tuple of float
+            Frequencies of small oscillations [Hz]; the low-frequency limit comes first in any case.
         """
         state = lubricant.at(point.temperature)
         guess = self.starter and self.starter(
@@ -329,7 +373,7 @@ class OpenFoamSolver(ContactSolverDefaults):
             shear_stress=self.shear_stress or 0.0,
             inertia=self.inertia,
             start=start,
-            frequencies=(frequency,),
+            frequencies=(0.0, *frequencies),
             max_iterations=self.max_iterations,
             tolerance=self.tolerance,
         )

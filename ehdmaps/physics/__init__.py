@@ -23,7 +23,9 @@ unilateral          how damping acts in a contact that cannot pull; what kernels
 damping             published damping formulas: rolling film, squeeze film, Dietl
 peak                what the largest of sampled pressures lacks to the peak
 thermal             reduction of the film by inlet shear heating
+structure           film and solids together: approach, stiffness, damping
 solution            `FilmSolution`, `ContactSolution`, `Status`, the Protocol `ContactSolver` and its defaults
+spectrum            film compliance and dynamic stiffness over frequency
 closed_form         the solvers `hertz` and `formula`
 ==================  ====================================================================================
 

@@ -185,6 +185,23 @@ def estimate_from_dimensions(
     return _geometry(name, entry, basic_static_rating, ERRORS.format(18, 13, 4))
 
 
+def static_rating(geometry: BearingGeometry) -> float:
+    """Static rating C0 of ISO 76 [N]; of a bearing that was estimated by its rating, this rating.
+
+    Parameters
+    ----------
+    geometry : BearingGeometry
+        The bearing.
+
+    Examples
+    --------
+    >>> round(static_rating(estimate("NU206", 39e3)), 6)
+    39000.0
+    """
+    rollers = geometry.rollers * geometry.roller_length * geometry.roller_diameter
+    return RATING * (1.0 - geometry.gamma) * rollers
+
+
 def designations() -> tuple[str, ...]:
     """Designations that `estimate` knows, written with NU."""
     return tuple(f"NU{series}{code}" for series, code in _entries())

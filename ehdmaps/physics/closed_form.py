@@ -1,8 +1,8 @@
 """The solvers without a discretisation: `hertz` (dry) and `formula` (a published central film formula).
 
 Their numerical errors are zero, since they evaluate closed forms: how far the formula is from a full
-solution is a model error, which no error estimate of a map includes. Both are low-frequency limits: they
-have no dependence on frequency and give the same numbers at each.
+solution is a model error, which no error estimate of a map includes. Both are low-frequency limits: their film
+compliance and loss compliance do not depend on frequency.
 """
 
 from __future__ import annotations
@@ -52,7 +52,6 @@ class HertzSolver(ContactSolverDefaults):
         loads: tuple[float, ...],
         entrainment_speed: float,
         temperature: float,
-        frequency: float = 0.0,
     ) -> tuple[FilmSolution, ...]:
         """Dry films at each load, whatever the oil and its speed; arguments as of `ContactSolver.solve_line`."""
         _check(loads, entrainment_speed, temperature)
@@ -102,9 +101,8 @@ class FormulaSolver(ContactSolverDefaults):
         loads: tuple[float, ...],
         entrainment_speed: float,
         temperature: float,
-        frequency: float = 0.0,
     ) -> tuple[FilmSolution, ...]:
-        """Films at each load, at any frequency; arguments as of `ContactSolver.solve_line`."""
+        """Films at each load; arguments as of `ContactSolver.solve_line`."""
         _check(loads, entrainment_speed, temperature)
         state = lubricant.at(temperature)
         return tuple(self._solve(contact, state, load, entrainment_speed) for load in loads)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics import approach
 from ehdmaps.physics._values import Values
 from ehdmaps.physics.approach import STRUCTURAL_LAWS, StructuralLaw
-from ehdmaps.physics.solids import Material, reduced_modulus
+from ehdmaps.physics.solids import STEEL, Material, reduced_modulus
 
 
 @dataclass(frozen=True)
@@ -99,6 +99,14 @@ class LineContact:
         if self.structural_law == "palmgren":
             return approach.palmgren_compliance(load, self._length, self.reduced_modulus)
         return approach.iso16281_compliance(load, self._length, self.reduced_modulus)
+
+    @property
+    def structural_scaling(self) -> float:
+        """Factor on the structural approach of steel; 1 for half_space, which knows the material."""
+        if self.structural_law == "half_space":
+            return 1.0
+        load = 1e5  # any: the laws are power laws of the load
+        return self.structural_approach(load) / replace(self, material=STEEL).structural_approach(load)
 
     @property
     def _length(self) -> float:

@@ -1,7 +1,7 @@
 """What a solver returns: the film of one contact at one operating point, and the contact made of film and solids.
 
-A solver knows the film only (`FilmSolution`). `contact_solution` adds the structural part, which is the same law for
-every solver, and gives the numbers of the map (`ContactSolution`).
+A solver knows the film only (`FilmSolution`, and over frequency `FilmSpectrum`). `contact_solution` adds the structural
+part, which is the same law for every solver, and gives the numbers of the map (`ContactSolution`).
 """
 
 from __future__ import annotations
@@ -12,9 +12,13 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Protocol
 
+import numpy as np
+
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.structure import structured
 
 
 class Status(IntEnum):
@@ -49,9 +53,9 @@ class FilmSolution:
     film_offset : float
         h_eff = dry minus lubricated approach at equal load [m].
     film_compliance : float
-        -d(h_eff)/dw = 1/k - 1/k_dry [m2/N]; at a frequency its real part.
+        -d(h_eff)/dw = 1/k - 1/k_dry [m2/N], in the limit of slow motion.
     loss_compliance : float
-        c/k^2 at low frequency, c/(k^2 + (omega c)^2) at omega [m2 s/N].
+        c/k^2 [m2 s/N], in the same limit.
     central_film, minimum_film : float
         h at the contact centre, smallest h [m].
     max_pressure : float
@@ -89,22 +93,47 @@ class FilmSolution:
 
 
 @dataclass(frozen=True)
+class FilmSpectrum:
+    """The film of one contact over frequency.
+
+    Attributes
+    ----------
+    film : FilmSolution
+        The film in the limit of slow motion, with status and reason.
+    frequencies : ndarray, shape (k,)
+        [Hz], > 0.
+    compliance : ndarray, shape (k,)
+        Film compliance S, complex [m2/N]: its imaginary part is minus omega times the loss compliance. NaN where the
+        film has no solution.
+    errors : ndarray, shape (k, m)
+        Estimates of the numerical error of S, complex and signed [m2/N]; of m estimates the one with the largest effect
+        counts.
+    """
+
+    film: FilmSolution
+    frequencies: FloatArray
+    compliance: ComplexArray
+    errors: ComplexArray
+
+
+@dataclass(frozen=True)
 class ContactSolution:
-    """One point of a map: approach, stiffness, damping and films of one contact, per unit length.
+    """One point of a map: films, approach, stiffness and damping of one contact, per unit length.
 
     Attributes
     ----------
     approach : float
         delta_el(w) - h_eff [m], > 0 when the bodies come together.
     stiffness : float
-        k = dw/d(approach) [N/m2]; with `frequency` > 0 the real part of the dynamic stiffness.
+        k = dw/d(approach) [N/m2].
     damping : float
         c [N s/m2].
     film_offset_error, film_compliance_error, stiffness_error, damping_error : float
     central_film_error, minimum_film_error, max_pressure_error : float
         Estimated relative numerical errors.
-    frequency : float
-        [Hz]; 0 is the low-frequency limit.
+    loss_compliance_error : float
+        The same, positive where the error of the loss has the sign of that of the film compliance: the two can cancel
+        in the damping.
 
     The other attributes are those of `FilmSolution`.
     """
@@ -113,6 +142,8 @@ class ContactSolution:
     reason: str
     approach: float
     film_offset: float
+    film_compliance: float
+    loss_compliance: float
     stiffness: float
     damping: float
     central_film: float
@@ -120,6 +151,7 @@ class ContactSolution:
     max_pressure: float
     film_offset_error: float
     film_compliance_error: float
+    loss_compliance_error: float
     stiffness_error: float
     damping_error: float
     central_film_error: float
@@ -128,7 +160,6 @@ class ContactSolution:
     iterations: int
     solve_seconds: float
     viscosity_extrapolated: bool
-    frequency: float = 0.0
 
 
 class ContactSolver(Protocol):
@@ -138,7 +169,7 @@ class ContactSolver(Protocol):
     line gives the same numbers, whatever was solved before.
 
     A solver has every member; a class that inherits from `ContactSolverDefaults` writes `name`, `solve_line` and
-    `settings` only.
+    `settings` only, and `film_spectrum` where its films have a memory.
     """
 
     @property
@@ -173,9 +204,8 @@ class ContactSolver(Protocol):
         loads: tuple[float, ...],
         entrainment_speed: float,
         temperature: float,
-        frequency: float = 0.0,
     ) -> tuple[FilmSolution, ...]:
-        """Films at each load [N/m], in the order given, at one speed [m/s], temperature [K] and frequency [Hz].
+        """Films at each load [N/m], in the order given, at one speed [m/s] and temperature [K].
 
         Parameters
         ----------
@@ -189,8 +219,24 @@ class ContactSolver(Protocol):
             u [m/s].
         temperature : float
             Temperature of the oil supply [K].
-        frequency : float
-            Frequency of the small oscillation to which stiffness and damping belong [Hz]; 0 is the low-frequency limit.
+        """
+        ...
+
+    def film_spectrum(
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: FloatArray
+    ) -> FilmSpectrum:
+        """Film of one point that oscillates a little, over frequency.
+
+        Parameters
+        ----------
+        contact : LineContact
+            The contact.
+        lubricant : Lubricant
+            The oil.
+        point : OperatingPoint
+            Load, speed and temperature.
+        frequencies : ndarray, shape (k,)
+            [Hz], > 0.
         """
         ...
 
@@ -225,17 +271,63 @@ class ContactSolverDefaults:
         """Its maps get no further attributes."""
         return {}
 
+    def film_spectrum(
+        self: ContactSolver,
+        contact: LineContact,
+        lubricant: Lubricant,
+        point: OperatingPoint,
+        frequencies: FloatArray,
+    ) -> FilmSpectrum:
+        """Film without a memory: the same film and loss compliance at each frequency; arguments as of `ContactSolver`.
 
-def contact_solution(
-    film: FilmSolution, contact: LineContact, point: OperatingPoint, frequency: float = 0.0
-) -> ContactSolution:
-    """Add the structural part to a film.
+        Parameters
+        ----------
+        contact, lubricant, point, frequencies
+            The arguments of `ContactSolver.film_spectrum`.
+        """
+        (film,) = self.solve_line(contact, lubricant, (point.load,), point.entrainment_speed, point.temperature)
+        return slow_spectrum(film, frequencies)
 
-    1/(k + i omega c) = d(delta_el)/dw + film_compliance - i omega loss_compliance; at omega = 0 its limit
-    k = 1/(dry + film compliance), c = loss_compliance k^2.
 
-    Errors are carried over to first order: 1/k has the absolute error of the film compliance, and c = loss k^2 has that
-    of the loss plus twice that of k, with their signs, and a twentieth of both magnitudes in case they cancel.
+def slow_spectrum(film: FilmSolution, frequencies: FloatArray) -> FilmSpectrum:
+    """Spectrum of a film whose film compliance and loss compliance do not depend on frequency.
+
+    Parameters
+    ----------
+    film : FilmSolution
+        The film.
+    frequencies : ndarray, shape (k,)
+        [Hz].
+    """
+    rate = 2j * math.pi * frequencies
+    error = film.film_compliance * film.film_compliance_error
+    lost = film.loss_compliance * film.loss_compliance_error
+    return FilmSpectrum(
+        film,
+        frequencies,
+        np.asarray(film.film_compliance - rate * film.loss_compliance, dtype=np.complex128),
+        np.asarray(error - rate * lost, dtype=np.complex128)[:, None],
+    )
+
+
+def no_spectrum(film: FilmSolution, frequencies: FloatArray) -> FilmSpectrum:
+    """Spectrum of a film that has no solution: NaN.
+
+    Parameters
+    ----------
+    film : FilmSolution
+        The film with its status and reason.
+    frequencies : ndarray, shape (k,)
+        [Hz].
+    """
+    nothing = np.full(frequencies.size, complex(math.nan, math.nan))
+    return FilmSpectrum(film, frequencies, nothing, nothing[:, None])
+
+
+def contact_solution(film: FilmSolution, contact: LineContact, point: OperatingPoint) -> ContactSolution:
+    """Add the structural part to a film, in the limit of slow motion.
+
+    See `ehdmaps.physics.structure`; for other frequencies `ehdmaps.physics.spectrum`.
 
     Parameters
     ----------
@@ -245,38 +337,37 @@ def contact_solution(
         The contact, with its structural law.
     point : OperatingPoint
         Load, speed and temperature of the film.
-    frequency : float
-        Frequency of the oscillation [Hz]; 0 is the low-frequency limit.
     """
-    dry = contact.structural_compliance(point.load)
-    compliance = dry + film.film_compliance
-    omega = 2.0 * math.pi * frequency
-    loss = film.loss_compliance
-    squared = compliance**2 + (omega * loss) ** 2
-    stiffness = compliance / squared
-    damping = loss / squared
-    stiffness_error = -film.film_compliance * film.film_compliance_error / compliance
-    loss_error = film.loss_compliance_error
-    damping_error = abs(loss_error + 2.0 * stiffness_error) + 0.05 * (abs(loss_error) + 2.0 * abs(stiffness_error))
+    solids = structured(
+        contact,
+        point.load,
+        film.film_offset,
+        film.film_compliance,
+        film.loss_compliance,
+        film.film_compliance_error,
+        film.loss_compliance_error,
+    )
     return ContactSolution(
         status=film.status,
         reason=film.reason,
-        approach=contact.structural_approach(point.load) - film.film_offset,
+        approach=solids.approach,
         film_offset=film.film_offset,
-        stiffness=stiffness,
-        damping=damping,
+        film_compliance=film.film_compliance,
+        loss_compliance=film.loss_compliance,
+        stiffness=solids.stiffness,
+        damping=solids.damping,
         central_film=film.central_film,
         minimum_film=film.minimum_film,
         max_pressure=film.max_pressure,
         film_offset_error=abs(film.film_offset_error),
         film_compliance_error=abs(film.film_compliance_error),
-        stiffness_error=abs(stiffness_error),
-        damping_error=damping_error,
+        loss_compliance_error=film.loss_compliance_error * math.copysign(1.0, film.film_compliance_error),
+        stiffness_error=solids.stiffness_error,
+        damping_error=solids.damping_error,
         central_film_error=film.central_film_error,
         minimum_film_error=film.minimum_film_error,
         max_pressure_error=film.max_pressure_error,
         iterations=film.iterations,
         solve_seconds=film.solve_seconds,
         viscosity_extrapolated=film.viscosity_extrapolated,
-        frequency=frequency,
     )

@@ -13,7 +13,7 @@ campbell       run-ups with one or more laws as levels over speed, frequency and
 hammer         a simulated hammer test
 plan           which ranges a scene needs of a contact map, and the jobs that cover them
 planning       operating points of a scene and the loads and speeds seen there
-planned_job    the text of such a job
+planned_job    such a job, from the bearings and the oil of the scene
 coverage       whether a map covers what is needed
 case           the models that an analysis compares, with their labels
 progress       how an analysis tells how far it is

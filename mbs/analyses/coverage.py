@@ -10,7 +10,6 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.usable import check_usable
 from mbs.analyses import planning
 from mbs.analyses.planning import Needed
 
@@ -78,7 +77,7 @@ def coverage(needed: Sequence[Needed], emap: EHDMap) -> tuple[Coverage, ...]:
     EhdmapsError
         If no contact law can be made of the map, whatever its axes are.
     """
-    check_usable(emap.dataset, ("inner", "outer"))
+    emap.check_usable(("inner", "outer"))
     axes = [emap.dataset[key].values for key in ("load", "entrainment_speed", "temperature")]
     # At rest there is no film to be mapped; only a dry map has no other speed.
     mapped = [axis[axis > 0.0] if np.any(axis > 0.0) else axis for axis in axes]

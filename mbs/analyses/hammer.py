@@ -139,7 +139,7 @@ def _hit(
     model: Model, balance: Equilibrium, test: HammerTest, nonlinear: bool, tell: Progress
 ) -> tuple[tuple[Hits, ...], dict[str, int]]:
     """Make the hits; with how often each element was outside its map."""
-    inputs, sensors = model.scene.inputs, model.scene.sensors
+    inputs, sensors = tuple(model.scene.inputs), tuple(model.scene.sensors)
     if not nonlinear:
         return linear_hits(balance, inputs, sensors, test), {}
     done, total = 0, test.hits * len(inputs)

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.axes import SPEED_AXIS
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.reader import parse_job
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import RPM, SPEED
 from mbs.analyses import planning
-from mbs.analyses.planned_job import job_text
+from mbs.analyses.planned_job import planned_job
 from mbs.analyses.planning import Needed
-from mbs.scene.assembly import Model, assemble, constant_name, find_problems
+from mbs.scene.assembly import Model, assemble
+from mbs.scene.contact_laws import constant_name, geometry_problems
 from mbs.scene.scene import Scene
 
 
@@ -76,9 +76,8 @@ class PlanResult:
         problems: list[str] = []
         jobs = []
         for entry, name in zip(self.needed, names or ["plan"] * len(self.needed), strict=True):
-            words = f"the job for {', '.join(entry.bearings)}"
             try:
-                jobs.append(parse_job(job_text(self.scene, entry), name, words, to_run=True))
+                jobs.append(planned_job(self.scene, entry, name))
             except InputError as error:
                 problems += error.problems
         if problems:
@@ -113,13 +112,7 @@ def plan(scene: Scene, settings: PlanSettings | None = None, emap: EHDMap | None
     ['NU308']
     """
     settings = settings or PlanSettings()
-    problems = plan_problems(scene, settings, emap)
-    if problems:
-        raise InputError(tuple(dict.fromkeys(problems)))
-    oil = scene.lubricant if scene.lubricant is not None or emap is None else emap.lubricant
-    assert oil is not None  # `plan_problems` saw to it
-    model, speeds, needed = _needed(scene, settings.law, oil, settings.clearance, settings.margin)
-    return PlanResult(scene, model, speeds, needed)
+    return needed_of(scene, dry_model(scene, settings, emap), settings, emap)
 
 
 def law_problems(law: str) -> list[str]:
@@ -129,8 +122,8 @@ def law_problems(law: str) -> list[str]:
     return [f"--law: got {law!r:.60}; allowed here: hertz, constant:NAME; loads at rest are those of dry contacts"]
 
 
-def plan_problems(scene: Scene, settings: PlanSettings, emap: EHDMap | None = None, mapped: bool = False) -> list[str]:
-    """Everything because of which no map can be planned for a scene.
+def dry_model(scene: Scene, settings: PlanSettings, emap: EHDMap | None = None, mapped: bool = False) -> Model:
+    """The scene with dry contacts, from which loads and speeds follow; the first half of `plan`.
 
     Parameters
     ----------
@@ -142,12 +135,22 @@ def plan_problems(scene: Scene, settings: PlanSettings, emap: EHDMap | None = No
         A map that is to be looked at.
     mapped : bool
         Whether there is a map that could not be read, so that the scene needs no lubricant.
+
+    Raises
+    ------
+    InputError
+        With everything because of which no map can be planned.
     """
-    plain = _dry_scene(scene)
-    dry = settings.law if constant_name(settings.law) is not None else "hertz"
-    problems = find_problems(plain, dry, None, settings.clearance)
+    problems: list[str] = []
+    model = None
+    try:
+        dry = settings.law if constant_name(settings.law) is not None else "hertz"
+        model = assemble(_dry_scene(scene), dry, clearance=settings.clearance)
+    except InputError as error:
+        problems += error.problems
     if emap is not None:
-        problems += find_problems(plain, "map", emap, settings.clearance)
+        for entry in scene.bearings:
+            problems += geometry_problems(f"bearing {entry.name!r}", entry.geometry, emap)
     if not scene.bearings:
         problems.append("got no bearing; allowed: at least one [[bearings]], which is what a map is for")
     if scene.lubricant is None and emap is None and not mapped:
@@ -155,7 +158,37 @@ def plan_problems(scene: Scene, settings: PlanSettings, emap: EHDMap | None = No
             'got no [lubricant], which a map is made for; add the table to the scene, such as name = "FVA3"'
         )
     named = [problem if problem.startswith("--") else f"{scene.name}: {problem}" for problem in problems]
-    return [*law_problems(settings.law), *named]
+    found = [*law_problems(settings.law), *named]
+    if found or model is None:
+        raise InputError(tuple(dict.fromkeys(found)))
+    return model
+
+
+def needed_of(scene: Scene, model: Model, settings: PlanSettings, emap: EHDMap | None = None) -> PlanResult:
+    """The ranges that follow from a scene with dry contacts; the second half of `plan`.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is planned for.
+    model : Model
+        The scene with dry contacts, from `dry_model`.
+    settings : PlanSettings
+        The same.
+    emap : EHDMap, optional
+        Whose oil counts where the scene has none.
+
+    Raises
+    ------
+    InputError
+        For a speed that no map has.
+    AnalysisError
+        If a bearing carries no load or does not roll, or there is no equilibrium.
+    """
+    oil = scene.lubricant if scene.lubricant is not None or emap is None else emap.lubricant
+    assert oil is not None  # `dry_model` saw to it
+    speeds, needed = _needed(scene, model, settings, oil)
+    return PlanResult(scene, model, speeds, needed)
 
 
 def _dry_scene(scene: Scene, rooms: tuple[float, ...] = ()) -> Scene:
@@ -169,16 +202,15 @@ def _dry_scene(scene: Scene, rooms: tuple[float, ...] = ()) -> Scene:
         )
         for entry, room in zip(scene.bearings, rooms or (0.0,) * len(scene.bearings), strict=True)
     )
-    return dataclasses.replace(scene, bearings=bearings)
+    return scene.with_bearings(bearings)
 
 
 def _needed(
-    scene: Scene, law: str, oil: Lubricant, clearance: float | None, margin: float
-) -> tuple[Model, tuple[float, float], tuple[Needed, ...]]:
-    """Ranges that the scene needs, with the dry model and the speeds of the system [rad/s] from which they follow."""
+    scene: Scene, model: Model, settings: PlanSettings, oil: Lubricant
+) -> tuple[tuple[float, float], tuple[Needed, ...]]:
+    """Speeds of the system [rad/s], and the ranges that the scene needs."""
     steady = (scene.speed, *(scene.sweep.speeds.tolist() if scene.sweep else ()))
     speeds = planning.speed_range(steady, scene.run_up.speed.course.values if scene.run_up else ())
-    model = assemble(_dry_scene(scene), law, clearance=clearance)
     fastest = [entry.rates[1] * speeds[1] for entry in model.bearings]
     if max(fastest) > SPEED_AXIS.high:
         raise InputError(
@@ -193,7 +225,7 @@ def _needed(
         else 0.0
         for entry, load, speed in zip(model.bearings, dry, fastest, strict=True)
     )
-    filled = assemble(_dry_scene(model.scene, rooms), law)
+    filled = assemble(_dry_scene(model.scene, rooms), settings.law)
     preloaded = planning.largest_loads(filled.system, filled.bearings, speeds[1])
     centrifugal = [
         entry.bearing.centrifugal_load(entry.inner_spin, entry.outer_spin) * speeds[1] ** 2
@@ -202,4 +234,4 @@ def _needed(
         for entry, given in zip(model.bearings, scene.bearings, strict=True)
     ]
     static = [max(pair) + more for *pair, more in zip(dry, preloaded, centrifugal, strict=True)]
-    return model, speeds, planning.needed_ranges(model.bearings, static, rooms, speeds, margin)
+    return speeds, planning.needed_ranges(model.bearings, static, rooms, speeds, settings.margin)

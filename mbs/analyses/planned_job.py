@@ -1,13 +1,16 @@
-"""The text of the job that covers what a scene needs of a contact map."""
+"""The job that covers what a scene needs of a contact map."""
 
 from __future__ import annotations
 
-import json
 import math
-import tomllib
 
+from ehdmaps.errors import InputError
 from ehdmaps.jobs.axes import LOAD_AXIS, SPEED_AXIS, AxisRule
-from ehdmaps.units import LOAD, SPEED, Display
+from ehdmaps.jobs.job import Job, check_oil
+from ehdmaps.jobs.job_text import bearing_keys, lubricant_keys, table_lines
+from ehdmaps.jobs.reader import parse_job
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.units import LOAD, SPEED, TEMPERATURE, Display, quantity
 from mbs.analyses import planning
 from mbs.analyses.planning import Needed
 from mbs.scene.scene import Scene
@@ -19,44 +22,79 @@ FEWEST = 4
 LAW_CHECK = 500
 
 
+def planned_job(scene: Scene, needed: Needed, name: str = "plan") -> Job:
+    """The job that covers what the bearings of one geometry need, read back by the reader of jobs.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene with a lubricant.
+    needed : Needed
+        The ranges.
+    name : str
+        Name of the job.
+
+    Raises
+    ------
+    InputError
+        With everything that a job does not allow, or cannot say.
+    """
+    text = job_text(scene, needed)
+    job = parse_job(text, name, f"the job for {', '.join(needed.bearings)}", to_run=True)
+    check_oil(_lubricant(scene), job)
+    return job
+
+
 def job_text(scene: Scene, needed: Needed) -> str:
     """Text of the job that covers what the bearings of one geometry need.
 
     Parameters
     ----------
     scene : Scene
-        Scene with a lubricant; geometry, oil and temperature are copied from its text.
+        Scene with a lubricant; geometry, oil and temperature are its own.
     needed : Needed
         The ranges.
+
+    Raises
+    ------
+    InputError
+        If a job cannot say the geometry.
     """
-    values = tomllib.loads(scene.text)
-    index = next(i for i, entry in enumerate(scene.bearings) if entry.name == needed.bearings[0])
-    tables = {"bearing": values["bearings"][index]["geometry"], "lubricant": values["lubricant"]}
+    geometry = next(entry.geometry for entry in scene.bearings if entry.name == needed.bearings[0])
     lines = [
         f"# What {_plain(scene.name)} needs of a contact map, for {_plain(', '.join(needed.bearings))}.",
         f"# Largest load of a slice at rest {LOAD.text(needed.static_load)}; the highest load of the map is "
         f"{needed.load[1] / needed.static_load:.3g} times that.",
         "",
         "schema = 1",
+        *table_lines("bearing", bearing_keys(geometry)),
+        *table_lines("lubricant", lubricant_keys(_lubricant(scene))),
+        "",
+        "[grid]",
+        f"load = {_axis(needed.load, LOAD, LOAD_AXIS, LOADS_PER_DECADE)}",
+        f"entrainment_speed = {_axis(needed.entrainment_speed, SPEED, SPEED_AXIS, SPEEDS_PER_DECADE)}",
+        f'temperature = ["{_temperature(scene.temperature)}"]',
+        "",
+        "[solver]",
+        'name = "reynolds"',
+        'structural_law = "iso16281"',
+        f"law_check = {LAW_CHECK}",
+        "",
     ]
-    for name, table in tables.items():
-        lines += ["", f"[{name}]", *(f"{key} = {_toml(value)}" for key, value in table.items())]
-    return "\n".join(
-        [
-            *lines,
-            "",
-            "[grid]",
-            f"load = {_axis(needed.load, LOAD, LOAD_AXIS, LOADS_PER_DECADE)}",
-            f"entrainment_speed = {_axis(needed.entrainment_speed, SPEED, SPEED_AXIS, SPEEDS_PER_DECADE)}",
-            f"temperature = [{_toml(values['operation']['temperature'])}]",
-            "",
-            "[solver]",
-            'name = "reynolds"',
-            'structural_law = "iso16281"',
-            f"law_check = {LAW_CHECK}",
-            "",
-        ]
-    )
+    return "\n".join(lines)
+
+
+def _lubricant(scene: Scene) -> Lubricant:
+    """The oil of a scene."""
+    if scene.lubricant is None:
+        raise InputError(f"{scene.name}: got no [lubricant], which a map is made for; add the table to the scene")
+    return scene.lubricant
+
+
+def _temperature(value: float) -> str:
+    """A temperature in degC, as people write it, where it reads back as the same value."""
+    text = f"{TEMPERATURE.value(value):.10g} {TEMPERATURE.unit}"
+    return text if quantity(text, "K") == value else f"{value!r} K"
 
 
 def _axis(ends: tuple[float, float], display: Display, rule: AxisRule, per_decade: int) -> str:
@@ -66,16 +104,6 @@ def _axis(ends: tuple[float, float], display: Display, rule: AxisRule, per_decad
         return f'["{low:g} {display.unit}"]'
     points = max(FEWEST, math.ceil(per_decade * math.log10(high / low)) + 1)
     return f'{{ from = "{low:g} {display.unit}", to = "{high:g} {display.unit}", points = {points}, spacing = "log" }}'
-
-
-def _toml(value: object) -> str:
-    """A string, number or table of them in TOML."""
-    if isinstance(value, dict):
-        return f"{{ {', '.join(f'{key} = {_toml(entry)}' for key, entry in value.items())} }}"
-    if isinstance(value, str):
-        # JSON escapes all that TOML wants escaped, but for this one.
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-    return repr(value)
 
 
 def _plain(text: str) -> str:

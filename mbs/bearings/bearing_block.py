@@ -31,9 +31,9 @@ class Films(NamedTuple):
     Attributes
     ----------
     tables, numbers : array (films, nodes, rows, 8), (films, nodes, NUMBERS)
-        As of `mbs.bearings.slice_table`.
+        Laws prepared as in `mbs.bearings.slice_table`.
     cells, current : array (films, rows, 8), (films, NUMBERS)
-        In use.
+        The law in use.
     in_use : array (films, 2)
         Node and weight of those.
     """
@@ -75,15 +75,15 @@ class Bearings(NamedTuple):
     sizes : array (bearings, 6)
         `Sizes` in their order.
     positions, profiles : array (bearings, n)
-        As of `Shape` [m].
+        Slices, see `Shape` [m].
     cos, sin : array (bearings, Z)
-        As of `Shape`.
+        Directions of the rollers, see `Shape`.
     rows, states : array (Z n,), (4 Z n,)
         Work space for one bearing after the other.
     films : Films
         Tables of the laws.
     course : Course
-        Where on them the steps are.
+        Places of the steps on the tables.
     """
 
     firsts: IntArray
@@ -143,7 +143,7 @@ def blend(films: Films, film: int, node: int, weight: float) -> None:
     node : int
         The lower node.
     weight : float
-        Of the upper node, 0 to 1.
+        Weight of the upper node, 0 to 1.
     """
     if films.in_use[film, 0] == node and films.in_use[film, 1] == weight:
         return
@@ -204,7 +204,7 @@ def bearings_answer(bearings: Bearings, moment: Moment, motion: FloatArray, answ
     motion : array (2, m)
         Displacements and their rates, among what all elements feel.
     answers : Answers
-        Filled.
+        Answers of all elements, filled.
     """
     course = bearings.course
     for film in range(bearings.films.current.shape[0]):

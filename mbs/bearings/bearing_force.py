@@ -143,13 +143,13 @@ class BearingForce:
         Parameters
         ----------
         pose, velocity : array (6,)
-            Of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
+            Pose of the inner ring in O [m], [rad], and its rate; at rest if there is no velocity.
         cage_angle : float
             Angle of the first roller [rad].
         entrainment_speed, temperature : float
             u [m/s] and T [K]; a map's law needs them.
         centrifugal_load : float
-            Of a roller [N/m]; for a map's law only.
+            Load of a roller [N/m]; for a map's law only.
         """
         return self._prepared(entrainment_speed, temperature, centrifugal_load).evaluate(pose, velocity, cage_angle)
 

@@ -48,7 +48,7 @@ class Sizes(NamedTuple):
     most_travel, most_tilt : float
         Largest accepted displacement [m] and tilt [rad] of the ring.
     half_length : float
-        Of a roller [m].
+        Half the length of a roller [m].
     least_profile : float
         The smallest of `Shape.profile` [m].
     """
@@ -69,7 +69,7 @@ class Shape(NamedTuple):
     sizes : Sizes
         Clearance, lengths, limits.
     positions, profile : array (n,)
-        Of the slices along the roller, and twice the depth of the profile there [m].
+        Places of the slices along the roller, and twice the depth of the profile there [m].
     cos, sin : array (Z,)
         Directions of the rollers in the cage.
     """
@@ -112,7 +112,7 @@ class Roller(NamedTuple):
     Attributes
     ----------
     cos, sin : float
-        Its direction.
+        Direction of the roller.
     gap, tilt : float
         Approach in its middle [m], and how it grows along it.
     rate, tilt_rate : float
@@ -363,13 +363,13 @@ def bearing_force(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work
     Parameters
     ----------
     motion : RingMotion
-        Of the inner ring, and where the cage stands.
+        Motion of the inner ring, and where the cage stands.
     shape : Shape
         The bearing.
     law : PreparedLaw
-        Of a roller between both raceways, at a speed and temperature.
+        Law of a roller between both raceways, at a speed and temperature.
     work : Work
-        Overwritten.
+        Work space, overwritten.
     out : array (13, 6)
         Force, six rows of stiffness, six rows of damping.
 
@@ -409,15 +409,15 @@ def bearing_force_of_point(
     point : Point
         The law.
     motion, shape
-        As of `bearing_force`.
+        The same as for `bearing_force`.
     numbers : LawNumbers
-        With a slope of 1, and no lift-off.
+        Numbers with a slope of 1, and without lift-off.
     states : array (4, Z, n)
-        Overwritten by the slices at their rates.
+        Work space, overwritten by the slices at their rates.
     counts : array (4,), of int
-        Counted up outside the map.
+        Numbers of calls outside the map, counted up.
     out : array (13, 6)
-        As of `bearing_force`.
+        Result, see `bearing_force`.
     """
     wrong = _check(motion, shape.sizes)
     if wrong != 0:
@@ -479,16 +479,18 @@ def force_of_arrays(
     ----------
     state : array (13,)
         Pose (6), velocity (6), cage angle: [m], [rad], [m/s], [rad/s].
-    sizes, numbers : array (6,), (10,)
-        `Sizes` and `LawNumbers` in their order.
+    sizes : array (6,)
+        The numbers of `Sizes` in their order.
     slices, angles : array (2, n), (2, Z)
         Positions and profile, cosine and sine of `Shape`.
+    numbers : array (10,)
+        The numbers of `LawNumbers` in their order.
     cells : array (2 ROWS, 8)
-        Of `PreparedLaw`.
+        Table of `PreparedLaw`.
     rows, states : array (Z, n), (4, Z, n)
-        Of `Work`.
+        Arrays of `Work`.
     out : array (13, 6)
-        As of `bearing_force`.
+        Result, see `bearing_force`.
     """
     if not _all_finite(state):
         return NOT_FINITE
@@ -516,10 +518,12 @@ def force_of_point_arrays(
     ----------
     point : Point
         The law.
-    state, sizes, slices, angles, numbers, states, out
-        As of `force_of_arrays`.
+    state, sizes, slices, angles, numbers, states
+        The same arrays as for `force_of_arrays`.
     counts : array (4,), of int
-        Counted up outside the map.
+        Numbers of calls outside the map, counted up.
+    out : array (13, 6)
+        Result, see `bearing_force`.
     """
     if not _all_finite(state):
         return NOT_FINITE
@@ -535,7 +539,7 @@ def rollers_of_arrays(state: FloatArray, sizes: FloatArray, slices: FloatArray, 
     Parameters
     ----------
     state, sizes, slices, angles
-        As of `force_of_arrays`.
+        The same arrays as for `force_of_arrays`.
     """
     shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
     motion = _ring_motion(state)

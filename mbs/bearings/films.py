@@ -175,7 +175,7 @@ class MapFilms:
     Raises
     ------
     MapError
-        For a map without the contacts of a roller.
+        For a map without the contacts of a roller, or with points that have no pressure or film.
     """
 
     emap: EHDMap
@@ -184,6 +184,14 @@ class MapFilms:
     def __post_init__(self) -> None:
         if tuple(contact.name for contact in self.emap.contacts) != SIDES:
             raise MapError("films: got the map of a bare contact; allowed: a map of a bearing")
+        data = self.emap.dataset.sel(entrainment_speed=self.emap.dataset["entrainment_speed"] > 0.0)
+        missing = sum(int(np.count_nonzero(~np.isfinite(data[name].values))) for name in _VARIABLES)
+        if missing:
+            raise MapError(
+                f"films: the map lacks {missing} values of {', '.join(_VARIABLES)}, at points without a solution; "
+                "solve them again with other settings of the solver, let `generate` fill them, or leave them out of "
+                "the axes"
+            )
         object.__setattr__(self, "_formula", FormulaFilms(self.emap.contacts, self.emap.lubricant))
 
     @property

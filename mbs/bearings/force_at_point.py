@@ -76,7 +76,7 @@ class FlatLaw:
     Parameters
     ----------
     law : Law
-        Of a roller between both raceways.
+        Law of a roller between both raceways.
     """
 
     def __init__(self, law: Law) -> None:
@@ -149,7 +149,15 @@ class ForceAtPoint:
         return out[0], out[1:7], out[7:]
 
     def evaluate(self, pose: npt.ArrayLike, velocity: npt.ArrayLike | None = None, cage_angle: float = 0.0) -> Forces:
-        """As a call, and whether a slice was outside the map."""
+        """As a call, and whether a slice was outside the map.
+
+        Parameters
+        ----------
+        pose, velocity : array (6,)
+            Pose of the inner ring in O [m], [rad], and its rate; at rest if there is no velocity.
+        cage_angle : float
+            Angle of the first roller [rad].
+        """
         out, outside = self._found(pose, velocity, cage_angle)
         return Forces(out[0], out[1:7], out[7:], outside)
 

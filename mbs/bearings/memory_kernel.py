@@ -60,7 +60,7 @@ def settle(table: MemoryTable, delta: FloatArray, memory: FloatArray) -> None:
     delta : array (n,)
         Approaches [m].
     memory : array (MEMORY, n)
-        Of the slices; written.
+        Memory of the slices; written.
     """
     memory[:] = 0.0
     for i in range(delta.size):
@@ -84,7 +84,7 @@ def begin(table: MemoryTable, growth: float, count: int, memory: FloatArray) -> 
     count : int
         Number of the step.
     memory : array (MEMORY, n)
-        Of the slices; states are foretold, parabolas read where they are used up.
+        Memory of the slices; states are foretold, parabolas read where they are used up.
     """
     latest, before, trial, load = memory[LATEST], memory[BEFORE], memory[TRIAL], memory[LOAD]
     around, reach, loaded, load_reach = memory[AROUND], memory[REACH], memory[LOADED], memory[LOAD_REACH]
@@ -180,7 +180,7 @@ def loads(
     step : Step
         How long.
     memory : array (MEMORY, n)
-        Of the slices; the states of the trial are written.
+        Memory of the slices; the states of the trial are written.
     delta : array (n,)
         Approaches [m].
     load, tangent : array (n,)
@@ -218,7 +218,7 @@ def commit(table: MemoryTable, memory: FloatArray, load: FloatArray) -> None:
     table : MemoryTable
         The law.
     memory : array (MEMORY, n)
-        Of the slices.
+        Memory of the slices.
     load : array (n,)
         What `loads` found last [N/m].
     """

@@ -122,9 +122,9 @@ def roller_loads(
     slices : array (2, n)
         Positions of the slices, and twice the profile there [m].
     states : array (4, Z, n)
-        As of `mbs.bearings.bearing_kernel.Work`.
+        States of the slices, see `mbs.bearings.bearing_kernel.Work`.
     rollers : array (4, Z)
-        As of `mbs.bearings.bearing_kernel.rollers_of_arrays`.
+        Motion of the rollers, see `mbs.bearings.bearing_kernel.rollers_of_arrays`.
     cage_angle : float
         Angle of the first roller [rad].
     """

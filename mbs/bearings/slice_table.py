@@ -49,9 +49,9 @@ class LawNumbers(NamedTuple):
     kind : float
         POWER or CELLS.
     coefficient, exponent, damping : float
-        Of w = a delta^b [N/m], and c per unit length [N s/m2]; for POWER.
+        Constants of w = a delta^b [N/m], and c per unit length [N s/m2]; for POWER.
     centre, inverse_scale : float
-        Of the table [m], [1/m]; for CELLS.
+        Places of the table [m], [1/m]; for CELLS.
     highest : float
         Load above which slices are outside the map [N/m].
     safe_approach : float
@@ -84,9 +84,9 @@ class PreparedLaw(NamedTuple):
     Attributes
     ----------
     numbers : LawNumbers
-        Its numbers.
+        Numbers of the law.
     cells : array (2 ROWS, 8)
-        Its table; anything for POWER.
+        Table of the law; anything for POWER.
     """
 
     numbers: LawNumbers
@@ -249,7 +249,7 @@ class FlatTable(NamedTuple):
     axes : array (3, 6)
         The numbers of each, in their order.
     structure : array (n, 3)
-        As of `LawTable`.
+        The array of the `LawTable`.
     numbers : array (9,)
         The numbers of the `LawTable`, in their order.
     """

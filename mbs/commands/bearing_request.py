@@ -14,10 +14,11 @@ import numpy as np
 from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.inputs import first_bytes, read_text
 from ehdmaps.jobs import toml_text
+from ehdmaps.jobs.opening import open_given
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.reader import LONGEST_FILE, read_job, shipped_jobs
 from ehdmaps.jobs.table import Table
-from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
@@ -26,9 +27,9 @@ from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import FilmSource, FormulaFilms, MapFilms
-from mbs.commands.cases import WIDEST, read_clearance
+from mbs.commands.cases import NO_MAP, WIDEST, read_clearance
 from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, result_kind
-from mbs.scene.assembly import geometry_problems
+from mbs.scene.contact_laws import geometry_problems, structure_words
 from mbs.scene.fields import FORCE, MICROMETRE
 
 LAWS = ("hertz", "formula", "map")
@@ -109,7 +110,7 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     """
     problems: list[str] = []
     given = _bearing(arguments.bearing, problems)
-    emap = _map(arguments.map, problems)
+    emap = _map(arguments.map, arguments.structure, problems)
     law = _law(arguments.law, emap is not None or arguments.map is not None, problems)
     loads = _values("--load", arguments.load, "N", _LOADS, FORCE, problems)
     speeds = _values("--speed", arguments.speed, "rad/s", _SPEEDS, RPM, problems)
@@ -182,7 +183,7 @@ def _assumed(arguments: argparse.Namespace, given: _Given, emap: EHDMap | None) 
 def _law_words(law: str, emap: EHDMap | None, oil: Lubricant) -> str:
     """The law, for people."""
     if law == "map" and emap is not None:
-        return f"map of {oil.name}, solver {emap.dataset.attrs.get('solver', '')}"
+        return f"map of {oil.name}, solver {emap.dataset.attrs.get('solver', '')}{structure_words(emap)}"
     words = f"film formula moes, {oil.name} (its damping is far too low for loaded contacts)"
     return words if law == "formula" else "dry Hertz, ISO 16281"
 
@@ -260,12 +261,16 @@ def _sliced(
     return Bearing(geometry, arguments.profile, slices, given.material)
 
 
-def _map(path: str | None, problems: list[str]) -> EHDMap | None:
-    """The map."""
+def _map(path: str | None, structure: str | None, problems: list[str]) -> EHDMap | None:
+    """The map, by the structural law that is wanted."""
     if path is None:
+        problems += [] if structure is None else [NO_MAP.format(structure)]
         return None
     try:
-        return open_map(path)
+        return open_given(path, structure)
+    except InputError as error:
+        problems += error.problems
+        return None
     except EhdmapsError as error:
         problems += [f"--map: {line}" for line in str(error).splitlines()]
         return None

@@ -15,19 +15,24 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ehdmaps.errors import EhdmapsError, InputError
-from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.jobs.opening import open_given
+from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
 from ehdmaps.units import closest, quantity
 from mbs.analyses.case import Case, common_clearance
 from mbs.model.relaxation import Films
 from mbs.output.results import RESULT
-from mbs.scene.assembly import MEMORY_WORDS, Model, assemble, find_problems, law_label
+from mbs.scene.assembly import Model, assemble
+from mbs.scene.contact_laws import MEMORY_WORDS, law_label
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 
 WIDEST = 1e-2
 """Largest clearance of --clearance, either way [m]."""
+
+NO_MAP = "--structure: got {!r:.60} without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`"
+"""What is said where a structural law is given for no map."""
 
 FILMS = ("memory", "slow", "dry")
 """What --films takes: films that relax, those of slow motion, and none."""
@@ -63,8 +68,8 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
     Parameters
     ----------
     arguments : argparse.Namespace
-        Arguments with `scene`, `output`, `plot`, and `law`, `map`, `films`, `clearance`, `load_factor`, `start_angle`:
-        each a text, a list of texts, None, or left out.
+        Arguments with `scene`, `output`, `plot`, and `law`, `map`, `structure`, `films`, `clearance`,
+        `load_factor`, `start_angle`: each a text, a list of texts (but for `structure`), None, or left out.
     several : bool
         Whether laws and maps stand side by side; else a law goes before a map.
     kind : Kind
@@ -81,7 +86,8 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
         scene = read_scene(arguments.scene)
     except InputError as error:
         problems += error.problems
-    laws = _laws(_given(arguments, "law"), _given(arguments, "map"), problems)
+    structure = getattr(arguments, "structure", None)
+    laws = _laws(_given(arguments, "law"), _given(arguments, "map"), structure, problems)
     if not several:
         problems += [
             f"--{option}: got {len(given)} of them; allowed: one; `mbs sweep` and `mbs campbell` compare more"
@@ -106,15 +112,15 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
             f"--law, --map, --clearance, --load-factor, --start-angle: got {count} combinations; allowed: at most "
             f"{MOST_CASES}"
         )
-    elif scene is not None:
-        for law, clearance in itertools.product(laws, clearances):
-            found = find_problems(scene, law.name, law.emap, clearance, law.films)
-            problems += [problem if problem.startswith("--") else f"{scene.name}: {problem}" for problem in found]
-    if problems or scene is None:
+    if scene is None or count > MOST_CASES:
         raise InputError(tuple(dict.fromkeys(problems)))
     cases = []
     for law, clearance, factor, angle in itertools.product(laws, clearances, factors, angles):
-        model = assemble(_turned(_loaded(scene, factor), angle), law.name, law.emap, clearance, law.films)
+        try:
+            model = assemble(_turned(_loaded(scene, factor), angle), law.name, law.emap, clearance, law.films)
+        except InputError as error:
+            problems += scene_problems(scene, error)
+            continue
         words = [
             *([law.label] if len(laws) > 1 or count == 1 else []),
             *([MICROMETRE.text(clearance)] if len(clearances) > 1 and clearance is not None else []),
@@ -122,7 +128,14 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
             *([f"cage at {DEGREE.text(angle)}"] if len(angles) > 1 and angle is not None else []),
         ]
         cases.append(Case(", ".join(words), model, common_clearance(model), factor, angle))
+    if problems:
+        raise InputError(tuple(dict.fromkeys(problems)))
     return cases
+
+
+def scene_problems(scene: Scene, error: InputError) -> list[str]:
+    """What is wrong about a scene, under its name; problems of an option say that themselves."""
+    return [problem if problem.startswith("--") else f"{scene.name}: {problem}" for problem in error.problems]
 
 
 def scene_output_problems(
@@ -154,8 +167,10 @@ def _given(arguments: argparse.Namespace, name: str) -> list[str]:
     return [] if value is None else [value] if isinstance(value, str) else list(value)
 
 
-def _laws(names: list[str], paths: list[str], problems: list[str]) -> list[_Law]:
+def _laws(names: list[str], paths: list[str], structure: str | None, problems: list[str]) -> list[_Law]:
     """The laws that are meant: those named, and each map; dry Hertz without either."""
+    if structure is not None and not paths:
+        problems.append(NO_MAP.format(structure))
     for option, texts in (("--law", names), ("--map", paths)):
         problems += [
             f"{option}: got {text!r:.60} twice; allowed: each once"
@@ -166,7 +181,9 @@ def _laws(names: list[str], paths: list[str], problems: list[str]) -> list[_Law]
     maps: list[tuple[str, EHDMap]] = []
     for path in paths:
         try:
-            maps.append((path, open_map(path)))
+            maps.append((path, open_given(path, structure)))
+        except InputError as error:
+            problems += error.problems
         except EhdmapsError as error:
             problems += [f"--map: {line}" for line in str(error).splitlines()]
     solvers = [str(emap.dataset.attrs.get("solver", "")) for _, emap in maps]
@@ -184,22 +201,22 @@ def _with_films(laws: list[_Law], given: list[str], problems: list[str]) -> list
     problems += [f"--films: got {text!r:.60} twice; allowed: each once" for text in twice]
     if wrong or twice or not given:
         return laws
-    found: list[_Law] = []
-    dry = _Law(law_label("hertz"), "hertz")
     having = [law for law in laws if law.name in ("map", "formula")]
     if not having:
         problems.append(
-            f"--films: got {', '.join(given)} with laws without films; allowed: with --map or --law formula"
+            f"--films: got {', '.join(given)} without a law that has films; allowed: with --map or --law formula"
         )
+    found: list[_Law] = []
     for law in laws:
-        chosen = [dry if text == "dry" else _filmed(law, text, len(given) > 1) for text in given]
-        found += chosen if law in having else [law]
-    # A dry law stands for all maps, and for --law hertz.
+        found += [_filmed(law, text, len(given) > 1) for text in given] if law in having else [law]
+    # One dry law stands for all maps, and for --law hertz.
     return [law for index, law in enumerate(found) if law.label not in {other.label for other in found[:index]}]
 
 
 def _filmed(law: _Law, films: str, compared: bool) -> _Law:
     """A law with its films."""
+    if films == "dry":
+        return _Law(law_label("hertz"), "hertz")
     words = MEMORY_WORDS if films == "memory" else "slow films"
     label = f"{law.label}, {words}" if compared or films == "memory" else law.label
     return dataclasses.replace(law, label=label, films="memory" if films == "memory" else "slow")
@@ -245,9 +262,7 @@ def _turned(scene: Scene, angle: float | None) -> Scene:
     """The scene with all cages at another angle."""
     if angle is None:
         return scene
-    return dataclasses.replace(
-        scene, bearings=tuple(dataclasses.replace(entry, start_angle=angle) for entry in scene.bearings)
-    )
+    return scene.with_bearings(dataclasses.replace(entry, start_angle=angle) for entry in scene.bearings)
 
 
 def _loaded(scene: Scene, factor: float) -> Scene:

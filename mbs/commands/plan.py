@@ -20,10 +20,11 @@ from ehdmaps.outputs import SEALED, Output, output_problems, sealed, write_text
 from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display
 from mbs.analyses import planning
 from mbs.analyses.coverage import AxisCover, Coverage, coverage
-from mbs.analyses.plan import PlanResult, PlanSettings, law_problems, plan, plan_problems
+from mbs.analyses.plan import PlanResult, PlanSettings, dry_model, law_problems, needed_of
 from mbs.analyses.planning import Needed
 from mbs.commands.cases import read_clearance, scene_output_problems
 from mbs.commands.common import heading
+from mbs.scene.assembly import Model
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
@@ -42,8 +43,8 @@ class _Planned:
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Tell the ranges; then write the job, or say whether a map covers them."""
-    scene, emap, settings = _read(arguments)
-    found = plan(scene, settings, emap)
+    model, scene, emap, settings = _read(arguments)
+    found = needed_of(scene, model, settings, emap)
     slowest, fastest = found.speeds
     lines = [
         *heading(found.model),
@@ -64,10 +65,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     return "\n".join(lines if arguments.output else [*lines, "nothing written; -o JOB.toml writes the job"]), 0
 
 
-def _read(arguments: argparse.Namespace) -> tuple[Scene, EHDMap | None, PlanSettings]:
-    """Read scene, map, clearance and margin; all problems at once."""
+def _read(arguments: argparse.Namespace) -> tuple[Model, Scene, EHDMap | None, PlanSettings]:
+    """Read scene, map, clearance and margin, and put the scene together; all problems at once."""
     problems: list[str] = []
     scene: Scene | None = None
+    model: Model | None = None
     emap: EHDMap | None = None
     try:
         scene = read_scene(arguments.scene)
@@ -91,10 +93,13 @@ def _read(arguments: argparse.Namespace) -> tuple[Scene, EHDMap | None, PlanSett
             "--map: stands beside -o; allowed: a map to be looked at, or a job to be written; leave one out"
         )
     if scene is not None:
-        problems += plan_problems(scene, settings, emap, mapped=arguments.map is not None)
-    if problems or scene is None:
+        try:
+            model = dry_model(scene, settings, emap, mapped=arguments.map is not None)
+        except InputError as error:
+            problems += error.problems
+    if problems or scene is None or model is None:
         raise InputError(tuple(dict.fromkeys(problems)))
-    return scene, emap, settings
+    return model, scene, emap, settings
 
 
 def _margin(text: str | None, problems: list[str]) -> float:

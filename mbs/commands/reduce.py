@@ -16,11 +16,13 @@ from ehdmaps.jobs.table import Table
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.units import LENGTH
 from ehdmaps.version import version
+from mbs.flexible.carry_out import read_model, reduce_model
 from mbs.flexible.extent import Extent, extent
+from mbs.flexible.plan import ReductionPlan
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduced_file import REDUCED, write_reduced
 from mbs.scene.fields import HERTZ
-from mbs.scene.flexible import Reduction, read_reduction
+from mbs.scene.flexible import read_reduction
 from mbs.scene.reader import LONGEST_FILE
 
 _SHOWN = 30
@@ -39,16 +41,16 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if problems or plan is None:
         raise InputError(problems)
     began = time.perf_counter()
-    model = plan.model()
+    model = read_model(plan)
     found = extent(model)
-    reduced = plan.reduced(model, {"command": f"mbs reduce {source.name} -o {target.name}", **_versions()})
+    reduced = reduce_model(plan, model, {"command": f"mbs reduce {source.name} -o {target.name}", **_versions()})
     seconds = time.perf_counter() - began
     warnings = [f"warning: {source}: {words}" for words in found.warnings(plan.units)]
     write_reduced(target, reduced)
     return "\n".join([*_lines(reduced, found, source, seconds), *warnings, f"{target}: written"]), 0
 
 
-def read_body_file(path: Path) -> Reduction:
+def read_body_file(path: Path) -> ReductionPlan:
     """Read a file that says what is reduced and how.
 
     Parameters

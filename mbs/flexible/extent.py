@@ -13,7 +13,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from mbs.flexible.finite_elements import FiniteElementModel
-from mbs.flexible.matrix_files import UNIT_SYSTEMS
+from mbs.flexible.plan import UNIT_SYSTEMS
 from mbs.model.body import lever_arm
 
 DENSITIES = (1.0, 25e3)

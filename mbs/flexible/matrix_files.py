@@ -16,9 +16,7 @@ from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
 from mbs.flexible.finite_elements import MOST_FREEDOMS, FiniteElementModel
 from mbs.flexible.number_table import NumberTable, check_file, check_last_line, read_numbers
-
-UNIT_SYSTEMS = ("SI", "mm-t-s")
-"""N, m, kg, s; or N, mm, tonne, s, as finite-element models are often made."""
+from mbs.flexible.plan import UNIT_SYSTEMS
 
 _FIXED = 1e35
 """Stiffness from which on a degree of freedom is taken as fixed: Abaqus writes 1e36 for those."""

@@ -17,21 +17,18 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.errors import InputError
-from ehdmaps.inputs import check_input
 from ehdmaps.outputs import MADE_AS, Kind, root_attributes, written_aside
+from mbs.flexible.plan import REDUCED_SUFFIXES, check_reduced, check_reduced_suffix
 from mbs.flexible.reduced_body import MOST_COORDINATES, ReducedBody
 from mbs.model.body import FREEDOMS, Frame
 
 SCHEMA_VERSION = 1
-
-SUFFIXES = (".nc", ".npz")
 
 MOST_FRAMES = 10_000
 
 _MADE = {MADE_AS: "reduced body"}
 _ARRAYS = ("mass", "stiffness", "coordinates", "units", "frames", "positions", "transforms")
 _OPTIONAL = "attributes"
-_LONGEST_FILE = 1_000_000_000
 _DAMAGED = (
     OSError,
     ValueError,
@@ -47,7 +44,20 @@ _DAMAGED = (
 """What the libraries raise for files that are damaged or of another kind."""
 
 
-def write_reduced(path: Path, reduced: ReducedBody) -> None:
+def _ours(path: Path) -> bool:
+    """Tell whether a file was written by `write_reduced`."""
+    if path.suffix != ".npz":
+        return root_attributes(path).get(MADE_AS) == _MADE[MADE_AS]
+    try:
+        return [MADE_AS, _MADE[MADE_AS]] in _npz(path).get(_OPTIONAL, np.empty(0)).tolist()
+    except InputError:
+        return False
+
+
+REDUCED = Kind("a body that was reduced by mbs", REDUCED_SUFFIXES, _ours)
+
+
+def write_reduced(path: Path, reduced: ReducedBody, kind: Kind = REDUCED) -> None:
     """Write a reduced body, by the rule of all files that are written.
 
     Parameters
@@ -56,14 +66,16 @@ def write_reduced(path: Path, reduced: ReducedBody) -> None:
         .nc or .npz.
     reduced : ReducedBody
         What is written.
+    kind : Kind
+        What may be replaced by it.
 
     Raises
     ------
     InputError
         If it cannot be written.
     """
-    _check_suffix(path)
-    with written_aside(path, REDUCED) as aside:
+    check_reduced_suffix(path)
+    with written_aside(path, kind) as aside:
         if path.suffix == ".npz":
             with aside.open("wb") as file:
                 np.savez(file, allow_pickle=False, **_arrays(reduced))
@@ -84,32 +96,12 @@ def read_reduced(path: Path) -> ReducedBody:
     InputError
         If it is none.
     """
-    _check_suffix(path)
-    check_input(path, _LONGEST_FILE, "a file written by mbs reduce")
+    check_reduced(path)
     given = _npz(path) if path.suffix == ".npz" else _netcdf(path)
     try:
         return _body(given)
     except InputError as error:
         raise InputError([f"{path}: {problem}" for problem in error.problems]) from error
-
-
-def _ours(path: Path) -> bool:
-    """Tell whether a file was written by `write_reduced`."""
-    if path.suffix != ".npz":
-        return root_attributes(path).get(MADE_AS) == _MADE[MADE_AS]
-    try:
-        return [MADE_AS, _MADE[MADE_AS]] in _npz(path).get(_OPTIONAL, np.empty(0)).tolist()
-    except InputError:
-        return False
-
-
-REDUCED = Kind("a body that was reduced by mbs", SUFFIXES, _ours)
-
-
-def _check_suffix(path: Path) -> None:
-    """Raise if a file has another kind of name."""
-    if path.suffix not in SUFFIXES:
-        raise InputError(f"{path}: got the ending {path.suffix!r}; allowed: {', '.join(SUFFIXES)}")
 
 
 def _arrays(reduced: ReducedBody) -> dict[str, Any]:

@@ -6,19 +6,16 @@ shape that belongs to them, and with the modes that it has when its frames are h
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from ehdmaps.errors import InputError
 from mbs.flexible.damping import modal_damping
+from mbs.flexible.shaft_layout import shaft_problems
 from mbs.flexible.shaft_model import reduced, shaft_model
-from mbs.flexible.shaft_parts import Disc, Section, misfits
+from mbs.flexible.shaft_parts import Disc, Section
 from mbs.model.body import FREEDOMS, Body, Frame
-
-CUTOFFS = (1e-3, 1e7)
-"""Lowest and highest cut-off [Hz]."""
 
 
 def flexible_shaft(
@@ -80,17 +77,7 @@ def flexible_shaft(
     Valid for waves that are longer than a few diameters: sections stay plane. A cut-off above that all along the
     shaft is an error. Modes of a system are good up to about half the cut-off.
     """
-    problems = misfits(sections, discs, freedoms, frames)
-    if not (len(position) == 3 and all(math.isfinite(value) for value in position)):
-        problems.append(f"position: got {tuple(position)!r} m; allowed: three finite numbers")
-    if not math.isfinite(spin):
-        problems.append(f"spin: got {spin!r}; allowed: finite")
-    if largest_element is not None and not (math.isfinite(largest_element) and largest_element > 0.0):
-        problems.append(f"largest_element: got {largest_element!r} m; allowed: finite and > 0")
-    if cutoff is not None and not CUTOFFS[0] <= cutoff <= CUTOFFS[1]:
-        problems.append(f"cutoff: got {cutoff!r} Hz; allowed: {CUTOFFS[0]:g} to {CUTOFFS[1]:g} Hz")
-    if not (math.isfinite(damping_ratio) and 0.0 <= damping_ratio < 1.0):
-        problems.append(f"damping_ratio: got {damping_ratio!r}; allowed: 0 <= ratio < 1")
+    problems = shaft_problems(sections, discs, freedoms, position, frames, spin, largest_element, cutoff, damping_ratio)
     if problems:
         raise InputError([f"shaft {name!r}, {problem}" for problem in problems])
     try:

@@ -17,22 +17,10 @@ from scipy.linalg import cho_factor, cho_solve, eigh
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from mbs.flexible.beam import (
-    CrossSection,
-    element_gyroscopic,
-    element_length,
-    element_mass,
-    element_stiffness,
-    wave_length,
-)
-from mbs.flexible.shaft_parts import GROUPS, TOGETHER, Disc, Section
+from mbs.flexible.beam import element_gyroscopic, element_mass, element_stiffness
+from mbs.flexible.shaft_layout import divide
+from mbs.flexible.shaft_parts import GROUPS, Disc, Section
 from mbs.model.body import FREEDOMS, Inertia, lever_arm
-
-WAVE_ERROR = 1e-4
-"""Relative error of the frequency of bending waves at the cut-off that elements may make; much less below it."""
-
-MOST_ELEMENTS = 400
-"""Of one shaft; more would take long and show nothing that a beam can tell."""
 
 _ROUND_OFF = 1e-6
 """What static shapes may miss of rigid motion; a shaft of a machine stays below 1e-9."""
@@ -101,7 +89,7 @@ def shaft_model(
     InputError
         For too many elements, a cut-off beyond the theory of beams, and matrices that overflow.
     """
-    nodes, elements = _divide(sections, [*(disc.position for disc in discs), *places], largest_element, cutoff)
+    nodes, elements = divide(sections, [*(disc.position for disc in discs), *places], largest_element, cutoff)
     kept = [FREEDOMS.index(freedom) for freedom in freedoms]
     size = len(kept)
     pair = [*kept, *(6 + index for index in kept)]
@@ -183,51 +171,6 @@ def reduced(model: ShaftModel, masters: Sequence[int], cutoff: float) -> tuple[F
     stiffness[:first, :first] = static.T @ model.stiffness @ static
     stiffness[range(first, len(mass)), range(first, len(mass))] = [squares[index] for index in order]
     return 0.5 * (mass + mass.T), 0.5 * (gyroscopic - gyroscopic.T), 0.5 * (stiffness + stiffness.T)
-
-
-def _divide(
-    sections: Sequence[Section], places: Sequence[float], largest_element: float | None, cutoff: float | None
-) -> tuple[list[float], list[CrossSection]]:
-    """Nodes [m], and what is between each of them and the next."""
-    marks = sorted([*(place for section in sections for place in (section.begin, section.end)), *places])
-    steps = [marks[0]]
-    for mark in marks:
-        if mark - steps[-1] > TOGETHER:
-            steps.append(mark)
-    spans = [_span(sections, 0.5 * (begin + end)) for begin, end in pairwise(steps)]
-    if cutoff is not None and all(wave_length(span, cutoff) < diameter for span, diameter in spans):
-        raise InputError(
-            f"cutoff: got {cutoff:.6g} Hz, where bending waves are shorter than the diameter all along the shaft; "
-            "allowed: where sections stay plane, at waves of a few diameters; lower it"
-        )
-    nodes = [steps[0]]
-    elements: list[CrossSection] = []
-    for (span, diameter), (begin, end) in zip(spans, pairwise(steps), strict=True):
-        longest = largest_element or (0.5 * diameter if cutoff is None else element_length(span, cutoff, WAVE_ERROR))
-        # A span that is a multiple of the largest element but for round-off is not cut once more.
-        wanted = (end - begin) / longest - 1e-9
-        if not len(elements) + wanted <= MOST_ELEMENTS:
-            raise InputError(
-                f"largest_element: got {longest * 1e3:.4g} mm{'' if largest_element else ' by default'}, which makes "
-                f"more than {MOST_ELEMENTS} elements; allowed: up to {MOST_ELEMENTS}; make it longer"
-                f"{'' if cutoff is None else ', or lower the cut-off'}"
-            )
-        count = max(1, math.ceil(wanted))
-        nodes += np.linspace(begin, end, count + 1)[1:].tolist()
-        elements += [span] * count
-    return nodes, elements
-
-
-def _span(sections: Sequence[Section], place: float) -> tuple[CrossSection, float]:
-    """Cross-section and outer diameter [m] at a place along x [m]."""
-    there = [section for section in sections if section.begin < place < section.end] or [
-        # Between two sections that are so close that they count as touching.
-        min(sections, key=lambda section: max(section.begin - place, place - section.end))
-    ]
-    total = there[0].cross_section
-    for section in there[1:]:
-        total += section.cross_section
-    return total, max(section.diameter for section in there)
 
 
 def _disc_matrices(inertia: Inertia) -> tuple[FloatArray, FloatArray]:

@@ -12,17 +12,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, get_args
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
 from mbs.flexible.finite_elements import FiniteElementModel, named
+from mbs.flexible.plan import KINDS, Kind
 from mbs.model.body import FREEDOMS, lever_arm
-
-Kind = Literal["rigid", "averaging"]
-KINDS: tuple[str, ...] = get_args(Kind)
 
 _DEGENERATE = 1e-8
 """Smallest over largest eigenvalue of the nodes' moments, below which they lie on a line to rounding."""

@@ -22,7 +22,7 @@ class Meshes(NamedTuple):
     firsts : array (meshes,), of int
         First of what each mesh feels.
     constants, series : array (meshes, 5), (meshes, 4, harmonics)
-        As of `mesh_force`.
+        Arrays for `mesh_force`.
     """
 
     firsts: IntArray
@@ -43,8 +43,10 @@ def meshes_answer(meshes: Meshes, moment: Moment, motion: FloatArray, answers: A
     motion : array (2, m)
         Compressions and their rates, among what all elements feel.
     answers : Answers
-        Filled.
+        Answers of all elements, filled.
     """
+    if meshes.firsts.size == 0:
+        return FOUND
     x, y = motion[0], motion[1]
     flanks = np.empty((2, 3))
     for g in range(meshes.firsts.size):

@@ -2,9 +2,9 @@
 
     H(omega) = sum_k (c . r_k)(l_k . b)/(i omega - lambda_k)
 
-with right and left vectors r and l, all of them, so that nothing is cut off. Where films relax, all frequencies are
-solved directly. Where two modes are nearly one, as beside
-critical damping, the vectors grow and digits are lost: some frequencies are solved directly to see how many.
+with right and left vectors r and l, all of them, so that nothing is cut off. Where two modes are nearly one, as beside
+critical damping, the vectors grow and digits are lost: some frequencies are solved directly to see how many. Where
+films relax, all frequencies are solved directly.
 """
 
 from __future__ import annotations

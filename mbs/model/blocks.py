@@ -29,7 +29,7 @@ class Moment(NamedTuple):
     step : int
         Index among the steps that were prepared.
     time, speed, angle : float
-        At the end of the step [s], [rad/s], [rad].
+        Time, speed and angle at the end of the step [s], [rad/s], [rad].
     by_q, by_v : float
         Slopes are by_q K + by_v C.
     """
@@ -48,7 +48,7 @@ class Answers(NamedTuple):
     Attributes
     ----------
     force : array (m,)
-        In what the elements feel [N or N m].
+        Forces in what the elements feel [N or N m].
     slopes : array (m, m)
         by_q K + by_v C, on the blocks of the diagonal.
     outside : array (elements,), of int
@@ -66,9 +66,9 @@ class Member(NamedTuple):
     Attributes
     ----------
     element : Element
-        Of the block's kind.
+        The element itself.
     place : int
-        Its place among all elements of the system: where `Answers.outside` counts.
+        Place among all elements of the system: where `Answers.outside` counts.
     first : int
         First of what it feels.
     """

@@ -191,19 +191,9 @@ def rigid_body(
     Raises
     ------
     InputError
-        For unknown freedoms, missing parts, or a frame called "centre".
+        With everything that `rigid_problems` finds.
     """
-    problems = [
-        f"body {name!r}, freedoms: got {freedom!r}; allowed: {', '.join(FREEDOMS)}, each once"
-        for index, freedom in enumerate(freedoms)
-        if freedom not in FREEDOMS or freedom in freedoms[:index]
-    ]
-    if not freedoms:
-        problems.append(f"body {name!r}, freedoms: got none; allowed: some of {', '.join(FREEDOMS)}; or use ground")
-    if not parts:
-        problems.append(f"body {name!r}, parts: got none; allowed: at least one part with a mass")
-    if CENTRE in (frames or {}):
-        problems.append(f"body {name!r}, frames: {CENTRE!r} is there already, at the position; choose another name")
+    problems = rigid_problems(name, parts, freedoms, position, frames or {}, spin)
     if problems:
         raise InputError(problems)
     free = [FREEDOMS.index(freedom) for freedom in freedoms]
@@ -232,6 +222,52 @@ def rigid_body(
         },
         spin=spin,
     )
+
+
+def rigid_problems(
+    name: str,
+    parts: Sequence[Inertia],
+    freedoms: Sequence[str],
+    position: Sequence[float],
+    frames: Mapping[str, Sequence[float]],
+    spin: float,
+) -> list[str]:
+    """Everything about a rigid body that does not fit together, in words.
+
+    Parameters
+    ----------
+    name : str
+        Name of the body.
+    parts : sequence of Inertia
+        What it is made of; at least one.
+    freedoms : sequence of str
+        Names of FREEDOMS, each once.
+    position : sequence of float, shape (3,)
+        Position of the frame "centre" [m].
+    frames : mapping of str to sequence of float, shape (3,)
+        Further frames, from the position [m]; none called "centre".
+    spin : float
+        Speed about x as a multiple of the system's.
+    """
+    problems = [
+        f"body {name!r}, freedoms: got {freedom!r}; allowed: {', '.join(FREEDOMS)}, each once"
+        for index, freedom in enumerate(freedoms)
+        if freedom not in FREEDOMS or freedom in freedoms[:index]
+    ]
+    if not freedoms:
+        problems.append(f"body {name!r}, freedoms: got none; allowed: some of {', '.join(FREEDOMS)}; or use ground")
+    if not parts:
+        problems.append(f"body {name!r}, parts: got none; allowed: at least one part with a mass")
+    if CENTRE in frames:
+        problems.append(f"body {name!r}, frames: {CENTRE!r} is there already, at the position; choose another name")
+    problems += [
+        f"body {name!r}, {where}: got {place!r:.80} m; allowed: three finite numbers"
+        for where, place in (("position", position), *((f"frames {key}", place) for key, place in frames.items()))
+        if not (len(place) == 3 and all(math.isfinite(value) for value in place))
+    ]
+    if not math.isfinite(spin):
+        problems.append(f"body {name!r}, spin: got {spin!r}; allowed: finite")
+    return problems
 
 
 def lever_arm(offset: Sequence[float]) -> FloatArray:

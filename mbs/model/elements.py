@@ -86,8 +86,8 @@ class Excitation(NamedTuple):
     harmonics : int
         How many multiples are worth following.
     rank : int
-        Where elements of several ranks are in a system only those of the highest are followed: gear meshes drown the
-        rollers that pass.
+        Rank among the elements of a system: only the highest is followed, because gear meshes drown the rollers that
+        pass.
     """
 
     order: float

@@ -16,9 +16,9 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.units import closest
-from mbs.model.body import CENTRE, Body
+from mbs.model.body import Body
 from mbs.model.elements import GROUND, Element, Forces, Load, Operation, Port, Spring
+from mbs.model.places import Places
 from mbs.model.profiles import Constant, LoadProfile
 
 COINCIDENT = 1e-6
@@ -96,6 +96,7 @@ class System:
     ) -> None:
         self.bodies = tuple(bodies)
         self._by_name = {body.name: body for body in self.bodies}
+        self._places = Places(self.bodies)
         self._check(springs, loads, elements)
         self._first = dict(
             zip(self._by_name, np.cumsum([0, *(body.size for body in self.bodies)])[:-1].tolist(), strict=True)
@@ -185,19 +186,6 @@ class System:
         """Where the coordinates of a body are."""
         return self._slice(self._by_name[body])
 
-    def check_place(self, place: str) -> str:
-        """Return what is wrong about a place, in words; empty if it exists."""
-        body, _, frame = place.partition(":")
-        if place == GROUND:
-            return ""
-        if body not in self._by_name:
-            names = (*self._by_name, GROUND)
-            return f"got the body {body!r}{closest(body, names)}; allowed: {', '.join(names)}"
-        frames = self._by_name[body].frames
-        if (frame or CENTRE) not in frames:
-            return f"got the frame {frame or CENTRE!r} of {body!r}; allowed: {', '.join(frames)}"
-        return ""
-
     def _slice(self, body: Body) -> slice:
         """Where the coordinates of a body are."""
         first = self._first[body.name]
@@ -207,9 +195,8 @@ class System:
         """Displacement of a place by the coordinates, shape (6, n)."""
         matrix = np.zeros((6, self.size))
         if place != GROUND:
-            name, _, frame = place.partition(":")
-            body = self._by_name[name]
-            matrix[:, self._slice(body)] = body.frames[frame or CENTRE].transform
+            body = self._by_name[place.partition(":")[0]]
+            matrix[:, self._slice(body)] = self._places.frame(place).transform
         return matrix
 
     def _port(self, port: Port) -> FloatArray:
@@ -235,10 +222,10 @@ class System:
             if not hasattr(element, member)
         ]
         for where, on, against in _connections(springs, loads, elements):
-            wrong = [problem for place in (on, against) if (problem := self.check_place(place))]
+            wrong = [problem for place in (on, against) if (problem := self._places.problem(place))]
             problems += [f"{where}: {problem}" for problem in wrong]
             if not wrong and GROUND not in (on, against):
-                apart = float(np.linalg.norm(self._position(on) - self._position(against)))
+                apart = float(np.linalg.norm(self._places.position(on) - self._places.position(against)))
                 if apart > COINCIDENT:
                     problems.append(
                         f"{where}: {on} and {against} are {apart * 1e3:.4g} mm apart; allowed: the same point; give "
@@ -246,11 +233,6 @@ class System:
                     )
         if problems:
             raise InputError(problems)
-
-    def _position(self, place: str) -> FloatArray:
-        """Where a place is, shape (3,) [m]."""
-        name, _, frame = place.partition(":")
-        return self._by_name[name].frames[frame or CENTRE].position
 
 
 def _connections(

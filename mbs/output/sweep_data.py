@@ -1,17 +1,221 @@
-"""A sweep over speed as a labelled dataset with units."""
+"""A sweep over speed as a labelled dataset: names, dims, units and meanings of all variables in one table."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
-from ehdmaps.arrays import FloatArray
 from mbs.linearised.sweep_result import Sweep
 
-_Variable = tuple[tuple[str, ...], Any, dict[str, str]]
+_Entry = tuple[tuple[str, ...], Any, dict[str, str]]
+"""A variable as xarray takes it."""
+
+UNDAMPED = ("case", "speed", "mode")
+DAMPED = ("case", "speed", "complex_mode")
+BEARING = ("case", "speed", "bearing")
+RESPONSE = ("case", "speed", "response_frequency", "sensor", "input")
+
+RESPONSE_UNITS = "m, m/s or m/s2 by the sensor's quantity (rad for rotations), per N or N m"
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One variable of the dataset.
+
+    Attributes
+    ----------
+    name, units, long_name : str
+        Name, units and meaning, written to the file.
+    dims : tuple of str
+        Dims of the variable, the cases first.
+    read : callable
+        Takes it from the sweep of one case, in the order of the other dims.
+    """
+
+    name: str
+    units: str
+    long_name: str
+    dims: tuple[str, ...]
+    read: Callable[[Sweep], npt.ArrayLike]
+
+    def entry(self, sweeps: Sequence[Sweep], modes: int) -> _Entry:
+        """Return the variable of some cases side by side; complex modes beyond those of a case are NaN."""
+        values = [np.asarray(self.read(sweep)) for sweep in sweeps]
+        if "complex_mode" in self.dims:
+            values = [_filled(value, modes) for value in values]
+        return self.dims, np.stack(values), _said(self.units, self.long_name)
+
+
+VARIABLES = (
+    Variable(
+        "frequency",
+        "Hz",
+        "frequency of mass and stiffness, without damping and gyroscopic terms",
+        UNDAMPED,
+        lambda found: found.undamped.frequency,
+    ),
+    Variable("damping_ratio", "1", "modal damping ratio", UNDAMPED, lambda found: found.undamped.damping_ratio),
+    Variable(
+        "energy_share",
+        "1",
+        "part of the strain energy of the mode",
+        ("case", "part", "speed", "mode"),
+        lambda found: found.undamped.shares,
+    ),
+    Variable(
+        "bearing_share",
+        "1",
+        "part of the strain energy in all bearings",
+        UNDAMPED,
+        lambda found: found.undamped.bearing_share,
+    ),
+    Variable(
+        "assurance",
+        "1",
+        "modal assurance on the way from the speed before",
+        UNDAMPED,
+        lambda found: found.undamped.assurance,
+    ),
+    Variable(
+        "summed_shift",
+        "1",
+        "change of the frequency from the first speed by energy, summed over the steps",
+        UNDAMPED,
+        lambda found: found.undamped.summed_shift,
+    ),
+    Variable(
+        "direct_shift",
+        "1",
+        "change of the frequency from first to last speed by energy, in one step",
+        ("case", "mode"),
+        lambda found: found.undamped.direct_shift,
+    ),
+    Variable(
+        "complex_frequency",
+        "Hz",
+        "|eigenvalue|/(2 pi) of oscillating complex modes",
+        DAMPED,
+        lambda found: found.damped.frequency,
+    ),
+    Variable(
+        "complex_damping_ratio",
+        "1",
+        "damping ratio of complex modes",
+        DAMPED,
+        lambda found: found.damped.damping_ratio,
+    ),
+    Variable("eigenvalue_real", "1/s", "decay", DAMPED, lambda found: found.damped.eigenvalues.real),
+    Variable(
+        "eigenvalue_imaginary",
+        "rad/s",
+        "damped frequency",
+        DAMPED,
+        lambda found: found.damped.eigenvalues.imag,
+    ),
+    Variable(
+        "complex_energy_share",
+        "1",
+        "part of the strain energy of the complex mode",
+        ("case", "part", "speed", "complex_mode"),
+        lambda found: found.damped.shares,
+    ),
+    Variable(
+        "complex_bearing_share",
+        "1",
+        "part of the strain energy of the complex mode in all bearings",
+        DAMPED,
+        lambda found: found.damped.bearing_share,
+    ),
+    Variable(
+        "whirl",
+        "1",
+        "d omega/d Omega by gyroscopic terms: positive forward, negative backward",
+        DAMPED,
+        lambda found: found.damped.whirl,
+    ),
+    Variable(
+        "complex_assurance",
+        "1",
+        "assurance of the complex mode on the way from the speed before",
+        DAMPED,
+        lambda found: found.damped.assurance,
+    ),
+    Variable(
+        "complex_number",
+        "1",
+        "number of the undamped mode that the complex one is nearest to where it begins",
+        ("case", "complex_mode"),
+        lambda found: found.damped.number + 1.0,
+    ),
+    Variable(
+        "resembles",
+        "1",
+        "number of the mode whose shape at the last speed is most like that of this one at the first",
+        ("case", "mode"),
+        lambda found: found.undamped.resembles + 1.0,
+    ),
+    Variable("bearing_load", "N", "radial force", BEARING, lambda found: found.bearings.load),
+    Variable(
+        "bearing_stiffness",
+        "N/m",
+        "stiffness of the bearing along its force",
+        BEARING,
+        lambda found: found.bearings.stiffness,
+    ),
+    Variable(
+        "bearing_damping",
+        "N s/m",
+        "damping of the bearing along its force",
+        BEARING,
+        lambda found: found.bearings.damping,
+    ),
+    Variable(
+        "bearing_stiffness_spread",
+        "1",
+        "half of what the stiffness varies over the cage angles, as a part of the mean",
+        BEARING,
+        lambda found: found.bearings.stiffness_spread,
+    ),
+    Variable(
+        "bearing_damping_spread",
+        "1",
+        "half of what the damping varies over the cage angles, as a part of the mean",
+        BEARING,
+        lambda found: found.bearings.damping_spread,
+    ),
+    Variable("between", "1", "speeds put in between to follow the modes", ("case",), lambda found: found.between),
+)
+"""Of every sweep."""
+
+RESPONSES = (
+    Variable(
+        "response_real",
+        RESPONSE_UNITS,
+        "real part of the response",
+        RESPONSE,
+        lambda found: found.responses.values.real,
+    ),
+    Variable(
+        "response_imaginary",
+        RESPONSE_UNITS,
+        "imaginary part of the response",
+        RESPONSE,
+        lambda found: found.responses.values.imag,
+    ),
+    Variable(
+        "response_error",
+        "1",
+        "largest relative error seen beside direct solutions",
+        ("case", "speed"),
+        lambda found: found.responses.error,
+    ),
+)
+"""Of a sweep with inputs, sensors and frequencies."""
 
 
 def sweep_dataset(
@@ -35,137 +239,9 @@ def sweep_dataset(
         Factors of the loads of the scene.
     """
     first = sweeps[0]
-    most = max(entry.damped.eigenvalues.shape[1] for entry in sweeps)
-
-    def stacked(read: Callable[[Sweep], FloatArray]) -> FloatArray:
-        return np.stack([read(entry) for entry in sweeps])
-
-    def filled(read: Callable[[Sweep], FloatArray]) -> FloatArray:
-        values = [read(entry) for entry in sweeps]
-        return np.stack(
-            [
-                np.pad(value, [(0, 0)] * (value.ndim - 1) + [(0, most - value.shape[-1])], constant_values=np.nan)
-                for value in values
-            ]
-        )
-
-    plain, damped, bearing = (
-        ("case", "speed", "mode"),
-        ("case", "speed", "complex_mode"),
-        ("case", "speed", "bearing"),
-    )
-    variables: dict[str, _Variable] = {
-        "frequency": (
-            plain,
-            stacked(lambda entry: entry.undamped.frequency),
-            _said("Hz", "frequency of mass and stiffness, without damping and gyroscopic terms"),
-        ),
-        "damping_ratio": (
-            plain,
-            stacked(lambda entry: entry.undamped.damping_ratio),
-            _said("1", "modal damping ratio"),
-        ),
-        "energy_share": (
-            ("case", "part", "speed", "mode"),
-            stacked(lambda entry: entry.undamped.shares),
-            _said("1", "part of the strain energy of the mode"),
-        ),
-        "bearing_share": (
-            plain,
-            stacked(lambda entry: entry.undamped.bearing_share),
-            _said("1", "part of the strain energy in all bearings"),
-        ),
-        "assurance": (
-            plain,
-            stacked(lambda entry: entry.undamped.assurance),
-            _said("1", "modal assurance on the way from the speed before"),
-        ),
-        "summed_shift": (
-            plain,
-            stacked(lambda entry: entry.undamped.summed_shift),
-            _said("1", "change of the frequency from the first speed by energy, summed over the steps"),
-        ),
-        "direct_shift": (
-            ("case", "mode"),
-            stacked(lambda entry: entry.undamped.direct_shift),
-            _said("1", "change of the frequency from first to last speed by energy, in one step"),
-        ),
-        "complex_frequency": (
-            damped,
-            filled(lambda entry: entry.damped.frequency),
-            _said("Hz", "|eigenvalue|/(2 pi) of oscillating complex modes"),
-        ),
-        "complex_damping_ratio": (
-            damped,
-            filled(lambda entry: entry.damped.damping_ratio),
-            _said("1", "damping ratio of complex modes"),
-        ),
-        "eigenvalue_real": (damped, filled(lambda entry: entry.damped.eigenvalues.real), _said("1/s", "decay")),
-        "eigenvalue_imaginary": (
-            damped,
-            filled(lambda entry: entry.damped.eigenvalues.imag),
-            _said("rad/s", "damped frequency"),
-        ),
-        "complex_energy_share": (
-            ("case", "part", "speed", "complex_mode"),
-            filled(lambda entry: entry.damped.shares),
-            _said("1", "part of the strain energy of the complex mode"),
-        ),
-        "complex_bearing_share": (
-            damped,
-            filled(lambda entry: entry.damped.bearing_share),
-            _said("1", "part of the strain energy of the complex mode in all bearings"),
-        ),
-        "whirl": (
-            damped,
-            filled(lambda entry: entry.damped.whirl),
-            _said("1", "d omega/d Omega by gyroscopic terms: positive forward, negative backward"),
-        ),
-        "complex_assurance": (
-            damped,
-            filled(lambda entry: entry.damped.assurance),
-            _said("1", "assurance of the complex mode on the way from the speed before"),
-        ),
-        "complex_number": (
-            ("case", "complex_mode"),
-            filled(lambda entry: np.asarray(entry.damped.number + 1.0, dtype=np.float64)),
-            _said("1", "number of the undamped mode that the complex one is nearest to where it begins"),
-        ),
-        "resembles": (
-            ("case", "mode"),
-            stacked(lambda entry: np.asarray(entry.undamped.resembles + 1.0, dtype=np.float64)),
-            _said("1", "number of the mode whose shape at the last speed is most like that of this one at the first"),
-        ),
-        "bearing_load": (
-            bearing,
-            stacked(lambda entry: entry.bearings.load),
-            _said("N", "radial force"),
-        ),
-        "bearing_stiffness": (
-            bearing,
-            stacked(lambda entry: entry.bearings.stiffness),
-            _said("N/m", "stiffness of the bearing along its force"),
-        ),
-        "bearing_damping": (
-            bearing,
-            stacked(lambda entry: entry.bearings.damping),
-            _said("N s/m", "damping of the bearing along its force"),
-        ),
-        "bearing_stiffness_spread": (
-            bearing,
-            stacked(lambda entry: entry.bearings.stiffness_spread),
-            _said("1", "half of what the stiffness varies over the cage angles, as a part of the mean"),
-        ),
-        "bearing_damping_spread": (
-            bearing,
-            stacked(lambda entry: entry.bearings.damping_spread),
-            _said("1", "half of what the damping varies over the cage angles, as a part of the mean"),
-        ),
-        "between": (
-            ("case",),
-            np.array([entry.between for entry in sweeps]),
-            _said("1", "speeds put in between to follow the modes"),
-        ),
+    modes = max(sweep.damped.eigenvalues.shape[1] for sweep in sweeps)
+    variables = {entry.name: entry.entry(sweeps, modes) for entry in VARIABLES}
+    variables |= {
         "law": (("case",), list(laws), {"long_name": "contact law"}),
         "clearance": (("case",), np.array(clearances), _said("m", "diametral clearance")),
         "load_factor": (("case",), np.array(load_factors), _said("1", "factor of all loads of the scene")),
@@ -174,42 +250,27 @@ def sweep_dataset(
         "case": list(labels),
         "speed": ("speed", first.speeds, _said("rad/s", "speed of the system")),
         "mode": np.arange(1, first.undamped.frequency.shape[1] + 1),
-        "complex_mode": np.arange(1, most + 1),
+        "complex_mode": np.arange(1, modes + 1),
         "part": list(first.parts),
         "bearing": np.array(first.bearings.names, dtype=np.str_),
     }
-    if first.responses.values.size:
-        found = first.responses
-        dims = ("case", "speed", "response_frequency", "sensor", "input")
-        units = "m, m/s or m/s2 by the sensor's quantity (rad for rotations), per N or N m"
-        variables |= {
-            "response_real": (
-                dims,
-                stacked(lambda entry: entry.responses.values.real),
-                _said(units, "real part of the response"),
-            ),
-            "response_imaginary": (
-                dims,
-                stacked(lambda entry: entry.responses.values.imag),
-                _said(units, "imaginary part of the response"),
-            ),
-            "response_error": (
-                ("case", "speed"),
-                stacked(lambda entry: entry.responses.error),
-                _said("1", "largest relative error seen beside direct solutions"),
-            ),
-            "quantity": (
-                ("sensor",),
-                [sensor.quantity for sensor in found.sensors],
-                {"long_name": "what the sensor measures"},
-            ),
-        }
+    responses = first.responses
+    if responses.values.size:
+        variables |= {entry.name: entry.entry(sweeps, modes) for entry in RESPONSES}
+        quantities = [sensor.quantity for sensor in responses.sensors]
+        variables["quantity"] = (("sensor",), quantities, {"long_name": "what the sensor measures"})
         coordinates |= {
-            "response_frequency": ("response_frequency", found.frequencies, _said("Hz", "frequency")),
-            "sensor": [sensor.name for sensor in found.sensors],
-            "input": [entry.name for entry in found.inputs],
+            "response_frequency": ("response_frequency", responses.frequencies, _said("Hz", "frequency")),
+            "sensor": [sensor.name for sensor in responses.sensors],
+            "input": [entry.name for entry in responses.inputs],
         }
     return xr.Dataset(variables, coords=coordinates, attrs={"cage_angles": first.bearings.angles})
+
+
+def _filled(values: npt.NDArray[Any], modes: int) -> npt.NDArray[Any]:
+    """Values with so many complex modes, the last axis, by NaN."""
+    missing = [(0, 0)] * (values.ndim - 1) + [(0, modes - values.shape[-1])]
+    return np.pad(values, missing, constant_values=np.nan)
 
 
 def _said(units: str, words: str) -> dict[str, str]:

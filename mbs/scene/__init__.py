@@ -1,1 +1,19 @@
-"""Scenes: what a scene file says, how it is read (a kind of table a module), and a model made of it."""
+"""Scenes: what a scene file says, how it is read, and a model made of it.
+
+The modules in the order of the data:
+
+=============  ====================================================================================
+reader         a scene file becomes a `Scene`; nothing is computed
+fields         how the values of a file are read: places, vectors, directions
+shaft, ...     readers of one kind of table each: `flexible`, `attached`, `bearings`, `gears`,
+               `sweep`, `campbell`
+specs          what a scene says of bodies and bearings: plain frozen values
+scene          the scene itself; it may be made of specs, without a file
+kinds          the machine elements that a scene may have, one row each
+bodies         bodies are built, each content once
+contact_laws   the contact law in force
+assembly       scene and law become a `Model`, or a list of all problems
+=============  ====================================================================================
+
+Nothing is imported here: take the functions from `mbs`, or from their modules.
+"""

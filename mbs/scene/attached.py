@@ -4,24 +4,21 @@ from __future__ import annotations
 
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import short
-from mbs.flexible.attached import Attached, attach
-from mbs.model.body import Body
+from mbs.flexible.attached import Attached
 from mbs.scene import fields
 
 
-def read_attached(section: Table, body: Body | None) -> Body | None:
-    """Read hollow cylinders on frames, and fix them to the body; None where a problem was noted.
+def read_attached(section: Table) -> tuple[Attached, ...] | None:
+    """Read hollow cylinders on frames; none if the key is absent, None where a problem was noted.
 
     Parameters
     ----------
     section : Table
         The table of the body.
-    body : Body or None
-        None if it could not be read; the key is looked through all the same.
     """
     given = section.get("attached")
     if "attached" not in section:
-        return body
+        return ()
     if not isinstance(given, list):
         section.note("attached", f"got {short(given)}; allowed: a list of tables with at, from, to, diameter")
         return None
@@ -35,6 +32,4 @@ def read_attached(section: Table, body: Body | None) -> Body | None:
             table.note("at", f"got {short(frame)}; allowed: the name of a frame")
         elif inertia is not None and "at" in table:
             parts.append(Attached(frame, inertia))
-    if body is None or len(section.problems) > before:
-        return None
-    return fields.built(section, lambda: attach(body, parts))
+    return tuple(parts) if len(section.problems) == before else None

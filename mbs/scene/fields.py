@@ -103,7 +103,7 @@ def places(section: Table) -> tuple[str | None, str]:
     return on, (place(section, "against") or GROUND) if "against" in section else GROUND
 
 
-def lengths(section: Table, key: str, value: Any) -> tuple[float, ...] | None:
+def lengths(section: Table, key: str, value: Any) -> tuple[float, float, float] | None:
     """Read three lengths; None if absent or wrong.
 
     Parameters
@@ -120,10 +120,11 @@ def lengths(section: Table, key: str, value: Any) -> tuple[float, ...] | None:
     if not isinstance(value, list) or len(value) != 3:
         section.note(key, f'got {short(value)}; allowed: three lengths, x y z, such as ["70 mm", "0 mm", "0 mm"]')
         return None
-    read = [
-        section.quantity_of(part, f"{key}[{index}]", "m", -100.0, 100.0, LENGTH) for index, part in enumerate(value)
-    ]
-    return tuple(part if part is not None else 0.0 for part in read)
+    x, y, z = (
+        section.quantity_of(part, f"{key}[{index}]", "m", -100.0, 100.0, LENGTH) or 0.0
+        for index, part in enumerate(value)
+    )
+    return x, y, z
 
 
 def vector(section: Table, key: str, unit: str, display: Display) -> tuple[float, ...] | None:

@@ -1,14 +1,19 @@
-"""Reads a table [[gears]] of a scene."""
+"""Gear pairs of a scene: a table [[gears]] is read, and becomes an element of the system."""
 
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import LENGTH, STIFFNESS, Display, short
 from mbs.gears.pair import FEWEST_TEETH, MOST_HARMONICS, MOST_TEETH, GearPair
+from mbs.model.elements import GROUND
 from mbs.scene import fields
 from mbs.scene.fields import DEGREE, MICROMETRE
+
+if TYPE_CHECKING:
+    from mbs.scene.surroundings import Built, Surroundings
 
 _DAMPING = Display("N s/m")
 _WORDS_HARMONICS = f"a whole number from 0 to {MOST_HARMONICS}, or a list of at most as many numbers, parts of the mean"
@@ -22,7 +27,7 @@ def read_gears(section: Table, name: str) -> GearPair | None:
     section : Table
         The table; the caller closes it.
     name : str
-        Of the pair.
+        Name of the pair.
     """
     before = len(section.problems)
     on = fields.place(section, "on")
@@ -74,6 +79,47 @@ def read_gears(section: Table, name: str) -> GearPair | None:
             phase=phase or 0.0,
         ),
     )
+
+
+def gear_problems(spec: GearPair, surroundings: Surroundings) -> list[str]:
+    """What is wrong about the places of a gear pair.
+
+    Parameters
+    ----------
+    spec : GearPair
+        The pair.
+    surroundings : Surroundings
+        What it is built into.
+    """
+    return [
+        f"gear pair {spec.name!r}: a gear on the ground cannot turn; name a body"
+        for place in (spec.on, spec.against)
+        if place == GROUND
+    ]
+
+
+def build_gears(spec: GearPair, surroundings: Surroundings) -> Built:
+    """The element of a gear pair.
+
+    Parameters
+    ----------
+    spec : GearPair
+        The pair; its places exist.
+    surroundings : Surroundings
+        What it is built into.
+
+    Raises
+    ------
+    InputError
+        If the gears are not where they mesh, or do not turn as their teeth ask for.
+    """
+    from mbs.gears.gear import gear_mesh
+    from mbs.scene.surroundings import Built
+
+    places = surroundings.places
+    positions = [places.position(place).tolist() for place in (spec.on, spec.against)]
+    mesh = gear_mesh(spec, *positions, *(places.spin(place) for place in (spec.on, spec.against)))
+    return Built(mesh, mesh)
 
 
 def _teeth(section: Table) -> tuple[int, int] | None:

@@ -14,21 +14,20 @@ from ehdmaps.errors import InputError
 from ehdmaps.inputs import read_text
 from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.axes import AxisRule, read_axis
-from ehdmaps.jobs.problem import read_contacts, read_lubricant
+from ehdmaps.jobs.problem import read_lubricant
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, short
-from mbs.model.body import FREEDOMS, Body, Inertia, rigid_body
+from mbs.model.body import FREEDOMS, Inertia
 from mbs.model.elements import Input, Load, Sensor, Spring
 from mbs.model.profiles import Constant, Course, Harmonic, LoadProfile, SpeedProfile
-from mbs.scene import fields
-from mbs.scene.attached import read_attached
+from mbs.scene import fields, kinds
 from mbs.scene.campbell import read_campbell
 from mbs.scene.fields import DEGREE, FORCE, HERTZ, MICROMETRE, MILLISECOND, MOMENT, Built
 from mbs.scene.flexible import read_flexible
-from mbs.scene.gears import read_gears
-from mbs.scene.scene import Scene, SceneBearing
+from mbs.scene.scene import Scene
 from mbs.scene.shaft import read_shaft
+from mbs.scene.specs import ORIGIN, BodySpec, FlexibleSpec, RigidSpec
 from mbs.scene.sweep import read_sweep
 from mbs.settings import CampbellSettings, RunUp, Settings
 
@@ -62,11 +61,11 @@ def read_scene(source: str) -> Scene:
         with resources.as_file(resources.files("mbs") / "systems") as folder:
             path = folder / f"{source}.toml"
             scene = parse_scene(path.read_text(encoding="utf-8"), source, f"{source} (shipped)", folder)
-            return dataclasses.replace(scene, files=(path, *scene.files))
+            return dataclasses.replace(scene, file=path)
     path, known = Path(source), shipped_systems()
     allowed = f"a scene file in TOML, or a shipped system: {', '.join(known)}{closest(source, known)}"
     scene = parse_scene(read_text(path, LONGEST_FILE, allowed, name=source), path.stem, source, path.parent)
-    return dataclasses.replace(scene, files=(path, *scene.files))
+    return dataclasses.replace(scene, file=path)
 
 
 def parse_scene(text: str, name: str, where: str, folder: Path | None = None) -> Scene:
@@ -75,13 +74,13 @@ def parse_scene(text: str, name: str, where: str, folder: Path | None = None) ->
     Parameters
     ----------
     text : str
-        TOML.
+        Text in TOML.
     name : str
         Name of the scene.
     where : str
         How messages call the file.
     folder : Path, optional
-        Where the files are that it names; without one it may name none.
+        Folder of the files that it names; without one it may name none.
 
     Raises
     ------
@@ -97,12 +96,11 @@ def parse_scene(text: str, name: str, where: str, folder: Path | None = None) ->
 
 
 class _Reader:
-    """Reads the tables of one file and keeps what is marked as assumed, and which files were read for it."""
+    """Reads the tables of one file and keeps what is marked as assumed."""
 
     def __init__(self, top: Table, folder: Path | None) -> None:
         self._top = top
         self._folder = folder
-        self._files: list[Path] = []
         self._assumed: list[str] = []
 
     def scene(self, text: str, name: str) -> Scene | None:
@@ -120,15 +118,14 @@ class _Reader:
             self._close(operation)
         section = top.table("lubricant", "[lubricant]")
         lubricant = read_lubricant(section) if section else None
-        bodies = [
+        bodies: list[BodySpec] = [
             *self._all("bodies", self._body),
             *self._all("shafts", read_shaft),
             *self._all("flexible", self._flexible),
         ]
         springs = self._all("springs", self._spring)
         loads = self._all("loads", self._load)
-        bearings = self._all("bearings", self._bearing)
-        gears = self._all("gears", read_gears)
+        elements = [entry for kind in kinds.KINDS for entry in self._all(kind.key, kind.read)]
         inputs = self._all("inputs", self._input)
         sensors = self._all("sensors", self._sensor)
         laws = self._laws()
@@ -157,20 +154,18 @@ class _Reader:
             speed=speed,
             temperature=temperature,
             lubricant=lubricant,
-            bodies=tuple(bodies),
-            springs=tuple(springs),
-            loads=tuple(loads),
-            bearings=tuple(bearings),
-            gears=tuple(gears),
-            inputs=tuple(inputs),
-            sensors=tuple(sensors),
+            bodies=bodies,
+            springs=springs,
+            loads=loads,
+            elements=elements,
+            inputs=inputs,
+            sensors=sensors,
             laws=laws,
             frequencies=frequencies,
             run_up=run_up,
             sweep=sweep,
             campbell=campbell or CampbellSettings(),
-            assumed=tuple(self._assumed),
-            files=tuple(dict.fromkeys(self._files)),
+            assumed=self._assumed,
         )
 
     def _all(self, key: str, read: Callable[[Table, str], Built | None]) -> list[Built]:
@@ -202,7 +197,7 @@ class _Reader:
                 self._assumed += [f"{section.where} {key}" for key in marked]
         section.close()
 
-    def _body(self, section: Table, name: str) -> Body | None:
+    def _body(self, section: Table, name: str) -> RigidSpec | None:
         """Read a rigid body."""
         before = len(section.problems)
         freedoms = fields.words(section, "freedoms", FREEDOMS)
@@ -219,12 +214,12 @@ class _Reader:
             return None
         return fields.built(
             section,
-            lambda: rigid_body(name, parts, freedoms, position or (0.0, 0.0, 0.0), frames, spin or 0.0),
+            lambda: RigidSpec(name, parts, freedoms, position or ORIGIN, frames, spin or 0.0),
         )
 
-    def _flexible(self, section: Table, name: str) -> Body | None:
+    def _flexible(self, section: Table, name: str) -> FlexibleSpec | None:
         """Read a body of finite elements, and what is fixed to it."""
-        return read_attached(section, read_flexible(section, name, self._folder, self._files))
+        return read_flexible(section, name, self._folder)
 
     def _parts(self, section: Table) -> list[Inertia]:
         """Read what a body is made of: cylinders, or mass and moments of inertia."""
@@ -296,29 +291,6 @@ class _Reader:
             return Constant()
         course = tuple(value for value in read if value is not None)
         return fields.built(section, lambda: Course(course, tuple(float(value) for value in factors))) or Constant()
-
-    def _bearing(self, section: Table, name: str) -> SceneBearing | None:
-        """Read a bearing."""
-        inner, outer = fields.place(section, "inner"), fields.place(section, "outer")
-        given = section.get("geometry", required='{ name = "NU308" } or dimensions, as [bearing] of a job file')
-        problems: list[str] = []
-        geometry = None
-        if "geometry" in section:
-            geometry, _ = read_contacts(Table({"bearing": given}, "geometry", problems), None)
-        for problem in problems:
-            section.note("geometry", problem.removeprefix("[bearing] ").removeprefix("[bearing]: "))
-        profile = section.choice("profile", ("iso", "straight")) or "iso"
-        slices = section.integer("slices", 1, 10000) or 41
-        angle = section.quantity("start_angle", "rad", -7.0, 7.0, DEGREE) or 0.0
-        rollers = section.choice("rollers", ("massless", "bodies")) or "massless"
-        centrifugal = section.get("centrifugal")
-        if "centrifugal" in section and not isinstance(centrifugal, bool):
-            section.note("centrifugal", f"got {short(centrifugal)}; allowed: true, false")
-        if inner is None or outer is None or geometry is None:
-            return None
-        return SceneBearing(
-            name, inner, outer, geometry, profile, slices, angle, rollers == "bodies", centrifugal is True
-        )
 
     def _input(self, section: Table, name: str) -> Input | None:
         """Read an input of the linear analysis."""

@@ -2,101 +2,129 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import dataclasses
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.errors import InputError
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from mbs.gears.pair import GearPair
-from mbs.model.body import Body
 from mbs.model.elements import Input, Load, Sensor, Spring
+from mbs.scene.specs import BearingSpec, BodySpec, ElementSpec, FlexibleSpec
 from mbs.settings import CampbellSettings, RunUp, SweepRange
 
-
-@dataclass(frozen=True)
-class SceneBearing:
-    """A bearing of a scene.
-
-    Attributes
-    ----------
-    name, inner, outer : str
-        Name and places.
-    geometry : BearingGeometry
-        With the clearance of the scene.
-    profile : {"iso", "straight"}
-        Of the rollers.
-    slices : int
-        Of a roller.
-    start_angle : float
-        Of the first roller from y [rad].
-    rollers_as_bodies : bool
-        Whether each roller has a radial freedom, between two contacts with a law each.
-    centrifugal : bool
-        Whether the centrifugal load of the rollers is taken into account.
-    """
-
-    name: str
-    inner: str
-    outer: str
-    geometry: BearingGeometry
-    profile: str = "iso"
-    slices: int = 41
-    start_angle: float = 0.0
-    rollers_as_bodies: bool = False
-    centrifugal: bool = False
+_SEQUENCES = ("bodies", "springs", "loads", "elements", "inputs", "sensors", "frequencies", "assumed")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Scene:
-    """All that a scene file says.
+    """All that a scene file says; it may be made without one.
 
     Attributes
     ----------
-    name, title, text : str
-        Name of the file, its own title, and the file itself.
+    name : str
+        Name of the file, or of the scene.
+    title, text : str
+        Title (the name if left out), and the text of the file (empty without one).
     speed : float
         Operating speed of the system [rad/s].
     temperature : float
-        Of the oil [K].
+        Temperature of the oil [K].
     lubricant : Lubricant or None
-        For the law `formula`.
-    bodies : tuple of Body
-        Rigid ones, shafts, and reduced finite-element bodies.
-    springs, loads, bearings, gears, inputs, sensors : tuple
-        The other parts.
+        Oil of the law `formula`, and of planned maps.
+    bodies : tuple of RigidSpec, ShaftSpec, FlexibleSpec or Body
+        All bodies, in the order of their coordinates.
+    springs : tuple of Spring
+        Linear springs.
+    loads : tuple of Load
+        Prescribed forces.
+    elements : tuple of BearingSpec, GearPair and others
+        Machine elements, of the classes that `mbs.scene.kinds` lists.
+    inputs, sensors : tuple
+        Loads that a linear analysis varies, and motions that it gives.
     laws : dict of str to (float, float)
         Constant stiffness [N/m] and damping [N s/m] of each contact of a roller, by name.
     frequencies : tuple of float
-        Of the linear analysis [Hz].
+        Frequencies of the linear analysis [Hz].
     run_up : RunUp or None
-        Of the analysis in time.
+        Course of the analysis in time.
     sweep : SweepRange or None
         Speeds of the analysis over speed.
     campbell : CampbellSettings
         What is drawn of a run-up.
     assumed : tuple of str
         Which of its numbers are assumptions.
-    files : tuple of Path
-        All files that were read for it: the scene file where it came from one, reduced bodies, matrices, meshes.
+    file : Path or None
+        The scene file.
+
+    Raises
+    ------
+    InputError
+        For a speed or a temperature out of range.
+
+    Examples
+    --------
+    >>> from mbs import Inertia, RigidSpec, assemble
+    >>> mass = RigidSpec("mass", [Inertia(2.0, 0.01, 0.01)], ["y"])
+    >>> assemble(Scene(name="one mass", speed=0.0, temperature=313.15, bodies=[mass])).system.coordinates
+    ('mass.y',)
     """
 
     name: str
-    title: str
-    text: str
+    title: str = ""
+    text: str = ""
     speed: float
     temperature: float
-    lubricant: Lubricant | None
-    bodies: tuple[Body, ...]
-    springs: tuple[Spring, ...]
-    loads: tuple[Load, ...]
-    bearings: tuple[SceneBearing, ...]
-    gears: tuple[GearPair, ...]
-    inputs: tuple[Input, ...]
-    sensors: tuple[Sensor, ...]
-    laws: dict[str, tuple[float, float]]
-    frequencies: tuple[float, ...]
-    run_up: RunUp | None
-    sweep: SweepRange | None
-    campbell: CampbellSettings
-    assumed: tuple[str, ...]
-    files: tuple[Path, ...] = ()
+    lubricant: Lubricant | None = None
+    bodies: Sequence[BodySpec]
+    springs: Sequence[Spring] = ()
+    loads: Sequence[Load] = ()
+    elements: Sequence[ElementSpec] = ()
+    inputs: Sequence[Input] = ()
+    sensors: Sequence[Sensor] = ()
+    laws: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    frequencies: Sequence[float] = ()
+    run_up: RunUp | None = None
+    sweep: SweepRange | None = None
+    campbell: CampbellSettings = field(default_factory=CampbellSettings)
+    assumed: Sequence[str] = ()
+    file: Path | None = None
+
+    def __post_init__(self) -> None:
+        for name in _SEQUENCES:
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        object.__setattr__(self, "title", self.title or self.name)
+        problems = []
+        if not math.isfinite(self.speed):
+            problems.append(f"scene, speed: got {self.speed!r} rad/s; allowed: finite")
+        low, high = OIL_TEMPERATURES
+        if not low <= self.temperature <= high:
+            problems.append(f"scene, temperature: got {self.temperature!r} K; allowed: {low:g} to {high:g} K")
+        if problems:
+            raise InputError(problems)
+
+    @property
+    def bearings(self) -> tuple[BearingSpec, ...]:
+        """The bearings among the machine elements."""
+        return tuple(entry for entry in self.elements if isinstance(entry, BearingSpec))
+
+    @property
+    def gears(self) -> tuple[GearPair, ...]:
+        """The gear pairs among the machine elements."""
+        return tuple(entry for entry in self.elements if isinstance(entry, GearPair))
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """All files that are read for it: the scene file where there is one, reduced bodies, matrices, meshes."""
+        own = () if self.file is None else (self.file,)
+        bodies = (path for body in self.bodies if isinstance(body, FlexibleSpec) for path in body.files)
+        return tuple(dict.fromkeys((*own, *bodies)))
+
+    def with_bearings(self, bearings: Iterable[BearingSpec]) -> Scene:
+        """The scene with other bearings, each in the place of the one in the same order."""
+        others = iter(tuple(bearings))
+        changed = [next(others) if isinstance(entry, BearingSpec) else entry for entry in self.elements]
+        return dataclasses.replace(self, elements=changed)

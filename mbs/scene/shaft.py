@@ -8,17 +8,17 @@ from collections.abc import Callable
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import LENGTH, PRESSURE, Display, short
-from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_parts import Disc, Section
-from mbs.model.body import FREEDOMS, Body, Inertia
+from mbs.model.body import FREEDOMS, Inertia
 from mbs.scene import fields
 from mbs.scene.fields import HERTZ, Built
+from mbs.scene.specs import ORIGIN, ShaftSpec
 
 _DENSITY = Display("kg/m^3")
 _INERTIA = Display("kg m^2")
 
 
-def read_shaft(section: Table, name: str) -> Body | None:
+def read_shaft(section: Table, name: str) -> ShaftSpec | None:
     """Read a flexible shaft.
 
     Parameters
@@ -26,11 +26,11 @@ def read_shaft(section: Table, name: str) -> Body | None:
     section : Table
         One table of [[shafts]]; it is not closed here.
     name : str
-        Its name, read before.
+        Name of the shaft, read before.
 
     Returns
     -------
-    Body or None
+    ShaftSpec or None
         None where a problem was noted.
     """
     before = len(section.problems)
@@ -51,17 +51,17 @@ def read_shaft(section: Table, name: str) -> Body | None:
         return None
     return fields.built(
         section,
-        lambda: flexible_shaft(
-            name,
-            sections,
-            discs,
-            freedoms,
-            position or (0.0, 0.0, 0.0),
-            frames,
-            spin or 0.0,
-            largest,
-            cutoff,
-            ratio or 0.0,
+        lambda: ShaftSpec(
+            name=name,
+            sections=sections,
+            freedoms=freedoms,
+            frames=frames,
+            cutoff=cutoff,
+            discs=discs,
+            position=position or ORIGIN,
+            spin=spin or 0.0,
+            largest_element=largest,
+            damping_ratio=ratio or 0.0,
         ),
     )
 

@@ -30,7 +30,7 @@ class CompiledRun:
     Parameters
     ----------
     system : System
-        With elements that all have a kind in `mbs.transient.kinds`.
+        System whose elements all have a kind in `mbs.transient.kinds`.
     speed : SpeedProfile
         Prescribed speed.
     settings : Settings

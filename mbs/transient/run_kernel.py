@@ -125,7 +125,19 @@ def _solve(matrix: FloatArray, right: FloatArray) -> bool:
 
 
 def all_answer(blocks: tuple[Any, ...], moment: Moment, motion: FloatArray, answers: Answers) -> int:
-    """Answers of all elements, in compiled code only: each block by the function of its kind."""
+    """Answers of all elements, in compiled code only: each block by the function of its kind.
+
+    Parameters
+    ----------
+    blocks : tuple of NamedTuple
+        Arrays of all blocks.
+    moment : Moment
+        The step that is asked for.
+    motion : array (2, m)
+        What the elements feel, and its rate.
+    answers : Answers
+        Answers of all elements, filled.
+    """
     raise NotImplementedError
 
 
@@ -209,7 +221,7 @@ def advance(
     state : State
         Overwritten after each step that is made.
     records : Records
-        Filled.
+        Records of the run, filled.
     outside : array (elements,), of int
         Evaluations outside the map, counted up.
     counters : array (1,), of int

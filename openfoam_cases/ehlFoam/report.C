@@ -91,13 +91,15 @@ void Foam::reportResponse
         s.follow(s.contact().halfWidth*columnLayout(shifted).faces(s.columns()), step);
     }
     const List<filmResponse> found(response(s, solution, frequencies, isobar));
-    scalarField compliance(found.size()), loss(found.size());
+    scalarField compliance(found.size()), loss(found.size()), residual(found.size());
     forAll(found, f)
     {
         compliance[f] = found[f].filmCompliance;
         loss[f] = found[f].lossCompliance;
+        residual[f] = found[f].residual;
     }
     results.write("frequencies", frequencies);
     results.write("filmCompliance", compliance);
     results.write("lossCompliance", loss);
+    results.write("responseResidual", residual);
 }

@@ -43,6 +43,7 @@ from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Course, SpeedProfile
 from mbs.model.system import System
 from mbs.scene.assembly import Model, assemble
+from mbs.scene.bodies import build_bodies
 from mbs.scene.reader import parse_scene, read_scene
 from mbs.scene.scene import Scene
 from mbs.settings import RunUp, Settings
@@ -142,12 +143,9 @@ class Bench:
         if self.housing:
             text = text.replace("gearbox_housing.nc", str(Path(self.housing).resolve()))
         scene = parse_scene(text, self.scene.name, self.scene.name)
-        scene = dataclasses.replace(
-            scene,
-            bearings=tuple(dataclasses.replace(entry, slices=variant.slices) for entry in scene.bearings),
-            bodies=tuple(truncated(body, variant.housing) for body in scene.bodies),
-        )
-        return assemble(scene, variant.law, self.emap)
+        scene = scene.with_bearings(dataclasses.replace(entry, slices=variant.slices) for entry in scene.bearings)
+        bodies = [truncated(body, variant.housing) for body in build_bodies(scene.bodies)]
+        return assemble(dataclasses.replace(scene, bodies=bodies), variant.law, self.emap)
 
     @functools.cache  # noqa: B019 - one bench a process
     def made(self, variant: Variant) -> Made:

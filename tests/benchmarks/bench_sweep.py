@@ -34,6 +34,7 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.system import System
 from mbs.scene.assembly import assemble
+from mbs.scene.bodies import build_bodies
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 
@@ -49,7 +50,7 @@ ANGLES = 8
 def made(scene: Scene, law: str, emap: EHDMap, slices: int = 21) -> System:
     """The gearbox with a law and a number of slices."""
     bearings = tuple(dataclasses.replace(entry, slices=slices) for entry in scene.bearings)
-    return assemble(dataclasses.replace(scene, bearings=bearings), law, emap).system
+    return assemble(scene.with_bearings(bearings), law, emap).system
 
 
 def timed(scene: Scene, law: str, emap: EHDMap) -> None:
@@ -138,7 +139,9 @@ def load_table(scene: Scene, law: str, emap: EHDMap) -> None:
         elements = [entry.element for entry in steady.elements]
         for factor in factors.tolist():
             loads = [dataclasses.replace(load, force=factor * np.asarray(load.force)) for load in scene.loads]
-            balance = equilibrium(System(scene.bodies, scene.springs, loads, elements), Operation(MIDDLE), at)
+            balance = equilibrium(
+                System(build_bodies(scene.bodies), scene.springs, loads, elements), Operation(MIDDLE), at
+            )
             at = balance.displacement
             found.append(along_load(balance)[1])
         k = np.array(found)

@@ -17,7 +17,7 @@ from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.solution import contact_solution
+from ehdmaps.physics.spectrum import contact_spectrum
 
 LOADS = (5e3, 2e4, 5e4, 1e5, 3e5, 8e5)
 SPEEDS = (0.4, 1.7, 6.0)
@@ -34,17 +34,15 @@ def main() -> None:
         point = OperatingPoint(load, speed, temperature)
         for contact in job.contacts:
             time = float(half_width(load, contact.radius, contact.reduced_modulus)) / speed
-            values = []
-            for ratio in (0.0, *RATIOS):
-                frequency = ratio / time / (2.0 * math.pi)
-                (film,) = solver.solve_line(contact, job.lubricant, (load,), speed, temperature, frequency=frequency)
-                solution = contact_solution(film, contact, point, frequency)
-                values.append((solution.damping, solution.stiffness))
-            c, k = np.array(values).T
-            if not c[0] > 0.0:
+            frequencies = np.array(RATIOS) / time / (2.0 * math.pi)
+            found_here = contact_spectrum(
+                solver.film_spectrum(contact, job.lubricant, point, frequencies), contact, point
+            )
+            slow = found_here.solution
+            if not slow.damping > 0.0:
                 without += 1
                 continue
-            found.append(np.array([c[1:] / c[0], k[1:] / k[0]]))
+            found.append(np.array([found_here.damping / slow.damping, found_here.stiffness / slow.stiffness]))
     table = np.array(found)
     print(f"{table.shape[0]} points, and {without} without positive damping at zero")
     print(f"{'omega b/u':>10s}{'c/c(0): median':>18s}{'5 to 95 %':>16s}{'k/k(0): median':>18s}{'5 to 95 %':>16s}")

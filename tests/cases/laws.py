@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from dataclasses import dataclass
 
@@ -13,6 +12,7 @@ from scipy.special import erf
 from ehdmaps.jobs.job import record_json
 from ehdmaps.maps import schema
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
+from ehdmaps.maps.records import contacts_json
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
 from ehdmaps.physics.contact import LineContact
@@ -105,7 +105,7 @@ def dataset_of(
     """Map dataset of a closed-form solver, as the schema wants it."""
     solver = solver or FormulaSolver()
     shape = (len(contacts), len(loads), len(speeds), len(temperatures))
-    fields = [variable for variable in schema.VARIABLES if variable.required]
+    fields = [variable for variable in schema.table() if variable.required and not variable.axis]
     values = {
         variable.name: np.zeros(shape, dtype=object if variable.dtype == "str" else variable.dtype)
         for variable in fields
@@ -129,7 +129,8 @@ def dataset_of(
     attributes = dict.fromkeys(schema.ATTRIBUTES, "")
     attributes |= {
         "schema_version": schema.SCHEMA_VERSION,
-        "contacts": record_json([dataclasses.asdict(contact) for contact in contacts]),
+        "contacts": contacts_json(contacts),
+        "structural_law": contacts[0].structural_law,
         "geometry": record_json(bearing),
         "lubricant": record_json(OIL.record()),
     }

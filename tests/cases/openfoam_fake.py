@@ -58,7 +58,13 @@ R, E, load = number("reducedRadius"), number("reducedModulus"), number("load")
 speed = 0.5 * (number("lowerSpeed") + number("upperSpeed"))
 h = 3.0 * R * (0.1 * speed / (E * R)) ** 0.7 * (load / (E * R)) ** -0.1 * 1000
 grid = 1.0 + 4.0 / columns**2 + 1.0 / rows**2
-frequency = float(re.search(r"response \\{ frequencies \\(([^)]*)\\)", text)[1])
+frequencies = [float(word) for word in re.search(r"response \\{ frequencies \\(([^)]*)\\)", text)[1].split()]
+
+
+def listed(values):
+    return "(" + " ".join(map(repr, values)) + ")"
+
+
 status = mode[0] if mode[0] in ("stagnated", "diverged") else "converged"
 begun = re.search(r"start \\{ x \\(([^)]*)\\)", text)
 grid_name = f"{columns}x{rows}" + (f"<{len(begun[1].split())}" if begun else "")
@@ -69,16 +75,18 @@ if mode[0] == "stagnates_on" and grid_name in mode[1:]:
 entries = {
     "status": status, "reason": '""' if status == "converged" else '"residual 1e-3 after 200 iterations"',
     "iterations": 7, "centralFilm": h * grid, "minimumFilm": 0.8 * h, "maximumPressure": 1e8 * math.sqrt(load / 1e4),
-    "filmOffset": h * grid, "frequencies": f"({frequency!r})", "filmCompliance": f"({h * 0.1 / load * grid!r})",
-    "lossCompliance": f"({1e-18 * grid / (1 + frequency)!r})", "loadDefect": 1e-10, "fluxDefect": 1e-10,
-    "outletDefect": 1e-4, "cellContinuity": 1e-8, "seconds": 0.1,
+    "filmOffset": h * grid, "frequencies": listed(frequencies),
+    "filmCompliance": listed([h * 0.1 / load * grid for _ in frequencies]),
+    "lossCompliance": listed([1e-18 * grid / (1 + frequency) for frequency in frequencies]),
+    "responseResidual": listed([0.0 if frequency < 1e6 else 0.1 for frequency in frequencies]),
+    "loadDefect": 1e-10, "fluxDefect": 1e-10, "outletDefect": 1e-4, "cellContinuity": 1e-8, "seconds": 0.1,
 }
 if status != "converged":
     entries = {key: entries[key] for key in ("status", "reason", "iterations")}
 if mode[0] == "nan":
     entries["filmOffset"] = "nan"
 if mode[0] == "no_response":
-    entries.update(frequencies="()", filmCompliance="()", lossCompliance="()")
+    entries.update(frequencies="()", filmCompliance="()", lossCompliance="()", responseResidual="()")
 if mode[0] == "thick":
     entries["filmOffset"] = 0.02 * R
 if mode[0] == "negative":

@@ -384,6 +384,43 @@ EHDMAPS_OPTIONS: dict[str, tuple[str, int, str]] = {
         2,
         "--frequency",
     ),
+    **{
+        f"frequencies, {name}": (
+            f"solve job.toml --load 4N/mm --speed 1m/s --temperature 40degC --frequencies {line}",
+            status,
+            said,
+        )
+        for name, line, status, said in (
+            ("as they are", "10Hz 20kHz 2", 0, ""),
+            ("not a number", "nanHz 20kHz 9", 2, "--frequencies: got 'nanHz'"),
+            ("zero", "0Hz 20kHz 9", 2, "--frequencies: got '0Hz'; allowed: 0.001 Hz to 1e+07 Hz"),
+            ("negative", "-5Hz 20kHz 9", 2, "expected 3 arguments|--frequencies: got '-5Hz'"),
+            ("infinite", "10Hz infHz 9", 2, "--frequencies: got 'infHz'"),
+            ("beyond all", "10Hz 1e999Hz 9", 2, "--frequencies: got '1e999Hz'"),
+            ("above all", "10Hz 1GHz 9", 2, "--frequencies: got '1GHz'; allowed: 0.001 Hz to 1e+07 Hz"),
+            ("without a unit", "10 20kHz 9", 2, "--frequencies: got '10' without a unit"),
+            ("another unit", "10rpm 20kHz 9", 2, "--frequencies: got the unit 'rpm'"),
+            ("equal ends", "1kHz 1000Hz 9", 2, "allowed: TO above FROM"),
+            ("upside down", "20kHz 10Hz 9", 2, "allowed: TO above FROM"),
+            ("one point", "10Hz 20kHz 1", 2, "POINTS: got '1'; allowed: a whole number from 2 to 2000"),
+            ("no points", "10Hz 20kHz 0", 2, "POINTS: got '0'"),
+            ("a million points", "10Hz 20kHz 1000000", 2, "POINTS: got '1000000'"),
+            ("points of text", "10Hz 20kHz many", 2, "POINTS: got 'many'"),
+            ("half a point", "10Hz 20kHz 2.5", 2, "POINTS: got '2.5'"),
+            ("points of nan", "10Hz 20kHz nan", 2, "POINTS: got 'nan'"),
+            ("two of them", "10Hz 20kHz", 2, "expected 3 arguments"),
+            ("and one more", "10Hz 20kHz 9 --frequency 1kHz", 2, "--frequency: stands beside --frequencies"),
+            ("and fields", "10Hz 20kHz 9 --fields a.vtu", 2, "--fields: stands beside --frequencies"),
+            ("a plot of a kind", "10Hz 20kHz 9 --plot a.gif", 2, "--plot: got"),
+            ("a plot nowhere", "10Hz 20kHz 9 --plot none/a.png", 2, "--plot: got"),
+            ("the job as plot", "10Hz 20kHz 9 --plot job.toml", 2, "--plot"),
+        )
+    },
+    "a tiny frequency": (
+        "solve job.toml --load 4N/mm --speed 1m/s --temperature 40degC --frequency 1e-9Hz",
+        2,
+        "--frequency: got '1e-9Hz'; allowed: 0 Hz",
+    ),
     "fields without cells": (
         "solve job.toml --load 4N/mm --speed 1m/s --temperature 40degC --fields a.vtu",
         2,

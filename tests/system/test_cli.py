@@ -234,6 +234,33 @@ def test_solve_takes_a_load_per_length_and_a_frequency(capsys):
     assert {(record["load_per_length"], record["frequency"]) for record in json.loads(out)} == {(88000.0, 1000.0)}
 
 
+def test_solve_over_frequency(capsys, here):
+    point = ["--load", "62 N", "--length", "0.7 mm", "--speed", "1.7 m/s", "--temperature", "40 degC"]
+    asked = ["solve", "nu308", *point, "--frequencies", "10 Hz", "20 kHz", "5"]
+    status, out, err = run(capsys, *asked, "--plot", "z.png")
+    assert (status, err.strip().splitlines()[-1]) == (0, "z.png: written")
+    assert (here / "z.png").is_file()
+    assert out.count("converged; slow motion: k 3.") == 2
+    status, out, _ = run(capsys, *asked, "--json")
+    inner, outer = json.loads(out)
+    assert (inner["contact"], outer["contact"]) == ("inner", "outer")
+    assert inner["frequency"] == pytest.approx(np.geomspace(10.0, 2e4, 5).tolist())
+    assert inner["M"] == pytest.approx(4.63, abs=0.01)
+    _, single, _ = run(capsys, "solve", "nu308", *point, "--frequency", "20 kHz", "--json")
+    # the same frequency, alone and among others: the Krylov space differs by round-off
+    assert json.loads(single)[0]["stiffness"] == pytest.approx(inner["stiffness"][-1], rel=1e-9)
+    assert json.loads(single)[0]["damping"] == pytest.approx(inner["damping"][-1], rel=1e-6)
+    status, out, _ = run(capsys, "solve", "nu308", *point, "--frequency", "20 kHz")
+    assert "oscillating at 20000 Hz" in out
+
+
+def test_solve_over_frequency_without_a_solution(capsys):
+    point = ["--load", "10000 N/mm", "--speed", "1e-8 m/s", "--temperature", "40 degC"]
+    status, out, _ = run(capsys, "solve", "nu308", *point, "--frequencies", "10 Hz", "20 kHz", "5")
+    assert status == 1
+    assert out.count("outside_validity") == 2
+
+
 def test_solve_at_a_standstill_has_no_groups(capsys):
     status, out, _ = run(
         capsys,

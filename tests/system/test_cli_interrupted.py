@@ -38,13 +38,13 @@ from ehdmaps.physics.closed_form import FormulaSolver
 class Patient(FormulaSolver):
     version: str = "1"
     pause: float = 0.03
-    def solve_line(self, contact, lubricant, loads, entrainment_speed, temperature, frequency=0.0):
+    def solve_line(self, contact, lubricant, loads, entrainment_speed, temperature):
         with open("log", "a") as log:
             log.write(f"{os.getpid()} {contact.name} {entrainment_speed!r} {temperature!r}\\n")
         time.sleep(self.pause)
         while "HOLD" in os.environ and not os.path.exists("release"):
             time.sleep(self.pause)
-        return super().solve_line(contact, lubricant, loads, entrainment_speed, temperature, frequency)
+        return super().solve_line(contact, lubricant, loads, entrainment_speed, temperature)
 
 if __name__ == "__main__":
     solvers.build = lambda name, options: Patient()

@@ -12,7 +12,7 @@ from ehdmaps.jobs.generate import Generated, generate
 from ehdmaps.jobs.law_check import unmet
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.summary import summary
-from ehdmaps.maps.schema import BACKBONE_GROUP
+from ehdmaps.maps.schema import BACKBONE
 
 pytestmark = pytest.mark.slow  # its map is checked against forty fresh solves
 
@@ -68,7 +68,7 @@ def test_without_backbone(tmp_path: Path) -> None:
     )
     assert generated.sweep.solved == 24
     assert ehdmaps.open_map(tmp_path / "bare.nc").backbone is None
-    assert BACKBONE_GROUP not in generated.dataset
+    assert BACKBONE not in generated.dataset
     assert not any(name.startswith("law_") for name in generated.dataset.attrs)
 
 

@@ -52,15 +52,15 @@ def test_from_a_scene_to_its_modes(here, capsys):
         for name, variable in data.data_vars.items():
             assert "long_name" in variable.attrs, name
             assert "units" in variable.attrs or variable.dtype.kind in "OUS", name
-        # five standard deviations of what the noise of 1 % does, which the fit states, and half of the last digit
-        for name, true, digit in (
-            ("frequency", [1606.39, 1630.23], 0.01),
-            ("damping", [0.004191, 0.004254], 1e-6),
+        # five standard deviations of what the noise of 1 % does, which the fit states, and half of the last digit; at
+        # most 0.1 % and 5 %, what a test with so much noise is asked for
+        for name, true, digit, most in (
+            ("frequency", [1606.39, 1630.23], 0.01, 0.001),
+            ("damping_ratio", [0.004191, 0.004254], 1e-6, 0.05),
         ):
-            value = data["damping_ratio" if name == "damping" else name].values
+            value = data[name].values
             room = 5.0 * data[f"{name}_uncertainty"].values + 0.5 * digit
-            assert np.all(room < (0.001 if name == "frequency" else 0.05) * value)
-            assert np.all(np.abs(value - true) < room)
+            assert np.all(np.abs(value - true) < np.minimum(room, most * np.array(true)))
         np.testing.assert_allclose(data["lscf_frequency"], data["frequency"], rtol=1e-3)
         assert np.all(data["coherence"] <= 1.0)
         found = data["damping_ratio"].values

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from ehdmaps.jobs import cli as ehdmaps_cli
 from mbs import Bearing
 from mbs.scene.reader import read_scene
 from tests.cases.commands import check_units, run
+from tests.cases.jobs import WIDE
 
 STRAIGHT = ('profile = "iso"', 'profile = "straight"')
 FREE_RING = ('freedoms = ["y", "z"]\nposition = ["-70 mm"', 'freedoms = ["x", "y", "z"]\nposition = ["-70 mm"')
@@ -115,3 +117,36 @@ def test_a_load_on_what_is_free_is_no_equilibrium(here, capsys):
     assert (status, out) == (1, "")
     assert "no equilibrium: ring_left moves freely along x, and a load of 1e-09 N acts that way" in err
     assert not (here / "a.nc").exists()
+
+
+def test_one_map_by_another_structural_law(here, capsys, formula_map):
+    """--structure gives what a map gives whose job had that law, in `mbs statics`, `sweep` and `bearing`."""
+    (here / "half.toml").write_text(WIDE.replace('"iso16281"', '"half_space"'))
+    assert ehdmaps_cli.main(["generate", "half.toml", "-o", "half.nc", "--workers", "1"]) in (0, 1)
+    ways = {"iso": (formula_map,), "half": ("half.nc",), "chosen": (formula_map, "--structure", "half_space")}
+    for name, (path, *options) in ways.items():
+        status, out, _ = run(capsys, "statics", "nu308_rigid", "--map", path, *options, "-o", f"{name}.statics.nc")
+        assert (status, "structural law half_space" in out) == (0, name != "iso")
+        bearing = ("bearing", "NU308", "--load", "1 kN", "--speed", "500 rpm", "--map", path, *options)
+        status, out, _ = run(capsys, *bearing, "-o", f"{name}.bearing.nc")
+        assert (status, "structural law half_space" in out) == (0, name != "iso")
+    found = {"statics": ("bearing_stiffness", "bearing_damping"), "bearing": ("stiffness_along", "damping_along")}
+    for kind, variables in found.items():
+        iso, half, chosen = (xr.open_dataset(f"{name}.{kind}.nc") for name in ways)
+        for name in variables:
+            largest = float(np.abs(half[name]).max())
+            # Equilibria of two tables whose films differ in their last digits, to the tolerance of Newton's method.
+            np.testing.assert_allclose(chosen[name], half[name], rtol=0.0, atol=1e-9 * largest)
+            assert float(np.abs(iso[name] - half[name]).max()) > 1e-3 * largest
+
+
+@pytest.mark.parametrize("command", ["statics", "sweep", "bearing"])
+def test_structural_laws_that_do_not_suit_are_refused(here, capsys, formula_map, command):
+    given = ("NU308", "--load", "1 kN", "--speed", "500 rpm") if command == "bearing" else ("nu308_rigid",)
+    status, _, err = run(capsys, command, *given, "--map", formula_map, "--structure", "half-space")
+    assert status == 2
+    assert "--structure: got 'half-space'" in err
+    assert "allowed: iso16281, palmgren, half_space" in err
+    status, _, err = run(capsys, command, *given, "--structure", "palmgren")
+    assert status == 2
+    assert "--structure: got 'palmgren' without a map; allowed: with --map MAP.nc" in err

@@ -49,9 +49,20 @@ def test_script_prints_what_is_shown(made_map, monkeypatch, capsys):
 
 def test_blocks_of_python_compile():
     blocks = re.findall(r"```python\n(.*?)```", README + PYTHON, re.DOTALL)
-    assert len(blocks) == 3
+    assert len(blocks) == 4
     for block in blocks:
         compile(block, "README.md", "exec")
+
+
+def test_the_scene_made_in_python_has_an_equilibrium():
+    (block,) = (text for text in re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL) if "RigidSpec" in text)
+    names = {}
+    exec(f"from mbs import assemble, statics\n{block.replace('statics(', 'found = statics(')}", names)
+    left, right = names["found"].values
+    # without a load all rollers are pressed alike: rounding of twelve of them
+    assert left[1, 1] == pytest.approx(left[2, 2], rel=1e-9)
+    assert left[1, 1] > 1e8
+    assert np.array_equal(left, right)
 
 
 @pytest.mark.slow

@@ -15,6 +15,7 @@ from ehdmaps.errors import InputError, MapError, OutsideMapError
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.film_field import LOSS_FLOOR
 from ehdmaps.maps.records import bearing_from_json, contacts_from_json, lubricant_from_json
+from ehdmaps.maps.structure import DERIVED
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
@@ -29,10 +30,10 @@ def emap():
 
 
 def changed(dataset, name, index, value):
-    """Copy of a dataset with one value changed."""
+    """Copy of a dataset with one value changed, and without what follows from its films."""
     copy = dataset.copy(deep=True)
     copy[name].values[index] = value
-    return copy
+    return copy.drop_vars(list(DERIVED), errors="ignore")
 
 
 def test_map_stands_alone(emap, tmp_path):
@@ -119,7 +120,7 @@ def test_holes_are_refused(emap):
     with pytest.raises(MapError, match=message):
         EHDMap(hole).law("series")
     EHDMap(hole).law("outer")
-    for name in ("film_offset", "stiffness", "damping"):
+    for name in ("film_offset", "film_compliance", "loss_compliance"):
         with pytest.raises(MapError, match="1 holes"):
             EHDMap(changed(data, name, (0, 3, 1, 2), np.nan)).law("inner")
     many = changed(data, "status", (1, slice(3, 8), 1, 2), int(Status.FAILED))
@@ -140,7 +141,7 @@ def test_isolated_filled_points_are_taken_and_clusters_refused(emap):
         EHDMap(cluster).law("outer")
 
 
-@pytest.mark.parametrize(("name", "word"), [("film_offset", "film offset"), ("stiffness", "stiffness")])
+@pytest.mark.parametrize(("name", "word"), [("film_offset", "film offset"), ("film_compliance", "stiffness")])
 def test_impossible_values_are_refused(emap, name, word):
     wrong = changed(emap.dataset, name, (1, 3, 1, 2), -1e-9)
     with pytest.raises(MapError, match=f"1 points whose {word} is not positive, outer at"):
@@ -148,7 +149,7 @@ def test_impossible_values_are_refused(emap, name, word):
 
 
 def test_negative_damping_is_lifted(emap):
-    law = EHDMap(changed(emap.dataset, "damping", (0, 9, 1, 2), -5.0)).law("inner")
+    law = EHDMap(changed(emap.dataset, "loss_compliance", (0, 9, 1, 2), -1e-20)).law("inner")
     values = emap.dataset.isel(contact=0, load=9, entrainment_speed=1, temperature=2)
     _, _, c = law(float(values["approach"]), 0.0, 0.6, float(values["temperature"]))
     inner = law.contacts[0]
@@ -163,8 +164,8 @@ def test_broken_files_and_attributes_are_refused(emap, tmp_path):
     (tmp_path / "text.nc").write_text("no map")
     with pytest.raises(MapError, match=r"text\.nc: cannot be read"):
         open_map(tmp_path / "text.nc")
-    with pytest.raises(MapError, match="map: variable stiffness is missing"):
-        EHDMap(emap.dataset.drop_vars("stiffness"))
+    with pytest.raises(MapError, match="map: variable film_compliance is missing"):
+        EHDMap(emap.dataset.drop_vars("film_compliance"))
     for attribute, text in (
         ("contacts", "[{}]"),
         ("contacts", '[{"material": {"youngs_modulus": -1, "poisson_ratio": 0.3}}]'),
@@ -172,10 +173,9 @@ def test_broken_files_and_attributes_are_refused(emap, tmp_path):
         ("lubricant", "not JSON"),
         ("geometry", '{"name": 1}'),
     ):
-        broken = EHDMap(emap.dataset.assign_attrs({attribute: text}))
         names = {"contacts": "contacts", "lubricant": "lubricant", "geometry": "bearing"}
         with pytest.raises(MapError, match=f"attribute {attribute}: does not read .*generate the map again"):
-            getattr(broken, names[attribute])
+            getattr(EHDMap(emap.dataset.assign_attrs({attribute: text})), names[attribute])
     swapped = json.dumps(json.loads(emap.dataset.attrs["contacts"])[::-1])
     with pytest.raises(MapError, match="attribute contacts: names outer, inner; the contact axis has inner, outer"):
         _ = EHDMap(emap.dataset.assign_attrs(contacts=swapped)).contacts

@@ -21,6 +21,7 @@ from ehdmaps.jobs.reader import read_job
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.records import read_json
+from ehdmaps.maps.structure import DERIVED
 from ehdmaps.physics.closed_form import FormulaSolver
 from tests.cases.jobs import map_job, spaced
 
@@ -40,6 +41,20 @@ def made(tmp_path_factory):
     (folder / "job.toml").write_text(JOB)
     generate(read_job(str(folder / "job.toml"), None), folder / "map.nc", workers=1, solver=WithBackbone())
     return folder / "map.nc"
+
+
+@pytest.fixture(scope="module")
+def old(made):
+    """The same map as schema 1 had it, without a checksum."""
+    path = made.with_name("old.nc")
+    now = open_map(made)
+    older = now.dataset.drop_vars([entry.name for entry in schema.table() if entry.since > 1])
+    older = older.assign_attrs(schema_version=1)
+    del older.attrs[schema.CHECKSUM]
+    older.to_netcdf(path)
+    now.backbone.to_netcdf(path, mode="a", group="backbone")
+    open_map(path).law("series")
+    return path
 
 
 @pytest.fixture(scope="module")
@@ -155,7 +170,8 @@ ANY = "."
 DAMAGES = {
     "axis deleted": (deleted("load"), ANY),
     "contact deleted": (deleted("contact"), ANY),
-    "variable deleted": (deleted("stiffness"), "variable stiffness is missing|cannot be read"),
+    "variable deleted": (deleted("film_compliance"), "variable film_compliance is missing|cannot be read"),
+    "derived variable deleted": (deleted("stiffness"), ""),
     "external link": (external_link("stiffness"), ANY),
     "soft link to itself": (of_hdf5(lambda f: f.__setitem__("self", h5py.SoftLink("/self"))), ANY),
     "cut to nothing": (cut(0.0), "cannot be read"),
@@ -169,9 +185,30 @@ DAMAGES = {
     "negative speed": (set_value("entrainment_speed", 0, -1.0), "coordinate entrainment_speed holds -1 m s-1"),
     "temperature of 0 K": (set_value("temperature", 0, 0.0), "coordinate temperature holds 0 K"),
     "unknown status": (set_value("status", (0, 0, 0, 0), 77), "status holds \\[77\\]"),
-    "stiffness negative": (set_value("stiffness", (0, 0, 0, 0), -1.0), "1 points whose stiffness is not positive"),
-    "stiffness infinite": (set_value("stiffness", (0, 0, 0, 0), np.inf), "1 holes"),
-    "film NaN": (set_value("film_offset", (0, 0, 0, 0), np.nan), "1 holes"),
+    "stiffness negative": (
+        set_value("stiffness", (0, 0, 0, 0), -1.0),
+        "variable stiffness contradicts the films: 1 of",
+    ),
+    "stiffness infinite": (set_value("stiffness", (0, 0, 0, 0), np.inf), "variable stiffness contradicts the films: 1"),
+    "film NaN": (set_value("film_offset", (0, 0, 0, 0), np.nan), "variable approach contradicts the films: 1 of 108"),
+    "film compliance": (set_value("film_compliance", (1, 3, 1, 1), 1e-12), "variable damping contradicts the films: 1"),
+    "other structural law": (
+        set_attribute("structural_law", "half_space"),
+        "is 'half_space'; .* contacts has iso16281",
+    ),
+    "contacts of another law": (
+        record("contacts", lambda r: [entry | {"structural_law": "half_space"} for entry in r]),
+        "structural_law is 'iso16281'; the attribute contacts has half_space; they must be alike",
+    ),
+    "wide contact of half_space": (
+        lambda path: [
+            set_attribute("structural_law", "half_space")(path),
+            record("contacts", lambda r: [c | {"structural_law": "half_space", "reference_depth": 1e-6} for c in r])(
+                path
+            ),
+        ],
+        "half_space law: got a contact half-width of",
+    ),
     "other dims": (
         replaced("damping", dims=("load", "contact", "entrainment_speed", "temperature")),
         r"variable damping has dims \('load', 'contact'",
@@ -271,6 +308,26 @@ def test_a_damaged_map_is_told_in_words(unsealed, tmp_path, capsys, name):
         assert (status == 2) == bool(told.err)
 
 
+SCHEMA_2_ONLY = ("variable deleted", "film compliance", "other structural law", "contacts of another law")
+UNREAD_IN_SCHEMA_1 = ("stiffness negative", "stiffness infinite", "film NaN")
+"""Of the grid, which a law with a backbone does not read; schema 1 had nothing to hold them to."""
+
+
+@pytest.mark.parametrize("name", [name for name in DAMAGES if name not in SCHEMA_2_ONLY])
+def test_a_damaged_map_of_schema_1_is_told_in_words(old, tmp_path, name):
+    damage, message = DAMAGES[name]
+    path = tmp_path / "damaged.nc"
+    shutil.copy(old, path)
+    damage(path)
+    if name == "derived variable deleted":
+        message = "variable stiffness is missing|cannot be read"
+    if message and name not in UNREAD_IN_SCHEMA_1:
+        with pytest.raises(MapError, match=message):
+            used(path)
+    else:
+        used(path)
+
+
 def test_foreign_variables_are_not_loaded(made, tmp_path):
     """Of terabytes, chunked and never written; as axes of their own too, which xarray would load to open the file."""
     path = tmp_path / "foreign.nc"
@@ -322,7 +379,7 @@ def scaled(name):
 @pytest.mark.parametrize(
     "edit",
     [
-        scaled("stiffness"),
+        scaled("max_pressure"),
         scaled("backbone/film_offset"),
         lambda dataset, backbone: (
             dataset.assign_attrs(lubricant=dataset.lubricant.replace("887.6", "900.1")),
@@ -343,6 +400,21 @@ def test_a_map_changed_since_it_was_made_is_refused_until_its_owner_says_so(made
     assert "content_sha256" in capsys.readouterr().err
     set_attribute(schema.CHECKSUM, None)(path)
     open_map(path).law("series")
+
+
+def test_a_changed_film_takes_along_what_is_derived_from_it(made, tmp_path):
+    """Also where the owner says that the change is meant: stiffness cannot stay what it was."""
+    path = tmp_path / "changed.nc"
+    shutil.copy(made, path)
+    change(path, scaled("film_compliance"))
+    with pytest.raises(MapError, match="was changed since it was made"):
+        open_map(path)
+    set_attribute(schema.CHECKSUM, None)(path)
+    with pytest.raises(MapError, match=r"variable stiffness contradicts the films: .*delete approach, stiffness"):
+        open_map(path)
+    change(path, lambda dataset, backbone: (dataset.drop_vars(list(DERIVED)), backbone))
+    softer, before = open_map(path).dataset, open_map(made).dataset
+    assert (softer["stiffness"].values < before["stiffness"].values).all()
 
 
 def test_a_map_saved_again_without_a_change_is_the_same_map(made, tmp_path):

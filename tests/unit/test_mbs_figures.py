@@ -188,6 +188,7 @@ def trajectory(model, force, speed=None):
         iterations=count,
         outside={},
         compiled=0,
+        notes=(),
         states=States(place, zeros, zeros),
     )
 

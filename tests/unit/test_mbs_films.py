@@ -8,7 +8,7 @@ import pytest
 from ehdmaps.errors import MapError
 from ehdmaps.jobs import cli, solvers
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.maps.emap import open_map
+from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.lubricant import Lubricant
@@ -108,6 +108,14 @@ def test_axes_of_one_value_and_maps_of_a_bare_contact(tmp_path):
     bare = a_map(tmp_path / "bare", "formula", problem='[contact]\nradius = "5 mm"\nroller_length = "10 mm"')
     with pytest.raises(MapError, match="got the map of a bare contact; allowed: a map of a bearing"):
         MapFilms(bare)
+
+
+def test_films_of_a_map_with_holes_are_refused(tmp_path):
+    """Also where the contact law, made from a backbone, does not read them."""
+    dataset = a_map(tmp_path, "formula").dataset.copy(deep=True)
+    dataset["central_film"].values[1, 2, 0, 1] = np.nan
+    with pytest.raises(MapError, match="films: the map lacks 1 values of max_pressure, central_film, minimum_film, at"):
+        MapFilms(EHDMap(dataset))
 
 
 def test_the_shipped_jobs_have_the_steps_of_the_test():

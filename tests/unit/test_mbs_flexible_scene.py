@@ -18,6 +18,7 @@ from mbs.flexible.extent import Extent, extent
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.reduced_file import read_reduced
 from mbs.model.body import FREEDOMS
+from mbs.scene.bodies import build_body
 from mbs.scene.flexible import read_flexible
 from tests.cases.flexible import DENSITY, SIZE, block, written
 
@@ -29,7 +30,7 @@ def files(tmp_path):
     return written(tmp_path)
 
 
-def table(folder, **changes):
+def read_table(folder, **changes):
     values = {
         "matrices": {"format": "calculix", "stiffness": "b.sti", "mass": "b.mas", "dofs": "b.dof"},
         "mesh": "m.inp",
@@ -51,8 +52,18 @@ def table(folder, **changes):
     section = Table(
         {key: value for key, value in values.items() if value is not None}, "[[flexible]] housing", problems
     )
-    body = read_flexible(section, "housing", folder, [])
+    spec = read_flexible(section, "housing", folder)
     section.close(("name",))
+    return spec, problems
+
+
+def table(folder, **changes):
+    """The body of a table, with all problems of reading and of building it."""
+    spec, problems = read_table(folder, **changes)
+    try:
+        body = build_body(spec) if spec else None
+    except InputError as error:
+        return None, "\n".join([*problems, *error.problems])
     return body, "\n".join(problems)
 
 

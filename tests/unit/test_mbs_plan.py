@@ -109,9 +109,7 @@ def test_largest_load_of_a_bearing_is_the_textbook_one():
 def test_largest_load_is_over_a_pitch_and_not_at_the_first_angle():
     still = straight()
     model = assemble(still)
-    balance_free = dataclasses.replace(
-        still, bearings=tuple(dataclasses.replace(entry, start_angle=0.3) for entry in still.bearings)
-    )
+    balance_free = still.with_bearings(dataclasses.replace(entry, start_angle=0.3) for entry in still.bearings)
     # 12 angles over a pitch lie 2.5 deg apart: next to a peak that is 1e-3 of the load at most
     assert loads_of(balance_free) == pytest.approx(loads_of(still), rel=2e-3)
     assert model.bearings[0].rates[0] > 0.0

@@ -27,6 +27,7 @@ from mbs.model.body import FREEDOMS, Inertia, lever_arm, rigid_body
 from mbs.model.elements import Operation, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.system import System
+from mbs.scene.bodies import build_body
 from mbs.scene.shaft import read_shaft
 
 BENDING = ("y", "z", "theta_y", "theta_z")
@@ -376,10 +377,10 @@ TABLE = {
 def read(changes=None, without=()):
     values = {key: value for key, value in {**TABLE, **(changes or {})}.items() if key not in without}
     problems: list[str] = []
-    body = read_shaft(Table(values, "[[shafts]] shaft", problems), "shaft")
-    assert (body is None) == bool(problems)
+    spec = read_shaft(Table(values, "[[shafts]] shaft", problems), "shaft")
+    assert (spec is None) == bool(problems)
     assert all(problem.startswith("[[shafts]] shaft") for problem in problems)
-    return body, "\n".join(problems)
+    return spec and build_body(spec), "\n".join(problems)
 
 
 def test_a_shaft_is_read():

@@ -22,7 +22,7 @@ from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Forces, Input, Operation, Port, Sensor, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.system import System
-from mbs.output.sweep_data import sweep_dataset
+from mbs.output.sweep_data import RESPONSES, VARIABLES, sweep_dataset
 from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
@@ -401,6 +401,12 @@ class TestResults:
         assert np.all(np.isnan(data["complex_frequency"].sel(case="wet")[:, counts[1] :]))
         np.testing.assert_allclose(data["energy_share"].sum("part"), 1.0, rtol=1e-9)
         np.testing.assert_array_equal(data["frequency"].sel(case="dry"), two_sweeps[0].undamped.frequency)
+        of_cases = ("law", "clearance", "load_factor")
+        of_responses = (*(entry.name for entry in RESPONSES), "quantity")
+        assert tuple(data.data_vars) == (*(entry.name for entry in VARIABLES), *of_cases, *of_responses)
+        for entry in (*VARIABLES, *RESPONSES):
+            assert data[entry.name].dims == entry.dims
+            assert data[entry.name].attrs == {"units": entry.units, "long_name": entry.long_name}
 
     def test_figure(self, two_sweeps, tmp_path):
         figure = sweep_figure("a title", "40 degC", two_sweeps, ["0 um", "20 um"])

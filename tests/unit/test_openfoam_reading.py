@@ -66,9 +66,10 @@ def test_results_of_three_frequencies_and_an_oscillation(case):
     text = "\n".join(
         line
         for line in (case / "results").read_text().splitlines()
-        if not line.startswith(("frequencies", "filmCompliance", "lossCompliance"))
+        if not line.startswith(("frequencies", "filmCompliance", "lossCompliance", "responseResidual"))
     )
     text += "\nfrequencies (0 1 2);\nfilmCompliance 3(1e-13 2e-13 3e-13);\nlossCompliance (1e-18 2e-18 3e-18);\n"
+    text += "responseResidual (0 1e-9 2e-9);\n"
     text += "oscillationFilmCompliance 1e-13;\noscillationLossCompliance 2e-18;\n"
     (case / "results").write_text(text)
     results = read_results(case)

@@ -21,6 +21,7 @@ from ehdmaps.openfoam import installation as installed
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.openfoam.run import RunError, run
 from ehdmaps.openfoam.solver import OpenFoamSolver
+from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import Status
 from tests.cases import openfoam_fake
@@ -44,8 +45,8 @@ def fake(tmp_path, monkeypatch):
     return folder
 
 
-def solved(solver, load=POINT.load, speed=POINT.entrainment_speed, frequency=0.0):
-    (film,) = solver.solve_line(CONTACT, OIL, (load,), speed, POINT.temperature, frequency)
+def solved(solver, load=POINT.load, speed=POINT.entrainment_speed):
+    (film,) = solver.solve_line(CONTACT, OIL, (load,), speed, POINT.temperature)
     return film
 
 
@@ -70,10 +71,46 @@ def test_a_point_on_two_grids(fake, capfd):
     assert capfd.readouterr().out == ""
 
 
-def test_a_line_of_loads_and_a_frequency(fake):
-    films = OpenFoamSolver().solve_line(CONTACT, OIL, (1e4, 2e4), 1.0, 313.15, 9.0)
+def test_a_line_of_loads(fake):
+    films = OpenFoamSolver().solve_line(CONTACT, OIL, (1e4, 2e4), 1.0, 313.15)
     assert films[0].film_offset != films[1].film_offset
-    assert films[1].loss_compliance == pytest.approx(solved(OpenFoamSolver()).loss_compliance / 10.0)
+
+
+def test_many_frequencies_from_one_run_a_grid(fake):
+    frequencies = np.array([9.0, 99.0, 999.0])
+    found = OpenFoamSolver().film_spectrum(CONTACT, OIL, POINT, frequencies)
+    assert len(openfoam_fake.starts(fake)) == 2  # one a grid
+    slow = solved(OpenFoamSolver())
+    assert found.film.loss_compliance == slow.loss_compliance
+    # the fake's loss falls with 1/(1 + frequency), its film compliance does not
+    assert found.compliance.real == pytest.approx(np.full(3, slow.film_compliance), rel=1e-12)
+    loss = -found.compliance.imag / (2.0 * np.pi * frequencies)
+    assert loss == pytest.approx(slow.loss_compliance / np.array([10.0, 100.0, 1000.0]), rel=1e-12)
+    # and the fake is of second order: a third of the difference is the error, with its sign
+    assert found.errors.shape == (3, 5)
+    assert not found.errors[:, 3:].any()
+    share = found.errors[:, 0].real / found.compliance.real
+    assert share == pytest.approx(np.full(3, 4 / 400**2 + 1 / 16**2), rel=0.01)
+
+
+def test_what_the_krylov_space_leaves_is_an_error(fake):
+    found = OpenFoamSolver().film_spectrum(CONTACT, OIL, POINT, np.array([9.0, 5e6]))
+    at_rest = found.film.film_compliance + 4.0 * DRY_COMPLIANCE / CONTACT.reduced_modulus
+    assert np.abs(found.errors[:, 3]) == pytest.approx([0.0, 0.1 * at_rest], rel=1e-12)
+    assert np.abs(found.errors[:, 4]) == pytest.approx([0.0, 0.1 * at_rest], rel=1e-12)
+
+
+def test_a_spectrum_that_fails_has_its_cause(fake):
+    openfoam_fake.set_mode(fake, "stagnated")
+    found = OpenFoamSolver().film_spectrum(CONTACT, OIL, POINT, np.array([9.0]))
+    assert found.film.status is Status.STAGNATED
+    assert np.isnan(found.compliance).all()
+
+
+def test_a_spectrum_at_a_standstill_is_that_of_the_dry_contact(fake):
+    found = OpenFoamSolver().film_spectrum(CONTACT, OIL, OperatingPoint(2e4, 0.0, 313.15), np.array([9.0]))
+    assert found.film.status is Status.ASYMPTOTE
+    assert found.compliance == 0.0
 
 
 FAILURES = {

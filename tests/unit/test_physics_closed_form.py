@@ -4,6 +4,7 @@ import dataclasses
 import math
 import pickle
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -26,8 +27,8 @@ loads = st.floats(1e2, 1e6)
 speeds = st.floats(0.05, 10.0)
 
 
-def solve(solver, load=88571.4, speed=1.7, temperature=C40, oil=OIL, contact=INNER, **kwargs):
-    (film,) = solver.solve_line(contact, oil, (load,), speed, temperature, **kwargs)
+def solve(solver, load=88571.4, speed=1.7, temperature=C40, oil=OIL, contact=INNER):
+    (film,) = solver.solve_line(contact, oil, (load,), speed, temperature)
     return film
 
 
@@ -149,8 +150,15 @@ def test_a_line_is_its_points_in_the_order_given():
 
 
 @pytest.mark.parametrize("solver", [HertzSolver(), FormulaSolver()])
-def test_frequency_does_not_matter(solver):
-    assert solve(solver, frequency=1000.0) == solve(solver)
+def test_films_without_memory_over_frequency(solver):
+    """S = s - i omega loss at every frequency, from one solve."""
+    frequencies = np.array([1.0, 1000.0])
+    found = solver.film_spectrum(INNER, OIL, OperatingPoint(88571.4, 1.7, C40), frequencies)
+    film = solve(solver)
+    assert found.film == film
+    assert found.compliance.real == pytest.approx(np.full(2, film.film_compliance), rel=ROUND_OFF)
+    assert found.compliance.imag == pytest.approx(-2.0 * math.pi * frequencies * film.loss_compliance, rel=ROUND_OFF)
+    assert not np.any(found.errors)
 
 
 @pytest.mark.parametrize("solver", [HertzSolver(), FormulaSolver()])

@@ -12,7 +12,7 @@ import xarray as xr
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import MapError
 from ehdmaps.maps.backbone import (
-    GROUP_VARIABLES,
+    FILMS,
     BackboneField,
     _lagrange,
 )
@@ -52,7 +52,7 @@ def _group(plan: BackbonePlan) -> xr.Dataset:
             values[:, first + i, j, k] = film.film_offset, film.film_compliance, film.loss_compliance
     dims = ("zeta", "reference_speed", "temperature")
     coordinates = dict(zip(dims, (list(plan.zeta), list(plan.speeds), list(plan.temperatures)), strict=True))
-    return xr.Dataset({n: (dims, v) for n, v in zip(GROUP_VARIABLES, values, strict=True)}, coords=coordinates)
+    return xr.Dataset({n: (dims, v) for n, v in zip(FILMS, values, strict=True)}, coords=coordinates)
 
 
 def _field(plan: BackbonePlan, group: xr.Dataset) -> BackboneField:
@@ -137,7 +137,7 @@ def test_a_line_without_points_is_refused() -> None:
     shape = (len(plan.zeta), len(plan.speeds), len(plan.temperatures))
     dims = ("zeta", "reference_speed", "temperature")
     coordinates = dict(zip(dims, (list(plan.zeta), list(plan.speeds), list(plan.temperatures)), strict=True))
-    group = xr.Dataset({n: (dims, np.full(shape, np.nan)) for n in GROUP_VARIABLES}, coords=coordinates)
+    group = xr.Dataset({n: (dims, np.full(shape, np.nan)) for n in FILMS}, coords=coordinates)
     with pytest.raises(MapError, match=r"backbone: 0 solved points at reference speed .* at least 8 are needed"):
         _field(plan, group)
 

@@ -289,7 +289,7 @@ class TestDryHertz:
             bearings = tuple(
                 dataclasses.replace(entry, start_angle=2.0 * math.pi / 12.0 * part / 4.0) for entry in scene.bearings
             )
-            turned = assemble(dataclasses.replace(scene, bearings=bearings)).system
+            turned = assemble(scene.with_bearings(bearings)).system
             one_by_one.append(sweep(turned, np.array([500.0]) * RPM).bearings.stiffness)
         np.testing.assert_allclose(mean.stiffness, np.mean(one_by_one, axis=0), rtol=1e-7)
         spread = 0.5 * np.ptp(one_by_one, axis=0) / np.mean(one_by_one, axis=0)

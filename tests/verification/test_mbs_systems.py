@@ -36,9 +36,7 @@ TANGENTIAL = np.array([0.0, 1.0, -1.0, 0.0, 0.0, 0.0]) / math.sqrt(2.0)
 
 
 def with_slices(scene, slices):
-    return dataclasses.replace(
-        scene, bearings=tuple(dataclasses.replace(entry, slices=slices) for entry in scene.bearings)
-    )
+    return scene.with_bearings(dataclasses.replace(entry, slices=slices) for entry in scene.bearings)
 
 
 class IsoBearing:
@@ -197,8 +195,7 @@ class TestNU308:
                 dataclasses.replace(entry, stiffness=rotation @ stiffness @ rotation.T) for entry in straight.springs
             ),
             loads=tuple(dataclasses.replace(entry, force=rotation @ entry.force) for entry in NU308.loads),
-            bearings=tuple(dataclasses.replace(entry, start_angle=turn) for entry in NU308.bearings),
-        )
+        ).with_bearings(dataclasses.replace(entry, start_angle=turn) for entry in NU308.bearings)
         first, second = (equilibrium(assemble(scene, clearance=10e-6).system) for scene in (straight, turned))
         at_left = [
             balance.system.relative("shaft:left", "ring_left") @ balance.displacement for balance in (first, second)
@@ -461,9 +458,8 @@ class TestN1014:
         """Rollers as bodies against massless rollers; both contacts are alike, so they agree to what Newton leaves."""
         places, stiffness = [], []
         for bodies in (True, False):
-            scene = dataclasses.replace(
-                self.SCENE,
-                bearings=tuple(dataclasses.replace(entry, rollers_as_bodies=bodies) for entry in self.SCENE.bearings),
+            scene = self.SCENE.with_bearings(
+                dataclasses.replace(entry, rollers_as_bodies=bodies) for entry in self.SCENE.bearings
             )
             balance = equilibrium(assemble(scene, law, clearance=clearance).system, Operation(scene.speed))
             places.append(balance.displacement[:6])
@@ -486,10 +482,7 @@ class TestN1014:
         assert not any(balance.outside.values())
 
     def test_centrifugal_load_of_rollers_that_are_bodies_is_carried_by_the_outer_contacts(self):
-        scene = dataclasses.replace(
-            self.SCENE,
-            bearings=tuple(dataclasses.replace(entry, centrifugal=True) for entry in self.SCENE.bearings),
-        )
+        scene = self.SCENE.with_bearings(dataclasses.replace(entry, centrifugal=True) for entry in self.SCENE.bearings)
         model = assemble(scene, "hertz", clearance=20e-6)
         balance = equilibrium(model.system, model.operation)
         plain = model.bearings[0]

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.export import Chosen, table
-from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.jobs.opening import open_given
+from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import TABLE, Output, check_outputs, write_text
 from ehdmaps.units import SPEED, TEMPERATURE, Display, quantity
 
@@ -17,7 +18,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     path = Path(arguments.map)
     output = Path(arguments.output) if arguments.output else path.with_suffix(".csv")
     check_outputs([Output("-o", output, TABLE)], [path])
-    emap = open_map(path)
+    emap = open_given(path, arguments.structure)
     text = table(emap, _chosen(arguments, emap), path.name)
     write_text(output, text, TABLE)
     return f"{output}: written", 0

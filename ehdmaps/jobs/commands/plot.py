@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from ehdmaps.jobs.opening import open_given
 from ehdmaps.jobs.plot import plot_map
-from ehdmaps.maps.emap import open_map
 from ehdmaps.outputs import FIGURE, Output, check_outputs
 
 
@@ -15,5 +15,5 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     path = Path(arguments.map)
     output = Path(arguments.output) if arguments.output else path.with_suffix(".png")
     check_outputs([Output("-o", output, FIGURE)], [path])
-    plot_map(open_map(path), output)
+    plot_map(open_given(path, arguments.structure), output)
     return f"{output}: written", 0

@@ -6,10 +6,10 @@ import argparse
 from pathlib import Path
 
 from ehdmaps.jobs.describe import describe
-from ehdmaps.maps.emap import open_map
+from ehdmaps.jobs.opening import open_given
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Describe the map."""
     path = Path(arguments.map)
-    return describe(open_map(path), path.name), 0
+    return describe(open_given(path, arguments.structure), path.name), 0

@@ -1,50 +1,124 @@
-"""`ehdmaps solve`: one operating point of every contact of a job."""
+"""`ehdmaps solve`: one operating point of every contact of a job, at rest or over frequency."""
 
 from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.axes import RING_SPEED_AXIS, SPEED_AXIS
 from ehdmaps.jobs.film_output import film_outputs
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.point_report import point_record, point_table
+from ehdmaps.jobs.point_report import point_place, point_record, point_table
 from ehdmaps.jobs.reader import read_job
+from ehdmaps.jobs.spectrum import spectrum_dataset
+from ehdmaps.jobs.spectrum_report import spectrum_record, spectrum_table
+from ehdmaps.outputs import FIGURE, Output, check_outputs
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES, OperatingPoint
-from ehdmaps.physics.solution import ContactSolver, FilmSolution, Status
+from ehdmaps.physics.solution import ContactSolution, ContactSolver, Status, contact_solution
+from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES, contact_spectrum
 from ehdmaps.program import tell
-from ehdmaps.units import LENGTH, LOAD, RPM, SPEED, TEMPERATURE, Display, quantity
+from ehdmaps.units import LENGTH, LOAD, RPM, SPEED, TEMPERATURE, Display, quantity, short
+
+_HERTZ = Display("Hz")
+
+_Reader = Callable[[str, str, str, float, float, Display], "float | None"]
+"""From option, text, unit, lowest and highest value, and their display; None where a problem was noted."""
+
+
+@dataclass(frozen=True)
+class _Request:
+    """What is asked for; length [m] and frequencies [Hz] are None where they are not given."""
+
+    job: Job
+    point: OperatingPoint
+    length: float | None
+    frequencies: FloatArray | None
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Solve the point for every contact; status 1 if one of them has no solution."""
-    job, point, length, frequency = _read(arguments)
+    request = _read(arguments)
+    if arguments.frequencies is not None:
+        return _over_frequency(arguments, request)
+    job, point = request.job, request.point
     outputs = film_outputs(job, arguments.fields, arguments.plot, arguments.job)
-    options = {**job.solver_options, **solvers.case_options(job.solver, arguments.keep_cases)}
-    solver = solvers.build(job.solver, options)
+    solver = _solver(arguments, job)
     if outputs:
-        films, written = outputs.solve(solver, job, point, frequency)
+        films, written = outputs.solve(solver, job, point)
         for line in written:
             tell(line)
+        found = [contact_solution(film, contact, point) for film, contact in zip(films, job.contacts, strict=True)]
     else:
-        films = [_film(solver, contact, job.lubricant, point, frequency) for contact in job.contacts]
+        found = [_solved(solver, contact, request) for contact in job.contacts]
+    frequency = 0.0 if request.frequencies is None else float(request.frequencies[0])
     records = [
-        point_record(film, contact, job.lubricant, point, frequency)
-        for film, contact in zip(films, job.contacts, strict=True)
+        point_record(solution, contact, job.lubricant, point, frequency)
+        for solution, contact in zip(found, job.contacts, strict=True)
     ]
-    usable = all(Status[str(record["status"]).upper()].usable for record in records)
-    text = (
-        json.dumps(records, indent=2, allow_nan=False) if arguments.json else point_table(job, records, point, length)
-    )
-    return text, 0 if usable else 1
+    text = _json(records) if arguments.json else point_table(job, records, point, request.length)
+    return text, _exit_status(records)
 
 
-def _read(arguments: argparse.Namespace) -> tuple[Job, OperatingPoint, float | None, float]:
-    """Read job, point, length [m] (None if not given) and frequency [Hz]; all problems at once."""
+def _over_frequency(arguments: argparse.Namespace, request: _Request) -> tuple[str, int]:
+    """Solve each contact once and tell its response at all frequencies."""
+    job, point = request.job, request.point
+    assert request.frequencies is not None
+    check_outputs([Output("--plot", arguments.plot, FIGURE)], [arguments.job])
+    solver = _solver(arguments, job)
+    dataset = spectrum_dataset(job.contacts, job.lubricant, point, request.frequencies, solver)
+    if arguments.plot is not None:
+        from ehdmaps.jobs.spectrum_plot import plot_spectrum
+
+        plot_spectrum(dataset, f"{job.title}, {job.lubricant.title}", Path(arguments.plot))
+        tell(f"{arguments.plot}: written")
+    records = [
+        {
+            "contact": contact.name,
+            **point_place(contact, job.lubricant, point),
+            **spectrum_record(dataset, contact.name),
+        }
+        for contact in job.contacts
+    ]
+    text = _json(records) if arguments.json else spectrum_table(job, dataset, request.length)
+    return text, _exit_status(records)
+
+
+def _json(records: list[dict[str, Any]]) -> str:
+    """One object a contact."""
+    return json.dumps(records, indent=2, allow_nan=False)
+
+
+def _exit_status(records: list[dict[str, Any]]) -> int:
+    """1 if a contact has no solution."""
+    return 0 if all(Status[str(record["status"]).upper()].usable for record in records) else 1
+
+
+def _solver(arguments: argparse.Namespace, job: Job) -> ContactSolver:
+    """The job's solver, which keeps its cases where it is asked to."""
+    return solvers.build(job.solver, {**job.solver_options, **solvers.case_options(job.solver, arguments.keep_cases)})
+
+
+def _solved(solver: ContactSolver, contact: LineContact, request: _Request) -> ContactSolution:
+    """Solve one contact, at a frequency if there is one."""
+    point, oil = request.point, request.job.lubricant
+    if request.frequencies is None:
+        (film,) = solver.solve_line(contact, oil, (point.load,), point.entrainment_speed, point.temperature)
+        return contact_solution(film, contact, point)
+    return contact_spectrum(solver.film_spectrum(contact, oil, point, request.frequencies), contact, point).at(0)
+
+
+def _read(arguments: argparse.Namespace) -> _Request:
+    """Read job, point, length and frequencies; all problems at once."""
     problems: list[str] = []
     job: Job | None = None
     try:
@@ -91,17 +165,51 @@ def _read(arguments: argparse.Namespace) -> tuple[Job, OperatingPoint, float | N
             "the inner ring of a bearing"
         )
     temperature = read("--temperature", arguments.temperature, "K", *OIL_TEMPERATURES, TEMPERATURE)
-    frequency: float | None = 0.0
-    if arguments.frequency is not None:
-        frequency = read("--frequency", arguments.frequency, "Hz", 0.0, 1e7, Display("kHz", 1e-3))
+    frequencies: FloatArray | None = None
+    if arguments.frequencies is not None:
+        frequencies = _frequencies(arguments, read, problems)
+    elif arguments.frequency is not None:
+        frequencies = _one_frequency(arguments, read, problems)
     if job is not None and temperature is not None:
         try:
             job.lubricant.at(temperature)
         except InputError as error:
             problems.extend(f"--temperature: {problem}" for problem in error.problems)
-    if problems or job is None or load is None or speed is None or temperature is None or frequency is None:
+    if problems or job is None or load is None or speed is None or temperature is None:
         raise InputError(problems)
-    return job, OperatingPoint(load, speed, temperature), length, frequency
+    return _Request(job, OperatingPoint(load, speed, temperature), length, frequencies)
+
+
+def _one_frequency(arguments: argparse.Namespace, read: _Reader, problems: list[str]) -> FloatArray | None:
+    """The one frequency of --frequency, as an array; None for 0, the limit of slow motion."""
+    if arguments.fields is not None or arguments.plot is not None:
+        problems.append("--frequency: stands beside --fields or --plot, whose film is at rest; leave it out")
+    value = read("--frequency", arguments.frequency, "Hz", 0.0, HIGHEST_FREQUENCY, _HERTZ)
+    if value is not None and 0.0 < value < LOWEST_FREQUENCY:
+        problems.append(
+            f"--frequency: got {arguments.frequency!r}; allowed: 0 Hz, the limit of slow motion, and "
+            f"{_HERTZ.text(LOWEST_FREQUENCY)} to {_HERTZ.text(HIGHEST_FREQUENCY)}"
+        )
+    return np.array([value]) if value else None
+
+
+def _frequencies(arguments: argparse.Namespace, read: _Reader, problems: list[str]) -> FloatArray | None:
+    """The frequencies of --frequencies FROM TO POINTS; None where a problem was noted."""
+    option = "--frequencies"
+    if arguments.frequency is not None:
+        problems.append("--frequency: stands beside --frequencies; allowed: one of the two; delete one")
+    if arguments.fields is not None:
+        problems.append("--fields: stands beside --frequencies, but fields are at rest; delete one")
+    first, last, count = arguments.frequencies
+    low, high = (read(option, text, "Hz", LOWEST_FREQUENCY, HIGHEST_FREQUENCY, _HERTZ) for text in (first, last))
+    if low is not None and high is not None and low >= high:
+        problems.append(f"{option}: got {first!r} to {last!r}; allowed: TO above FROM; for one of them --frequency")
+    points = int(count) if count.isascii() and count.isdigit() and len(count) <= 9 else -1
+    if not 2 <= points <= MOST_FREQUENCIES:
+        problems.append(f"{option}, POINTS: got {short(count)}; allowed: a whole number from 2 to {MOST_FREQUENCIES}")
+    elif low is not None and high is not None and low < high:
+        return np.geomspace(low, high, points)
+    return None
 
 
 def _is_of_unit(text: str, unit: str) -> bool:
@@ -111,13 +219,3 @@ def _is_of_unit(text: str, unit: str) -> bool:
     except InputError:
         return False
     return True
-
-
-def _film(
-    solver: ContactSolver, contact: LineContact, oil: Lubricant, point: OperatingPoint, frequency: float
-) -> FilmSolution:
-    """Solve one contact."""
-    (film,) = solver.solve_line(
-        contact, oil, (point.load,), point.entrainment_speed, point.temperature, frequency=frequency
-    )
-    return film

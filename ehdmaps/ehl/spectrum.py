@@ -1,0 +1,115 @@
+"""Film compliance over frequency: one Krylov space of the linearised equations serves all frequencies.
+
+A load that oscillates with Omega = omega b/u moves the unknowns by (A + i Omega B) z = e. With T = A^-1 B this is
+(I + i Omega T) z = A^-1 e. T is real and the same for every Omega, so that the Krylov space of T and A^-1 e holds the
+solutions at all of them: V' (I + i Omega H) y = |A^-1 e| e_1, z = V y, with the small Hessenberg matrix H of Arnoldi's
+process (W. E. Arnoldi, Quart. Appl. Math. 9 (1951) 17-29). 10 to 50 vectors reach round-off. Where frequencies are so
+high that they do not, the space grows to that of all unknowns, which is exact.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.ehl.linearisation import Linearisation
+from ehdmaps.physics.hertz import DRY_COMPLIANCE
+
+SMALL_RESIDUAL = 1e-13
+"""Residual at which the space is large enough, relative to the static response."""
+
+CHECK_EVERY = 3
+"""Vectors that are added between two looks at the residual."""
+
+
+def film_compliances(linear: Linearisation, frequencies: FloatArray) -> ComplexArray:
+    """Complex film compliance S = -dH0/dW - ln(2)/pi; S = compliance - i Omega loss for slow motion.
+
+    Parameters
+    ----------
+    linear : Linearisation
+        The equations about a steady solution.
+    frequencies : ndarray, shape (k,)
+        Omega = omega b/u, > 0.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        Film compliances in units of b/(p_H R).
+    """
+    static = linear.solve(linear.unit)
+    norm = float(np.linalg.norm(static))
+    fastest = float(np.max(frequencies))
+    size = linear.size
+    basis = np.empty((size + 1, size))
+    hessenberg = np.zeros((size + 1, size))
+    basis[0] = static / norm
+    count = 0
+    while count < size:
+        _extend(linear, basis, hessenberg, count)
+        count += 1
+        if count % CHECK_EVERY == 0 and _residual(hessenberg, count, fastest) < SMALL_RESIDUAL:
+            break
+        if hessenberg[count, count - 1] < np.finfo(float).tiny:
+            break
+    heights = np.ascontiguousarray(basis[:count, linear.height])
+    moved = norm * _projected(hessenberg, count, heights, np.ascontiguousarray(frequencies, dtype=float))
+    return np.asarray(-moved - DRY_COMPLIANCE)
+
+
+def _extend(linear: Linearisation, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
+    """Add T times the last vector to the basis, orthogonal to all before it; twice, for round-off."""
+    found = linear.solve(linear.storage(basis[count]))
+    for _ in range(2):
+        along = basis[: count + 1] @ found
+        hessenberg[: count + 1, count] += along
+        found -= along @ basis[: count + 1]
+    length = float(np.linalg.norm(found))
+    hessenberg[count + 1, count] = length
+    basis[count + 1] = found / max(length, np.finfo(float).tiny)
+
+
+def _residual(hessenberg: FloatArray, count: int, frequency: float) -> float:
+    """What the space leaves of the equations at a frequency, relative to the static response."""
+    last = abs(_reduced(hessenberg, count, frequency)[count - 1])
+    return float(frequency * hessenberg[count, count - 1] * last)
+
+
+@njit(cache=True)
+def _projected(hessenberg: FloatArray, count: int, heights: FloatArray, frequencies: FloatArray) -> ComplexArray:
+    """H0 of the reduced equations at each frequency, for a start of length one."""
+    found = np.empty(frequencies.size, dtype=np.complex128)
+    for i in range(frequencies.size):
+        solution = _reduced(hessenberg, count, frequencies[i])
+        total = 0.0 + 0.0j
+        for k in range(count):
+            total += solution[k] * heights[k]
+        found[i] = total
+    return found
+
+
+@njit(cache=True)
+def _reduced(hessenberg: FloatArray, count: int, frequency: float) -> ComplexArray:
+    """Solve (I + i Omega H) y = e_1 by elimination: a Hessenberg matrix has one entry a column to eliminate."""
+    matrix = 1j * frequency * hessenberg[:count, :count]
+    right = np.zeros(count, dtype=np.complex128)
+    right[0] = 1.0
+    for k in range(count):
+        matrix[k, k] += 1.0
+    for k in range(count - 1):
+        if abs(matrix[k + 1, k]) > abs(matrix[k, k]):
+            for j in range(k, count):
+                matrix[k, j], matrix[k + 1, j] = matrix[k + 1, j], matrix[k, j]
+            right[k], right[k + 1] = right[k + 1], right[k]
+        factor = matrix[k + 1, k] / matrix[k, k]
+        if factor != 0.0:
+            for j in range(k + 1, count):
+                matrix[k + 1, j] -= factor * matrix[k, j]
+            right[k + 1] -= factor * right[k]
+    for k in range(count - 1, -1, -1):
+        total = right[k]
+        for j in range(k + 1, count):
+            total -= matrix[k, j] * right[j]
+        right[k] = total / matrix[k, k]
+    return right

@@ -1,0 +1,149 @@
+"""Carries out a plan of a reduction: reads matrices and mesh, finds the nodes of the interfaces, reduces."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.errors import InputError
+from ehdmaps.units import LENGTH
+from mbs.flexible.calculix import check_deck, read_calculix
+from mbs.flexible.extent import extent
+from mbs.flexible.finite_elements import FiniteElementModel
+from mbs.flexible.matrix_files import assemble_model, read_abaqus_matrix, read_matrix_market, without_fixed
+from mbs.flexible.mesh import DECKS, read_mesh_nodes
+from mbs.flexible.plan import CylinderSurface, NodeList, PlannedInterface, ReductionPlan
+from mbs.flexible.reduced_body import ReducedBody
+from mbs.flexible.reduction import NEAREST, Point, reduce
+from mbs.flexible.spiders import Interface, nodes_in_plane, nodes_on_cylinder
+
+
+def carry_out(plan: ReductionPlan) -> ReducedBody:
+    """Read the files of a plan and reduce the body.
+
+    Raises
+    ------
+    InputError
+        For files that do not read or do not fit together, and interfaces that are not on the body.
+    AnalysisError
+        If the modes or static shapes are not found.
+    """
+    return reduce_model(plan, read_model(plan))
+
+
+def read_model(plan: ReductionPlan) -> FiniteElementModel:
+    """Read the files of a plan.
+
+    Raises
+    ------
+    InputError
+        With file and line.
+    """
+    nodes = read_mesh_nodes(plan.mesh)
+    if plan.form == "abaqus":
+        stiffness, mass = (read_abaqus_matrix(path, plan.dofs) for path in (plan.stiffness, plan.mass))
+        return assemble_model(*without_fixed(stiffness, mass), nodes, plan.units)
+    if plan.dofs is None:
+        raise InputError(f"matrices, dofs: got none; the format {plan.form} needs a file of its degrees of freedom")
+    if plan.form == "matrix-market":
+        stiffness, mass = (read_matrix_market(path, plan.dofs) for path in (plan.stiffness, plan.mass))
+        return assemble_model(stiffness, mass, nodes, plan.units)
+    if plan.mesh.suffix.lower() in DECKS:
+        check_deck(plan.mesh)
+    return read_calculix(plan.stiffness, plan.mass, plan.dofs, nodes, plan.units)
+
+
+def reduce_model(
+    plan: ReductionPlan, model: FiniteElementModel, attributes: Mapping[str, str] | None = None
+) -> ReducedBody:
+    """Reduce what was read.
+
+    Parameters
+    ----------
+    plan : ReductionPlan
+        Interfaces, points and cut-off.
+    model : FiniteElementModel
+        What its files hold.
+    attributes : mapping of str to str, optional
+        Provenance, added to the result's own.
+
+    Raises
+    ------
+    InputError
+        For interfaces and points that are not on the body.
+    AnalysisError
+        If the modes or static shapes are not found.
+    """
+    problems: list[str] = []
+
+    def found(name: str, planned: PlannedInterface) -> Interface | None:
+        try:
+            return _interface(planned, model, name)
+        except InputError as error:
+            problems.extend(error.problems)
+            return None
+
+    interfaces = {name: found(name, planned) for name, planned in plan.interfaces.items()}
+    points: dict[str, Point | None] = {
+        name: found(name, planned) if isinstance(planned, PlannedInterface) else planned
+        for name, planned in plan.points.items()
+    }
+    if problems:
+        # Often it is the unit.
+        raise InputError([*problems, *(f"{plan.mesh}: {words}" for words in extent(model).warnings(plan.units))])
+    return reduce(
+        model,
+        {name: entry for name, entry in interfaces.items() if entry is not None},
+        {name: entry for name, entry in points.items() if entry is not None},
+        plan.cutoff,
+        {"mesh": plan.mesh.name, "matrices": plan.form, **(attributes or {})},
+    )
+
+
+def _interface(planned: PlannedInterface, model: FiniteElementModel, name: str) -> Interface:
+    """The interface on a model; InputError if no node is there."""
+    nodes = _nodes(planned, model)
+    if nodes.size == 0:
+        raise InputError(
+            f"interface {name!r}: no node of the mesh is on its surface; allowed: a surface of the mesh; check at, "
+            "axis, diameter, units and tolerance"
+        )
+    _check_place(planned, model, nodes, name)
+    return Interface(np.array(planned.position), nodes, planned.kind, planned.freedoms)
+
+
+def _nodes(planned: PlannedInterface, model: FiniteElementModel) -> IntArray:
+    """Nodes of the surface of an interface."""
+    place, surface = planned.position, planned.surface
+    if isinstance(surface, NodeList):
+        return np.array(surface.numbers, dtype=np.int64)
+    radius = 0.5 * surface.diameter
+    if isinstance(surface, CylinderSurface):
+        ends = (surface.begin, surface.end)
+        return nodes_on_cylinder(model, place, surface.axis, radius, *ends, surface.tolerance)
+    return nodes_in_plane(model, place, surface.axis, surface.tolerance, radius)
+
+
+def _check_place(planned: PlannedInterface, model: FiniteElementModel, nodes: IntArray, name: str) -> None:
+    """Refuse a place further from the nodes than they are from each other: a slip in a unit, or in a number."""
+    known = [model.position(node) for node in nodes.tolist() if model.has_position(node)]
+    if len(known) < nodes.size:
+        return  # said when their displacements are looked for
+    lower, upper = np.min(known, axis=0), np.max(known, axis=0)
+    place = np.array(planned.position)
+    away = float(np.linalg.norm(place - np.clip(place, lower, upper)))
+    # A single node may have a place beside it, as a point may.
+    allowed = max(float(np.linalg.norm(upper - lower)), NEAREST * float(np.max(np.ptp(model.positions, axis=0))))
+    if away > allowed:
+        raise InputError(
+            f"interface {name!r}, at: got {_shown(place)}, {LENGTH.text(away)} from its {nodes.size} nodes, whose "
+            f"centroid is at {_shown(np.mean(known, axis=0))}; allowed: up to {LENGTH.text(allowed)} from them; "
+            "check at, the nodes and units"
+        )
+
+
+def _shown(place: FloatArray) -> str:
+    """A place in words."""
+    return ", ".join(LENGTH.text(value) for value in place.tolist())

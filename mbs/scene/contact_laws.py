@@ -1,0 +1,232 @@
+"""Which contact law a scene gets: its choice, what is wrong about it, and the laws of each geometry, made once."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import get_args
+
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.law import LawKind
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.units import closest
+from mbs.bearings import laws
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import NO_CENTRIFUGAL
+from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
+from mbs.bearings.laws import DryLaw, Law
+from mbs.model.relaxation import DEFAULT_FILMS, Films
+from mbs.scene.scene import Scene
+
+MEMORY_WORDS = "films with memory"
+"""How people are told that films relax in linear analyses."""
+
+_SAME = 1e-9
+_COMPARED = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
+_CONSTANT = "constant:"
+_LABELS = {"hertz": "dry Hertz", "formula": "film formula"}
+_MAP_LABELS = {"reynolds": "Reynolds map", "openfoam": "OpenFOAM map", "formula": "formula map", "hertz": "Hertz map"}
+
+
+def choose_law(name: str | None, emap: EHDMap | None) -> str:
+    """The law that is meant: by default the map where there is one, else Hertz."""
+    return name if name is not None else ("map" if emap is not None else "hertz")
+
+
+def law_label(law: str, emap: EHDMap | None = None) -> str:
+    """A law in two words, such as "dry Hertz"; a map by the solver that made it."""
+    if law == "map" and emap is not None:
+        return _MAP_LABELS.get(str(emap.dataset.attrs.get("solver", "")), "map")
+    return _LABELS.get(law, law.replace(":", " "))
+
+
+def structure_words(emap: EHDMap) -> str:
+    """The structural law of a map as the end of a sentence; nothing where it is that of the dry law, ISO 16281."""
+    return "" if emap.structural_law == "iso16281" else f", structural law {emap.structural_law}"
+
+
+def constant_name(law: str) -> str | None:
+    """NAME of a law constant:NAME, else None."""
+    return law.removeprefix(_CONSTANT) if law.startswith(_CONSTANT) else None
+
+
+@dataclass(frozen=True, eq=False)
+class ContactLaws:
+    """The contact laws of a scene.
+
+    Attributes
+    ----------
+    chosen : str
+        hertz, formula, constant:NAME or map.
+    scene : Scene
+        Scene with its oil and its constant laws.
+    emap : EHDMap or None
+        The map of the law `map`.
+    asked : {"slow", "memory"} or None
+        Which films linear analyses are to have; None for `DEFAULT_FILMS` of `mbs.model.relaxation`, where they can.
+    """
+
+    chosen: str
+    scene: Scene
+    emap: EHDMap | None
+    asked: Films | None = None
+    _made: dict[BearingGeometry, BearingLaws] = field(default_factory=dict, repr=False)
+
+    def problems(self) -> list[str]:
+        """What is wrong about the choice of the law."""
+        scene = self.scene
+        names = tuple(f"{_CONSTANT}{name}" for name in scene.laws)
+        allowed = ("hertz", "formula", *names, "map")
+        if self.chosen not in allowed:
+            got = f"--law: got {self.chosen!r:.60}{closest(self.chosen, allowed)}"
+            return [f"{got}; allowed here: {', '.join(allowed)}"]
+        if self.chosen == "map" and self.emap is None:
+            return ["--law: got 'map' without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`"]
+        if self.chosen == "formula" and scene.lubricant is None:
+            return [f"--law: got 'formula', but {scene.name} has no [lubricant]; add the table to the scene"]
+        centrifugal = [entry.name for entry in scene.bearings if entry.centrifugal and not entry.rollers_as_bodies]
+        if centrifugal and self.chosen not in ("map", "formula"):
+            return [
+                f"--law: got {self.chosen!r} with centrifugal = true in {', '.join(centrifugal)}; allowed: the laws "
+                "map and formula, which bring a roller into equilibrium; or centrifugal = false"
+            ]
+        if self.asked not in (None, *get_args(Films)):
+            return [f"--films: got {self.asked!r:.60}; allowed: {', '.join(get_args(Films))}"]
+        return self._memory_problems() if self.asked == "memory" else []
+
+    @property
+    def memory(self) -> Films:
+        """Whether films relax in linear analyses, "memory", or have stiffness and damping of slow motion, "slow"."""
+        return self.asked or ("slow" if self._memory_problems() else DEFAULT_FILMS)
+
+    def _memory_problems(self) -> list[str]:
+        """Why films cannot relax."""
+        if self.chosen not in ("map", "formula"):
+            got = f"--films: got 'memory' with the law {self.chosen!r:.60}"
+            return [f"{got}; allowed: the laws map and formula, which have films"]
+        bearings = self.scene.bearings
+        centrifugal = [entry.name for entry in bearings if entry.centrifugal and not entry.rollers_as_bodies]
+        return [f"--films: {NO_CENTRIFUGAL}; so has {', '.join(centrifugal)}"] if centrifugal else []
+
+    def bearing_problems(self, name: str, geometry: BearingGeometry) -> list[str]:
+        """In what the map in force was made for something else than a bearing."""
+        if self.chosen != "map" or self.emap is None:
+            return []
+        return geometry_problems(f"bearing {name!r}", geometry, self.emap)
+
+    def of(self, bearing: Bearing) -> BearingLaws:
+        """The laws of the contacts of a bearing; those of the same contacts are made once."""
+        key = dataclasses.replace(bearing.geometry, diametral_clearance=0.0)
+        if key not in self._made:
+            self._made[key] = BearingLaws(self, bearing)
+        return self._made[key]
+
+    def films(self, bearing: Bearing) -> FilmSource:
+        """What knows the films of a bearing."""
+        if self.chosen == "map" and self.emap is not None:
+            return MapFilms(self.emap)
+        contacts = bearing.geometry.contacts(bearing.material, "iso16281")
+        return FormulaFilms(contacts, self.lubricant) if self.chosen == "formula" else DryContacts(contacts)
+
+    @property
+    def lubricant(self) -> Lubricant:
+        """The oil of the scene, which `problems` saw."""
+        assert self.scene.lubricant is not None
+        return self.scene.lubricant
+
+    @property
+    def label(self) -> str:
+        """The law in two words, as the legend of a figure has it."""
+        return law_label(self.chosen, self.emap) + self._memory_words
+
+    @property
+    def words(self) -> str:
+        """The law, for people."""
+        return self._law_words + self._memory_words
+
+    @property
+    def _memory_words(self) -> str:
+        """What of the films is to be told."""
+        return f", {MEMORY_WORDS}" if self.memory == "memory" else ""
+
+    @property
+    def _law_words(self) -> str:
+        """The law without its films."""
+        if self.chosen == "map" and self.emap is not None:
+            solver = self.emap.dataset.attrs.get("solver", "")
+            made_for = self.emap.bearing.title if self.emap.bearing else ""
+            return f"map of {made_for}, {self.emap.lubricant.title}, solver {solver}{structure_words(self.emap)}"
+        if self.chosen == "formula":
+            return f"film formula moes, {self.lubricant.title}"
+        name = constant_name(self.chosen)
+        if name is None:
+            return "dry Hertz, ISO 16281"
+        stiffness, damping = self.scene.laws[name]
+        return f"constant {name}: {stiffness:.4g} N/m and {damping:.4g} N s/m for each contact of a roller"
+
+
+@dataclass(frozen=True, eq=False)
+class BearingLaws:
+    """Laws for one geometry; outside its map a law is held at the edge, and calls there are counted.
+
+    Attributes
+    ----------
+    given : ContactLaws
+        The choice.
+    bearing : Bearing
+        One with that geometry.
+    """
+
+    given: ContactLaws
+    bearing: Bearing
+
+    @cached_property
+    def series(self) -> Law:
+        """Law of a roller between both raceways."""
+        if self.given.chosen in ("map", "formula"):
+            return self._of_kind("series")
+        name = constant_name(self.given.chosen)
+        return laws.hertz(self.bearing) if name is None else laws.constant(*self.given.scene.laws[name])
+
+    @cached_property
+    def single(self) -> tuple[Law, Law]:
+        """Laws of the inner and of the outer contact."""
+        if isinstance(self.series, DryLaw):
+            return self.series.single(), self.series.single()
+        return self._of_kind("inner"), self._of_kind("outer")
+
+    def _of_kind(self, kind: LawKind) -> Law:
+        """A law with films."""
+        if self.given.chosen == "map" and self.given.emap is not None:
+            return self.given.emap.law(kind, outside="clamp")
+        return laws.formula(self.bearing, self.given.lubricant, kind=kind, outside="clamp")
+
+
+def geometry_problems(where: str, geometry: BearingGeometry, emap: EHDMap) -> list[str]:
+    """In what a map was made for something else than a bearing, which messages call `where`.
+
+    Parameters
+    ----------
+    where : str
+        How messages call the bearing.
+    geometry : BearingGeometry
+        Geometry of the bearing.
+    emap : EHDMap
+        The map.
+    """
+    made_for = emap.bearing
+    if made_for is None:
+        return [f"--map: is made for a bare contact; {where} needs a map of {geometry.name}"]
+    differing = [
+        f"{key} {getattr(made_for, key) * 1e3:.6g} mm and not {getattr(geometry, key) * 1e3:.6g} mm"
+        for key in _COMPARED
+        if abs(getattr(made_for, key) - getattr(geometry, key)) > _SAME
+    ]
+    if not differing:
+        return []
+    return [
+        f"--map: is made for {made_for.name}: {', '.join(differing)} as the {geometry.name} of {where}; generate a map "
+        "of that bearing"
+    ]

@@ -1,0 +1,222 @@
+"""What a scene says of bodies and bearings, in SI: plain frozen values that check themselves and compute nothing.
+
+Springs, loads, sensors and inputs (`mbs.model.elements`) and gear pairs (`mbs.gears.pair`) are such values already.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Protocol
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics.bearing import BearingGeometry
+from mbs.flexible.attached import Attached
+from mbs.flexible.plan import ReductionPlan
+from mbs.flexible.shaft_layout import shaft_problems
+from mbs.flexible.shaft_parts import Disc, Section
+from mbs.model.body import Body, Inertia, rigid_problems
+
+if TYPE_CHECKING:
+    from mbs.flexible.reduced_body import ReducedBody
+
+Triple = tuple[float, float, float]
+ORIGIN: Triple = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class RigidSpec:
+    """A rigid body.
+
+    Attributes
+    ----------
+    name : str
+        Name of the body.
+    parts : tuple of Inertia
+        What it is made of.
+    freedoms : tuple of str
+        Some of x, y, z, theta_x, theta_y, theta_z; the others are held.
+    position : (float, float, float)
+        Position of its frame "centre" [m].
+    frames : mapping of str to (float, float, float)
+        Further frames, from the position [m].
+    spin : float
+        Speed about x as a multiple of the system's.
+
+    Raises
+    ------
+    InputError
+        With everything that does not fit together.
+    """
+
+    name: str
+    parts: Sequence[Inertia]
+    freedoms: Sequence[str]
+    position: Triple = ORIGIN
+    frames: Mapping[str, Triple] = field(default_factory=dict, hash=False)
+    spin: float = 0.0
+
+    def __post_init__(self) -> None:
+        _freeze(self, "parts", "freedoms")
+        problems = rigid_problems(self.name, self.parts, self.freedoms, self.position, self.frames, self.spin)
+        if problems:
+            raise InputError(problems)
+
+
+@dataclass(frozen=True)
+class ShaftSpec:
+    """A flexible shaft of beams with rigid discs; see `mbs.flexible.shaft.flexible_shaft`.
+
+    Attributes
+    ----------
+    name : str
+        Name of the body.
+    sections : tuple of Section
+        Cylinders that bend.
+    freedoms : tuple of str
+        Some of x, y, z, theta_x, theta_y, theta_z.
+    frames : mapping of str to float
+        Places on the axis, along x from the position [m]; in this order they are coordinates.
+    cutoff : float or None
+        Modes with held frames are kept up to this frequency [Hz]; None: no reduction.
+    discs : tuple of Disc
+        Rigid parts.
+    position : (float, float, float)
+        Position of x = 0 of sections, discs and frames [m].
+    spin : float
+        Speed about x as a multiple of the system's.
+    largest_element : float or None
+        Length of an element [m]; None: as the cut-off needs it.
+    damping_ratio : float
+        Damping ratio of the modes of the free shaft at rest.
+
+    Raises
+    ------
+    InputError
+        With everything that does not fit together.
+    """
+
+    name: str
+    sections: Sequence[Section]
+    freedoms: Sequence[str]
+    frames: Mapping[str, float] = field(hash=False)
+    cutoff: float | None
+    discs: Sequence[Disc] = ()
+    position: Triple = ORIGIN
+    spin: float = 0.0
+    largest_element: float | None = None
+    damping_ratio: float = 0.0
+
+    def __post_init__(self) -> None:
+        _freeze(self, "sections", "freedoms", "discs")
+        problems = shaft_problems(
+            self.sections,
+            self.discs,
+            self.freedoms,
+            self.position,
+            self.frames,
+            self.spin,
+            self.largest_element,
+            self.cutoff,
+            self.damping_ratio,
+        )
+        if problems:
+            raise InputError([f"shaft {self.name!r}, {problem}" for problem in problems])
+
+
+@dataclass(frozen=True)
+class FlexibleSpec:
+    """A body of finite elements, which does not turn.
+
+    Attributes
+    ----------
+    name : str
+        Name of the body.
+    source : Path, ReductionPlan or ReducedBody
+        A file of a reduced body; or matrices and how to reduce them; or a body that was reduced already.
+    position : (float, float, float)
+        Position of the origin of the finite elements [m].
+    damping_ratio : float
+        Damping ratio of every mode of the free body.
+    attached : tuple of Attached
+        Rigid parts on its frames.
+    """
+
+    name: str
+    source: Path | ReductionPlan | ReducedBody
+    position: Triple = ORIGIN
+    damping_ratio: float = 0.0
+    attached: Sequence[Attached] = ()
+
+    def __post_init__(self) -> None:
+        _freeze(self, "attached")
+
+    @property
+    def spin(self) -> float:
+        """0: it does not turn."""
+        return 0.0
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """All files that are read for it."""
+        if isinstance(self.source, Path):
+            return (self.source,)
+        return self.source.files if isinstance(self.source, ReductionPlan) else ()
+
+
+BodySpec = RigidSpec | ShaftSpec | FlexibleSpec | Body
+"""What a scene has as bodies; a `Body` of matrices of one's own is taken as it is."""
+
+
+class ElementSpec(Protocol):
+    """What a scene has as machine elements: a frozen value of a class that `mbs.scene.kinds` knows."""
+
+    @property
+    def name(self) -> str:
+        """For messages and results."""
+        ...
+
+
+@dataclass(frozen=True)
+class BearingSpec:
+    """A bearing between two places.
+
+    Attributes
+    ----------
+    name : str
+        Name of the bearing.
+    inner, outer : str
+        Places of its rings.
+    geometry : BearingGeometry
+        Raceways, rollers and the clearance of the scene.
+    profile : {"iso", "straight"}
+        Profile of the rollers.
+    slices : int
+        Slices of a roller.
+    start_angle : float
+        Angle of the first roller from y [rad].
+    rollers_as_bodies : bool
+        Whether each roller has a radial freedom, between two contacts with a law each.
+    centrifugal : bool
+        Whether the centrifugal load of the rollers is taken into account.
+    """
+
+    name: str
+    inner: str
+    outer: str
+    geometry: BearingGeometry
+    profile: str = "iso"
+    slices: int = 41
+    start_angle: float = 0.0
+    rollers_as_bodies: bool = False
+    centrifugal: bool = False
+
+
+def _freeze(spec: object, *names: str) -> None:
+    """Make tuples of what may be given as lists, and read-only mappings of mappings."""
+    for name in names:
+        object.__setattr__(spec, name, tuple(getattr(spec, name)))
+    if hasattr(spec, "frames"):
+        object.__setattr__(spec, "frames", MappingProxyType(dict(spec.frames)))
