@@ -47,7 +47,7 @@ def slow_film_errors(model: Model, displacement: FloatArray, operation: Operatio
     Parameters
     ----------
     model, displacement, operation
-        As of `film_limits`.
+        The same as for `film_limits`.
     """
     found = []
     system = model.system

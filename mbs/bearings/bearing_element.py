@@ -51,7 +51,7 @@ class RingElement(ElementDefaults):
         Parameters
         ----------
         displacement : array, shape (m,)
-            Of all ports, at rest [m or rad].
+            Displacements of all ports, at rest [m or rad].
         operation : Operation
             Speed, angle and time.
         """

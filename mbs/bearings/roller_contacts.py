@@ -129,9 +129,9 @@ class RollerContacts:
         Parameters
         ----------
         displacement : array (12 + Z,)
-            As of a call.
+            Displacements [m], [rad].
         cage_angle, entrainment_speed, temperature : float
-            As of a call.
+            The same as for `BearingForce`.
         """
         q = self._vector("displacement", displacement)
         rows, damping, times = [], [], []

@@ -47,7 +47,7 @@ class RollerElement(RingElement):
     rollers : str
         Name of the body of the rollers.
     films : {"slow", "memory"}
-        As of `BearingElement`.
+        The same as of a `BearingElement`.
     """
 
     plain: BearingElement

@@ -7,7 +7,6 @@ import warnings
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -96,7 +95,7 @@ def slow_film_warnings(
     Parameters
     ----------
     limits : sequence of FilmLimit
-        Limits of the films; only bearings at rest are told of.
+        Limits of the films.
     errors : sequence of SlowFilmError
         How wrong films of slow motion are.
     frequencies : iterable of float
@@ -104,30 +103,30 @@ def slow_film_warnings(
     """
     highest = max(frequencies, default=0.0)
     lines = film_warnings([limit for limit in limits if limit.entrainment_speed == 0.0], [highest])
+    ratios = {limit.bearing: limit.ratio(highest) for limit in limits}
     for entry in errors:
-        error = float(entry.error(np.array([highest]))[0])
-        if entry.frequency < highest:
-            lines.append(slow_film_line(entry.bearing, error, entry.frequency, f"{highest:.5g} Hz"))
+        error = entry.at(highest)
+        if error > NOTABLE:
+            ratio = f"omega b/u is {ratios[entry.bearing]:.2g} at {highest:.5g} Hz"
+            lines.append(slow_film_line(entry, ratio, error))
     return lines
 
 
-def slow_film_line(bearing: str, error: float, frequency: float, at: str) -> str:
+def slow_film_line(entry: SlowFilmError, ratio: str, error: float) -> str:
     """A line on the error that films of slow motion make.
 
     Parameters
     ----------
-    bearing : str
-        Name of the bearing.
+    entry : SlowFilmError
+        The bearing.
+    ratio : str
+        How quick the motion is, in words.
     error : float
-        Error at the worst place.
-    frequency : float
-        Frequency from which it is notable [Hz].
-    at : str
-        The worst place.
+        Error there.
     """
     return (
-        f"warning: {bearing}: films are those of slow motion: along the load the dynamic stiffness of the bearing is "
-        f"{100.0 * error:.2g} % wrong at {at}, more than {100.0 * NOTABLE:g} % from {frequency:.4g} Hz on; --films "
+        f"warning: {entry.bearing}: films are those of slow motion; {ratio}: there the dynamic stiffness along the "
+        f"load is {100.0 * error:.2g} % wrong, from {entry.frequency:.4g} Hz on by more than {100.0 * NOTABLE:g} %; --films "
         "memory has films that follow at their own frequency"
     )
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM, TEMPERATURE, quantity
 from mbs.analyses.case import Case
-from mbs.analyses.film_limits import lowest_limits, slow_film_errors
+from mbs.analyses.film_limits import film_limits, lowest_limits, slow_film_errors
 from mbs.analyses.reach import axes_outside, fade_of
 from mbs.analyses.sweep import SweepSettings, sweep
 from mbs.commands.cases import load_cases
@@ -244,19 +244,19 @@ def _outside(case: Case, result: Sweep, calls: Mapping[str, int]) -> list[str]:
 
 def _too_quick(model: Model, result: Sweep) -> list[str]:
     """A line for each bearing whose films are too slow for the highest mode in it, with the worst speed."""
-    worst: dict[str, tuple[float, float, float, float]] = {}
+    worst: dict[str, tuple[float, str]] = {}
     found = result.undamped
     for index, speed in enumerate(result.speeds.tolist()):
         inside = found.frequency[index][found.bearing_share[index] >= _LEAST_SHARE]
         highest = float(inside.max(initial=0.0))
-        for entry in slow_film_errors(model, result.displacement[index], Operation(speed)):
-            error = float(entry.error(np.array([highest]))[0])
+        at = result.displacement[index], Operation(speed)
+        ratios = {limit.bearing: limit.ratio(highest) for limit in film_limits(model, *at)}
+        for entry in slow_film_errors(model, *at):
+            error = entry.at(highest)
             if speed > 0.0 and error > max(NOTABLE, worst.get(entry.bearing, (0.0,))[0]):
-                worst[entry.bearing] = error, highest, speed, entry.frequency
-    return [
-        slow_film_line(name, error, frequency, f"{highest:.5g} Hz and {RPM.text(speed)}")
-        for name, (error, highest, speed, frequency) in worst.items()
-    ]
+                words = f"omega b/u is up to {ratios[entry.bearing]:.2g} ({highest:.5g} Hz at {RPM.text(speed)})"
+                worst[entry.bearing] = error, slow_film_line(entry, words, error)
+    return [line for _, line in worst.values()]
 
 
 def _lost(result: Sweep) -> list[str]:

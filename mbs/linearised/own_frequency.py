@@ -42,7 +42,7 @@ class LostMode(NamedTuple):
     Attributes
     ----------
     eigenvalue : complex
-        Where it was looked for [1/s].
+        Place at which it was looked for [1/s].
     reason : Reason
         Why it is lost.
     """

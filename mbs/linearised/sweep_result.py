@@ -75,7 +75,7 @@ class ComplexSweep:
     number : array of int, shape (modes,)
         Undamped mode, from 0 on, that it is nearest to where it begins; two that are never there together may share it.
     lost : tuple of tuple of LostMode
-        At each speed, modes that could not be brought to the films of their own frequency.
+        Modes that could not be brought to the films of their own frequency, at each speed.
     """
 
     eigenvalues: ComplexArray
@@ -158,7 +158,7 @@ class Sweep:
     displacement : array, shape (speeds, n)
         Equilibrium [m or rad].
     forces : tuple of array, shape (speeds, m)
-        Of each element in its ports [N or N m].
+        Forces of each element in its ports [N or N m].
     outside : dict of str to array of bool, shape (speeds,)
         Whether each element lies outside its map at the equilibrium, by name.
     parts : tuple of str

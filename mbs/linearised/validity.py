@@ -84,6 +84,10 @@ class SlowFilmError:
         more = -(place**2 / (1.0 + place)) @ self.springs
         return np.asarray(np.abs(more) / np.abs(self.stiffness + s * self.damping + more), dtype=np.float64)
 
+    def at(self, frequency: float) -> float:
+        """The error at one frequency [Hz]."""
+        return float(self.error(np.array([frequency]))[0])
+
     @property
     def frequency(self) -> float:
         """Lowest frequency at which the error is `NOTABLE` [Hz], between 1 Hz and 1 MHz; infinite if it never is."""
