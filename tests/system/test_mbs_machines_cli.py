@@ -131,7 +131,7 @@ class TestFiles:
         (here / "sub").mkdir()
         os.mkfifo(here / "pipe")
         before = (here / "own.toml").read_bytes()
-        monkeypatch.setattr("mbs.analyses.runup.integrate", None)  # a call of it fails
+        monkeypatch.setattr("mbs.analyses.runup.run_system", None)  # a call of it fails
         for command in ("statics", "modes", "lsa", "runup"):
             status, out, err = run(capsys, command, "own.toml", *arguments)
             assert (status, out) == (2, "")

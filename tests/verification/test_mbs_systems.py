@@ -83,7 +83,7 @@ def film_models():
         dataclasses.replace(entry, force=BearingForce(entry.bearing, other.force.law))
         for entry, other in zip(tight.bearings, loose.bearings, strict=True)
     ]
-    system = System(NU308.bodies, NU308.springs, NU308.loads, bearings)
+    system = System(tight.system.bodies, NU308.springs, NU308.loads, bearings)
     return {0.0: dataclasses.replace(tight, system=system, bearings=tuple(bearings), law=loose.law), 20e-6: loose}
 
 
@@ -255,7 +255,7 @@ class TestLinearAgainstTime:
         amplitude = 0.5
         entry = Input("E", "shaft:left", RADIAL)
         load = Load("E", "shaft:left", amplitude * RADIAL, profile=Harmonic(frequency))
-        system = System(NU308.bodies, NU308.springs, (*NU308.loads, load), model.bearings)
+        system = System(model.system.bodies, NU308.springs, (*NU308.loads, load), model.bearings)
         x = -1j * amplitude * responses(balance, [entry], np.array([frequency]))[0, :, 0]
         omega = 2.0 * np.pi * frequency
         step = 1.0 / frequency / 200.0
@@ -348,7 +348,7 @@ class TestRunUp:
             )
             for entry in model.bearings
         ]
-        return System(NU308.bodies, NU308.springs, NU308.loads, bearings)
+        return System(model.system.bodies, NU308.springs, NU308.loads, bearings)
 
     @staticmethod
     def _place(system, displacement):
