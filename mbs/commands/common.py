@@ -126,8 +126,8 @@ def slow_film_line(entry: SlowFilmError, ratio: str, error: float) -> str:
     """
     return (
         f"warning: {entry.bearing}: films are those of slow motion; {ratio}: there the dynamic stiffness along the "
-        f"load is {100.0 * error:.2g} % wrong, from {entry.frequency:.4g} Hz on by more than {100.0 * NOTABLE:g} %; --films "
-        "memory has films that follow at their own frequency"
+        f"load is {100.0 * error:.2g} % wrong, from {entry.frequency:.4g} Hz on by more than {100.0 * NOTABLE:g} %; "
+        "--films memory has films that follow at their own frequency"
     )
 
 
