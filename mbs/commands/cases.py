@@ -95,7 +95,11 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
             if len(given := _given(arguments, option)) > 1
         ]
         laws = laws[:1] if _given(arguments, "law") else laws
-    laws = _with_films(laws, _given(arguments, "films"), problems)
+    if hasattr(arguments, "films"):
+        laws = _with_films(laws, _given(arguments, "films"), problems)
+    else:
+        # Runs in time have the films of slow motion, whatever linear analyses have by default.
+        laws = [dataclasses.replace(law, films="slow") for law in laws]
     clearances = [read_clearance(text, problems) for text in _given(arguments, "clearance")] or [None]
     factors = [_factor(text, problems) for text in _given(arguments, "load_factor")] or [1.0]
     angles = [_angle(text, problems) for text in _given(arguments, "start_angle")] or [None]

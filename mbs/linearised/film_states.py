@@ -21,7 +21,7 @@ from scipy.linalg import block_diag, svd
 from ehdmaps.arrays import FloatArray
 from mbs.model.relaxation import Relaxation
 
-TOLERANCE = 1e-6
+TOLERANCE = 1e-8
 """Error of F on the frequency axis, as a part of F(0)."""
 
 _MOST_POLES = 16
