@@ -8,10 +8,15 @@ from typing import Protocol
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.maps.law import ContactLaw
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.film_relaxation import bearing_relaxation
 from mbs.bearings.roller_loads import RollerLoads
 from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port
+from mbs.model.relaxation import Films, Relaxation
+
+NO_CENTRIFUGAL = "got 'memory' with centrifugal = true; allowed: films with memory without it, or slow films"
 
 HARMONICS = 3
 """Multiples of the order of passing rollers that are worth following."""
@@ -40,6 +45,18 @@ class RingElement(ElementDefaults):
     `mbs.model.system.System.select` finds bearings by this class; a bearing of your own inherits from it.
     """
 
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """How its films would relax, whether linear analyses are to see that or not; None without films.
+
+        Parameters
+        ----------
+        displacement : array, shape (m,)
+            Displacements of all ports, at rest [m or rad].
+        operation : Operation
+            Speed, angle and time.
+        """
+        return None
+
 
 @dataclass(frozen=True, eq=False)
 class BearingElement(RingElement):
@@ -63,6 +80,13 @@ class BearingElement(RingElement):
         Angle of the first roller from y at the beginning [rad].
     centrifugal : bool
         Whether the rollers' centrifugal load is taken into account.
+    films : {"slow", "memory"}
+        Whether small oscillations see the films of slow motion at any frequency, or films that relax.
+
+    Raises
+    ------
+    InputError
+        For films with memory and a centrifugal load.
     """
 
     name: str
@@ -75,6 +99,11 @@ class BearingElement(RingElement):
     outer_spin: float = 0.0
     start_angle: float = 0.0
     centrifugal: bool = False
+    films: Films = "slow"
+
+    def __post_init__(self) -> None:
+        if self.films == "memory" and self.centrifugal:
+            raise InputError(f"bearing {self.name!r}, films: {NO_CENTRIFUGAL}")
 
     @property
     def ports(self) -> tuple[Port, ...]:
@@ -125,6 +154,19 @@ class BearingElement(RingElement):
             temperature=self.temperature,
             centrifugal_load=self.centrifugal_load(operation),
         )
+
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """How the films relax, where they do, see `Element.relaxation`."""
+        return self.film_relaxation(displacement, operation) if self.films == "memory" else None
+
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """See `RingElement.film_relaxation`; None with centrifugal load too."""
+        if not isinstance(self.force, BearingForce) or not isinstance(self.force.law, ContactLaw):
+            return None
+        if self.centrifugal_load(operation) != 0.0:
+            return None
+        law = self.force.law.at(self.entrainment_speed(operation), self.temperature)
+        return bearing_relaxation(law, self.rollers(displacement, operation), self.bearing.slice_length)
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on the inner ring, stiffness and damping, see `Element.evaluate`."""

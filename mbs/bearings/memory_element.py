@@ -17,6 +17,7 @@ from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.bearing_kernel import rollers_of_arrays
 from mbs.bearings.force_at_point import Arrays
 from mbs.model.elements import Forces, Operation
+from mbs.model.relaxation import Films
 
 
 class FilmStates(NamedTuple):
@@ -38,23 +39,21 @@ class FilmStates(NamedTuple):
 class MemoryBearing(BearingElement):
     """A bearing whose films have a memory in time, see `ehdmaps.maps.memory_table`.
 
-    At rest, and to linear analyses that do not ask for a frequency, it is the `BearingElement` with the same force.
+    At rest it is the `BearingElement` with the same force; small oscillations see films that relax.
 
     Raises
     ------
     InputError
-        With a force that has no contact law of a map, or with centrifugal loads: such films have no memory.
+        With a force that has no contact law with films, or with centrifugal loads: such films have no memory.
     """
 
+    films: Films = "memory"
+
     def __post_init__(self) -> None:
+        BearingElement.__post_init__(self)
         if not (isinstance(self.force, BearingForce) and isinstance(self.force.law, ContactLaw)):
             raise InputError(
-                f"bearing {self.name!r}, films: got memory with a law without a map; allowed: the law of a map"
-            )
-        if self.centrifugal:
-            raise InputError(
-                f"bearing {self.name!r}, films: got memory and centrifugal loads of the rollers; allowed: one of them; "
-                "take slow films, or leave `centrifugal` out"
+                f"bearing {self.name!r}, films: got 'memory' with a law without films; allowed: the laws map and formula"
             )
 
     @property

@@ -19,8 +19,10 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.maps.law import ContactLaw, LawAtPoint
 from mbs.bearings.bearing import Bearing
+from mbs.bearings.film_relaxation import relaxation_times, relaxing
 from mbs.bearings.laws import DryLaw, Law
 from mbs.model.elements import Forces
+from mbs.model.relaxation import Relaxation
 
 _STEPS = 100
 _ALIKE = 1e-6
@@ -118,6 +120,31 @@ class RollerContacts:
             K += self._matrix(flat, tilted, k)
             C += self._matrix(flat, tilted, c)
         return Forces(f, K, C, outside)
+
+    def relaxation(
+        self, displacement: npt.ArrayLike, *, cage_angle: float, entrainment_speed: float, temperature: float
+    ) -> Relaxation | None:
+        """How the films of all contacts relax, at rest; None for laws without films.
+
+        Parameters
+        ----------
+        displacement : array (12 + Z,)
+            Displacements [m], [rad].
+        cage_angle, entrainment_speed, temperature : float
+            The same as for `BearingForce`.
+        """
+        q = self._vector("displacement", displacement)
+        rows, damping, times = [], [], []
+        for side, law in enumerate(self.laws):
+            if not isinstance(law, ContactLaw):
+                return None
+            flat, tilted = self._rows(side, cage_angle)
+            delta = (flat @ q)[:, None] + self._x * (tilted @ q)[:, None] - self._lost
+            _, _, c, _ = self._evaluate(side, delta, np.zeros_like(delta), entrainment_speed, temperature)
+            rows.append((flat[:, None, :] + self._x[:, None] * tilted[:, None, :]).reshape(-1, self.size))
+            damping.append(c.reshape(-1))
+            times.append(relaxation_times(law.at(entrainment_speed, temperature), delta).reshape(-1))
+        return relaxing(np.concatenate(rows), np.concatenate(damping), np.concatenate(times))
 
     def settled(
         self,

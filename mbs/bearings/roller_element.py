@@ -16,6 +16,7 @@ from mbs.bearings.bearing_element import BearingElement, RingElement
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.model.body import Body
 from mbs.model.elements import Excitation, Forces, Operation, Port
+from mbs.model.relaxation import Films, Relaxation
 
 
 def roller_body(name: str, bearing: Bearing) -> Body:
@@ -45,11 +46,14 @@ class RollerElement(RingElement):
         The forces.
     rollers : str
         Name of the body of the rollers.
+    films : {"slow", "memory"}
+        The same as of a `BearingElement`.
     """
 
     plain: BearingElement
     contacts: RollerContacts
     rollers: str
+    films: Films = "slow"
 
     @property
     def name(self) -> str:
@@ -65,6 +69,20 @@ class RollerElement(RingElement):
     def excitation(self) -> Excitation | None:
         """The passing of the rollers."""
         return self.plain.excitation
+
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """How the films of both contacts relax, where they do, see `Element.relaxation`."""
+        return self.film_relaxation(displacement, operation) if self.films == "memory" else None
+
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """See `RingElement.film_relaxation`."""
+        plain = self.plain
+        return self.contacts.relaxation(
+            displacement,
+            cage_angle=plain.cage_angle(operation),
+            entrainment_speed=plain.entrainment_speed(operation),
+            temperature=plain.temperature,
+        )
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Forces on rings and rollers, stiffness and damping, see `Element.evaluate`."""
@@ -90,11 +108,23 @@ def ring_matrices(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArra
     stiffness, damping : array, shape (6, 6) or (12 + Z, 12 + Z)
         Matrices of massless rollers, or of rings and rollers.
     """
+    following = ring_following(stiffness)
+    return following.T @ stiffness @ following, following.T @ damping @ following
+
+
+def ring_following(stiffness: FloatArray) -> FloatArray:
+    """How the ports of an element follow the inner ring, the outer one being held, shape (m, 6).
+
+    Parameters
+    ----------
+    stiffness : array, shape (6, 6) or (12 + Z, 12 + Z)
+        Matrix of massless rollers, or of rings and rollers.
+    """
     if stiffness.shape[0] == 6:
-        return stiffness, damping
+        return np.eye(6)
     own = stiffness[12:, 12:]
     following = np.zeros((stiffness.shape[0], 6))
     following[:6] = np.eye(6)
     loaded = np.nonzero(np.diag(own) > 0.0)[0]
     following[12 + loaded] = -np.linalg.solve(own[np.ix_(loaded, loaded)], stiffness[12 + loaded, :6])
-    return following.T @ stiffness @ following, following.T @ damping @ following
+    return following

@@ -29,6 +29,8 @@ class RollerLoads:
         Tilting moment of each roller's load about its middle [N m].
     load_per_length : array (Z, n)
         Load of the slices on the inner raceway [N/m].
+    damping : array (Z, n)
+        Damping of the slices at rest, per unit length [N s/m2].
     approach : array (Z, n)
         Total approach of both contacts of the slices [m]; below zero a gap, or a film.
     position : array (n,)
@@ -39,6 +41,7 @@ class RollerLoads:
     load: FloatArray
     moment: FloatArray
     load_per_length: FloatArray
+    damping: FloatArray
     approach: FloatArray
     position: FloatArray
 
@@ -137,6 +140,7 @@ def roller_loads(
         load=load.sum(axis=1) * bearing.slice_length,
         moment=(load * x).sum(axis=1) * bearing.slice_length,
         load_per_length=load,
+        damping=states[2].copy(),
         approach=approach,
         position=x.copy(),
     )

@@ -20,7 +20,7 @@ from mbs.analyses.film_limits import film_limits, ring_motions
 from mbs.analyses.reach import axes_outside
 from mbs.bearings.bearing_force import BearingForce
 from mbs.commands.reach import outside_lines
-from mbs.linearised.validity import HIGHEST_RATIO, FilmLimit
+from mbs.linearised.validity import HIGHEST_RATIO, NOTABLE, FilmLimit, SlowFilmError
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import write_dataset
@@ -85,6 +85,50 @@ def film_warnings(limits: Sequence[FilmLimit], frequencies: Iterable[float]) -> 
                 f"u = {limit.entrainment_speed:.3g} m/s): {NO_LONGER_VALID}"
             )
     return lines
+
+
+def slow_film_warnings(
+    limits: Sequence[FilmLimit], errors: Sequence[SlowFilmError], frequencies: Iterable[float]
+) -> list[str]:
+    """Lines on frequencies at which films of slow motion are notably wrong, and on bearings at rest.
+
+    Parameters
+    ----------
+    limits : sequence of FilmLimit
+        Limits of the films.
+    errors : sequence of SlowFilmError
+        How wrong films of slow motion are.
+    frequencies : iterable of float
+        Frequencies of the result [Hz].
+    """
+    highest = max(frequencies, default=0.0)
+    lines = film_warnings([limit for limit in limits if limit.entrainment_speed == 0.0], [highest])
+    ratios = {limit.bearing: limit.ratio(highest) for limit in limits}
+    for entry in errors:
+        error = entry.at(highest)
+        if error > NOTABLE:
+            ratio = f"omega b/u is {ratios[entry.bearing]:.2g} at {highest:.5g} Hz"
+            lines.append(slow_film_line(entry, ratio, error))
+    return lines
+
+
+def slow_film_line(entry: SlowFilmError, ratio: str, error: float) -> str:
+    """A line on the error that films of slow motion make.
+
+    Parameters
+    ----------
+    entry : SlowFilmError
+        The bearing.
+    ratio : str
+        How quick the motion is, in words.
+    error : float
+        Error there.
+    """
+    return (
+        f"warning: {entry.bearing}: films are those of slow motion; {ratio}: there the dynamic stiffness along the "
+        f"load is {100.0 * error:.2g} % wrong, from {entry.frequency:.4g} Hz on by more than {100.0 * NOTABLE:g} %; "
+        "--films memory has films that follow at their own frequency"
+    )
 
 
 def film_course(model: Model, speeds: Iterable[float]) -> list[str]:

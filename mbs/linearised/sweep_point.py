@@ -12,6 +12,7 @@ from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from mbs.bearings.bearing_element import RingElement
 from mbs.bearings.roller_element import ring_matrices
 from mbs.linearised.modes import StateModes, UndampedModes, energy_shares, state_modes, undamped_modes
+from mbs.linearised.own_frequency import LostMode
 from mbs.linearised.tracking import Match, ModeSet, compose, match
 from mbs.model.elements import Element
 from mbs.model.equilibrium import Equilibrium, equilibrium
@@ -47,6 +48,8 @@ class Point:
         d omega/d Omega by gyroscopic terms [1]; of an equal pair, as at rest, anything between those of both.
     kinship : array, shape (complex modes, n)
         Part of each undamped mode in the shape of a complex one, by kinetic energy: rows sum to 1.
+    lost : tuple of LostMode
+        Complex modes that could not be brought to the films of their own frequency; they are not there.
     """
 
     balance: Equilibrium
@@ -57,6 +60,7 @@ class Point:
     complex_shares: FloatArray
     whirl: FloatArray
     kinship: FloatArray
+    lost: tuple[LostMode, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,19 +101,23 @@ def solve_modes(balance: Equilibrium) -> Point:
     states = state_modes(balance, undamped)
     kept = np.nonzero(states.oscillates)[0]
     kept = kept[np.argsort(np.abs(states.eigenvalues[kept]), kind="stable")]
-    shapes = states.right[: system.size, kept]
-    turned = np.linalg.solve(system.mass, system.gyroscopic @ states.right[system.size :, kept])
+    own = states.at_own_frequency(balance, kept)
+    kept, values = kept[own.found], own.eigenvalues[own.found]
+    n = system.size
+    shapes = states.right[:n, kept]
+    turned = np.linalg.solve(system.mass, system.gyroscopic @ states.right[n : 2 * n, kept])
     plain = np.asarray(2j * np.pi * undamped.frequency, dtype=np.complex128)
     return Point(
         balance,
         undamped,
         states,
         ModeSet(plain, undamped.shapes, undamped.shapes.T @ system.mass),
-        ModeSet(states.eigenvalues[kept], states.right[:, kept], states.left[kept]),
-        energy_shares(balance, shapes),
+        ModeSet(values, *states.comparable(kept)),
+        energy_shares(balance, shapes, np.abs(values)),
         # d lambda/d Omega = left . dA/dOmega . right, exact with damping too.
-        -np.sum(states.left[kept, system.size :].T * turned, axis=0).imag,
+        -np.sum(states.left[kept, n : 2 * n].T * turned, axis=0).imag,
         _kinship(undamped.shapes.T @ system.mass @ shapes),
+        own.lost,
     )
 
 

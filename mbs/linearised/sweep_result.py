@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from mbs.linearised.modes import damping_ratio
+from mbs.linearised.own_frequency import LostMode
 from mbs.model.elements import Input, Sensor
 
 
@@ -73,6 +74,8 @@ class ComplexSweep:
         Least assurance on the way from the speed before, 1 where a mode begins.
     number : array of int, shape (modes,)
         Undamped mode, from 0 on, that it is nearest to where it begins; two that are never there together may share it.
+    lost : tuple of tuple of LostMode
+        Modes that could not be brought to the films of their own frequency, at each speed.
     """
 
     eigenvalues: ComplexArray
@@ -81,6 +84,7 @@ class ComplexSweep:
     whirl: FloatArray
     assurance: FloatArray
     number: IntArray
+    lost: tuple[tuple[LostMode, ...], ...] = ()
 
     @property
     def frequency(self) -> FloatArray:

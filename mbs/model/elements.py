@@ -13,6 +13,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from mbs.model.profiles import Constant, LoadProfile
+from mbs.model.relaxation import Relaxation
 
 GROUND = "ground"
 """The place that does not move."""
@@ -97,8 +98,8 @@ class Excitation(NamedTuple):
 class Element(Protocol):
     """A nonlinear element. Its force is linear algebra in its ports; what happens in there is its own.
 
-    An element has every member; a class that inherits from `ElementDefaults` leaves out `excitation` and `advance`.
-    Runs in time call it from Python, unless `mbs.transient.kinds` lists it with a block for compiled code.
+    An element has every member; a class that inherits from `ElementDefaults` leaves out what it does not do. Runs in
+    time call it from Python, unless `mbs.transient.kinds` lists it with a block for compiled code.
     """
 
     @property
@@ -147,9 +148,21 @@ class Element(Protocol):
         """
         ...
 
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """What of its stiffness needs time, for small oscillations about a rest; None for K and C at any frequency.
+
+        Parameters
+        ----------
+        displacement : array, shape (m,)
+            Of all ports, at rest [m or rad].
+        operation : Operation
+            Speed, angle and time.
+        """
+        ...
+
 
 class ElementDefaults:
-    """What an element without states that does not excite the system says of itself, to inherit from."""
+    """What an element says of itself that has no states, excites nothing and does not relax, to inherit from."""
 
     def advance(
         self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
@@ -164,6 +177,10 @@ class ElementDefaults:
     @property
     def excitation(self) -> Excitation | None:
         """None: it answers motion only."""
+        return None
+
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """None: stiffness and damping are the same at any frequency."""
         return None
 
 

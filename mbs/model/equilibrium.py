@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError
 from mbs.model.elements import Operation
+from mbs.model.relaxation import Relaxation
 from mbs.model.system import System
 
 FIRST_STEP = 5e-6
@@ -70,6 +72,14 @@ class Equilibrium:
     outside: dict[str, bool]
     residual: float
     steps: int
+
+    @cached_property
+    def relaxations(self) -> tuple[Relaxation | None, ...]:
+        """What of the stiffness of each element needs time, in its ports; None where nothing does."""
+        return tuple(
+            connected.element.relaxation(connected.transform @ self.displacement, self.operation)
+            for connected in self.system.elements
+        )
 
 
 def equilibrium(

@@ -215,10 +215,11 @@ class System:
                 problems.append(f"{name!r}: is there twice; bodies, springs, loads and bearings have names apart")
             seen.add(name)
         problems += [
-            f"{element.name!r}, excitation: missing; allowed: how often it excites, or None; an element inherits that "
-            "from mbs.model.elements.ElementDefaults"
+            f"{element.name!r}, {member}: missing; allowed: {words}, or None; an element inherits that from "
+            "mbs.model.elements.ElementDefaults"
             for element in elements
-            if not hasattr(element, "excitation")
+            for member, words in (("excitation", "how often it excites"), ("relaxation", "what of it needs time"))
+            if not hasattr(element, member)
         ]
         for where, on, against in _connections(springs, loads, elements):
             wrong = [problem for place in (on, against) if (problem := self._places.problem(place))]

@@ -136,7 +136,8 @@ def linear_dataset(
         Sensors, where motion is measured.
     """
     names = list(balance.system.coordinates)
-    states = [*names, *(f"{name}.rate" for name in names)]
+    films = space.A.shape[0] - 2 * len(names)
+    states = [*names, *(f"{name}.rate" for name in names), *(f"film_{index + 1}" for index in range(films))]
     dims = ("frequency", "sensor", "input")
     quantities = [sensor.quantity for sensor in sensors]
     units = "m, m/s or m/s2 by the sensor's quantity (rad for rotations), per N or N m"
