@@ -8,11 +8,14 @@ Without relaxing films Z is that of stiffness and damping of slow motion.
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg import eigh
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.linearised.film_states import FilmStates, film_states, together
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.relaxation import Relaxation
+
+_BEYOND = 10.0
 
 
 def element_dynamic_stiffness(balance: Equilibrium, index: int, s: ComplexArray) -> ComplexArray:
@@ -76,10 +79,18 @@ def dynamic_slope(balance: Equilibrium, s: ComplexArray) -> ComplexArray:
 
 
 def system_film_states(balance: Equilibrium) -> FilmStates | None:
-    """The relaxing films of all elements as few states in the coordinates of the system; None without any."""
+    """The relaxing films of all elements as few states in the coordinates of the system; None without any.
+
+    They hold up to ten times the highest undamped frequency of slow motion.
+    """
     found = []
-    for transform, relaxation in relaxing_elements(balance):
-        few = film_states(relaxation)
+    relaxing = relaxing_elements(balance)
+    if relaxing:
+        stiffness = 0.5 * (balance.stiffness + balance.stiffness.T)
+        squares = eigh(stiffness, balance.system.mass, eigvals_only=True)
+        highest = _BEYOND * float(np.sqrt(max(squares[-1], 0.0)))
+    for transform, relaxation in relaxing:
+        few = film_states(relaxation, highest)
         found.append(FilmStates(few.relaxation.seen_by(transform), few.lift, few.slowest))
     return together(found)
 

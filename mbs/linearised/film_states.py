@@ -12,6 +12,7 @@ where F is worst on the frequency axis, until it is within `TOLERANCE` of all sl
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -53,13 +54,15 @@ class FilmStates:
         return self.relaxation.times.size
 
 
-def film_states(relaxation: Relaxation) -> FilmStates:
+def film_states(relaxation: Relaxation, highest: float = math.inf) -> FilmStates:
     """Reduce springs in series with dampers to few that act alike.
 
     Parameters
     ----------
     relaxation : Relaxation
         All of them, in ports that are few.
+    highest : float
+        Frequency up to which they do [rad/s].
     """
     rows, times = relaxation.rows, relaxation.times
     if not np.any(rows):
@@ -67,7 +70,8 @@ def film_states(relaxation: Relaxation) -> FilmStates:
     left, sizes, right = svd(rows, full_matrices=False)
     rank = int(np.count_nonzero(sizes > _ALIKE * sizes[0]))
     begin, ports = left[:, :rank], sizes[:rank, None] * right[:rank]
-    omega = np.geomspace(1e-2 / times.max(), 1e2 / times.min(), _FREQUENCIES)
+    low = 1e-2 / times.max()
+    omega = np.geomspace(low, max(min(1e2 / times.min(), highest), 10.0 * low), _FREQUENCIES)
     exact = _transfer(begin, times, omega)
     space = begin
     for poles in range(_MOST_POLES + 1):
