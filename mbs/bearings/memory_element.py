@@ -53,7 +53,7 @@ class MemoryBearing(BearingElement):
         BearingElement.__post_init__(self)
         if not (isinstance(self.force, BearingForce) and isinstance(self.force.law, ContactLaw)):
             raise InputError(
-                f"bearing {self.name!r}, films: got 'memory' with a law without films; allowed: the laws map and formula"
+                f"bearing {self.name!r}, films: got 'memory' with a law without films; allowed: laws map and formula"
             )
 
     @property

@@ -98,7 +98,7 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
     if hasattr(arguments, "films"):
         laws = _with_films(laws, _given(arguments, "films"), problems)
     else:
-        # Runs in time have the films of slow motion, whatever linear analyses have by default.
+        # A command that does not ask for films has those of slow motion, whatever the default.
         laws = [dataclasses.replace(law, films="slow") for law in laws]
     clearances = [read_clearance(text, problems) for text in _given(arguments, "clearance")] or [None]
     factors = [_factor(text, problems) for text in _given(arguments, "load_factor")] or [1.0]

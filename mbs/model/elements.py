@@ -123,7 +123,7 @@ class Element(Protocol):
         Parameters
         ----------
         displacement, velocity : array, shape (m,)
-            Of all ports, one after the other [m or rad, and per s].
+            Motion of all ports, one after the other [m or rad, and per s].
         operation : Operation
             Speed, angle and time.
 
@@ -144,7 +144,7 @@ class Element(Protocol):
         states : object
             What the element returned at the end of the last step that was made; None at the beginning of a run.
         displacement, velocity, operation
-            As of `evaluate`, at the end of the step.
+            What `evaluate` takes, at the end of the step.
         """
         ...
 
@@ -154,7 +154,7 @@ class Element(Protocol):
         Parameters
         ----------
         displacement : array, shape (m,)
-            Of all ports, at rest [m or rad].
+            Displacements of all ports, at rest [m or rad].
         operation : Operation
             Speed, angle and time.
         """
@@ -171,7 +171,7 @@ class ElementDefaults:
         return self.evaluate(displacement, velocity, operation), None
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
-        """See `Element.evaluate`."""
+        """What an element has of its own, see `Element.evaluate`."""
         raise NotImplementedError
 
     @property
@@ -191,11 +191,11 @@ class Spring:
     Attributes
     ----------
     name : str
-        For messages and results.
+        Name for messages and results.
     on, against : str
-        Places.
+        Both places.
     stiffness, damping : array, shape (6, 6)
-        Of the six displacements of `on` against `against` [N/m, N m/rad; with s]; symmetric.
+        Matrices of the six displacements of `on` against `against` [N/m, N m/rad; with s]; symmetric.
     """
 
     name: str
@@ -212,9 +212,9 @@ class Load:
     Attributes
     ----------
     name : str
-        For messages and results.
+        Name for messages and results.
     on : str
-        Place.
+        Place of the load.
     force : array, shape (6,)
         Three forces [N] and three moments [N m].
     against : str
@@ -240,7 +240,7 @@ class Sensor:
     Attributes
     ----------
     name : str
-        For messages and results.
+        Name for messages and results.
     on, against : str
         Places, anywhere; the output is the difference.
     direction : array, shape (6,)
@@ -263,9 +263,9 @@ class Input:
     Attributes
     ----------
     name : str
-        For messages and results.
+        Name for messages and results.
     on, against : str
-        Places; `against` gets the opposite.
+        Both places; `against` gets the opposite.
     direction : array, shape (6,)
         Load at amplitude 1 N or 1 N m.
     amplitude : float

@@ -51,7 +51,7 @@ class Equilibrium:
     parts : dict of str to array, shape (n, n)
         Stiffness by flexible body, spring and element.
     element_stiffness, element_damping : tuple of array, shape (m, m)
-        Of each element in its ports.
+        Matrices of each element in its ports.
     outside : dict of str to bool
         Whether each element lies outside its map there, by name.
     residual : float
@@ -94,7 +94,7 @@ def equilibrium(
     operation : Operation, optional
         Speed, angle, and the time of the loads; at rest, angle and time zero, if left out.
     start : array, shape (n,), optional
-        Where to begin; zero if left out.
+        Displacement to begin with; zero if left out.
     tolerance : float
         Remaining force over the largest force in the system.
 

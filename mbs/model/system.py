@@ -61,7 +61,7 @@ class System:
     Parameters
     ----------
     bodies : sequence of Body
-        At least one.
+        Bodies, at least one.
     springs : sequence of Spring
         Linear springs and dampers.
     loads : sequence of Load
