@@ -37,8 +37,9 @@ from ehdmaps.maps.lines import FAST
 from ehdmaps.maps.tables import HALF_SPACE, Point
 
 LOCKED = 0.035
-"""Compliance that locked oil takes off a contact, in 4/E' for each ln(1 + 2 h R/b^2). Fitted: the complex stiffness is
-right within 10 % up to ten natural frequencies."""
+"""Compliance that locked oil takes off a contact, in 4/E' for each ln(1 + 2 h R/b^2). Fitted with FVA 3: the complex
+stiffness is right within 10 % up to ten natural frequencies, and within 11 % with other oils. It is worst at M = 0.1 to
+0.5, where this number should be up to three times as large."""
 
 LONGEST = 1.4
 """Longest relaxation time c/(k_s - k) in natural times sqrt(b^2 + 2 h R)/u. Fitted likewise."""
