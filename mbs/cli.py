@@ -10,7 +10,9 @@ from typing import Any
 
 from ehdmaps.errors import AnalysisError
 from ehdmaps.program import Parser, run
+from mbs.model.relaxation import DEFAULT_FILMS
 
+_MORE = "; more than once to compare"
 _LAW = "hertz | formula | constant:NAME | map; default: map with --map, else hertz. NAME is a table [laws.NAME]"
 _STRUCTURE = "law of the solids in the contacts of a map: iso16281 | palmgren | half_space; default: that of its job"
 
@@ -36,8 +38,13 @@ def parser() -> argparse.ArgumentParser:
         command = _scene_command(commands, name, words, compares=False)
         if name == "modes":
             _modes(command)
-    _sweep(_scene_command(commands, "sweep", "modes, bearings and frequency responses over speed", compares=True))
-    _campbell(_scene_command(commands, "campbell", "run-up in time as levels over speed and frequency", compares=True))
+        _films(command, compares=False)
+    sweep = _scene_command(commands, "sweep", "modes, bearings and frequency responses over speed", compares=True)
+    _films(sweep, compares=True)
+    _sweep(sweep)
+    campbell = _scene_command(commands, "campbell", "run-up in time as levels over speed and frequency", compares=True)
+    _films(campbell, compares=True)
+    _campbell(campbell)
     _hammer(_scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=False))
     _modal_fit(commands)
     _bearing(commands)
@@ -52,6 +59,18 @@ def _modes(command: argparse.ArgumentParser) -> None:
         "--highest",
         metavar="FREQUENCY",
         help='highest frequency listed and drawn, such as "5 kHz"; default: the highest of [linear], else 10 kHz',
+    )
+
+
+def _films(command: argparse.ArgumentParser, compares: bool) -> None:
+    """Add the kind of the films."""
+    command.add_argument(
+        "--films",
+        metavar="KIND",
+        action="append",
+        help="memory: films follow oscillations at their own frequency; slow: stiffness and damping of slow motion at "
+        f"any frequency; dry: --law hertz{_MORE if compares else ''}; default: {DEFAULT_FILMS}. Statics are the same "
+        "for memory and slow",
     )
 
 
@@ -195,7 +214,7 @@ def _scene_command(commands: Any, name: str, words: str, compares: bool) -> argp
     command: argparse.ArgumentParser = commands.add_parser(name, help=words, description=words)
     command.add_argument("scene", metavar="SCENE")
     # What comes twice is an error of the command, in words, where it does not compare.
-    more = "; more than once to compare" if compares else ""
+    more = _MORE if compares else ""
     command.add_argument(
         "--map", metavar="MAP.nc", action="append", help=f"made by `ehdmaps generate` for the same bearing{more}"
     )

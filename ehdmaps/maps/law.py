@@ -242,7 +242,7 @@ class ContactLaw:
         u, T, q = (float(value) for value in named.values())
         point = kernel.collapse(table, _workspace(table), u, T, q, counts)
         self._settle(counts, named, [])
-        return LawAtPoint(u, T, q, point, self)
+        return LawAtPoint(u, T, q, point, self, bool(counts.any()))
 
     def advance(
         self, state: FilmState | None, delta: npt.ArrayLike, dt: float, entrainment_speed: float, temperature: float
@@ -387,6 +387,8 @@ class LawAtPoint:
         Arrays for `kernel.evaluate_at`.
     law : ContactLaw
         Where it comes from; it keeps the counts.
+    outside : bool
+        Whether u, T or q lies outside the map.
     """
 
     entrainment_speed: float
@@ -394,6 +396,7 @@ class LawAtPoint:
     centrifugal_load: float
     point: Point
     law: ContactLaw
+    outside: bool
 
     @cached_property
     def memory(self) -> FilmMemory:
@@ -417,6 +420,10 @@ class LawAtPoint:
 
     def __call__(self, delta: npt.ArrayLike, rate: npt.ArrayLike) -> tuple[Any, Any, Any]:
         """Load and its derivatives; as calling the `ContactLaw`."""
+        return self.evaluate(delta, rate)[:3]
+
+    def evaluate(self, delta: npt.ArrayLike, rate: npt.ArrayLike) -> tuple[Any, Any, Any, bool]:
+        """As a call, and whether any of it lies outside the map."""
         named = _floats(delta=delta, rate=rate)
         shape, flat = _broadcast(named)
         forces = np.empty((3, flat[0].size))
@@ -427,7 +434,7 @@ class LawAtPoint:
             flat += [np.full(flat[0].size, value) for value in fixed]
             self.law._settle(counts, named, flat)
         w, dw_ddelta, dw_drate = (force.reshape(shape)[()] for force in forces)
-        return w, dw_ddelta, dw_drate
+        return w, dw_ddelta, dw_drate, self.outside or bool(counts.any())
 
 
 def _evaluate_many(table: LawTable, flat: Sequence[FloatArray], forces: FloatArray, counts: IntArray) -> None:

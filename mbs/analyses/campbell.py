@@ -38,9 +38,6 @@ LEAST_SAMPLES, MOST_SAMPLES = 64, 5_000_000
 MODE_SPEEDS = 9
 """Speeds of the run at which modes are computed."""
 
-_MESH_HARMONICS = 5
-_PASS_HARMONICS = 3
-
 
 @dataclass(frozen=True, eq=False)
 class LawRun:
@@ -249,20 +246,14 @@ def _sensor(name: str | None, scene: Scene, problems: list[str]) -> Sensor | Non
 
 
 def _orders(model: Model, settings: CampbellSettings, course: RunUp) -> list[tuple[float, str]]:
-    """Orders to follow, with their names: those of the settings, else of the gears, else of passing rollers."""
+    """Orders to follow, with their names: those of the settings, else what the elements excite."""
     if settings.orders:
         return [(order, f"{order:g}") for order in settings.orders]
-    scene = model.scene
-    spins = {body.name: abs(body.spin) for body in scene.bodies}
-    mesh = [spins.get(pair.on.partition(":")[0], 0.0) * pair.teeth[0] for pair in scene.gears]
-    passing = [
-        entry.bearing.geometry.rollers * abs(entry.bearing.cage_angle(entry.inner_spin, entry.outer_spin))
-        for entry in model.bearings
-    ]
-    count = _MESH_HARMONICS if any(mesh) else _PASS_HARMONICS
+    given = [one for entry in model.system.elements if (one := entry.element.excitation) is not None]
+    highest_rank = max((entry.rank for entry in given), default=0)
     # Rounded, for bearings that differ in the last bit only.
-    bases = sorted({round(order, 9) for order in (mesh if any(mesh) else passing) if order > 0.0})
-    found = {harmonic * base: f"{harmonic * base:.4g}" for base in bases for harmonic in range(1, count + 1)}
+    bases = sorted({(round(entry.order, 9), entry.harmonics) for entry in given if entry.rank == highest_rank})
+    found = {k * base: f"{k * base:.4g}" for base, count in bases for k in range(1, count + 1)}
     # None that lies above the band at every speed.
     slowest = min(course.speed.at(0.0)[0], course.speed.at(course.duration)[0])
     highest = 2.0 * math.pi * settings.highest / slowest if slowest > 0.0 else math.inf

@@ -1,4 +1,4 @@
-"""Up to which frequency the films of a model follow as in the low-frequency limit."""
+"""Up to which frequency films of slow motion hold, and how wrong they are above."""
 
 from __future__ import annotations
 
@@ -6,16 +6,19 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.law import ContactLaw
-from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_element import BearingElement, RingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.linearised.validity import FilmLimit, film_limit
+from mbs.bearings.roller_element import ring_following
+from mbs.linearised.validity import FilmLimit, SlowFilmError, film_limit
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import Model
 
 
 def film_limits(model: Model, displacement: FloatArray, operation: Operation) -> list[FilmLimit]:
-    """Up to which frequency the films of each bearing follow; empty for dry laws and constant ones.
+    """Up to which frequency the films of each bearing follow as in slow motion.
+
+    Empty for dry laws and constant ones, and for films with memory, except at rest, where there is no film.
 
     Parameters
     ----------
@@ -32,8 +35,37 @@ def film_limits(model: Model, displacement: FloatArray, operation: Operation) ->
             continue
         load = float(bearing.rollers(motion, operation).load_per_length.max())
         speed = bearing.entrainment_speed(operation)
+        if model.memory == "memory" and speed != 0.0:
+            continue
         limits.append(film_limit(bearing.name, bearing.bearing, load, speed))
     return limits
+
+
+def slow_film_errors(model: Model, displacement: FloatArray, operation: Operation) -> list[SlowFilmError]:
+    """How wrong films of slow motion are; empty where films relax, where there are none, and without a load.
+
+    Parameters
+    ----------
+    model, displacement, operation
+        The same as for `film_limits`.
+    """
+    found = []
+    system = model.system
+    for index in system.select(RingElement) if model.memory == "slow" else ():
+        connected = system.elements[index]
+        element, ports = connected.element, connected.transform @ displacement
+        assert isinstance(element, RingElement)
+        relaxation = element.film_relaxation(ports, operation)
+        forces = element.evaluate(ports, np.zeros_like(ports), operation)
+        load = float(np.linalg.norm(forces.force[1:3]))
+        if relaxation is None or load == 0.0:
+            continue
+        along = np.array([0.0, *(forces.force[1:3] / load), 0.0, 0.0, 0.0])
+        motion = ring_following(forces.stiffness) @ along
+        stiffness, damping = (float(motion @ matrix @ motion) for matrix in (forces.stiffness, forces.damping))
+        springs = (relaxation.rows @ motion) ** 2
+        found.append(SlowFilmError(element.name, stiffness, damping, springs, relaxation.times))
+    return found
 
 
 def ring_motions(model: Model, displacement: FloatArray) -> list[tuple[BearingElement, FloatArray]]:

@@ -8,13 +8,11 @@ from dataclasses import dataclass
 from ehdmaps.errors import InputError
 from mbs.analyses.film_limits import film_limits
 from mbs.analyses.progress import Progress, silent
-from mbs.analyses.reach import calls_at
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import FilmLimit
 from mbs.modal.records import Hits
 from mbs.model.equilibrium import Equilibrium, equilibrium
-from mbs.model.outside_calls import calls_outside
 from mbs.scene.assembly import Model
 from mbs.transient.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
 
@@ -68,10 +66,8 @@ class HammerResult:
         Records of force and responses, one an input; `mbs.modal.fit` takes them.
     limits : tuple of FilmLimit
         Up to which frequency the films of each bearing follow; empty for laws without films.
-    outside : mapping of str to int
-        Calls outside the map at the equilibrium, by bearing.
     outside_hits : mapping of str to int
-        The same during the hits.
+        How often each element was evaluated outside its map during nonlinear hits, by name.
     """
 
     model: Model
@@ -80,7 +76,6 @@ class HammerResult:
     test: HammerTest
     hits: tuple[Hits, ...]
     limits: tuple[FilmLimit, ...]
-    outside: Mapping[str, int]
     outside_hits: Mapping[str, int]
 
 
@@ -128,8 +123,7 @@ def hammer(model: Model, settings: HammerSettings | None = None, progress: Progr
     highest = settings.highest or (scene.frequencies[-1] if scene.frequencies else HIGHEST)
     duration = settings.duration or suggested_duration(found, highest)
     test = HammerTest(highest, duration, settings.hits, settings.noise, settings.seed)
-    with calls_outside(lambda: model.outside_calls) as called:
-        hits = _hit(model, balance, test, settings.nonlinear, progress or silent)
+    hits, outside = _hit(model, balance, test, settings.nonlinear, progress or silent)
     return HammerResult(
         model=model,
         balance=balance,
@@ -137,16 +131,17 @@ def hammer(model: Model, settings: HammerSettings | None = None, progress: Progr
         test=test,
         hits=hits,
         limits=tuple(film_limits(model, balance.displacement, balance.operation)),
-        outside=calls_at(model, balance.displacement, balance.operation),
-        outside_hits=called,
+        outside_hits=outside,
     )
 
 
-def _hit(model: Model, balance: Equilibrium, test: HammerTest, nonlinear: bool, tell: Progress) -> tuple[Hits, ...]:
-    """Make the hits."""
+def _hit(
+    model: Model, balance: Equilibrium, test: HammerTest, nonlinear: bool, tell: Progress
+) -> tuple[tuple[Hits, ...], dict[str, int]]:
+    """Make the hits; with how often each element was outside its map."""
     inputs, sensors = tuple(model.scene.inputs), tuple(model.scene.sensors)
     if not nonlinear:
-        return linear_hits(balance, inputs, sensors, test)
+        return linear_hits(balance, inputs, sensors, test), {}
     done, total = 0, test.hits * len(inputs)
 
     def told() -> None:

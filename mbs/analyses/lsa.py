@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,12 +9,11 @@ import xarray as xr
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
-from mbs.analyses.film_limits import film_limits
-from mbs.analyses.reach import calls_at
+from mbs.analyses.film_limits import film_limits, slow_film_errors
 from mbs.linearised.linear import StateSpace, frequency_response, state_space, with_peaks
 from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
-from mbs.linearised.validity import DynamicLoad, FilmLimit, dynamic_loads
+from mbs.linearised.validity import DynamicLoad, FilmLimit, SlowFilmError, dynamic_loads
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import described, linear_dataset
@@ -58,11 +56,11 @@ class LsaResult:
     responses : array of complex, shape (frequencies, sensors, inputs)
         Responses in the unit of the sensor's quantity, per N or N m.
     limits : tuple of FilmLimit
-        Up to which frequency the films of each bearing follow; empty for laws without films.
+        Up to which frequency the films of each bearing follow; empty for films with memory and without films.
+    errors : tuple of SlowFilmError
+        How wrong films of slow motion are; empty for films with memory and without films.
     lifting : tuple of DynamicLoad
         Loads that exceed the static ones, so that contacts lift off.
-    outside : mapping of str to int
-        Calls outside the map at the equilibrium, by bearing.
     dataset : xarray.Dataset
         What `mbs lsa -o` writes.
     """
@@ -74,8 +72,8 @@ class LsaResult:
     frequencies: FloatArray
     responses: ComplexArray
     limits: tuple[FilmLimit, ...]
+    errors: tuple[SlowFilmError, ...]
     lifting: tuple[DynamicLoad, ...]
-    outside: Mapping[str, int]
     dataset: xr.Dataset
 
 
@@ -123,7 +121,6 @@ def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
     space = state_space(balance, scene.inputs, scene.sensors)
     limits = tuple(film_limits(model, balance.displacement, balance.operation))
     lifting = tuple(load for load in dynamic_loads(balance, scene.inputs, frequencies) if load.exceeds)
-    outside = calls_at(model, balance.displacement, balance.operation)
     dataset = linear_dataset(balance, space, responses, frequencies, scene.inputs, scene.sensors)
     return LsaResult(
         model=model,
@@ -133,7 +130,7 @@ def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
         frequencies=frequencies,
         responses=responses,
         limits=limits,
+        errors=tuple(slow_film_errors(model, balance.displacement, balance.operation)),
         lifting=lifting,
-        outside=outside,
         dataset=described(dataset, **law_attributes(model)),
     )

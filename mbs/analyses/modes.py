@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import xarray as xr
 
-from mbs.analyses.film_limits import film_limits
-from mbs.analyses.reach import calls_at
+from mbs.analyses.film_limits import film_limits, slow_film_errors
 from mbs.linearised.modes import Modes
 from mbs.linearised.modes import modes as modes_at
 from mbs.linearised.steady import steady_system
-from mbs.linearised.validity import FilmLimit
+from mbs.linearised.validity import FilmLimit, SlowFilmError
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import described, modes_dataset
@@ -32,9 +30,9 @@ class ModesResult:
     modes : Modes
         Eigenvalues, shapes and strain-energy shares.
     limits : tuple of FilmLimit
-        Up to which frequency the films of each bearing follow; empty for laws without films.
-    outside : mapping of str to int
-        Calls outside the map at the equilibrium, by bearing.
+        Up to which frequency the films of each bearing follow; empty for films with memory and without films.
+    errors : tuple of SlowFilmError
+        How wrong films of slow motion are; empty for films with memory and without films.
     dataset : xarray.Dataset
         What `mbs modes -o` writes.
     """
@@ -43,7 +41,7 @@ class ModesResult:
     balance: Equilibrium
     modes: Modes
     limits: tuple[FilmLimit, ...]
-    outside: Mapping[str, int]
+    errors: tuple[SlowFilmError, ...]
     dataset: xr.Dataset
 
 
@@ -72,6 +70,6 @@ def modes(model: Model, operation: Operation | None = None) -> ModesResult:
     balance = equilibrium(steady_system(model.system), operation or model.operation)
     found = modes_at(balance)
     limits = tuple(film_limits(model, balance.displacement, balance.operation))
-    outside = calls_at(model, balance.displacement, balance.operation)
     dataset = described(modes_dataset(found, balance), **law_attributes(model))
-    return ModesResult(model, balance, found, limits, outside, dataset)
+    errors = tuple(slow_film_errors(model, balance.displacement, balance.operation))
+    return ModesResult(model, balance, found, limits, errors, dataset)

@@ -14,7 +14,6 @@ from ehdmaps.units import LOAD
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
 from mbs.model.elements import Operation
-from mbs.model.outside_calls import calls_outside
 from mbs.scene.assembly import Model
 
 
@@ -81,21 +80,3 @@ def axes_outside(model: Model, speed: float, loads: Mapping[str, float] | None =
         axes = axes_left(law, load, bearing.entrainment_speed(Operation(speed)), bearing.temperature)
         found[bearing.name] = "; ".join(axes) or f"a load above {LOAD.text(law.load_range[1])}, where the map ends"
     return found
-
-
-def calls_at(model: Model, displacement: FloatArray, operation: Operation) -> dict[str, int]:
-    """Calls outside the map, by bearing, when all forces are evaluated once at rest in a place.
-
-    Parameters
-    ----------
-    model : Model
-        Model with its law.
-    displacement : array, shape (n,)
-        Displacement of the coordinates [m or rad].
-    operation : Operation
-        Speed and angle.
-    """
-    with calls_outside(lambda: model.outside_calls) as outside:
-        for connected in model.system.elements:
-            connected.evaluate(displacement, 0.0 * displacement, operation)
-    return outside

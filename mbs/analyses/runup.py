@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import xarray as xr
@@ -13,11 +12,11 @@ from ehdmaps.errors import InputError
 from mbs.analyses.progress import Progress, silent
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
-from mbs.model.outside_calls import calls_outside
 from mbs.output.results import described, run_dataset
 from mbs.scene.assembly import Model, law_attributes
 from mbs.settings import RunUp
-from mbs.transient.integration import Trajectory, integrate
+from mbs.transient.run import WITH_STATES, Recording
+from mbs.transient.run import run as run_system
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,10 +29,8 @@ class RunUpResult:
         Scene with its law.
     course : RunUp
         Speed, duration, and how it was integrated.
-    trajectory : Trajectory
-        Recorded states and forces.
-    outside : mapping of str to int
-        Calls outside the map during the run, by bearing.
+    record : Recording
+        Recorded states and forces, and how often each element was outside its map.
     seconds : float
         How long the integration took [s].
     dataset : xarray.Dataset
@@ -42,8 +39,7 @@ class RunUpResult:
 
     model: Model
     course: RunUp
-    trajectory: Trajectory
-    outside: Mapping[str, int]
+    record: Recording
     seconds: float
     dataset: xr.Dataset
 
@@ -85,15 +81,15 @@ def runup(model: Model, settings: RunUp | None = None, progress: Progress | None
     total = math.ceil(course.duration / course.settings.sample - 1e-9) * steps
     tell(0, total)
     begin = time.perf_counter()
-    with calls_outside(lambda: model.outside_calls) as outside:
-        result = integrate(
-            model.system,
-            course.speed,
-            course.duration,
-            course.settings,
-            displacement=start.displacement,
-            progress=lambda done: tell(done * steps, total),
-        )
+    record = run_system(
+        model.system,
+        course.speed,
+        course.duration,
+        course.settings,
+        displacement=start.displacement,
+        progress=lambda done: tell(done * steps, total),
+        options=WITH_STATES,
+    )
     seconds = time.perf_counter() - begin
-    dataset = described(run_dataset(model.system, result, outside), **law_attributes(model))
-    return RunUpResult(model, course, result, outside, seconds, dataset)
+    dataset = described(run_dataset(model.system, record), **law_attributes(model))
+    return RunUpResult(model, course, record, seconds, dataset)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import xarray as xr
@@ -10,7 +9,6 @@ import xarray as xr
 from ehdmaps.errors import InputError
 from ehdmaps.physics.solids import STEEL
 from mbs.analyses.film_limits import ring_motions
-from mbs.analyses.reach import calls_at
 from mbs.bearings.contact_report import BearingContacts, bearing_contacts, overload
 from mbs.bearings.films import DryContacts
 from mbs.model.elements import Operation
@@ -36,8 +34,6 @@ class StaticsResult:
         Bearings whose pressures are above the static limit.
     free : tuple of str
         Motions that nothing holds.
-    outside : mapping of str to int
-        Calls outside the map at the equilibrium, by bearing.
     dataset : xarray.Dataset
         What `mbs statics -o` writes.
     """
@@ -47,7 +43,6 @@ class StaticsResult:
     contacts: tuple[BearingContacts, ...]
     overloads: tuple[str, ...]
     free: tuple[str, ...]
-    outside: Mapping[str, int]
     dataset: xr.Dataset
 
 
@@ -81,9 +76,8 @@ def statics(model: Model, operation: Operation | None = None) -> StaticsResult:
         for bearing, state in zip(model.bearings, contacts, strict=True)
         if (sentence := overload(state))
     )
-    outside = calls_at(model, balance.displacement, balance.operation)
     dataset = described(statics_dataset(balance, contacts, (*overloads, *free)), **law_attributes(model))
-    return StaticsResult(model, balance, contacts, overloads, free, outside, dataset)
+    return StaticsResult(model, balance, contacts, overloads, free, dataset)
 
 
 def _contacts(model: Model, balance: Equilibrium, index: int) -> BearingContacts:

@@ -11,10 +11,8 @@ import xarray as xr
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.analyses.case import Case, as_cases
 from mbs.analyses.progress import Progress, silent
-from mbs.analyses.reach import calls_at
 from mbs.linearised.sweep import sweep as sweep_system
 from mbs.linearised.sweep_result import Sweep
-from mbs.model.elements import Operation
 from mbs.output.results import described
 from mbs.output.sweep_data import sweep_dataset
 from mbs.scene.assembly import Model, law_attributes
@@ -105,7 +103,7 @@ def sweep(
     for case in cases:
         found.append(_one(case, speeds, settings.cage_angles))
         tell(len(found), len(cases))
-    outside = tuple(_outside(case.model, entry) for case, entry in zip(cases, found, strict=True))
+    outside = tuple({name: int(np.count_nonzero(there)) for name, there in entry.outside.items()} for entry in found)
     return SweepResult(cases, tuple(found), outside, _dataset(cases, found))
 
 
@@ -118,15 +116,6 @@ def _one(case: Case, speeds: SweepRange, cage_angles: int) -> Sweep:
         )
     except AnalysisError as error:
         raise AnalysisError(f"{case.label}: {error}") from error
-
-
-def _outside(model: Model, result: Sweep) -> dict[str, int]:
-    """At how many speeds each bearing lies outside the map."""
-    count = dict.fromkeys(model.outside_calls, 0)
-    for speed, place in zip(result.speeds.tolist(), result.displacement, strict=True):
-        for name, calls in calls_at(model, place, Operation(speed)).items():
-            count[name] += calls > 0
-    return count
 
 
 def _dataset(cases: Sequence[Case], found: Sequence[Sweep]) -> xr.Dataset:

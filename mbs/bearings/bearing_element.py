@@ -8,24 +8,24 @@ from typing import Protocol
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.maps.law import ContactLaw
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.film_relaxation import bearing_relaxation
 from mbs.bearings.roller_loads import RollerLoads
-from mbs.model.elements import Operation, Port
+from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port
+from mbs.model.relaxation import Films, Relaxation
+
+NO_CENTRIFUGAL = "got 'memory' with centrifugal = true; allowed: films with memory without it, or slow films"
+
+HARMONICS = 3
+"""Multiples of the order of passing rollers that are worth following."""
 
 
 class RingForce(Protocol):
-    """What a `BearingForce` does; a test or a study may put something else in its place.
+    """What a `BearingForce` does; a test or a study may put something else in its place."""
 
-    A force without a map has ``outside_calls = 0`` as an attribute of its class.
-    """
-
-    @property
-    def outside_calls(self) -> int:
-        """Calls outside the map so far; 0 for a force that has none."""
-        ...
-
-    def __call__(
+    def evaluate(
         self,
         pose: FloatArray,
         velocity: FloatArray,
@@ -34,13 +34,32 @@ class RingForce(Protocol):
         entrainment_speed: float,
         temperature: float,
         centrifugal_load: float = 0.0,
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Force on the inner ring, and its stiffness and damping."""
+    ) -> Forces:
+        """Force on the inner ring, its stiffness and damping, and whether it lies outside a map."""
         ...
 
 
+class RingElement(ElementDefaults):
+    """What is listed as a bearing: an element whose first six displacements are those of an inner ring.
+
+    `mbs.model.system.System.select` finds bearings by this class; a bearing of your own inherits from it.
+    """
+
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """How its films would relax, whether linear analyses are to see that or not; None without films.
+
+        Parameters
+        ----------
+        displacement : array, shape (m,)
+            Displacements of all ports, at rest [m or rad].
+        operation : Operation
+            Speed, angle and time.
+        """
+        return None
+
+
 @dataclass(frozen=True, eq=False)
-class BearingElement:
+class BearingElement(RingElement):
     """A bearing between an inner and an outer ring.
 
     Attributes
@@ -61,6 +80,13 @@ class BearingElement:
         Angle of the first roller from y at the beginning [rad].
     centrifugal : bool
         Whether the rollers' centrifugal load is taken into account.
+    films : {"slow", "memory"}
+        Whether small oscillations see the films of slow motion at any frequency, or films that relax.
+
+    Raises
+    ------
+    InputError
+        For films with memory and a centrifugal load.
     """
 
     name: str
@@ -73,6 +99,11 @@ class BearingElement:
     outer_spin: float = 0.0
     start_angle: float = 0.0
     centrifugal: bool = False
+    films: Films = "slow"
+
+    def __post_init__(self) -> None:
+        if self.films == "memory" and self.centrifugal:
+            raise InputError(f"bearing {self.name!r}, films: {NO_CENTRIFUGAL}")
 
     @property
     def ports(self) -> tuple[Port, ...]:
@@ -80,9 +111,10 @@ class BearingElement:
         return (Port(self.inner, self.outer),)
 
     @property
-    def outside_calls(self) -> int:
-        """Calls outside the map so far."""
-        return self.force.outside_calls
+    def excitation(self) -> Excitation | None:
+        """The passing of the rollers; None for a cage that stands."""
+        order = self.bearing.geometry.rollers * abs(self.rates[0])
+        return Excitation(order, HARMONICS, rank=1) if order > 0.0 else None
 
     @cached_property
     def rates(self) -> tuple[float, float, float]:
@@ -123,11 +155,22 @@ class BearingElement:
             centrifugal_load=self.centrifugal_load(operation),
         )
 
-    def evaluate(
-        self, displacement: FloatArray, velocity: FloatArray, operation: Operation
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """How the films relax, where they do, see `Element.relaxation`."""
+        return self.film_relaxation(displacement, operation) if self.films == "memory" else None
+
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """See `RingElement.film_relaxation`; None with centrifugal load too."""
+        if not isinstance(self.force, BearingForce) or not isinstance(self.force.law, ContactLaw):
+            return None
+        if self.centrifugal_load(operation) != 0.0:
+            return None
+        law = self.force.law.at(self.entrainment_speed(operation), self.temperature)
+        return bearing_relaxation(law, self.rollers(displacement, operation), self.bearing.slice_length)
+
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on the inner ring, stiffness and damping, see `Element.evaluate`."""
-        return self.force(
+        return self.force.evaluate(
             displacement,
             velocity,
             cage_angle=self.cage_angle(operation),

@@ -19,16 +19,15 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
-from mbs.bearings import slice_table as table
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.force_at_point import ForceAtPoint, Forces, Work
+from mbs.bearings.force_at_point import Arrays, FlatLaw, ForceAtPoint, Triple
 from mbs.bearings.kinematics import RingState
 from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.ring_forces import RingForces, ring_forces
 from mbs.bearings.roller_loads import RollerLoads
+from mbs.model.elements import Forces
 
 _ALIKE = 1e-6
 
@@ -48,12 +47,6 @@ class BearingForce:
         If given, what the law must do outside its map; that is chosen where the law is made, by
         `emap.law("series", outside)`.
 
-    Attributes
-    ----------
-    outside_calls : int
-        How many calls were outside the map so far, in load, speed or temperature. With the policy "error" such a call
-        raises, and is counted too.
-
     Raises
     ------
     InputError
@@ -61,9 +54,10 @@ class BearingForce:
 
     Notes
     -----
-    A call is for one pose. Speed, temperature and centrifugal load may change from call to call, which costs tens of
-    microseconds more; `at` gives the element at fixed ones. Both give the same numbers. For speeds between zero and the
-    lowest mapped one the law itself is called for each slice, which is slower. An object is for one thread.
+    A call is for one pose; `evaluate` says besides whether it was outside the map. Speed, temperature and centrifugal
+    load may change from call to call, which costs tens of microseconds more; `at` gives the element at fixed ones. Both
+    give the same numbers. For speeds between zero and the lowest mapped one the law itself is called for each slice,
+    which is slower. An object is for one thread.
     """
 
     def __init__(self, bearing: Bearing, law: Law, slices: int | None = None, outside: str | None = None) -> None:
@@ -72,10 +66,9 @@ class BearingForce:
         self.bearing = bearing if slices is None or slices == bearing.slices else bearing.with_slices(slices)
         _check_law(law, bearing, outside)
         self.law = law
-        self.outside_calls = 0
-        self._work = Work(self.bearing)
+        self.flat_law = FlatLaw(law)
+        self._work = Arrays(self.bearing)
         self._current: ForceAtPoint | None = None
-        self._law_arrays: dict[bool, tuple[tuple[FloatArray, ...], FloatArray]] = {}
 
     def at(
         self, entrainment_speed: float = math.nan, temperature: float = math.nan, centrifugal_load: float = 0.0
@@ -96,7 +89,7 @@ class BearingForce:
         InputError, OutsideMapError
             As the law does.
         """
-        return ForceAtPoint(self, entrainment_speed, temperature, centrifugal_load)
+        return ForceAtPoint(self.bearing, self.flat_law, (entrainment_speed, temperature, centrifugal_load))
 
     def __call__(
         self,
@@ -107,7 +100,7 @@ class BearingForce:
         entrainment_speed: float = math.nan,
         temperature: float = math.nan,
         centrifugal_load: float = 0.0,
-    ) -> Forces:
+    ) -> Triple:
         """Force on the inner ring, and its derivatives.
 
         Parameters
@@ -134,6 +127,31 @@ class BearingForce:
             Outside the map, where the law has the policy "error".
         """
         return self._prepared(entrainment_speed, temperature, centrifugal_load)(pose, velocity, cage_angle)
+
+    def evaluate(
+        self,
+        pose: npt.ArrayLike,
+        velocity: npt.ArrayLike | None = None,
+        *,
+        cage_angle: float = 0.0,
+        entrainment_speed: float = math.nan,
+        temperature: float = math.nan,
+        centrifugal_load: float = 0.0,
+    ) -> Forces:
+        """Force on the inner ring, its derivatives, and whether a slice was outside the map; else as a call.
+
+        Parameters
+        ----------
+        pose, velocity : array (6,)
+            Pose of the inner ring in O [m], [rad], and its rate; at rest if there is no velocity.
+        cage_angle : float
+            Angle of the first roller [rad].
+        entrainment_speed, temperature : float
+            u [m/s] and T [K]; a map's law needs them.
+        centrifugal_load : float
+            Load of a roller [N/m]; for a map's law only.
+        """
+        return self._prepared(entrainment_speed, temperature, centrifugal_load).evaluate(pose, velocity, cage_angle)
 
     def rollers(
         self,
@@ -199,7 +217,7 @@ class BearingForce:
         entrainment_speed: float = math.nan,
         temperature: float = math.nan,
         centrifugal_load: float = 0.0,
-    ) -> Forces:
+    ) -> Triple:
         """Mean of force, stiffness and damping over the rolling of the cage by one roller, at a fixed pose.
 
         Parameters
@@ -221,16 +239,6 @@ class BearingForce:
         f, K, C = (np.asarray(np.mean(part, axis=0)) for part in zip(*parts, strict=True))
         return f, K, C
 
-    def law_arrays(self, law: ContactLaw, centrifugal: bool) -> tuple[tuple[FloatArray, ...], FloatArray]:
-        """Table of a law, flat, and work space for it; with the single contacts only where they are needed."""
-        if centrifugal not in self._law_arrays:
-            table_of_law = law.table if centrifugal else law.plain_table
-            width = max(
-                part.coefficients.shape[2] for part in (table_of_law.own, table_of_law.inner, table_of_law.outer)
-            )
-            self._law_arrays[centrifugal] = table.law_arrays(table_of_law), np.empty((4, width // 2, 8))
-        return self._law_arrays[centrifugal]
-
     def _prepared(self, entrainment_speed: float, temperature: float, centrifugal_load: float) -> ForceAtPoint:
         """The element at this point: the one of the last call, or a new law in its place."""
         current = self._current
@@ -240,7 +248,8 @@ class BearingForce:
         ):
             return current
         self._current = None
-        self._current = ForceAtPoint(self, entrainment_speed, temperature, centrifugal_load, self._work)
+        conditions = (entrainment_speed, temperature, centrifugal_load)
+        self._current = ForceAtPoint(self.bearing, self.flat_law, conditions, self._work)
         return self._current
 
 

@@ -1,13 +1,15 @@
 """Force, stiffness and damping of a bearing in compiled code, without allocation.
 
-`bearing_force` is what other compiled code calls; the arrays for it are those of a `ForceAtPoint` of
-`mbs.bearings.force_at_point`. Rollers are the first axis of the work arrays, slices the last. The steps are loops of
-their own over few arrays, so that all but the reading of the table run in vector instructions.
+`bearing_force` is what other compiled code calls, with named tuples. Python calls `force_of_arrays` with the same as
+plain arrays, because numba takes some ten microseconds longer to take tuples; they are the arrays of a `ForceAtPoint`
+of `mbs.bearings.force_at_point`. Rollers are the first axis of the work arrays, slices the last. The steps are loops
+of their own over few arrays, so that all but the reading of the table run in vector instructions.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -19,61 +21,181 @@ from ehdmaps.maps.tables import LOAD, Point
 from mbs.bearings.powers import power
 from mbs.bearings.slice_table import (
     CELLS,
-    CENTRE,
-    COEFFICIENT,
-    DAMPING,
-    EXPONENT,
     FIRST,
-    HIGHEST,
-    INVERSE_SCALE,
-    KIND,
     LAST,
-    LIFT_OFF,
     ROWS,
-    SAFE_APPROACH,
     SHIFT,
-    SLOPE,
+    LawNumbers,
+    PreparedLaw,
+    fixed_tuple,
+    law_numbers,
     read_cells,
 )
 
 NOT_FINITE, TOO_FAR = -1, -2
 """What `bearing_force` returns for values that are no finite numbers, and for poses beyond reason."""
 
-HALF_CLEARANCE, SLICE_LENGTH, MOST_TRAVEL, MOST_TILT, HALF_LENGTH, LEAST_LOST = range(6)
-"""Places in the array `geometry`."""
-
 _NO_APPROACH = 1e-30
 
-COS, SIN, GAP, TILT, RATE, TILT_RATE, DEEPEST = range(7)
-"""Rows of the array `rollers`: direction of each roller, approach and tilt over the slices, their rates, and a
-bound that no approach of a slice is above."""
+
+class Sizes(NamedTuple):
+    """Sizes of a bearing.
+
+    Attributes
+    ----------
+    half_clearance, slice_length : float
+        Half the diametral clearance [m], and how long a slice is [m].
+    most_travel, most_tilt : float
+        Largest accepted displacement [m] and tilt [rad] of the ring.
+    half_length : float
+        Half the length of a roller [m].
+    least_profile : float
+        The smallest of `Shape.profile` [m].
+    """
+
+    half_clearance: float
+    slice_length: float
+    most_travel: float
+    most_tilt: float
+    half_length: float
+    least_profile: float
+
+
+class Shape(NamedTuple):
+    """What does not change of a bearing.
+
+    Attributes
+    ----------
+    sizes : Sizes
+        Clearance, lengths, limits.
+    positions, profile : array (n,)
+        Places of the slices along the roller, and twice the depth of the profile there [m].
+    cos, sin : array (Z,)
+        Directions of the rollers in the cage.
+    """
+
+    sizes: Sizes
+    positions: FloatArray
+    profile: FloatArray
+    cos: FloatArray
+    sin: FloatArray
+
+
+class RingMotion(NamedTuple):
+    """Motion of the inner ring against the outer one, as far as rollers feel it, and where the cage stands.
+
+    Attributes
+    ----------
+    y, z, theta_y, theta_z : float
+        Displacements [m] and tilts [rad].
+    y_rate, z_rate, theta_y_rate, theta_z_rate : float
+        Their rates.
+    cage_cos, cage_sin : float
+        Direction of the first roller.
+    """
+
+    y: float
+    z: float
+    theta_y: float
+    theta_z: float
+    y_rate: float
+    z_rate: float
+    theta_y_rate: float
+    theta_z_rate: float
+    cage_cos: float
+    cage_sin: float
+
+
+class Roller(NamedTuple):
+    """Motion of a roller.
+
+    Attributes
+    ----------
+    cos, sin : float
+        Direction of the roller.
+    gap, tilt : float
+        Approach in its middle [m], and how it grows along it.
+    rate, tilt_rate : float
+        Their rates.
+    deepest : float
+        A bound that no approach of a slice is above [m].
+    """
+
+    cos: float
+    sin: float
+    gap: float
+    tilt: float
+    rate: float
+    tilt_rate: float
+    deepest: float
+
+
+class Work(NamedTuple):
+    """Work space, which holds the slices at rest after a call, per unit length.
+
+    Attributes
+    ----------
+    rows : array (Z, n), of int
+        Row of the table of each slice.
+    states : array (4, Z, n)
+        Load w, dw/d approach, damping c, dc/d approach; the derivatives to be multiplied by `LawNumbers.slope`.
+    """
+
+    rows: IntArray
+    states: FloatArray
+
+
+class Plane(NamedTuple):
+    """A sum of s B B^T over rollers, B the direction of each in y, z, theta_y (a) and theta_z (b)."""
+
+    yy: float
+    yz: float
+    zz: float
+    ya: float
+    yb: float
+    za: float
+    aa: float
+    ab: float
+    bb: float
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def roller_of(motion: RingMotion, shape: Shape, j: int) -> Roller:
+    """Where a roller stands, and how it moves.
+
+    Parameters
+    ----------
+    motion : RingMotion
+        Motion of the ring.
+    shape : Shape
+        The bearing.
+    j : int
+        Which roller.
+    """
+    cos = motion.cage_cos * shape.cos[j] - motion.cage_sin * shape.sin[j]
+    sin = motion.cage_sin * shape.cos[j] + motion.cage_cos * shape.sin[j]
+    sizes = shape.sizes
+    gap = motion.y * cos + motion.z * sin - sizes.half_clearance
+    tilt = motion.theta_z * cos - motion.theta_y * sin
+    return Roller(
+        cos=cos,
+        sin=sin,
+        gap=gap,
+        tilt=tilt,
+        rate=motion.y_rate * cos + motion.z_rate * sin,
+        tilt_rate=motion.theta_z_rate * cos - motion.theta_y_rate * sin,
+        deepest=gap + (sizes.half_length * abs(tilt) - sizes.least_profile),
+    )
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _place_rollers(state: FloatArray, geometry: FloatArray, angles: FloatArray, rollers: FloatArray) -> None:
-    """Directions of the rollers and their motion, from pose, velocity and cage angle in `state` (13,)."""
-    c, s = math.cos(state[12]), math.sin(state[12])
-    for j in range(angles.shape[1]):
-        cos = c * angles[0, j] - s * angles[1, j]
-        sin = s * angles[0, j] + c * angles[1, j]
-        rollers[COS, j], rollers[SIN, j] = cos, sin
-        rollers[GAP, j] = state[1] * cos + state[2] * sin - geometry[HALF_CLEARANCE]
-        rollers[TILT, j] = state[5] * cos - state[4] * sin
-        rollers[RATE, j] = state[7] * cos + state[8] * sin
-        rollers[TILT_RATE, j] = state[11] * cos - state[10] * sin
-        reach = geometry[HALF_LENGTH] * abs(rollers[TILT, j]) - geometry[LEAST_LOST]
-        rollers[DEEPEST, j] = rollers[GAP, j] + reach
-
-
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def _find_cells(
-    numbers: FloatArray, slices: FloatArray, rollers: FloatArray, rows: IntArray, places: FloatArray
-) -> None:
+def _find_cells(motion: RingMotion, shape: Shape, numbers: LawNumbers, rows: IntArray, places: FloatArray) -> None:
     """Row of the table of each slice, and the place in the cell."""
-    x, lost = slices[0], slices[1]
-    inverse = numbers[INVERSE_SCALE]
+    x, lost = shape.positions, shape.profile
+    inverse = numbers.inverse_scale
     for j in range(rows.shape[0]):
-        start, tilt = (rollers[GAP, j] - numbers[CENTRE]) * inverse, rollers[TILT, j] * inverse
+        roller = roller_of(motion, shape, j)
+        start, tilt = (roller.gap - numbers.centre) * inverse, roller.tilt * inverse
         row, place = rows[j], places[j]
         for i in range(x.size):
             z = start + x[i] * tilt - lost[i] * inverse
@@ -86,19 +208,19 @@ def _find_cells(
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _power_states(numbers: FloatArray, slices: FloatArray, rollers: FloatArray, states: FloatArray) -> None:
+def _power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray) -> None:
     """States of w = a delta^b with a constant damping; rollers without load are left out."""
-    x, lost = slices[0], slices[1]
-    a, b, damping = numbers[COEFFICIENT], numbers[EXPONENT], numbers[DAMPING]
-    for j in range(rollers.shape[1]):
-        start, tilt = rollers[GAP, j], rollers[TILT, j]
+    x, lost = shape.positions, shape.profile
+    a, b, damping = numbers.coefficient, numbers.exponent, numbers.damping
+    for j in range(shape.cos.size):
+        roller = roller_of(motion, shape, j)
         w, dw, c, dc = states[0, j], states[1, j], states[2, j], states[3, j]
-        if rollers[DEEPEST, j] <= 0.0:
+        if roller.deepest <= 0.0:
             for i in range(x.size):
                 w[i] = dw[i] = c[i] = dc[i] = 0.0
             continue
         for i in range(x.size):
-            delta = start + x[i] * tilt - lost[i]
+            delta = roller.gap + x[i] * roller.tilt - lost[i]
             safe = delta if delta > _NO_APPROACH else _NO_APPROACH
             slope = a * b * power(safe, b - 1.0)
             dw[i] = slope if delta > 0.0 else 0.0
@@ -162,124 +284,115 @@ def _lifting_sums(
     return w0, w1, k0, k1, k2, c0, c1, c2, 0.0
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def _sum_slices(
-    slices: FloatArray, rollers: FloatArray, states: FloatArray, numbers: FloatArray, sums: FloatArray
-) -> int:
-    """Sums over the slices of each roller, into `sums` (Z, 8); returns how many rollers are above the mapped load.
-
-    w, w x, k, k x, k x^2, c, c x, c x^2 with the loads at the rate of each slice, see `ehdmaps.physics.unilateral`.
-    """
-    slope = numbers[SLOPE]
-    above = 0
-    positions, w, dw, c, dc = slices[0], states[0], states[1], states[2], states[3]
-    for j in range(sums.shape[0]):
-        if rollers[DEEPEST, j] <= numbers[LIFT_OFF]:
-            sums[j] = 0.0
-            continue
-        motion = rollers[RATE, j], rollers[TILT_RATE, j]
-        found = _moderate_sums(positions, w, dw, c, dc, motion, j)
-        if found[8] > 0.0:
-            found = _lifting_sums(positions, w, dw, c, dc, motion, j)
-        sums[j, 0], sums[j, 1] = found[0], found[1]
-        sums[j, 2], sums[j, 3], sums[j, 4] = found[2] * slope, found[3] * slope, found[4] * slope
-        sums[j, 5], sums[j, 6], sums[j, 7] = found[5], found[6], found[7]
-        if rollers[DEEPEST, j] > numbers[SAFE_APPROACH] and np.max(w[j]) > numbers[HIGHEST]:
-            above += 1
-    return above
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _added(plane: Plane, roller: Roller, flat: float, mixed: float, tilted: float) -> Plane:
+    """The sum with one more roller, from its sums over 1, x and x^2."""
+    c, s = roller.cos, roller.sin
+    cc, cs, ss = c * c, c * s, s * s
+    return Plane(
+        yy=plane.yy + flat * cc,
+        yz=plane.yz + flat * cs,
+        zz=plane.zz + flat * ss,
+        ya=plane.ya - mixed * cs,
+        yb=plane.yb + mixed * cc,
+        za=plane.za - mixed * ss,
+        aa=plane.aa + tilted * ss,
+        ab=plane.ab - tilted * cs,
+        bb=plane.bb + tilted * cc,
+    )
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _matrix(rollers: FloatArray, sums: FloatArray, first: int, length: float, out: FloatArray) -> None:
-    """Sum of s B B^T over the rollers, into `out` (6, 6), from three columns of `sums`."""
-    yy = yz = zz = ya = yb = za = aa = ab = bb = 0.0
-    for j in range(sums.shape[0]):
-        c, s = rollers[COS, j], rollers[SIN, j]
-        m0, m1, m2 = sums[j, first], sums[j, first + 1], sums[j, first + 2]
-        cc, cs, ss = c * c, c * s, s * s
-        yy += m0 * cc
-        yz += m0 * cs
-        zz += m0 * ss
-        ya -= m1 * cs
-        yb += m1 * cc
-        za -= m1 * ss
-        aa += m2 * ss
-        ab -= m2 * cs
-        bb += m2 * cc
+def _write(plane: Plane, length: float, out: FloatArray) -> None:
+    """Write a sum into `out` (6, 6), for slices of a length."""
     for i in range(6):
         for k in range(6):
             out[i, k] = 0.0
-    out[1, 1], out[2, 2], out[4, 4], out[5, 5] = yy * length, zz * length, aa * length, bb * length
-    out[1, 2] = out[2, 1] = yz * length
-    out[1, 4] = out[4, 1] = ya * length
-    out[1, 5] = out[5, 1] = yb * length
-    out[2, 4] = out[4, 2] = za * length
-    out[2, 5] = out[5, 2] = -ya * length
-    out[4, 5] = out[5, 4] = ab * length
+    out[1, 1], out[2, 2] = plane.yy * length, plane.zz * length
+    out[4, 4], out[5, 5] = plane.aa * length, plane.bb * length
+    out[1, 2] = out[2, 1] = plane.yz * length
+    out[1, 4] = out[4, 1] = plane.ya * length
+    out[1, 5] = out[5, 1] = plane.yb * length
+    out[2, 4] = out[4, 2] = plane.za * length
+    out[2, 5] = out[5, 2] = -plane.ya * length
+    out[4, 5] = out[5, 4] = plane.ab * length
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _assemble(rollers: FloatArray, sums: FloatArray, length: float, out: FloatArray) -> None:
-    """Force, stiffness and damping, into `out` (13, 6)."""
+def assemble(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray, out: FloatArray) -> int:
+    """Force, stiffness and damping, into `out` (13, 6); returns how many rollers are above the mapped load.
+
+    The loads are those at the rate of each slice, see `ehdmaps.physics.unilateral`.
+
+    Parameters
+    ----------
+    motion : RingMotion
+        Motion of the ring.
+    shape : Shape
+        The bearing.
+    numbers : LawNumbers
+        The limits of the law, and what slopes are multiplied by.
+    states : array (4, Z, n)
+        States of the slices, as of `Work`.
+    out : array (13, 6)
+        Force, six rows of stiffness, six rows of damping.
+    """
+    w, dw, c, dc = states[0], states[1], states[2], states[3]
+    slope, length = numbers.slope, shape.sizes.slice_length
+    above = 0
     y = z = a = b = 0.0
-    for j in range(sums.shape[0]):
-        c, s = rollers[COS, j], rollers[SIN, j]
-        load, moment = sums[j, 0], sums[j, 1]
-        y -= c * load
-        z -= s * load
-        a += s * moment
-        b -= c * moment
+    stiffness = damping = Plane(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    for j in range(shape.cos.size):
+        roller = roller_of(motion, shape, j)
+        if roller.deepest <= numbers.lift_off:
+            continue
+        rates = roller.rate, roller.tilt_rate
+        found = _moderate_sums(shape.positions, w, dw, c, dc, rates, j)
+        if found[8] > 0.0:
+            found = _lifting_sums(shape.positions, w, dw, c, dc, rates, j)
+        load, moment, k0, k1, k2, c0, c1, c2, _ = found
+        y -= roller.cos * load
+        z -= roller.sin * load
+        a += roller.sin * moment
+        b -= roller.cos * moment
+        stiffness = _added(stiffness, roller, k0 * slope, k1 * slope, k2 * slope)
+        damping = _added(damping, roller, c0, c1, c2)
+        if roller.deepest > numbers.safe_approach and np.max(w[j]) > numbers.highest:
+            above += 1
     out[0, 0] = out[0, 3] = 0.0
     out[0, 1], out[0, 2], out[0, 4], out[0, 5] = y * length, z * length, a * length, b * length
-    _matrix(rollers, sums, 2, length, out[1:7])
-    _matrix(rollers, sums, 5, length, out[7:13])
+    _write(stiffness, length, out[1:7])
+    _write(damping, length, out[7:13])
+    return above
 
 
 @njit(cache=True, error_model="numpy")
-def _check(state: FloatArray, geometry: FloatArray) -> int:
-    """Zero, or what is wrong about the state."""
-    total = 0.0
-    for i in range(13):
-        total += abs(state[i])
-    if not total < math.inf:
+def check_motion(motion: RingMotion, sizes: Sizes) -> int:
+    """Zero, or what is wrong about the motion: `NOT_FINITE`, `TOO_FAR`."""
+    total = abs(motion.y) + abs(motion.z) + abs(motion.theta_y) + abs(motion.theta_z)
+    total += abs(motion.y_rate) + abs(motion.z_rate) + abs(motion.theta_y_rate) + abs(motion.theta_z_rate)
+    if not total + abs(motion.cage_cos) < math.inf:
         return NOT_FINITE
-    far, tilted = geometry[MOST_TRAVEL], geometry[MOST_TILT]
-    within = abs(state[1]) <= far and abs(state[2]) <= far and abs(state[4]) <= tilted and abs(state[5]) <= tilted
+    far, tilted = sizes.most_travel, sizes.most_tilt
+    within = abs(motion.y) <= far and abs(motion.z) <= far
+    within = within and abs(motion.theta_y) <= tilted and abs(motion.theta_z) <= tilted
     return 0 if within else TOO_FAR
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def bearing_force(
-    state: FloatArray,
-    geometry: FloatArray,
-    slices: FloatArray,
-    angles: FloatArray,
-    numbers: FloatArray,
-    cells: FloatArray,
-    rows: IntArray,
-    states: FloatArray,
-    rollers: FloatArray,
-    sums: FloatArray,
-    out: FloatArray,
-) -> int:
+def bearing_force(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work, out: FloatArray) -> int:
     """Force on the inner ring, stiffness and damping.
 
     Parameters
     ----------
-    state : array (13,)
-        Pose (6), velocity (6), cage angle: [m], [rad], [m/s], [rad/s].
-    geometry : array (6,)
-        Half the diametral clearance [m], slice length [m], largest accepted travel [m] and tilt [rad],
-        half the roller length [m], twice the smallest profile [m].
-    slices : array (2, n)
-        Positions of the slices and twice the profile there [m].
-    angles : array (2, Z)
-        Cosine and sine of the angles of the rollers in the cage.
-    numbers, cells : arrays (10,), (2 ROWS, 8)
-        The prepared law.
-    rows, states, rollers, sums : arrays (Z, n), (4, Z, n), (7, Z), (Z, 8)
-        Work space. Afterwards `states` holds load, slope, damping and its slope of all slices at rest per unit length
-        (the slopes to be multiplied by numbers[SLOPE]), `sums` the sums over slices.
+    motion : RingMotion
+        Motion of the inner ring, and where the cage stands.
+    shape : Shape
+        The bearing.
+    law : PreparedLaw
+        Law of a roller between both raceways, at a speed and temperature.
+    work : Work
+        Work space, overwritten.
     out : array (13, 6)
         Force, six rows of stiffness, six rows of damping.
 
@@ -288,49 +401,173 @@ def bearing_force(
     int
         A code: zero; 1 if some slice was above the mapped load; NOT_FINITE or TOO_FAR, with `out` left alone.
     """
-    wrong = _check(state, geometry)
+    wrong = check_motion(motion, shape.sizes)
     if wrong != 0:
         return wrong
-    _place_rollers(state, geometry, angles, rollers)
-    if numbers[KIND] == CELLS:
+    states = work.states
+    if law.numbers.kind == CELLS:
         # The places lie where the load is written, at the same time as they are read.
-        _find_cells(numbers, slices, rollers, rows, states[0])
-        flat = states.reshape(4, -1)
-        read_cells(cells, rows.reshape(-1), flat[0], flat)
+        _find_cells(motion, shape, law.numbers, work.rows, states[0])
+        read_cells(law.cells, work.rows.reshape(-1), states.reshape(4, -1))
     else:
-        _power_states(numbers, slices, rollers, states)
-    above = _sum_slices(slices, rollers, states, numbers, sums)
-    _assemble(rollers, sums, geometry[SLICE_LENGTH], out)
+        _power_states(motion, shape, law.numbers, states)
+    above = assemble(motion, shape, law.numbers, states, out)
     return 1 if above > 0 else 0
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def bearing_force_of_point(
     point: Point,
+    motion: RingMotion,
+    shape: Shape,
+    numbers: LawNumbers,
+    states: FloatArray,
+    counts: IntArray,
+    out: FloatArray,
+) -> int:
+    """`bearing_force` straight from a `Point`, for laws that no table fits; some ten times slower.
+
+    Parameters
+    ----------
+    point : Point
+        The law.
+    motion, shape
+        The same as for `bearing_force`.
+    numbers : LawNumbers
+        Numbers with a slope of 1, and without lift-off.
+    states : array (4, Z, n)
+        Work space, overwritten by the slices at their rates.
+    counts : array (4,), of int
+        Numbers of calls outside the map, counted up.
+    out : array (13, 6)
+        Result, see `bearing_force`.
+    """
+    wrong = check_motion(motion, shape.sizes)
+    if wrong != 0:
+        return wrong
+    before = counts[LOAD]
+    for j in range(shape.cos.size):
+        roller = roller_of(motion, shape, j)
+        for i in range(shape.positions.size):
+            delta = roller.gap + shape.positions[i] * roller.tilt - shape.profile[i]
+            rate = roller.rate + shape.positions[i] * roller.tilt_rate
+            found = evaluate_at(point, delta, rate, counts)
+            states[0, j, i], states[1, j, i], states[2, j, i], states[3, j, i] = found[0], found[1], found[2], 0.0
+    # The rates are in the loads.
+    still = RingMotion(
+        y=motion.y, z=motion.z, theta_y=motion.theta_y, theta_z=motion.theta_z, y_rate=0.0, z_rate=0.0,
+        theta_y_rate=0.0, theta_z_rate=0.0, cage_cos=motion.cage_cos, cage_sin=motion.cage_sin,
+    )  # fmt: skip
+    assemble(still, shape, numbers, states, out)
+    return 1 if counts[LOAD] > before else 0
+
+
+@njit(cache=True, error_model="numpy")
+def sizes_of(numbers: FloatArray) -> Sizes:
+    """Sizes from an array (6,) in their order."""
+    return Sizes(*fixed_tuple(numbers, 6))
+
+
+@njit(cache=True, error_model="numpy")
+def _ring_motion(state: FloatArray) -> RingMotion:
+    """What rollers feel of pose (6,), velocity (6,) and cage angle in a row."""
+    c, s = math.cos(state[12]), math.sin(state[12])
+    return RingMotion(state[1], state[2], state[4], state[5], state[7], state[8], state[10], state[11], c, s)
+
+
+@njit(cache=True, error_model="numpy")
+def _all_finite(state: FloatArray) -> bool:
+    """Whether all numbers are finite, and their sum is."""
+    total = 0.0
+    for value in state:
+        total += abs(value)
+    return total < math.inf
+
+
+@njit(cache=True, error_model="numpy")
+def force_of_arrays(
     state: FloatArray,
-    geometry: FloatArray,
+    sizes: FloatArray,
+    slices: FloatArray,
+    angles: FloatArray,
+    numbers: FloatArray,
+    cells: FloatArray,
+    rows: IntArray,
+    states: FloatArray,
+    out: FloatArray,
+) -> int:
+    """`bearing_force` for callers in Python.
+
+    Parameters
+    ----------
+    state : array (13,)
+        Pose (6), velocity (6), cage angle: [m], [rad], [m/s], [rad/s].
+    sizes : array (6,)
+        The numbers of `Sizes` in their order.
+    slices, angles : array (2, n), (2, Z)
+        Positions and profile, cosine and sine of `Shape`.
+    numbers : array (10,)
+        The numbers of `LawNumbers` in their order.
+    cells : array (2 ROWS, 8)
+        Table of `PreparedLaw`.
+    rows, states : array (Z, n), (4, Z, n)
+        Arrays of `Work`.
+    out : array (13, 6)
+        Result, see `bearing_force`.
+    """
+    if not _all_finite(state):
+        return NOT_FINITE
+    shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
+    law = PreparedLaw(law_numbers(numbers), cells)
+    status: int = bearing_force(_ring_motion(state), shape, law, Work(rows, states), out)
+    return status
+
+
+@njit(cache=True, error_model="numpy")
+def force_of_point_arrays(
+    point: Point,
+    state: FloatArray,
+    sizes: FloatArray,
     slices: FloatArray,
     angles: FloatArray,
     numbers: FloatArray,
     states: FloatArray,
-    rollers: FloatArray,
-    sums: FloatArray,
     counts: IntArray,
     out: FloatArray,
 ) -> int:
-    """`bearing_force` straight from a `Point`, for laws that no table fits; some ten times slower."""
-    wrong = _check(state, geometry)
-    if wrong != 0:
-        return wrong
-    _place_rollers(state, geometry, angles, rollers)
-    before = counts[LOAD]
-    for j in range(sums.shape[0]):
-        for i in range(slices.shape[1]):
-            delta = rollers[GAP, j] + slices[0, i] * rollers[TILT, j] - slices[1, i]
-            rate = rollers[RATE, j] + slices[0, i] * rollers[TILT_RATE, j]
-            found = evaluate_at(point, delta, rate, counts)
-            states[0, j, i], states[1, j, i], states[2, j, i], states[3, j, i] = found[0], found[1], found[2], 0.0
-        rollers[RATE, j] = rollers[TILT_RATE, j] = 0.0  # the rates are in the loads
-    _sum_slices(slices, rollers, states, numbers, sums)
-    _assemble(rollers, sums, geometry[SLICE_LENGTH], out)
-    return 1 if counts[LOAD] > before else 0
+    """`bearing_force_of_point` for callers in Python.
+
+    Parameters
+    ----------
+    point : Point
+        The law.
+    state, sizes, slices, angles, numbers, states
+        The same arrays as for `force_of_arrays`.
+    counts : array (4,), of int
+        Numbers of calls outside the map, counted up.
+    out : array (13, 6)
+        Result, see `bearing_force`.
+    """
+    if not _all_finite(state):
+        return NOT_FINITE
+    shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
+    status: int = bearing_force_of_point(point, _ring_motion(state), shape, law_numbers(numbers), states, counts, out)
+    return status
+
+
+@njit(cache=True, error_model="numpy")
+def rollers_of_arrays(state: FloatArray, sizes: FloatArray, slices: FloatArray, angles: FloatArray) -> FloatArray:
+    """Gap, tilt and their rates of all rollers, shape (4, Z), for callers in Python.
+
+    Parameters
+    ----------
+    state, sizes, slices, angles
+        The same arrays as for `force_of_arrays`.
+    """
+    shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
+    motion = _ring_motion(state)
+    found = np.empty((4, shape.cos.size))
+    for j in range(shape.cos.size):
+        roller = roller_of(motion, shape, j)
+        found[0, j], found[1, j], found[2, j], found[3, j] = roller.gap, roller.tilt, roller.rate, roller.tilt_rate
+    return found

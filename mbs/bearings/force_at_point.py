@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,34 +15,43 @@ from ehdmaps.maps.law import ContactLaw, LawAtPoint
 from ehdmaps.maps.tables import POWER_LAW, Point
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_kernel import NOT_FINITE, bearing_force, bearing_force_of_point
-from mbs.bearings.laws import DryLaw
+from mbs.bearings.bearing_kernel import (
+    NOT_FINITE,
+    Sizes,
+    force_of_arrays,
+    force_of_point_arrays,
+    rollers_of_arrays,
+)
+from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.roller_loads import RollerLoads, roller_loads
+from mbs.model.elements import Forces
 
-if TYPE_CHECKING:
-    from mbs.bearings.bearing_force import BearingForce
-
-Forces = tuple[FloatArray, FloatArray, FloatArray]
+Triple = tuple[FloatArray, FloatArray, FloatArray]
+"""Force, stiffness, damping."""
 
 _MOST_TILT = 0.5
 _SIX, _OUT = (6,), (13, 6)
+_POWER = table.LawNumbers(
+    kind=table.POWER, coefficient=0.0, exponent=0.0, damping=0.0, centre=0.0, inverse_scale=0.0, highest=0.0,
+    safe_approach=0.0, lift_off=0.0, slope=1.0,
+)  # fmt: skip
+_BY_SLICES = _POWER._replace(lift_off=-math.inf, safe_approach=math.inf)
+"""Where the law is called for each slice, slopes are whole and loads are counted there."""
 
 
-class Work:
+class Arrays:
     """Arrays of one element: its constants for compiled code, and work space."""
 
     def __init__(self, bearing: Bearing) -> None:
         geometry = bearing.geometry
         rollers, slices = geometry.rollers, bearing.slices
-        self.geometry = np.array(
-            [
-                0.5 * geometry.diametral_clearance,
-                bearing.slice_length,
-                geometry.roller_diameter,
-                _MOST_TILT,
-                0.5 * geometry.roller_length,
-                2.0 * float(np.min(bearing.profile_depths)),
-            ]
+        self.sizes = Sizes(
+            half_clearance=0.5 * geometry.diametral_clearance,
+            slice_length=bearing.slice_length,
+            most_travel=geometry.roller_diameter,
+            most_tilt=_MOST_TILT,
+            half_length=0.5 * geometry.roller_length,
+            least_profile=2.0 * float(np.min(bearing.profile_depths)),
         )
         self.slices = np.stack((bearing.slice_positions, 2.0 * bearing.profile_depths))
         angles = 2.0 * math.pi * np.arange(rollers) / rollers
@@ -50,8 +59,6 @@ class Work:
         self.state = np.zeros(13)
         self.rows = np.zeros((rollers, slices), dtype=np.int64)
         self.states = np.zeros((4, rollers, slices))
-        self.rollers = np.zeros((7, rollers))
-        self.sums = np.zeros((rollers, 8))
         self.numbers = np.zeros(table.NUMBERS)
         self.cells = np.zeros((1, 8))
         self.buffer = np.zeros((1, 1))
@@ -63,48 +70,99 @@ class Work:
             self.cells, self.buffer = np.empty((2 * table.ROWS, 8)), np.empty((8, 2 * table.ROWS + 1))
 
 
+class FlatLaw:
+    """A law, and its table flat for compiled code; with the single contacts only where they are needed.
+
+    Parameters
+    ----------
+    law : Law
+        Law of a roller between both raceways.
+    """
+
+    def __init__(self, law: Law) -> None:
+        self.law = law
+        self._made: dict[bool, tuple[table.FlatTable, FloatArray]] = {}
+
+    def arrays(self, law: ContactLaw, centrifugal: bool) -> tuple[table.FlatTable, FloatArray]:
+        """Flat table of `law`, and work space for it."""
+        if centrifugal not in self._made:
+            whole = law.table if centrifugal else law.plain_table
+            width = max(part.coefficients.shape[2] for part in (whole.own, whole.inner, whole.outer))
+            self._made[centrifugal] = table.flat_table(whole), np.empty((4, width // 2, 8))
+        return self._made[centrifugal]
+
+
 class ForceAtPoint:
     """A `BearingForce` at one speed, temperature and centrifugal load; make it by `BearingForce.at`.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        Geometry, clearance, profile, slices.
+    flat_law : FlatLaw
+        The law.
+    conditions : (float, float, float)
+        u [m/s], T [K], centrifugal load [N/m].
+    work : Arrays, optional
+        Arrays to be used; new ones if left out.
 
     Attributes
     ----------
     conditions : (float, float, float)
         u [m/s], T [K], centrifugal load [N/m]; NaN where a dry law was given none.
     arrays : tuple
-        All arguments of `mbs.bearings.bearing_kernel.bearing_force` but the last, for other compiled code.
+        All arguments of `mbs.bearings.bearing_kernel.force_of_arrays` but the last, for other compiled code.
     """
 
     def __init__(
         self,
-        force: BearingForce,
-        entrainment_speed: float,
-        temperature: float,
-        centrifugal_load: float,
-        work: Work | None = None,
+        bearing: Bearing,
+        flat_law: FlatLaw,
+        conditions: tuple[float, float, float],
+        work: Arrays | None = None,
     ) -> None:
-        self.conditions = (entrainment_speed, temperature, centrifugal_load)
-        self._force = force
-        self._work = work or Work(force.bearing)
+        self.conditions = conditions
+        self._bearing, self._flat_law = bearing, flat_law
+        self._work = work or Arrays(bearing)
         self._law: LawAtPoint | None = None
         self._by_slices = False
         self._outside = False
-        law, numbers = force.law, self._work.numbers
+        law, numbers, centrifugal_load = flat_law.law, self._work.numbers, conditions[2]
         if isinstance(law, DryLaw):
             if centrifugal_load != 0.0:
                 raise InputError(
                     f"bearing force, centrifugal_load: got {centrifugal_load!r} N/m with the law {law.name!r}; "
                     "allowed: 0; only a map's law brings rollers into equilibrium"
                 )
-            length = force.bearing.geometry.roller_length
+            length = bearing.geometry.roller_length
             _set_power(numbers, law.coefficient / length, law.exponent, law.damping / length, math.inf)
         else:
             self._prepare(law)
         w = self._work
         self._state = (w.state, w.state[:6], w.state[6:12])
-        self.arrays = (w.state, w.geometry, w.slices, w.angles, w.numbers, w.cells, w.rows, w.states, w.rollers, w.sums)
+        self._shape = (w.state, np.array(w.sizes), w.slices, w.angles, w.numbers)
+        self.arrays = (*self._shape, w.cells, w.rows, w.states)
 
-    def __call__(self, pose: npt.ArrayLike, velocity: npt.ArrayLike | None = None, cage_angle: float = 0.0) -> Forces:
+    def __call__(self, pose: npt.ArrayLike, velocity: npt.ArrayLike | None = None, cage_angle: float = 0.0) -> Triple:
         """Force, stiffness and damping; as calling the `BearingForce`. The arrays are new ones each time."""
+        out, _ = self._found(pose, velocity, cage_angle)
+        return out[0], out[1:7], out[7:]
+
+    def evaluate(self, pose: npt.ArrayLike, velocity: npt.ArrayLike | None = None, cage_angle: float = 0.0) -> Forces:
+        """As a call, and whether a slice was outside the map.
+
+        Parameters
+        ----------
+        pose, velocity : array (6,)
+            Pose of the inner ring in O [m], [rad], and its rate; at rest if there is no velocity.
+        cage_angle : float
+            Angle of the first roller [rad].
+        """
+        out, outside = self._found(pose, velocity, cage_angle)
+        return Forces(out[0], out[1:7], out[7:], outside)
+
+    def _found(self, pose: npt.ArrayLike, velocity: npt.ArrayLike | None, cage_angle: float) -> tuple[FloatArray, bool]:
+        """Force, stiffness and damping in rows (13, 6), and whether a slice was outside the map."""
         state, own_pose, own_velocity = self._state
         own_pose[...] = pose if type(pose) is np.ndarray and pose.shape == _SIX else _vector("pose", pose)
         if velocity is None:
@@ -115,10 +173,9 @@ class ForceAtPoint:
             own_velocity[...] = _vector("velocity", velocity)
         state[12] = cage_angle
         out: FloatArray = np.empty(_OUT)
-        status = self._from_law(out) if self._by_slices else bearing_force(*self.arrays, out)
-        if status != 0 or self._outside:
-            self._settle(status, out)
-        return out[0], out[1:7], out[7:]
+        status = self._from_law(out) if self._by_slices else force_of_arrays(*self.arrays, out)
+        outside = self._settle(status, out) if status != 0 or self._outside else False
+        return out, outside
 
     @property
     def tabulated(self) -> bool:
@@ -146,15 +203,16 @@ class ForceAtPoint:
         """
         self(pose, velocity, cage_angle)
         w = self._work
-        return roller_loads(self._force.bearing, w.slices, w.states, w.rollers, cage_angle)
+        rollers = rollers_of_arrays(*self._shape[:4])
+        return roller_loads(self._bearing, w.slices, w.states, rollers, cage_angle)
 
     def _prepare(self, law: ContactLaw) -> None:
         """Make the law of this point ready for compiled code."""
-        work, force = self._work, self._force
+        work = self._work
         q = _check_conditions(self.conditions)
         if q >= 0.0 and q < law.load_range[1]:
             conditions = np.array(self.conditions, dtype=np.float64)
-            arrays, workspace = force.law_arrays(law, q > 0.0)
+            arrays, workspace = self._flat_law.arrays(law, q > 0.0)
             counts = np.zeros(4, dtype=np.int64)
             work.make_room()
             fits = table.tabulate_law(
@@ -172,51 +230,42 @@ class ForceAtPoint:
             _set_power(work.numbers, a ** (-1.0 / b), 1.0 / b, 0.0, highest)
             return
         self._by_slices = True
-        work.numbers[:] = 0.0
-        work.numbers[table.SLOPE] = 1.0
-        work.numbers[table.LIFT_OFF], work.numbers[table.SAFE_APPROACH] = -math.inf, math.inf
+        work.numbers[:] = _BY_SLICES
 
     def _point(self, law: ContactLaw) -> Point:
         """The law at this point, for the calls that no table answers."""
         if self._law is None:
-            before = int(law.counts.sum())
-            try:
-                self._law = law.at(*self.conditions)
-            except OutsideMapError:
-                self._force.outside_calls += 1
-                raise
-            self._outside = int(law.counts.sum()) > before
+            self._law = law.at(*self.conditions)
+            self._outside = self._law.outside
         return self._law.point
 
     def _from_slices(self, law: ContactLaw, out: FloatArray) -> int:
         """Call the law for each slice."""
         w = self._work
-        w.numbers[table.SLOPE] = 1.0
-        w.numbers[table.LIFT_OFF] = -math.inf
-        work = (w.state, w.geometry, w.slices, w.angles, w.numbers, w.states, w.rollers, w.sums, w.counts)
-        status: int = bearing_force_of_point(self._point(law), *work, out)
+        w.numbers[:] = _BY_SLICES
+        status: int = force_of_point_arrays(self._point(law), *self._shape, w.states, w.counts, out)
+        w.state[6:12] = 0.0  # the rates are in the loads, should someone look at the rollers
         return status
 
     def _from_law(self, out: FloatArray) -> int:
         """Call the law for each slice, at conditions that no table fits."""
-        law = self._force.law
+        law = self._flat_law.law
         assert isinstance(law, ContactLaw)
         return self._from_slices(law, out)
 
-    def _settle(self, status: int, out: FloatArray) -> None:
-        """Raise what a status asks for, or count it; above the load of the table ask the law itself."""
-        work, law = self._work, self._force.law
+    def _settle(self, status: int, out: FloatArray) -> bool:
+        """Raise what a status asks for; above the load of the table ask the law itself. Whether outside the map."""
+        work, law = self._work, self._flat_law.law
         if status < 0:
-            _raise_state(work.state, work.geometry, status == NOT_FINITE)
+            _raise_state(work.state, work.sizes, status == NOT_FINITE)
         if not isinstance(law, ContactLaw):
-            return
+            return False
         if status > 0 and not self._by_slices:
             numbers = work.numbers.copy()
             status = self._from_slices(law, out)
             work.numbers[:] = numbers
         if status == 0 and not self._outside:
-            return
-        self._force.outside_calls += 1
+            return False
         if status > 0 and law.outside == "error":
             highest = float(np.max(work.states[0]))
             raise OutsideMapError(
@@ -224,6 +273,7 @@ class ForceAtPoint:
                 f"mapped: up to {law.load_range[1]:.6g} N/m\n"
                 "make a map that reaches there, or take a law with outside='clamp' or outside='asymptote'"
             )
+        return True
 
 
 def _check_conditions(conditions: tuple[float, float, float]) -> float:
@@ -244,11 +294,13 @@ def _check_conditions(conditions: tuple[float, float, float]) -> float:
 
 def _set_power(numbers: FloatArray, coefficient: float, exponent: float, damping: float, highest: float) -> None:
     """Write a law w = a delta^b."""
-    numbers[:] = 0.0
-    numbers[table.KIND] = table.POWER
-    numbers[table.COEFFICIENT], numbers[table.EXPONENT], numbers[table.DAMPING] = coefficient, exponent, damping
-    numbers[table.HIGHEST], numbers[table.SLOPE] = highest, 1.0
-    numbers[table.SAFE_APPROACH] = (highest / coefficient) ** (1.0 / exponent)
+    numbers[:] = _POWER._replace(
+        coefficient=coefficient,
+        exponent=exponent,
+        damping=damping,
+        highest=highest,
+        safe_approach=(highest / coefficient) ** (1.0 / exponent),
+    )
 
 
 def _one_power(structure: FloatArray) -> bool:
@@ -270,7 +322,7 @@ def _vector(name: str, given: Any) -> FloatArray:
     return values
 
 
-def _raise_state(state: FloatArray, geometry: FloatArray, not_finite: bool) -> None:
+def _raise_state(state: FloatArray, sizes: Sizes, not_finite: bool) -> None:
     """Say what is wrong about pose, velocity or cage angle."""
     named = {"pose": state[:6], "velocity": state[6:12], "cage_angle": state[12:]}
     if not_finite:
@@ -284,6 +336,6 @@ def _raise_state(state: FloatArray, geometry: FloatArray, not_finite: bool) -> N
         )
     raise InputError(
         f"bearing force, pose: got y = {state[1]:.6g} m, z = {state[2]:.6g} m, theta_y = {state[4]:.6g} rad, "
-        f"theta_z = {state[5]:.6g} rad; allowed: within {geometry[2]:.6g} m (the roller diameter) and "
-        f"{geometry[3]} rad; check units and the step of the solver"
+        f"theta_z = {state[5]:.6g} rad; allowed: within {sizes.most_travel:.6g} m (the roller diameter) and "
+        f"{sizes.most_tilt} rad; check units and the step of the solver"
     )

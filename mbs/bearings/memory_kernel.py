@@ -40,7 +40,7 @@ _PART = 2.0**-7
 """How far a parabola reaches, as a part of the distance from the centre of the table: half a cell or less."""
 
 _LOAD_PART = 2.0**-5
-_TOLERANCE = 3e-4
+_TOLERANCE = 3e-5
 _SMALL = 30.0
 """A slice has its state when the last move changed its load by less than `_TOLERANCE` of the load and this [N/m]: what
 is left is the square."""
@@ -50,7 +50,7 @@ _LEAST = 1e-30
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def settle(table: MemoryTable, delta: FloatArray, memory: FloatArray) -> None:
+def settle(table: MemoryTable, delta: FloatArray, memory: FloatArray, load: FloatArray, tangent: FloatArray) -> None:
     """Films in equilibrium, as at the start of a run.
 
     Parameters
@@ -61,12 +61,15 @@ def settle(table: MemoryTable, delta: FloatArray, memory: FloatArray) -> None:
         Approaches [m].
     memory : array (MEMORY, n)
         Memory of the slices; written.
+    load, tangent : array (n,)
+        Written: [N/m], [N/m2].
     """
     memory[:] = 0.0
     for i in range(delta.size):
         xi = max(delta[i], table.lift_off)
         memory[LATEST, i] = memory[BEFORE, i] = memory[TRIAL, i] = xi
-        memory[LOAD, i] = equilibrium_at(table, xi)[0]
+        load[i], tangent[i], _, _, _, _ = equilibrium_at(table, xi)
+        memory[LOAD, i] = load[i]
         memory[FADE, i] = 1.0 / _LEAST
         _read(table, memory, i)
 

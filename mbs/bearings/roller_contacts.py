@@ -16,10 +16,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError, OutsideMapError, SolverError
+from ehdmaps.errors import InputError, SolverError
 from ehdmaps.maps.law import ContactLaw, LawAtPoint
 from mbs.bearings.bearing import Bearing
+from mbs.bearings.film_relaxation import relaxation_times, relaxing
 from mbs.bearings.laws import DryLaw, Law
+from mbs.model.elements import Forces
+from mbs.model.relaxation import Relaxation
 
 _STEPS = 100
 _ALIKE = 1e-6
@@ -39,11 +42,6 @@ class RollerContacts:
         Laws of a single contact: `hertz(bearing).single()` or `constant(k, c).single()` of `mbs.bearings.laws`, or the
         laws "inner" and "outer" of a map.
 
-    Attributes
-    ----------
-    outside_calls : int
-        How many calls were outside the map so far.
-
     Raises
     ------
     InputError
@@ -56,7 +54,6 @@ class RollerContacts:
             raise InputError(problems)
         self.bearing = bearing
         self.laws = (inner, outer)
-        self.outside_calls = 0
         self._points: dict[int, LawAtPoint] = {}
         self._x = bearing.slice_positions
         self._lost = bearing.profile_depths + 0.25 * bearing.geometry.diametral_clearance
@@ -96,6 +93,19 @@ class RollerContacts:
         OutsideMapError
             Outside the map, where a law has the policy "error".
         """
+        conditions = {"entrainment_speed": entrainment_speed, "temperature": temperature}
+        return self.evaluate(displacement, velocity, cage_angle=cage_angle, **conditions)[:3]
+
+    def evaluate(
+        self,
+        displacement: npt.ArrayLike,
+        velocity: npt.ArrayLike | None = None,
+        *,
+        cage_angle: float = 0.0,
+        entrainment_speed: float = math.nan,
+        temperature: float = math.nan,
+    ) -> Forces:
+        """As a call, and whether a slice was outside the map of its contact."""
         q = self._vector("displacement", displacement)
         v = np.zeros(self.size) if velocity is None else self._vector("velocity", velocity)
         f, K, C = np.zeros(self.size), np.zeros((self.size, self.size)), np.zeros((self.size, self.size))
@@ -104,18 +114,37 @@ class RollerContacts:
             flat, tilted = self._rows(side, cage_angle)
             delta = (flat @ q)[:, None] + self._x * (tilted @ q)[:, None] - self._lost
             rate = (flat @ v)[:, None] + self._x * (tilted @ v)[:, None]
-            before = self._outside(side)
-            try:
-                load, k, c = self._evaluate(side, delta, rate, entrainment_speed, temperature)
-            except OutsideMapError:
-                self.outside_calls += 1
-                raise
-            outside |= self._outside(side) > before
+            load, k, c, beyond = self._evaluate(side, delta, rate, entrainment_speed, temperature)
+            outside |= beyond
             f -= flat.T @ load.sum(axis=1) + tilted.T @ (load @ self._x)
             K += self._matrix(flat, tilted, k)
             C += self._matrix(flat, tilted, c)
-        self.outside_calls += outside
-        return f, K, C
+        return Forces(f, K, C, outside)
+
+    def relaxation(
+        self, displacement: npt.ArrayLike, *, cage_angle: float, entrainment_speed: float, temperature: float
+    ) -> Relaxation | None:
+        """How the films of all contacts relax, at rest; None for laws without films.
+
+        Parameters
+        ----------
+        displacement : array (12 + Z,)
+            Displacements [m], [rad].
+        cage_angle, entrainment_speed, temperature : float
+            The same as for `BearingForce`.
+        """
+        q = self._vector("displacement", displacement)
+        rows, damping, times = [], [], []
+        for side, law in enumerate(self.laws):
+            if not isinstance(law, ContactLaw):
+                return None
+            flat, tilted = self._rows(side, cage_angle)
+            delta = (flat @ q)[:, None] + self._x * (tilted @ q)[:, None] - self._lost
+            _, _, c, _ = self._evaluate(side, delta, np.zeros_like(delta), entrainment_speed, temperature)
+            rows.append((flat[:, None, :] + self._x[:, None] * tilted[:, None, :]).reshape(-1, self.size))
+            damping.append(c.reshape(-1))
+            times.append(relaxation_times(law.at(entrainment_speed, temperature), delta).reshape(-1))
+        return relaxing(np.concatenate(rows), np.concatenate(damping), np.concatenate(times))
 
     def settled(
         self,
@@ -157,7 +186,7 @@ class RollerContacts:
         q[12:] = 0.5 * (flat[:, :12] @ q[:12] - other[:, :12] @ q[:12])
         conditions = {"entrainment_speed": entrainment_speed, "temperature": temperature}
         for _ in range(_STEPS):
-            f, K, _ = self(q, cage_angle=cage_angle, **conditions)
+            f, K, _, _ = self.evaluate(q, cage_angle=cage_angle, **conditions)
             stiffness = np.diag(K)[12:]
             loaded = stiffness > 0.0
             step = np.where(loaded, f[12:] / np.where(loaded, stiffness, 1.0), 0.0)
@@ -191,12 +220,12 @@ class RollerContacts:
 
     def _evaluate(
         self, side: int, delta: FloatArray, rate: FloatArray, speed: float, temperature: float
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Loads and derivatives of the slices of one side [N], [N/m], [N s/m]."""
+    ) -> tuple[FloatArray, FloatArray, FloatArray, bool]:
+        """Loads and derivatives of the slices of one side [N], [N/m], [N s/m], and whether any lies outside the map."""
         law = self.laws[side]
         if isinstance(law, DryLaw):
             w, k, c = law.evaluate(delta, rate)
-            return w / self._x.size, k / self._x.size, c / self._x.size
+            return w / self._x.size, k / self._x.size, c / self._x.size, False
         point = self._points.get(side)
         if point is None or (point.entrainment_speed, point.temperature) != (speed, temperature):
             if not (math.isfinite(speed) and math.isfinite(temperature)):
@@ -206,13 +235,8 @@ class RollerContacts:
                 )
             point = self._points[side] = law.at(speed, temperature)
         length = self.bearing.slice_length
-        w, k, c = point(delta, rate)
-        return w * length, k * length, c * length
-
-    def _outside(self, side: int) -> int:
-        """How many slices of one side were outside the map so far."""
-        law = self.laws[side]
-        return int(law.counts.sum()) if isinstance(law, ContactLaw) else 0
+        w, k, c, outside = point.evaluate(delta, rate)
+        return w * length, k * length, c * length, outside
 
     def _vector(self, name: str, given: npt.ArrayLike) -> FloatArray:
         """Finite numbers, as many as there are displacements."""

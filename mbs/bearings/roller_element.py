@@ -12,10 +12,11 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_element import BearingElement, RingElement
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.model.body import Body
-from mbs.model.elements import Operation, Port
+from mbs.model.elements import Excitation, Forces, Operation, Port
+from mbs.model.relaxation import Films, Relaxation
 
 
 def roller_body(name: str, bearing: Bearing) -> Body:
@@ -34,7 +35,7 @@ def roller_body(name: str, bearing: Bearing) -> Body:
 
 
 @dataclass(frozen=True, eq=False)
-class RollerElement:
+class RollerElement(RingElement):
     """A bearing between two rings and its rollers.
 
     Attributes
@@ -45,11 +46,14 @@ class RollerElement:
         The forces.
     rollers : str
         Name of the body of the rollers.
+    films : {"slow", "memory"}
+        The same as of a `BearingElement`.
     """
 
     plain: BearingElement
     contacts: RollerContacts
     rollers: str
+    films: Films = "slow"
 
     @property
     def name(self) -> str:
@@ -62,24 +66,36 @@ class RollerElement:
         return Port(self.plain.inner), Port(self.plain.outer), Port(self.rollers, coordinates=True)
 
     @property
-    def outside_calls(self) -> int:
-        """Calls outside the map so far."""
-        return self.contacts.outside_calls
+    def excitation(self) -> Excitation | None:
+        """The passing of the rollers."""
+        return self.plain.excitation
 
-    def evaluate(
-        self, displacement: FloatArray, velocity: FloatArray, operation: Operation
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """How the films of both contacts relax, where they do, see `Element.relaxation`."""
+        return self.film_relaxation(displacement, operation) if self.films == "memory" else None
+
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """See `RingElement.film_relaxation`."""
+        plain = self.plain
+        return self.contacts.relaxation(
+            displacement,
+            cage_angle=plain.cage_angle(operation),
+            entrainment_speed=plain.entrainment_speed(operation),
+            temperature=plain.temperature,
+        )
+
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Forces on rings and rollers, stiffness and damping, see `Element.evaluate`."""
         plain = self.plain
-        f, K, C = self.contacts(
+        found = self.contacts.evaluate(
             displacement,
             velocity,
             cage_angle=plain.cage_angle(operation),
             entrainment_speed=plain.entrainment_speed(operation),
             temperature=plain.temperature,
         )
-        f[12:] += plain.centrifugal_load(operation) * plain.bearing.geometry.roller_length
-        return f, K, C
+        found.force[12:] += plain.centrifugal_load(operation) * plain.bearing.geometry.roller_length
+        return found
 
 
 def ring_matrices(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -92,11 +108,23 @@ def ring_matrices(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArra
     stiffness, damping : array, shape (6, 6) or (12 + Z, 12 + Z)
         Matrices of massless rollers, or of rings and rollers.
     """
+    following = ring_following(stiffness)
+    return following.T @ stiffness @ following, following.T @ damping @ following
+
+
+def ring_following(stiffness: FloatArray) -> FloatArray:
+    """How the ports of an element follow the inner ring, the outer one being held, shape (m, 6).
+
+    Parameters
+    ----------
+    stiffness : array, shape (6, 6) or (12 + Z, 12 + Z)
+        Matrix of massless rollers, or of rings and rollers.
+    """
     if stiffness.shape[0] == 6:
-        return stiffness, damping
+        return np.eye(6)
     own = stiffness[12:, 12:]
     following = np.zeros((stiffness.shape[0], 6))
     following[:6] = np.eye(6)
     loaded = np.nonzero(np.diag(own) > 0.0)[0]
     following[12 + loaded] = -np.linalg.solve(own[np.ix_(loaded, loaded)], stiffness[12 + loaded, :6])
-    return following.T @ stiffness @ following, following.T @ damping @ following
+    return following

@@ -12,7 +12,6 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.maps.emap import EHDMap
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_kernel import GAP, RATE, TILT, TILT_RATE
 from mbs.bearings.laws import unilateral_forces
 
 
@@ -30,6 +29,8 @@ class RollerLoads:
         Tilting moment of each roller's load about its middle [N m].
     load_per_length : array (Z, n)
         Load of the slices on the inner raceway [N/m].
+    damping : array (Z, n)
+        Damping of the slices at rest, per unit length [N s/m2].
     approach : array (Z, n)
         Total approach of both contacts of the slices [m]; below zero a gap, or a film.
     position : array (n,)
@@ -40,6 +41,7 @@ class RollerLoads:
     load: FloatArray
     moment: FloatArray
     load_per_length: FloatArray
+    damping: FloatArray
     approach: FloatArray
     position: FloatArray
 
@@ -111,25 +113,26 @@ class RollerLoads:
 def roller_loads(
     bearing: Bearing, slices: FloatArray, states: FloatArray, rollers: FloatArray, cage_angle: float
 ) -> RollerLoads:
-    """Make the record from the work space that a call of `bearing_force` leaves.
+    """Make the record from what a call of `bearing_force` leaves.
 
     Parameters
     ----------
     bearing : Bearing
         The bearing.
-    slices : ndarray
-        Constants of the slices.
-    states : ndarray
-        States of the slices' contacts.
-    rollers : ndarray
-        Sums over each roller.
+    slices : array (2, n)
+        Positions of the slices, and twice the profile there [m].
+    states : array (4, Z, n)
+        States of the slices, see `mbs.bearings.bearing_kernel.Work`.
+    rollers : array (4, Z)
+        Motion of the rollers, see `mbs.bearings.bearing_kernel.rollers_of_arrays`.
     cage_angle : float
         Angle of the first roller [rad].
     """
     count = bearing.geometry.rollers
     x, lost = slices
-    approach = rollers[GAP][:, None] + x * rollers[TILT][:, None] - lost
-    rate = rollers[RATE][:, None] + x * rollers[TILT_RATE][:, None]
+    gap, tilt, gap_rate, tilt_rate = (part[:, None] for part in rollers)
+    approach = gap + x * tilt - lost
+    rate = gap_rate + x * tilt_rate
     load, _, _ = unilateral_forces(states[0], states[1], states[2], states[3], rate)
     angle = cage_angle + 2.0 * math.pi * np.arange(count) / count
     return RollerLoads(
@@ -137,6 +140,7 @@ def roller_loads(
         load=load.sum(axis=1) * bearing.slice_length,
         moment=(load * x).sum(axis=1) * bearing.slice_length,
         load_per_length=load,
+        damping=states[2].copy(),
         approach=approach,
         position=x.copy(),
     )

@@ -9,14 +9,20 @@ differ from the law by some 1e-7 in load and 1e-5 in stiffness at most, a bearin
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
 from numba import njit
+from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.maps.bulk import evaluate_many_at
 from ehdmaps.maps.kernel import LOAD_TOLERANCE, collapse
 from ehdmaps.maps.lines import FAST, line_approach, line_state
 from ehdmaps.maps.tables import ApproachTable, LawTable, Point
+
+fixed_tuple: Any = to_fixed_tuple
+"""The first numbers of an array as a tuple, in compiled code."""
 
 _OCTAVES, _BITS = 14, 5
 ROWS = _OCTAVES << _BITS
@@ -30,23 +36,82 @@ NODES: FloatArray = ((FIRST + np.arange(ROWS + 1)) << np.int64(52 - _BITS)).view
 LAST = float(np.nextafter(NODES[-1], 0.0))
 
 POWER, CELLS = 0.0, 1.0
-KIND, COEFFICIENT, EXPONENT, DAMPING, CENTRE, INVERSE_SCALE, HIGHEST, SAFE_APPROACH, LIFT_OFF, SLOPE = range(10)
-NUMBERS = 10
-"""Places in the array of numbers of a prepared law.
-
-KIND: POWER or CELLS. COEFFICIENT, EXPONENT, DAMPING: of w = a delta^b and c per unit length. CENTRE, INVERSE_SCALE: of
-the table [m], [1/m]. HIGHEST: load above which slices are counted [N/m]. SAFE_APPROACH: up to it no slice is [m].
-LIFT_OFF: up to it there is no load [m]. SLOPE: what slopes are multiplied by."""
+"""Kinds of prepared laws."""
 
 _PROBE = 1e4
 
 
+class LawNumbers(NamedTuple):
+    """The numbers of a prepared law.
+
+    Attributes
+    ----------
+    kind : float
+        POWER or CELLS.
+    coefficient, exponent, damping : float
+        Constants of w = a delta^b [N/m], and c per unit length [N s/m2]; for POWER.
+    centre, inverse_scale : float
+        Places of the table [m], [1/m]; for CELLS.
+    highest : float
+        Load above which slices are outside the map [N/m].
+    safe_approach : float
+        Up to it no slice is [m].
+    lift_off : float
+        Up to it there is no load [m].
+    slope : float
+        What slopes are multiplied by.
+    """
+
+    kind: float
+    coefficient: float
+    exponent: float
+    damping: float
+    centre: float
+    inverse_scale: float
+    highest: float
+    safe_approach: float
+    lift_off: float
+    slope: float
+
+
+NUMBERS = len(LawNumbers._fields)
+"""Length of an array that holds them in their order."""
+
+
+class PreparedLaw(NamedTuple):
+    """A law at one speed, temperature and centrifugal load.
+
+    Attributes
+    ----------
+    numbers : LawNumbers
+        Numbers of the law.
+    cells : array (2 ROWS, 8)
+        Table of the law; anything for POWER.
+    """
+
+    numbers: LawNumbers
+    cells: FloatArray
+
+
+@njit(cache=True, error_model="numpy")
+def law_numbers(numbers: FloatArray) -> LawNumbers:
+    """The numbers of a law from an array (NUMBERS,) in their order."""
+    return LawNumbers(*fixed_tuple(numbers, 10))
+
+
+@njit(cache=True, error_model="numpy")
+def store_numbers(found: LawNumbers, numbers: FloatArray) -> None:
+    """Write the numbers of a law into an array (NUMBERS,)."""
+    for i in range(len(found)):
+        numbers[i] = found[i]
+
+
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def read_cells(cells: FloatArray, rows: IntArray, places: FloatArray, states: FloatArray) -> None:
-    """Load, its slope, damping and its slope, into `states` (4, n), from rows (n,) and places in the cells (n,)."""
+def read_cells(cells: FloatArray, rows: IntArray, states: FloatArray) -> None:
+    """Load, slope, damping and its slope, into `states` (4, n), from rows (n,) and places in the cells, states[0]."""
     w, dw, c, dc = states[0], states[1], states[2], states[3]
     for i in range(rows.size):
-        m, t = np.uint64(rows[i]), places[i]
+        m, t = np.uint64(rows[i]), w[i]
         high = cells[m, np.uint64(3)]
         bend = cells[m, np.uint64(2)] + t * high
         mean = cells[m, np.uint64(1)] + t * bend
@@ -68,7 +133,9 @@ def _centre(point: Point) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def tabulate(point: Point, nodes: FloatArray, buffer: FloatArray, cells: FloatArray, numbers: FloatArray) -> bool:
+def tabulate(
+    point: Point, nodes: FloatArray, buffer: FloatArray, cells: FloatArray, highest: float, numbers: FloatArray
+) -> bool:
     """Fill a table with the law of a point.
 
     Parameters
@@ -82,8 +149,10 @@ def tabulate(point: Point, nodes: FloatArray, buffer: FloatArray, cells: FloatAr
     cells : array (2 ROWS, 8)
         Filled: four coefficients of w, four of c, over the distance from the end of the cell that is nearer to the
         centre, in scales.
-    numbers : array (10,)
-        Numbers of the table, with HIGHEST; all that belongs to the table is filled.
+    highest : float
+        Load above which slices are outside the map [N/m].
+    numbers : array (NUMBERS,)
+        Filled with `LawNumbers`, if there is a table.
 
     Returns
     -------
@@ -92,7 +161,6 @@ def tabulate(point: Point, nodes: FloatArray, buffer: FloatArray, cells: FloatAr
     """
     rows = nodes.size - 1
     centre, inverse = _centre(point), point.own.inverse_scale
-    numbers[CENTRE], numbers[INVERSE_SCALE], numbers[SLOPE] = centre, inverse, inverse
     z, delta, w, dw, c, dc = buffer[0], buffer[1], buffer[2], buffer[3], buffer[4], buffer[5]
     first, end = 0, 0
     for i in range(2 * rows + 1):
@@ -124,11 +192,15 @@ def tabulate(point: Point, nodes: FloatArray, buffer: FloatArray, cells: FloatAr
     for i in range(end, 2 * rows + 1):
         w[i] = w[end - 1] + dw[end - 1] * (delta[i] - delta[end - 1])
         dw[i], c[i], dc[i] = dw[end - 1], c[end - 1], 0.0
-    numbers[LIFT_OFF] = delta[first - 1]
-    numbers[SAFE_APPROACH] = delta[0]
+    safe = delta[0]
     for i in range(2 * rows + 1):
-        if w[i] <= numbers[HIGHEST]:
-            numbers[SAFE_APPROACH] = delta[i]
+        if w[i] <= highest:
+            safe = delta[i]
+    found = LawNumbers(
+        kind=CELLS, coefficient=0.0, exponent=0.0, damping=0.0, centre=centre, inverse_scale=inverse, highest=highest,
+        safe_approach=safe, lift_off=delta[first - 1], slope=inverse,
+    )  # fmt: skip
+    store_numbers(found, numbers)
     _fill(z, inverse, w, dw, c, dc, cells)
     return True
 
@@ -165,19 +237,65 @@ def _fill(
             cell[7] = (dc[near] + dc[far] - 2.0 * secant) / (h * h)
 
 
-def law_arrays(table: LawTable) -> tuple[FloatArray, ...]:
-    """Flatten a `LawTable`: compiled code takes arrays from Python much faster than nested tuples."""
-    arrays: list[FloatArray] = []
-    scalars: list[float] = []
-    for part in (table.own, table.inner, table.outer):
-        arrays += part[:2]
-        scalars += part[2:]
-    return (*arrays, table.structure, np.array([*scalars, *table[4:]]))
+class FlatTable(NamedTuple):
+    """A `LawTable` in arrays: compiled code takes few of them from Python much faster than nested tuples.
+
+    Attributes
+    ----------
+    own, inner, outer : array
+        `ApproachTable.coefficients` of each.
+    own_place, inner_place, outer_place : array
+        `ApproachTable.place` of each.
+    axes : array (3, 6)
+        The numbers of each, in their order.
+    structure : array (n, 3)
+        The array of the `LawTable`.
+    numbers : array (9,)
+        The numbers of the `LawTable`, in their order.
+    """
+
+    own: FloatArray
+    inner: FloatArray
+    outer: FloatArray
+    own_place: FloatArray
+    inner_place: FloatArray
+    outer_place: FloatArray
+    axes: FloatArray
+    structure: FloatArray
+    numbers: FloatArray
+
+
+def flat_table(table: LawTable) -> FlatTable:
+    """Flatten a `LawTable`."""
+    parts = (table.own, table.inner, table.outer)
+    return FlatTable(
+        own=table.own.coefficients,
+        inner=table.inner.coefficients,
+        outer=table.outer.coefficients,
+        own_place=table.own.place,
+        inner_place=table.inner.place,
+        outer_place=table.outer.place,
+        axes=np.array([part[2:] for part in parts]),
+        structure=table.structure,
+        numbers=np.array(table[4:]),
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _law_table(flat: FlatTable) -> LawTable:
+    """The `LawTable` again."""
+    return LawTable(
+        ApproachTable(flat.own, flat.own_place, *fixed_tuple(flat.axes[0], 6)),
+        ApproachTable(flat.inner, flat.inner_place, *fixed_tuple(flat.axes[1], 6)),
+        ApproachTable(flat.outer, flat.outer_place, *fixed_tuple(flat.axes[2], 6)),
+        flat.structure,
+        *fixed_tuple(flat.numbers, 9),
+    )
 
 
 @njit(cache=True, error_model="numpy")
 def tabulate_law(
-    law: tuple[FloatArray, ...],
+    law: FlatTable,
     workspace: FloatArray,
     conditions: FloatArray,
     nodes: FloatArray,
@@ -190,8 +308,8 @@ def tabulate_law(
 
     Parameters
     ----------
-    law : tuple
-        `law_arrays`.
+    law : FlatTable
+        The law.
     workspace : array (4, n, 8)
         Workspace of the law.
     conditions : array (3,)
@@ -206,18 +324,9 @@ def tabulate_law(
     bool
         False if the film is not whole, or does not fit into a table.
     """
-    x = law[7]
-    table = LawTable(
-        ApproachTable(law[0], law[1], x[0], x[1], x[2], x[3], x[4], x[5]),
-        ApproachTable(law[2], law[3], x[6], x[7], x[8], x[9], x[10], x[11]),
-        ApproachTable(law[4], law[5], x[12], x[13], x[14], x[15], x[16], x[17]),
-        law[6], x[18], x[19], x[20], x[21], x[22], x[23], x[24], x[25], x[26],
-    )  # fmt: skip
+    table = _law_table(law)
     if abs(conditions[0]) < table.film_speed:
         return False
     point = collapse(table, workspace, conditions[0], conditions[1], conditions[2], counts)
-    highest = point.highest_load * (1.0 + LOAD_TOLERANCE)
-    numbers[:] = 0.0
-    numbers[KIND] = CELLS
-    numbers[HIGHEST] = min(highest, point.held_load)
-    return tabulate(point, nodes, buffer, cells, numbers)
+    highest = min(point.highest_load * (1.0 + LOAD_TOLERANCE), point.held_load)
+    return tabulate(point, nodes, buffer, cells, highest, numbers)

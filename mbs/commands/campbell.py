@@ -140,6 +140,7 @@ def _report(entry: LawRun) -> list[str]:
         f"step, {entry.seconds:.3g} s",
         f"  highest sum level {found.sum_level[at]:.1f} dB at {RPM.text(float(found.speeds[at]))}"
         f"{_elsewhere(entry, at)}",
+        *(f"  note: {line}" for line in record.notes),
     ]
     if entry.spectra.peaks:
         lines.append("  peaks along the orders: order   speed/rpm   frequency/Hz   level/dB   above its valleys/dB")

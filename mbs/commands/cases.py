@@ -1,7 +1,7 @@
 """What a command compares: contact laws and maps, clearances, load factors, in every combination.
 
-Each law of --law and each map of --map counts as one law. The clearances of --clearance, the factors of --load-factor
-and the angles of --start-angle may each be given more than once, too.
+Each law of --law and each map of --map counts as one law; of laws with films, each kind of --films. The clearances of
+--clearance, the factors of --load-factor and the angles of --start-angle may each be given more than once, too.
 """
 
 from __future__ import annotations
@@ -18,11 +18,12 @@ from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.jobs.opening import open_given
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
-from ehdmaps.units import quantity
+from ehdmaps.units import closest, quantity
 from mbs.analyses.case import Case, common_clearance
+from mbs.model.relaxation import Films
 from mbs.output.results import RESULT
 from mbs.scene.assembly import Model, assemble
-from mbs.scene.contact_laws import law_label
+from mbs.scene.contact_laws import MEMORY_WORDS, law_label
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
@@ -32,6 +33,9 @@ WIDEST = 1e-2
 
 NO_MAP = "--structure: got {!r:.60} without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`"
 """What is said where a structural law is given for no map."""
+
+FILMS = ("memory", "slow", "dry")
+"""What --films takes: films that relax, those of slow motion, and none."""
 
 MOST_FACTOR = 1e3
 MOST_CASES = 24
@@ -44,6 +48,7 @@ class _Law:
     label: str
     name: str | None
     emap: EHDMap | None = None
+    films: Films | None = None
 
 
 def load_model(arguments: argparse.Namespace, kind: Kind = RESULT) -> Model:
@@ -63,8 +68,8 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
     Parameters
     ----------
     arguments : argparse.Namespace
-        Arguments with `scene`, `output`, `plot`, and `law`, `map`, `structure`, `clearance`, `load_factor`,
-        `start_angle`: each a text, a list of texts (but for `structure`), None, or left out.
+        Arguments with `scene`, `output`, `plot`, and `law`, `map`, `structure`, `films`, `clearance`,
+        `load_factor`, `start_angle`: each a text, a list of texts (but for `structure`), None, or left out.
     several : bool
         Whether laws and maps stand side by side; else a law goes before a map.
     kind : Kind
@@ -86,10 +91,15 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
     if not several:
         problems += [
             f"--{option}: got {len(given)} of them; allowed: one; `mbs sweep` and `mbs campbell` compare more"
-            for option in ("law", "map", "clearance")
+            for option in ("law", "map", "clearance", "films")
             if len(given := _given(arguments, option)) > 1
         ]
         laws = laws[:1] if _given(arguments, "law") else laws
+    if hasattr(arguments, "films"):
+        laws = _with_films(laws, _given(arguments, "films"), problems)
+    else:
+        # A command that does not ask for films has those of slow motion, whatever the default.
+        laws = [dataclasses.replace(law, films="slow") for law in laws]
     clearances = [read_clearance(text, problems) for text in _given(arguments, "clearance")] or [None]
     factors = [_factor(text, problems) for text in _given(arguments, "load_factor")] or [1.0]
     angles = [_angle(text, problems) for text in _given(arguments, "start_angle")] or [None]
@@ -111,7 +121,7 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
     cases = []
     for law, clearance, factor, angle in itertools.product(laws, clearances, factors, angles):
         try:
-            model = assemble(_turned(_loaded(scene, factor), angle), law.name, law.emap, clearance)
+            model = assemble(_turned(_loaded(scene, factor), angle), law.name, law.emap, clearance, law.films)
         except InputError as error:
             problems += scene_problems(scene, error)
             continue
@@ -185,6 +195,35 @@ def _laws(names: list[str], paths: list[str], structure: str | None, problems: l
         name = law_label("map", emap)
         laws.append(_Law(name if solvers.count(solver) == 1 else f"{name} {Path(path).stem}", "map", emap))
     return laws if names or paths else [_Law(law_label("hertz"), None)]
+
+
+def _with_films(laws: list[_Law], given: list[str], problems: list[str]) -> list[_Law]:
+    """Each law that has films with the films that are meant, or dry; laws without films as they are."""
+    wrong = [text for text in given if text not in FILMS]
+    problems += [f"--films: got {text!r:.60}{closest(text, FILMS)}; allowed: {', '.join(FILMS)}" for text in wrong]
+    twice = sorted(text for text in set(given) if given.count(text) > 1)
+    problems += [f"--films: got {text!r:.60} twice; allowed: each once" for text in twice]
+    if wrong or twice or not given:
+        return laws
+    having = [law for law in laws if law.name in ("map", "formula")]
+    if not having:
+        problems.append(
+            f"--films: got {', '.join(given)} without a law that has films; allowed: with --map or --law formula"
+        )
+    found: list[_Law] = []
+    for law in laws:
+        found += [_filmed(law, text, len(given) > 1) for text in given] if law in having else [law]
+    # One dry law stands for all maps, and for --law hertz.
+    return [law for index, law in enumerate(found) if law.label not in {other.label for other in found[:index]}]
+
+
+def _filmed(law: _Law, films: str, compared: bool) -> _Law:
+    """A law with its films."""
+    if films == "dry":
+        return _Law(law_label("hertz"), "hertz")
+    words = MEMORY_WORDS if films == "memory" else "slow films"
+    label = f"{law.label}, {words}" if compared or films == "memory" else law.label
+    return dataclasses.replace(law, label=label, films="memory" if films == "memory" else "slow")
 
 
 def read_clearance(text: str, problems: list[str]) -> float | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import xarray as xr
@@ -20,7 +20,7 @@ from mbs.analyses.film_limits import film_limits, ring_motions
 from mbs.analyses.reach import axes_outside
 from mbs.bearings.bearing_force import BearingForce
 from mbs.commands.reach import outside_lines
-from mbs.linearised.validity import HIGHEST_RATIO, FilmLimit
+from mbs.linearised.validity import HIGHEST_RATIO, NOTABLE, FilmLimit, SlowFilmError
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import write_dataset
@@ -87,6 +87,50 @@ def film_warnings(limits: Sequence[FilmLimit], frequencies: Iterable[float]) -> 
     return lines
 
 
+def slow_film_warnings(
+    limits: Sequence[FilmLimit], errors: Sequence[SlowFilmError], frequencies: Iterable[float]
+) -> list[str]:
+    """Lines on frequencies at which films of slow motion are notably wrong, and on bearings at rest.
+
+    Parameters
+    ----------
+    limits : sequence of FilmLimit
+        Limits of the films.
+    errors : sequence of SlowFilmError
+        How wrong films of slow motion are.
+    frequencies : iterable of float
+        Frequencies of the result [Hz].
+    """
+    highest = max(frequencies, default=0.0)
+    lines = film_warnings([limit for limit in limits if limit.entrainment_speed == 0.0], [highest])
+    ratios = {limit.bearing: limit.ratio(highest) for limit in limits}
+    for entry in errors:
+        error = entry.at(highest)
+        if error > NOTABLE:
+            ratio = f"omega b/u is {ratios[entry.bearing]:.2g} at {highest:.5g} Hz"
+            lines.append(slow_film_line(entry, ratio, error))
+    return lines
+
+
+def slow_film_line(entry: SlowFilmError, ratio: str, error: float) -> str:
+    """A line on the error that films of slow motion make.
+
+    Parameters
+    ----------
+    entry : SlowFilmError
+        The bearing.
+    ratio : str
+        How quick the motion is, in words.
+    error : float
+        Error there.
+    """
+    return (
+        f"warning: {entry.bearing}: films are those of slow motion; {ratio}: there the dynamic stiffness along the "
+        f"load is {100.0 * error:.2g} % wrong, from {entry.frequency:.4g} Hz on by more than {100.0 * NOTABLE:g} %; "
+        "--films memory has films that follow at their own frequency"
+    )
+
+
 def film_course(model: Model, speeds: Iterable[float]) -> list[str]:
     """A line on the frequencies up to which all films follow at some speeds [rad/s]; none for laws without films."""
     shown = []
@@ -136,7 +180,7 @@ def read_option(
     return value
 
 
-def outside_at(model: Model, balance: Equilibrium, calls: Mapping[str, int]) -> list[str]:
+def outside_at(model: Model, balance: Equilibrium) -> list[str]:
     """Lines on bearings whose equilibrium lies outside the map.
 
     Parameters
@@ -145,17 +189,15 @@ def outside_at(model: Model, balance: Equilibrium, calls: Mapping[str, int]) -> 
         The machine with its law.
     balance : Equilibrium
         The equilibrium.
-    calls : mapping of str to int
-        How often each bearing called its law outside the map there.
     """
-    if not any(calls.values()):
+    if not any(balance.outside.values()):
         return []
     loads = {
         bearing.name: float(bearing.rollers(motion, balance.operation).load_per_length.max())
         for bearing, motion in ring_motions(model, balance.displacement)
         if isinstance(bearing.force, BearingForce)
     }
-    return outside_lines(calls, "lies outside the map", axes_outside(model, balance.operation.speed, loads))
+    return outside_lines(balance.outside, "lies outside the map", axes_outside(model, balance.operation.speed, loads))
 
 
 def write(arguments: argparse.Namespace, dataset: xr.Dataset, figure: Figure | None) -> list[str]:

@@ -29,7 +29,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     found = hammer(model, settings, Told("hit"))
     scene, test, hits = model.scene, found.test, found.hits
     outside = [
-        *outside_at(model, found.balance, found.outside),
+        *outside_at(model, found.balance),
         *(f"warning: {name}: {n} calls outside the map" for name, n in found.outside_hits.items() if n),
     ]
     path = Path(arguments.output)

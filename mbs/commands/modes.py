@@ -11,7 +11,7 @@ from ehdmaps.arrays import IntArray
 from ehdmaps.errors import InputError
 from mbs.analyses.modes import modes
 from mbs.commands.cases import load_model
-from mbs.commands.common import film_warnings, heading, outside_at, read_option, write
+from mbs.commands.common import heading, outside_at, read_option, slow_film_warnings, write
 from mbs.commands.reach import fade_lines
 from mbs.linearised.modes import Modes
 from mbs.output.modes_plot import modes_figure
@@ -42,13 +42,14 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if arguments.plot:
         limit = min((entry.frequency for entry in limits), default=math.inf)
         figure = modes_figure(model, found, shown, limit, "; ".join([*notes, *_overdamped_count(overdamped)]))
-    outside = outside_at(model, result.balance, result.outside)
+    outside = outside_at(model, result.balance)
     lines = [
         *heading(model, model.scene.speed),
         *_table(found, shown),
         *_overdamped(found, overdamped),
         *(f"  {note}" for note in notes),
-        *film_warnings(limits, found.frequency[shown]),
+        *_lost(found),
+        *slow_film_warnings(limits, result.errors, found.frequency[shown]),
         *(fade_lines(model, np.array([model.scene.speed])) if model.scene.speed else []),
         *outside,
         *write(arguments, result.dataset, figure),
@@ -121,6 +122,21 @@ def _overdamped_count(which: IntArray) -> list[str]:
 def _free(which: IntArray) -> list[str]:
     """A line for all free motions."""
     return [f"{which.size} free motions at 0 Hz without strain energy, such as unloaded rollers"] if which.size else []
+
+
+def _lost(found: Modes) -> list[str]:
+    """Lines on what films that relax leave without a mode."""
+    lines = []
+    if found.among_films:
+        lines.append(
+            "  motions without oscillation that are as quick as films relax cannot be told from these: not shown"
+        )
+    lines += [
+        f"warning: the mode near {HERTZ.text(abs(entry.eigenvalue) / (2.0 * math.pi), 5)} could not be brought to the "
+        f"films of its own frequency ({entry.reason.value}); it is not shown"
+        for entry in found.lost
+    ]
+    return lines
 
 
 def _above(found: Modes, which: IntArray, highest: float) -> list[str]:

@@ -16,13 +16,13 @@ from mbs.commands.common import Told, film_course, heading, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.output.run_plot import run_figure
 from mbs.scene.assembly import Model
-from mbs.transient.integration import Trajectory
+from mbs.transient.run import Recording
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run, and say what was found."""
     found = runup(load_model(arguments), progress=Told("step"))
-    model, result, outside = found.model, found.trajectory, found.outside
+    model, result, outside = found.model, found.record, found.record.outside
     fade = fade_of(model)
     figure = _figure(model, result, fade) if arguments.plot else None
     first, last = (RPM.text(float(speed)) for speed in (result.speed[0], result.speed[-1]))
@@ -31,6 +31,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"from {first} to {last} in {found.course.duration:.4g} s: {result.steps} steps, {result.halved} taken back, "
         f"{result.iterations / max(result.steps, 1):.3g} Newton iterations a step, "
         f"{1e6 * found.seconds / max(result.steps, 1):.0f} us a step",
+        *(f"note: {line}" for line in result.notes),
     ]
     for bearing, force in zip(model.bearings, result.forces, strict=False):
         size = np.hypot(force[:, 1], force[:, 2])
@@ -62,7 +63,7 @@ def _changes(size: FloatArray, speed: FloatArray, fade: Fade | None) -> str:
     return f"{words}, and {change[worst]:.3g} N above, at {RPM.text(float(abs(speed[worst])))}"
 
 
-def _figure(model: Model, result: Trajectory, fade: Fade | None) -> Figure:
+def _figure(model: Model, result: Recording, fade: Fade | None) -> Figure:
     """The figure, with the fade shaded."""
     if fade is None:
         return run_figure(model, result)

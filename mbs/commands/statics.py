@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         if 0.0 < limit.frequency < math.inf
     ]
     lines += fade_lines(model, np.array([model.scene.speed]))
-    outside = outside_at(model, balance, found.outside)
+    outside = outside_at(model, balance)
     lines += [f"warning: {line}" for line in (*found.overloads, *found.free)] + outside
     lines += write(arguments, found.dataset, figure)
     return "\n".join(lines), 1 if outside or found.overloads else 0

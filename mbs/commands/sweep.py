@@ -11,16 +11,16 @@ from matplotlib.figure import Figure
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM, TEMPERATURE, quantity
 from mbs.analyses.case import Case
-from mbs.analyses.film_limits import film_limits, lowest_limits
+from mbs.analyses.film_limits import film_limits, lowest_limits, slow_film_errors
 from mbs.analyses.reach import axes_outside, fade_of
 from mbs.analyses.sweep import SweepSettings, sweep
 from mbs.commands.cases import load_cases
-from mbs.commands.common import NO_LONGER_VALID, heading, write
+from mbs.commands.common import heading, slow_film_line, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.crossings import exchanged
 from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.sweep_result import Sweep
-from mbs.linearised.validity import HIGHEST_RATIO
+from mbs.linearised.validity import NOTABLE
 from mbs.model.elements import Operation
 from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import Model
@@ -50,6 +50,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_complex(entry),
             *_exchanged(entry),
             *_unsure(entry),
+            *_lost(entry),
             *_too_quick(case.model, entry),
             *fade_lines(case.model, entry.speeds),
         ]
@@ -243,19 +244,30 @@ def _outside(case: Case, result: Sweep, calls: Mapping[str, int]) -> list[str]:
 
 def _too_quick(model: Model, result: Sweep) -> list[str]:
     """A line for each bearing whose films are too slow for the highest mode in it, with the worst speed."""
-    worst: dict[str, tuple[float, float, float]] = {}
+    worst: dict[str, tuple[float, str]] = {}
     found = result.undamped
     for index, speed in enumerate(result.speeds.tolist()):
         inside = found.frequency[index][found.bearing_share[index] >= _LEAST_SHARE]
         highest = float(inside.max(initial=0.0))
-        for limit in film_limits(model, result.displacement[index], Operation(speed)):
-            ratio = limit.ratio(highest)
-            if speed > 0.0 and ratio > max(HIGHEST_RATIO, worst.get(limit.bearing, (0.0,))[0]):
-                worst[limit.bearing] = ratio, highest, speed
+        at = result.displacement[index], Operation(speed)
+        ratios = {limit.bearing: limit.ratio(highest) for limit in film_limits(model, *at)}
+        for entry in slow_film_errors(model, *at):
+            error = entry.at(highest)
+            if speed > 0.0 and error > max(NOTABLE, worst.get(entry.bearing, (0.0,))[0]):
+                words = f"omega b/u is up to {ratios[entry.bearing]:.2g} ({highest:.5g} Hz at {RPM.text(speed)})"
+                worst[entry.bearing] = error, slow_film_line(entry, words, error)
+    return [line for _, line in worst.values()]
+
+
+def _lost(result: Sweep) -> list[str]:
+    """Lines on complex modes that could not be brought to the films of their own frequency."""
+    count: dict[str, int] = {}
+    for entry in (one for lost in result.damped.lost for one in lost):
+        count[entry.reason.value] = count.get(entry.reason.value, 0) + 1
     return [
-        f"warning: {name}: omega b/u is up to {ratio:.2g} ({highest:.5g} Hz at {RPM.text(speed)}) and passes "
-        f"{HIGHEST_RATIO} at {HIGHEST_RATIO / ratio * highest:.4g} Hz there: {NO_LONGER_VALID}"
-        for name, (ratio, highest, speed) in worst.items()
+        f"warning: {number} times a complex mode could not be brought to the films of its own frequency ({reason}); it "
+        "is missing there"
+        for reason, number in count.items()
     ]
 
 

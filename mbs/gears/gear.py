@@ -20,7 +20,10 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_force
 from mbs.gears.pair import GearPair
-from mbs.model.elements import ElementDefaults, Operation, Port
+from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port
+
+HARMONICS = 5
+"""Multiples of the meshing order that are worth following."""
 
 PLACED = 1e-6
 """How far the distance of the centres may be off [m], and the ratio of the spins, as a part of it."""
@@ -62,6 +65,11 @@ class GearMesh(ElementDefaults):
         """Tooth meshes for each turn of the system."""
         return abs(self.pair.teeth[0] * self.spin)
 
+    @property
+    def excitation(self) -> Excitation | None:
+        """The meshing of the teeth; None for gears that stand."""
+        return Excitation(self.order, HARMONICS, rank=2) if self.order > 0.0 else None
+
     def steady(self) -> GearMesh:
         """The mesh with its mean stiffness and without error, for linear analyses."""
         return replace(self, varying=False)
@@ -89,13 +97,11 @@ class GearMesh(ElementDefaults):
         mesh_force(*self.arrays, operation.angle, operation.speed, self.rows @ displacement, self.rows @ velocity, out)
         return out
 
-    def evaluate(
-        self, displacement: FloatArray, velocity: FloatArray, operation: Operation
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on both gears, stiffness and damping, see `Element.evaluate`."""
         flanks = self.flanks(displacement, velocity, operation)
         driving, other = self._squares
-        return (
+        return Forces(
             -flanks[:, FORCE] @ self.rows,
             flanks[0, SLOPE] * driving + flanks[1, SLOPE] * other,
             flanks[0, BY_RATE] * driving + flanks[1, BY_RATE] * other,

@@ -1,7 +1,8 @@
 """Linear analysis at an equilibrium: state space, and frequency responses between inputs and sensors.
 
-M x'' + C x' + K x = b u with C and K of the equilibrium; for small motion only, at fixed cage angle, and with the
-low-frequency stiffness and damping of the films.
+M x'' + C x' + K x = b u with C and K of the equilibrium; for small motion only, at fixed cage angle. Films have the
+stiffness and damping of slow motion, or relax: then each slice answers at the frequency in question, and the state
+space has a few states more.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
+from mbs.linearised.dynamic import dynamic_stiffness, system_film_states
 from mbs.model.elements import Input, Quantity, Sensor
 from mbs.model.equilibrium import Equilibrium
 
@@ -23,6 +25,9 @@ _PER_TIME = ("", "/s", "/s2")
 
 _AROUND = np.array([-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0])
 """Places around a peak, in half widths."""
+
+_AT_ONCE = 64
+"""Frequencies whose matrices are held at a time."""
 
 _WIDEST = 0.1
 """Damping ratio above which a peak is so wide that any axis shows it."""
@@ -62,13 +67,15 @@ def response_unit(sensor: Sensor, entry: Input) -> str:
 class StateSpace:
     """x' = A x + B u, y = C x + D u, where x is the displacement from the equilibrium, then the velocity.
 
+    Where films relax, q states of theirs follow: forces by the roots of their springs [N^0.5 m^0.5]. N = 2 n + q.
+
     Attributes
     ----------
-    A : array, shape (2 n, 2 n)
+    A : array, shape (N, N)
         System matrix.
-    B : array, shape (2 n, inputs)
+    B : array, shape (N, inputs)
         Input matrix for inputs of 1 N or 1 N m.
-    C : array, shape (sensors, 2 n)
+    C : array, shape (sensors, N)
         Sensors [m or rad, per s, per s2].
     D : array, shape (sensors, inputs)
         What accelerations have of the inputs at once.
@@ -105,20 +112,26 @@ def state_space(balance: Equilibrium, inputs: Sequence[Input] = (), sensors: Seq
         Columns of B and D, rows of C and D.
     """
     n = balance.system.size
+    films = system_film_states(balance)
+    q = films.size if films else 0
+    damping = balance.damping if films is None else balance.damping - films.relaxation.damping
+    springs = np.zeros((n, 0)) if films is None else films.relaxation.rows.T
     solved = np.linalg.solve(
-        balance.system.mass, np.hstack([-balance.stiffness, -balance.damping, input_matrix(balance, inputs)])
+        balance.system.mass, np.hstack([-balance.stiffness, -damping, -springs, input_matrix(balance, inputs)])
     )
-    acceleration, by_input = solved[:, : 2 * n], solved[:, 2 * n :]
-    A = np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), acceleration])
+    acceleration, by_input = solved[:, : 2 * n + q], solved[:, 2 * n + q :]
+    A = np.vstack([np.hstack([np.zeros((n, n)), np.eye(n), np.zeros((n, q))]), acceleration])
+    if films is not None:
+        A = np.vstack([A, np.hstack([np.zeros((q, n)), springs.T, -np.diag(1.0 / films.relaxation.times)])])
     rows = sensor_matrix(balance, sensors)
-    C, D = np.zeros((len(sensors), 2 * n)), np.zeros((len(sensors), len(inputs)))
+    C, D = np.zeros((len(sensors), 2 * n + q)), np.zeros((len(sensors), len(inputs)))
     for i, sensor in enumerate(sensors):
         order = _ORDER[sensor.quantity]
         if order == 2:
             C[i], D[i] = rows[i] @ acceleration, rows[i] @ by_input
         else:
             C[i, order * n : (order + 1) * n] = rows[i]
-    return StateSpace(A, np.vstack([np.zeros_like(by_input), by_input]), C, D)
+    return StateSpace(A, np.vstack([np.zeros_like(by_input), by_input, np.zeros((q, len(inputs)))]), C, D)
 
 
 def responses(balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatArray) -> ComplexArray:
@@ -133,10 +146,14 @@ def responses(balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatA
     frequencies : array, shape (frequencies,)
         [Hz].
     """
-    omega = 2.0 * np.pi * np.asarray(frequencies, dtype=np.float64)[:, None, None]
-    dynamic = balance.stiffness + 1j * omega * balance.damping - omega**2 * balance.system.mass
-    load = np.broadcast_to(input_matrix(balance, inputs), (omega.size, balance.system.size, len(inputs)))
-    return np.asarray(np.linalg.solve(dynamic, load), dtype=np.complex128)
+    s = np.asarray(2j * np.pi * np.asarray(frequencies), dtype=np.complex128)
+    load = input_matrix(balance, inputs)
+    found = np.empty((s.size, balance.system.size, len(inputs)), dtype=np.complex128)
+    for first in range(0, s.size, _AT_ONCE):
+        part = slice(first, first + _AT_ONCE)
+        dynamic = dynamic_stiffness(balance, s[part])
+        found[part] = np.linalg.solve(dynamic, np.broadcast_to(load, (dynamic.shape[0], *load.shape)))
+    return found
 
 
 def frequency_response(

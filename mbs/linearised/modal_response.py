@@ -3,7 +3,8 @@
     H(omega) = sum_k (c . r_k)(l_k . b)/(i omega - lambda_k)
 
 with right and left vectors r and l, all of them, so that nothing is cut off. Where two modes are nearly one, as beside
-critical damping, the vectors grow and digits are lost: some frequencies are solved directly to see how many.
+critical damping, the vectors grow and digits are lost: some frequencies are solved directly to see how many. Where
+films relax, the modes have them as a few states, which leaves an error of its own; direct solutions have all slices.
 """
 
 from __future__ import annotations
@@ -21,6 +22,9 @@ from mbs.model.equilibrium import Equilibrium
 
 TOLERANCE = 1e-8
 """Error at the frequencies checked, above which all are solved directly; others may have some times as much."""
+
+FILM_TOLERANCE = 1e-6
+"""The same where films relax: a hundred times what their few states leave, as resonances enlarge it."""
 
 _CHECKED = 3
 _ORDER = {"displacement": 0, "velocity": 1, "acceleration": 2}
@@ -48,7 +52,7 @@ def modal_response(
     """
     n = balance.system.size
     seen = sensor_matrix(balance, sensors) @ states.right[:n]
-    driven = states.left[:, n:] @ np.linalg.solve(balance.system.mass, input_matrix(balance, inputs))
+    driven = states.left[:, n : 2 * n] @ np.linalg.solve(balance.system.mass, input_matrix(balance, inputs))
     omega = 2.0 * np.pi * np.asarray(frequencies, dtype=np.float64)
     resonance = 1.0 / (1j * omega[:, None] - states.eigenvalues)
     residues = (seen.T[:, :, None] * driven[:, None, :]).reshape(states.eigenvalues.size, -1)
@@ -70,8 +74,8 @@ def checked_response(
     Returns
     -------
     responses : array, shape (frequencies, sensors, inputs)
-        Responses by modes, or by direct solution where the error was above `TOLERANCE`, or a mode lies on the frequency
-        axis.
+        Responses by modes, or by direct solution where the error was above `TOLERANCE`, or `FILM_TOLERANCE` with films
+        that relax, or a mode lies on the frequency axis.
     error : float
         Error of the responses, as a part of them or of a millionth of how the whole system moves, whichever is more; 0
         if they were solved directly.
@@ -111,6 +115,6 @@ def _checked(
     rows = np.linalg.norm(sensor_matrix(balance, sensors), axis=1)[None, :, None]
     size = np.abs(direct) + 1e-6 * rows * whole * omega**orders
     error = float(np.max(np.abs(found[checked] - direct) / np.maximum(size, 1e-300)))
-    if np.all(np.isfinite(found)) and error <= TOLERANCE:
+    if np.all(np.isfinite(found)) and error <= (TOLERANCE if states.films is None else FILM_TOLERANCE):
         return found, error
     return frequency_response(balance, inputs, sensors, frequencies), 0.0

@@ -2,6 +2,11 @@
 
 Complex modes have all of damping and gyroscopic terms; undamped ones neither, for systems whose films damp so strongly
 that complex modes become overdamped.
+
+Where films relax, each complex mode is one of the nonlinear eigenproblem Z(lambda) phi = 0, with the stiffness and
+damping that the films have at its own complex frequency. All of them are found together, as those of a linear system
+with some states for the films (`mbs.linearised.film_states`), and each is then brought to all slices
+(`mbs.linearised.own_frequency`). Undamped modes have the stiffness of slow motion, which does not relax.
 """
 
 from __future__ import annotations
@@ -11,8 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh
 
-from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
+from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError
+from mbs.linearised.dynamic import system_film_states
+from mbs.linearised.film_states import FilmStates
+from mbs.linearised.own_frequency import LostMode, OwnFrequency, at_own_frequency
 from mbs.model.equilibrium import Equilibrium
 
 FREE = 1e-6
@@ -34,13 +42,21 @@ class Modes:
     parts : tuple of str
         Flexible bodies, springs, elements.
     shares : array, shape (parts, modes)
-        Part of the strain energy that each has; 0 everywhere for a mode without any.
+        Part of the strain energy that each has; 0 everywhere for a mode without any. Films that relax count with their
+        stiffness at the frequency of the mode.
+    lost : tuple of LostMode
+        Modes that could not be brought to the films of their own frequency; they are in no array.
+    among_films : int
+        Motions that do not oscillate and are as quick as films relax. They cannot be told from these, and are in no
+        array.
     """
 
     eigenvalues: ComplexArray
     shapes: ComplexArray
     parts: tuple[str, ...]
     shares: FloatArray
+    lost: tuple[LostMode, ...] = ()
+    among_films: int = 0
 
     @property
     def frequency(self) -> FloatArray:
@@ -80,24 +96,58 @@ class UndampedModes:
 
 @dataclass(frozen=True, eq=False)
 class StateModes:
-    """All eigenvalues of small motion, with right and left vectors of the state (displacement, then velocity).
+    """All eigenvalues of small motion, with right and left vectors of the state.
+
+    The state is the displacement (n), the velocity (n) and, where films relax, their forces by the roots of their
+    springs (q); N = 2 n + q.
 
     Attributes
     ----------
-    eigenvalues : array, shape (2 n,)
+    eigenvalues : array, shape (N,)
         [1/s].
-    right : array, shape (2 n, 2 n)
+    right : array, shape (N, N)
         Right eigenvectors in columns, of size 1 where potential and kinetic energy measure the size.
-    left : array, shape (2 n, 2 n)
+    left : array, shape (N, N)
         Rows, with left @ right = 1.
-    oscillates : array of bool, shape (2 n,)
+    oscillates : array of bool, shape (N,)
         One of each conjugate pair.
+    films : FilmStates or None
+        The films that relax; None if there are none.
     """
 
     eigenvalues: ComplexArray
     right: ComplexArray
     left: ComplexArray
     oscillates: BoolArray
+    films: FilmStates | None = None
+
+    @property
+    def among_films(self) -> BoolArray:
+        """Which do not oscillate and are at least as quick as the slowest film relaxes, shape (N,)."""
+        if self.films is None or not self.films.size:
+            return np.zeros(self.eigenvalues.shape, dtype=np.bool_)
+        still = np.abs(self.eigenvalues.imag) <= _REAL * np.abs(self.eigenvalues)
+        return np.asarray(still & (self.eigenvalues.real <= -(1.0 - _REAL) / self.films.slowest))
+
+    def comparable(self, which: IntArray) -> tuple[ComplexArray, ComplexArray]:
+        """Right and left vectors of some modes in a state that is the same at every speed: of all slices of the films.
+
+        Shapes (2 n + r, modes) and (modes, 2 n + r), for r slices; the few states of the films differ from speed to
+        speed.
+        """
+        right, left = self.right[:, which], self.left[which]
+        if self.films is None:
+            return right, left
+        lift = self.films.lift
+        begin = right.shape[0] - lift.shape[1]
+        return np.vstack([right[:begin], lift @ right[begin:]]), np.hstack([left[:, :begin], left[:, begin:] @ lift.T])
+
+    def at_own_frequency(self, balance: Equilibrium, which: IntArray) -> OwnFrequency:
+        """Some of the modes, brought to all slices of the films at their own frequencies."""
+        n = balance.system.size
+        return at_own_frequency(
+            balance, self.films, self.eigenvalues[which], self.right[:n, which], self.left[which, n : 2 * n]
+        )
 
 
 def damping_ratio(eigenvalues: ComplexArray) -> FloatArray:
@@ -122,8 +172,10 @@ def modes(balance: Equilibrium) -> Modes:
     n = balance.system.size
     states = state_modes(balance, undamped_modes(balance))
     # A pair of real eigenvalues is one overdamped freedom: both are kept, as is one of each conjugate pair.
-    kept = states.eigenvalues.imag >= 0.0
-    values, shapes = states.eigenvalues[kept], states.right[:n, kept]
+    among = states.among_films
+    kept = np.flatnonzero((states.eigenvalues.imag >= 0.0) & ~among)
+    own = states.at_own_frequency(balance, kept)
+    values, shapes = own.eigenvalues[own.found], states.right[:n, kept[own.found]]
     order = np.argsort(np.abs(values), kind="stable")
     values, shapes = values[order], shapes[:, order]
     translations = np.array([unit != "rad" for unit in balance.system.units])
@@ -134,7 +186,8 @@ def modes(balance: Equilibrium) -> Modes:
         # A tilting mode has hardly any translation: scale it by its tilt.
         largest = int(np.argmax(shown if shown.max() > 1e-6 * size.max() else size))
         shapes[:, k] = column / column[largest]
-    return Modes(values, shapes, tuple(balance.parts), energy_shares(balance, shapes))
+    shares = energy_shares(balance, shapes, np.abs(values))
+    return Modes(values, shapes, tuple(balance.parts), shares, own.lost, int(np.count_nonzero(among)))
 
 
 def undamped_modes(balance: Equilibrium) -> UndampedModes:
@@ -177,13 +230,21 @@ def state_modes(balance: Equilibrium, undamped: UndampedModes) -> StateModes:
     """
     n = balance.system.size
     phi = undamped.shapes
+    films = system_film_states(balance)
     omega = 2.0 * np.pi * undamped.frequency
     highest = float(omega.max(initial=0.0))
     scale = np.maximum(omega, FREE * highest if highest > 0.0 else 1.0)
-    matrix = np.zeros((2 * n, 2 * n))
-    matrix[:n, n:] = np.diag(scale)
-    matrix[n:, :n] = -(phi.T @ balance.stiffness @ phi) / scale
-    matrix[n:, n:] = -(phi.T @ balance.damping @ phi)
+    size = 2 * n + (films.size if films else 0)
+    damping = balance.damping if films is None else balance.damping - films.relaxation.damping
+    matrix = np.zeros((size, size))
+    matrix[:n, n : 2 * n] = np.diag(scale)
+    matrix[n : 2 * n, :n] = -(phi.T @ balance.stiffness @ phi) / scale
+    matrix[n : 2 * n, n : 2 * n] = -(phi.T @ damping @ phi)
+    if films is not None:
+        # A spring in series with a damper, e = v x theta s/(1 + theta s): its stretch is energy too.
+        matrix[2 * n :, n : 2 * n] = films.relaxation.rows @ phi
+        matrix[n : 2 * n, 2 * n :] = -matrix[2 * n :, n : 2 * n].T
+        matrix[2 * n :, 2 * n :] = -np.diag(1.0 / films.relaxation.times)
     values, right = (np.asarray(part, dtype=np.complex128) for part in np.linalg.eig(matrix))
     try:
         left = np.linalg.inv(right)
@@ -191,13 +252,15 @@ def state_modes(balance: Equilibrium, undamped: UndampedModes) -> StateModes:
         # Two eigenvectors are one, as in critical damping; the left ones are then those of the least squares.
         left = np.linalg.pinv(right)
     back = phi.T @ balance.system.mass
-    to_space = np.vstack([phi @ (right[:n] / scale[:, None]), phi @ right[n:]])
-    from_space = np.hstack([(left[:, :n] * scale) @ back, left[:, n:] @ back])
+    to_space = np.vstack([phi @ (right[:n] / scale[:, None]), phi @ right[n : 2 * n], right[2 * n :]])
+    from_space = np.hstack([(left[:, :n] * scale) @ back, left[:, n : 2 * n] @ back, left[:, 2 * n :]])
     oscillates = values.imag > _REAL * np.abs(values) + 0.1 * _REAL * highest
-    return StateModes(values, to_space, from_space, oscillates)
+    return StateModes(values, to_space, from_space, oscillates, films)
 
 
-def energy_shares(balance: Equilibrium, shapes: ComplexArray | FloatArray) -> FloatArray:
+def energy_shares(
+    balance: Equilibrium, shapes: ComplexArray | FloatArray, omega: FloatArray | None = None
+) -> FloatArray:
     """Part of the strain energy of each part and shape, shape (parts, modes); 0 for shapes that strain nothing.
 
     Parameters
@@ -206,9 +269,18 @@ def energy_shares(balance: Equilibrium, shapes: ComplexArray | FloatArray) -> Fl
         Equilibrium, with the stiffness of each part.
     shapes : array, shape (n, modes)
         Real or complex displacements.
+    omega : array, shape (modes,), optional
+        Frequency of each shape [rad/s], for films that relax; that of slow motion if left out.
     """
     parts = (*balance.parts.values(), np.diag(np.diag(balance.stiffness)))
     energy = np.array([np.sum(shapes.conj() * (part @ shapes), axis=0).real for part in parts])
+    if omega is not None:
+        names = list(balance.parts)
+        for connected, relaxation in zip(balance.system.elements, balance.relaxations, strict=True):
+            if relaxation is not None:
+                place = np.multiply.outer(relaxation.times, omega) ** 2
+                stretched = np.abs(relaxation.rows @ connected.transform @ shapes) ** 2
+                energy[names.index(connected.element.name)] += np.sum(stretched * place / (1.0 + place), axis=0)
     total = energy[:-1].sum(axis=0)
     # A free motion strains nothing, to rounding.
     strained = total > 1e-9 * energy[-1]

@@ -19,6 +19,7 @@ from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.linearised.crossings import straightened
 from mbs.linearised.modal_response import checked_response
+from mbs.linearised.own_frequency import LostMode
 from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep_point import Along, Point, bearing_parts, bridge, first_order_shift, over_pitch, solve_modes
 from mbs.linearised.sweep_result import BearingSweep, ComplexSweep, ResponseSweep, Sweep, UndampedSweep
@@ -103,6 +104,7 @@ def sweep(
         speeds=speeds,
         displacement=np.array([point.displacement for point in points]),
         forces=tuple(np.array(part) for part in zip(*(point.forces for point in points), strict=True)),
+        outside={name: np.array([point.outside[name] for point in points]) for name in first.balance.outside},
         parts=tuple(first.balance.parts),
         undamped=straightened(_undamped(points, links, first, before)),
         damped=_damped(points, links, bearing_parts(first.balance)),
@@ -118,6 +120,7 @@ class _Recorded:
 
     displacement: FloatArray
     forces: tuple[FloatArray, ...]
+    outside: dict[str, bool]
     frequency: FloatArray
     damping_ratio: FloatArray
     shares: FloatArray
@@ -126,6 +129,7 @@ class _Recorded:
     whirl: FloatArray
     bearings: FloatArray
     kinship: FloatArray
+    lost: tuple[LostMode, ...]
 
 
 def _record(point: Point, cage_angles: int) -> _Recorded:
@@ -133,6 +137,7 @@ def _record(point: Point, cage_angles: int) -> _Recorded:
     return _Recorded(
         point.balance.displacement,
         point.balance.forces,
+        point.balance.outside,
         point.undamped.frequency,
         point.undamped.damping_ratio,
         point.undamped.shares,
@@ -141,6 +146,7 @@ def _record(point: Point, cage_angles: int) -> _Recorded:
         point.whirl,
         over_pitch(point.balance, cage_angles),
         point.kinship,
+        point.lost,
     )
 
 
@@ -202,7 +208,9 @@ def _damped(points: Sequence[_Recorded], links: Sequence[Along], here: IntArray)
         if index:
             old = there[order[index - 1, there] >= 0]
             sure[index, old] = links[index - 1].damped.assurance[order[index - 1, old]]
-    return ComplexSweep(values, shares, shares[here].sum(axis=0), whirl, sure, number)
+    return ComplexSweep(
+        values, shares, shares[here].sum(axis=0), whirl, sure, number, tuple(point.lost for point in points)
+    )
 
 
 def _bearings(points: Sequence[_Recorded], first: Point) -> BearingSweep:

@@ -9,11 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
-from mbs.bearings.bearing_element import BearingElement
-from mbs.bearings.roller_element import RollerElement, ring_matrices
+from mbs.bearings.bearing_element import RingElement
+from mbs.bearings.roller_element import ring_matrices
 from mbs.linearised.modes import StateModes, UndampedModes, energy_shares, state_modes, undamped_modes
+from mbs.linearised.own_frequency import LostMode
 from mbs.linearised.tracking import Match, ModeSet, compose, match
-from mbs.model.elements import Element, Operation
+from mbs.model.elements import Element
 from mbs.model.equilibrium import Equilibrium, equilibrium
 
 SURE = 0.8
@@ -47,6 +48,8 @@ class Point:
         d omega/d Omega by gyroscopic terms [1]; of an equal pair, as at rest, anything between those of both.
     kinship : array, shape (complex modes, n)
         Part of each undamped mode in the shape of a complex one, by kinetic energy: rows sum to 1.
+    lost : tuple of LostMode
+        Complex modes that could not be brought to the films of their own frequency; they are not there.
     """
 
     balance: Equilibrium
@@ -57,6 +60,7 @@ class Point:
     complex_shares: FloatArray
     whirl: FloatArray
     kinship: FloatArray
+    lost: tuple[LostMode, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,19 +101,23 @@ def solve_modes(balance: Equilibrium) -> Point:
     states = state_modes(balance, undamped)
     kept = np.nonzero(states.oscillates)[0]
     kept = kept[np.argsort(np.abs(states.eigenvalues[kept]), kind="stable")]
-    shapes = states.right[: system.size, kept]
-    turned = np.linalg.solve(system.mass, system.gyroscopic @ states.right[system.size :, kept])
+    own = states.at_own_frequency(balance, kept)
+    kept, values = kept[own.found], own.eigenvalues[own.found]
+    n = system.size
+    shapes = states.right[:n, kept]
+    turned = np.linalg.solve(system.mass, system.gyroscopic @ states.right[n : 2 * n, kept])
     plain = np.asarray(2j * np.pi * undamped.frequency, dtype=np.complex128)
     return Point(
         balance,
         undamped,
         states,
         ModeSet(plain, undamped.shapes, undamped.shapes.T @ system.mass),
-        ModeSet(states.eigenvalues[kept], states.right[:, kept], states.left[kept]),
-        energy_shares(balance, shapes),
+        ModeSet(values, *states.comparable(kept)),
+        energy_shares(balance, shapes, np.abs(values)),
         # d lambda/d Omega = left . dA/dOmega . right, exact with damping too.
-        -np.sum(states.left[kept, system.size :].T * turned, axis=0).imag,
+        -np.sum(states.left[kept, n : 2 * n].T * turned, axis=0).imag,
         _kinship(undamped.shapes.T @ system.mass @ shapes),
+        own.lost,
     )
 
 
@@ -154,7 +162,7 @@ def bridge(first: Point, last: Point, at: Callable[[float, FloatArray | None], P
 
 def bearing_parts(balance: Equilibrium) -> IntArray:
     """Which of the parts of the stiffness are bearings, shape (bearings,)."""
-    bearings = {balance.system.elements[index].element.name for index in balance.system.bearings}
+    bearings = {balance.system.elements[index].element.name for index in balance.system.select(RingElement)}
     return np.array([index for index, name in enumerate(balance.parts) if name in bearings], dtype=np.int64)
 
 
@@ -164,7 +172,7 @@ def along_load(balance: Equilibrium) -> FloatArray:
     Rollers that are bodies follow in equilibrium. NaN for stiffness and damping of a bearing without force.
     """
     found = []
-    for index in balance.system.bearings:
+    for index in balance.system.select(RingElement):
         radial = balance.forces[index][1:3]
         load = float(np.linalg.norm(radial))
         direction = np.array([0.0, *(radial / load if load > 0.0 else radial * np.nan), 0.0, 0.0, 0.0])
@@ -192,7 +200,8 @@ def over_pitch(balance: Equilibrium, count: int) -> FloatArray:
     """
     found = [along_load(balance)]
     operation = balance.operation
-    turn = max((_pitch(balance.system.elements[index].element) for index in balance.system.bearings), default=0.0)
+    bearings = [balance.system.elements[index].element for index in balance.system.select(RingElement)]
+    turn = max(map(_pitch, bearings), default=0.0)
     for part in range(1, count):
         at = operation._replace(angle=operation.angle + turn * part / count)
         found.append(along_load(equilibrium(balance.system, at, balance.displacement)))
@@ -207,11 +216,8 @@ def _kinship(parts: ComplexArray) -> FloatArray:
 
 def _pitch(element: Element) -> float:
     """Angle that the system turns while the cage goes on by one roller [rad]; 0 for a cage that stands."""
-    bearing = element.plain if isinstance(element, RollerElement) else element
-    if not isinstance(bearing, BearingElement):
-        return 0.0
-    rate = abs(bearing.cage_angle(Operation(angle=1.0)) - bearing.cage_angle(Operation()))
-    return 2.0 * math.pi / bearing.bearing.geometry.rollers / rate if rate > 0.0 else 0.0
+    excitation = element.excitation
+    return 2.0 * math.pi / excitation.order if excitation is not None else 0.0
 
 
 def first_order_shift(first: Point, last: Point) -> tuple[FloatArray, FloatArray]:

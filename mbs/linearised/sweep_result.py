@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from mbs.linearised.modes import damping_ratio
+from mbs.linearised.own_frequency import LostMode
 from mbs.model.elements import Input, Sensor
 
 
@@ -72,6 +74,8 @@ class ComplexSweep:
         Least assurance on the way from the speed before, 1 where a mode begins.
     number : array of int, shape (modes,)
         Undamped mode, from 0 on, that it is nearest to where it begins; two that are never there together may share it.
+    lost : tuple of tuple of LostMode
+        Modes that could not be brought to the films of their own frequency, at each speed.
     """
 
     eigenvalues: ComplexArray
@@ -80,6 +84,7 @@ class ComplexSweep:
     whirl: FloatArray
     assurance: FloatArray
     number: IntArray
+    lost: tuple[tuple[LostMode, ...], ...] = ()
 
     @property
     def frequency(self) -> FloatArray:
@@ -154,6 +159,8 @@ class Sweep:
         Equilibrium [m or rad].
     forces : tuple of array, shape (speeds, m)
         Forces of each element in its ports [N or N m].
+    outside : dict of str to array of bool, shape (speeds,)
+        Whether each element lies outside its map at the equilibrium, by name.
     parts : tuple of str
         Flexible bodies, springs, elements.
     undamped, damped, bearings, responses
@@ -165,6 +172,7 @@ class Sweep:
     speeds: FloatArray
     displacement: FloatArray
     forces: tuple[FloatArray, ...]
+    outside: dict[str, npt.NDArray[np.bool_]]
     parts: tuple[str, ...]
     undamped: UndampedSweep
     damped: ComplexSweep

@@ -36,7 +36,7 @@ class Frame:
     Attributes
     ----------
     position : array, shape (3,)
-        In the system [m].
+        Place in the system [m].
     transform : array, shape (6, n)
         Small displacement of the frame (three translations [m], three rotations [rad]) by the body's coordinates.
     """
@@ -52,7 +52,7 @@ class Body:
     Attributes
     ----------
     name : str
-        For messages and results.
+        Name for messages and results.
     coordinates : tuple of str
         Names of the coordinates; the order of all arrays.
     units : tuple of str
@@ -62,7 +62,7 @@ class Body:
     gyroscopic : array, shape (n, n)
         G, skew, per speed of the body [1/(rad/s)].
     frames : mapping of str to Frame
-        Where springs, bearings, loads and sensors attach.
+        Places at which springs, bearings, loads and sensors attach.
     spin : float
         Prescribed speed of the body about x as a multiple of the system's.
     """
@@ -182,7 +182,7 @@ def rigid_body(
     freedoms : sequence of str
         Some of x, y, z, theta_x, theta_y, theta_z; the others are held.
     position : sequence of float, shape (3,)
-        Where the frame "centre" is [m].
+        Place of the frame "centre" [m].
     frames : mapping, optional
         Further frames, from the position [m].
     spin : float

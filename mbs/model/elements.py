@@ -7,12 +7,13 @@ are at the same point of the system, so that forces and moments balance without 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from mbs.model.profiles import Constant, LoadProfile
+from mbs.model.relaxation import Relaxation
 
 GROUND = "ground"
 """The place that does not move."""
@@ -55,10 +56,50 @@ class Port:
     coordinates: bool = False
 
 
+class Forces(NamedTuple):
+    """What a nonlinear element answers to a motion of its ports.
+
+    Attributes
+    ----------
+    force : array, shape (m,)
+        Generalised force on the `on` side of each port [N or N m]; the `against` side gets the opposite.
+    stiffness, damping : array, shape (m, m)
+        -d force/d displacement and -d force/d velocity.
+    outside : bool
+        Whether a contact was outside its map, in load, speed or temperature, and its law held at the edge; False for
+        an element without a map.
+    """
+
+    force: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    outside: bool = False
+
+
+class Excitation(NamedTuple):
+    """How often an element excites its system, for what follows orders.
+
+    Attributes
+    ----------
+    order : float
+        How often for each turn of the system, > 0.
+    harmonics : int
+        How many multiples are worth following.
+    rank : int
+        Rank among the elements of a system: only the highest is followed, because gear meshes drown the rollers that
+        pass.
+    """
+
+    order: float
+    harmonics: int
+    rank: int
+
+
 class Element(Protocol):
     """A nonlinear element. Its force is linear algebra in its ports; what happens in there is its own.
 
-    An element has every member; a class that inherits from `ElementDefaults` leaves out `outside_calls`.
+    An element has every member; a class that inherits from `ElementDefaults` leaves out what it does not do. Runs in
+    time call it from Python, unless `mbs.transient.kinds` lists it with a block for compiled code.
     """
 
     @property
@@ -72,38 +113,74 @@ class Element(Protocol):
         ...
 
     @property
-    def outside_calls(self) -> int | None:
-        """Calls outside the map so far; None for an element without a map."""
+    def excitation(self) -> Excitation | None:
+        """How often it excites the system; None for an element that does not by itself."""
         ...
 
-    def evaluate(
-        self, displacement: FloatArray, velocity: FloatArray, operation: Operation
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Generalised force on the ports and how it falls with their motion.
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
+        """Generalised force on the ports, how it falls with their motion, and whether it lies outside a map.
 
         Parameters
         ----------
         displacement, velocity : array, shape (m,)
-            Of all ports, one after the other [m or rad, and per s].
+            Motion of all ports, one after the other [m or rad, and per s].
         operation : Operation
             Speed, angle and time.
 
-        Returns
-        -------
-        force : array, shape (m,)
-            On the `on` side of each port [N or N m]; the `against` side gets the opposite.
-        stiffness, damping : array, shape (m, m)
-            -d force/d displacement and -d force/d velocity.
+        Raises
+        ------
+        OutsideMapError
+            Outside a map whose law has the policy "error".
+        """
+        ...
+
+    def advance(
+        self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> tuple[Forces, Any]:
+        """The same at the end of a step in time, for an element with states of its own.
+
+        Parameters
+        ----------
+        states : object
+            What the element returned at the end of the last step that was made; None at the beginning of a run.
+        displacement, velocity, operation
+            What `evaluate` takes, at the end of the step.
+        """
+        ...
+
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """What of its stiffness needs time, for small oscillations about a rest; None for K and C at any frequency.
+
+        Parameters
+        ----------
+        displacement : array, shape (m,)
+            Displacements of all ports, at rest [m or rad].
+        operation : Operation
+            Speed, angle and time.
         """
         ...
 
 
 class ElementDefaults:
-    """What an element without a map says of itself, to inherit from."""
+    """What an element says of itself that has no states, excites nothing and does not relax, to inherit from."""
+
+    def advance(
+        self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> tuple[Forces, Any]:
+        """What `evaluate` says: there are no states; see `Element.advance`."""
+        return self.evaluate(displacement, velocity, operation), None
+
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
+        """What an element has of its own, see `Element.evaluate`."""
+        raise NotImplementedError
 
     @property
-    def outside_calls(self) -> int | None:
-        """None: there is no map to leave."""
+    def excitation(self) -> Excitation | None:
+        """None: it answers motion only."""
+        return None
+
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """None: stiffness and damping are the same at any frequency."""
         return None
 
 
@@ -114,11 +191,11 @@ class Spring:
     Attributes
     ----------
     name : str
-        For messages and results.
+        Name for messages and results.
     on, against : str
-        Places.
+        Both places.
     stiffness, damping : array, shape (6, 6)
-        Of the six displacements of `on` against `against` [N/m, N m/rad; with s]; symmetric.
+        Matrices of the six displacements of `on` against `against` [N/m, N m/rad; with s]; symmetric.
     """
 
     name: str
@@ -135,9 +212,9 @@ class Load:
     Attributes
     ----------
     name : str
-        For messages and results.
+        Name for messages and results.
     on : str
-        Place.
+        Place of the load.
     force : array, shape (6,)
         Three forces [N] and three moments [N m].
     against : str
@@ -163,7 +240,7 @@ class Sensor:
     Attributes
     ----------
     name : str
-        For messages and results.
+        Name for messages and results.
     on, against : str
         Places, anywhere; the output is the difference.
     direction : array, shape (6,)
@@ -186,9 +263,9 @@ class Input:
     Attributes
     ----------
     name : str
-        For messages and results.
+        Name for messages and results.
     on, against : str
-        Places; `against` gets the opposite.
+        Both places; `against` gets the opposite.
     direction : array, shape (6,)
         Load at amplitude 1 N or 1 N m.
     amplitude : float

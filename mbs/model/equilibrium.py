@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError
 from mbs.model.elements import Operation
+from mbs.model.relaxation import Relaxation
 from mbs.model.system import System
 
 FIRST_STEP = 5e-6
@@ -49,7 +51,9 @@ class Equilibrium:
     parts : dict of str to array, shape (n, n)
         Stiffness by flexible body, spring and element.
     element_stiffness, element_damping : tuple of array, shape (m, m)
-        Of each element in its ports.
+        Matrices of each element in its ports.
+    outside : dict of str to bool
+        Whether each element lies outside its map there, by name.
     residual : float
         Largest remaining force, as a part of the largest load.
     steps : int
@@ -65,8 +69,17 @@ class Equilibrium:
     parts: dict[str, FloatArray]
     element_stiffness: tuple[FloatArray, ...]
     element_damping: tuple[FloatArray, ...]
+    outside: dict[str, bool]
     residual: float
     steps: int
+
+    @cached_property
+    def relaxations(self) -> tuple[Relaxation | None, ...]:
+        """What of the stiffness of each element needs time, in its ports; None where nothing does."""
+        return tuple(
+            connected.element.relaxation(connected.transform @ self.displacement, self.operation)
+            for connected in self.system.elements
+        )
 
 
 def equilibrium(
@@ -81,7 +94,7 @@ def equilibrium(
     operation : Operation, optional
         Speed, angle, and the time of the loads; at rest, angle and time zero, if left out.
     start : array, shape (n,), optional
-        Where to begin; zero if left out.
+        Displacement to begin with; zero if left out.
     tolerance : float
         Remaining force over the largest force in the system.
 
@@ -99,7 +112,7 @@ def equilibrium(
         internal = -system.stiffness @ q
         scale = float(np.linalg.norm(weight * internal)) + float(np.linalg.norm(weight * loads))
         for connected in system.elements:
-            part = connected.transform.T @ connected.evaluate(q, rest, operation)[0]
+            part = connected.transform.T @ connected.evaluate(q, rest, operation).force
             scale += float(np.linalg.norm(weight * part))
             internal += part
         return internal + loads, scale
@@ -137,7 +150,7 @@ def _newton_step(system: System, operation: Operation, q: FloatArray, force: Flo
     jacobian = system.stiffness.copy()
     rest = np.zeros(system.size)
     for connected in system.elements:
-        jacobian += connected.transform.T @ connected.evaluate(q, rest, operation)[1] @ connected.transform
+        jacobian += connected.transform.T @ connected.evaluate(q, rest, operation).stiffness @ connected.transform
     size = max(float(np.trace(jacobian) / np.trace(system.mass)), 1.0)
     return np.asarray(
         np.linalg.solve(0.5 * (jacobian + jacobian.T) + 1e-9 * size * system.mass, force), dtype=np.float64
@@ -176,27 +189,26 @@ def _result(
     stiffness = system.stiffness.copy()
     damping = system.damping + operation.speed * system.gyroscopic
     parts = dict(system.linear_parts)
-    found = [connected.evaluate(q, np.zeros(system.size), operation) for connected in system.elements]
-    # Elements may hand out scratch that the next call overwrites.
-    copies = [tuple(np.array(array) for array in triple) for triple in found]
-    for connected, (_, k, c) in zip(system.elements, copies, strict=True):
-        part = connected.transform.T @ k @ connected.transform
+    found = system.evaluate(q, np.zeros(system.size), operation)
+    for connected, forces in zip(system.elements, found, strict=True):
+        part = connected.transform.T @ forces.stiffness @ connected.transform
         parts[connected.element.name] = part
         stiffness += part
-        damping += connected.transform.T @ c @ connected.transform
+        damping += connected.transform.T @ forces.damping @ connected.transform
     # Without loads there may be no force at all: then by what moves the stiffest coordinate by a negligible length.
     least = max(NEGLIGIBLE * float(np.max(np.abs(np.diag(stiffness)))), 1e-300)
-    largest = max(float(np.max(np.abs(loads))), *(float(np.max(np.abs(f))) for f, _, _ in copies), least)
+    largest = max(float(np.max(np.abs(loads))), *(float(np.max(np.abs(forces.force))) for forces in found), least)
     return Equilibrium(
         system=system,
         operation=operation,
         displacement=q,
-        forces=tuple(f for f, _, _ in copies),
+        forces=tuple(forces.force for forces in found),
         stiffness=stiffness,
         damping=damping,
         parts=parts,
-        element_stiffness=tuple(k for _, k, _ in copies),
-        element_damping=tuple(c for _, _, c in copies),
+        element_stiffness=tuple(forces.stiffness for forces in found),
+        element_damping=tuple(forces.damping for forces in found),
+        outside={entry.element.name: forces.outside for entry, forces in zip(system.elements, found, strict=True)},
         residual=float(np.max(np.abs(force))) / largest,
         steps=steps,
     )

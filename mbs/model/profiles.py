@@ -64,7 +64,7 @@ class Course:
     times : tuple of float
         Rising [s].
     values : tuple of float
-        As many; factors, or speeds [rad/s].
+        Factors, or speeds [rad/s], as many.
 
     Raises
     ------

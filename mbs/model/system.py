@@ -16,9 +16,8 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from mbs.gears.gear import GearMesh
 from mbs.model.body import Body
-from mbs.model.elements import GROUND, Element, Load, Operation, Port, Spring
+from mbs.model.elements import GROUND, Element, Forces, Load, Operation, Port, Spring
 from mbs.model.places import Places
 from mbs.model.profiles import Constant, LoadProfile
 
@@ -41,8 +40,8 @@ class Connected:
     element: Element
     transform: FloatArray
 
-    def evaluate(self, q: FloatArray, v: FloatArray, operation: Operation) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Force, stiffness and damping of the element in its ports.
+    def evaluate(self, q: FloatArray, v: FloatArray, operation: Operation) -> Forces:
+        """Force, stiffness and damping of the element in its ports, and whether it lies outside a map.
 
         Parameters
         ----------
@@ -62,13 +61,13 @@ class System:
     Parameters
     ----------
     bodies : sequence of Body
-        At least one.
+        Bodies, at least one.
     springs : sequence of Spring
         Linear springs and dampers.
     loads : sequence of Load
         Prescribed forces.
     elements : sequence of Element
-        Nonlinear elements: bearings.
+        Nonlinear elements: bearings, gear meshes.
 
     Attributes
     ----------
@@ -131,10 +130,21 @@ class System:
             Connected(element, np.concatenate([self._port(port) for port in element.ports])) for element in elements
         )
 
-    @property
-    def bearings(self) -> tuple[int, ...]:
-        """Which of the elements are bearings: all but gear meshes."""
-        return tuple(i for i, connected in enumerate(self.elements) if not isinstance(connected.element, GearMesh))
+    def select(self, kind: type) -> tuple[int, ...]:
+        """Which of the elements are of a kind, such as `mbs.bearings.bearing_element.RingElement`, by place."""
+        return tuple(i for i, connected in enumerate(self.elements) if isinstance(connected.element, kind))
+
+    def evaluate(self, q: FloatArray, v: FloatArray, operation: Operation) -> tuple[Forces, ...]:
+        """Forces of all elements in their ports, in the order of `elements`.
+
+        Parameters
+        ----------
+        q, v : array, shape (n,)
+            Coordinates [m or rad] and their rates.
+        operation : Operation
+            Speed, angle and time.
+        """
+        return tuple(connected.evaluate(q, v, operation) for connected in self.elements)
 
     @property
     def size(self) -> int:
@@ -205,10 +215,11 @@ class System:
                 problems.append(f"{name!r}: is there twice; bodies, springs, loads and bearings have names apart")
             seen.add(name)
         problems += [
-            f"{element.name!r}, outside_calls: missing; allowed: a count, or None without a map; an element inherits "
-            "that from mbs.model.elements.ElementDefaults, the force of a bearing without a map has outside_calls = 0"
+            f"{element.name!r}, {member}: missing; allowed: {words}, or None; an element inherits that from "
+            "mbs.model.elements.ElementDefaults"
             for element in elements
-            if not hasattr(element, "outside_calls")
+            for member, words in (("excitation", "how often it excites"), ("relaxation", "what of it needs time"))
+            if not hasattr(element, member)
         ]
         for where, on, against in _connections(springs, loads, elements):
             wrong = [problem for place in (on, against) if (problem := self._places.problem(place))]

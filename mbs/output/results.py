@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ import xarray as xr
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.outputs import MADE_AS, dataset_kind, written_aside
 from ehdmaps.version import version
+from mbs.bearings.bearing_element import RingElement
 from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.films import SIDES
 from mbs.bearings.roller_element import ring_matrices
@@ -22,7 +23,7 @@ from mbs.model.body import FREEDOMS
 from mbs.model.elements import Input, Sensor
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.system import System
-from mbs.transient.integration import Trajectory
+from mbs.transient.run import Recording
 
 SCHEMA_VERSION = 1
 
@@ -60,7 +61,7 @@ def statics_dataset(
         **_by_kind(balance.system, balance.displacement, (), "displacement"),
         **_ring_variables(balance.system, balance.forces, ()),
     }
-    bearings = balance.system.bearings
+    bearings = balance.system.select(RingElement)
     pairs = [ring_matrices(balance.element_stiffness[i], balance.element_damping[i]) for i in bearings]
     for index, (name, unit) in enumerate((("stiffness", "N/m"), ("damping", "N s/m"))):
         rings = [pair[index] for pair in pairs]
@@ -135,7 +136,8 @@ def linear_dataset(
         Sensors, where motion is measured.
     """
     names = list(balance.system.coordinates)
-    states = [*names, *(f"{name}.rate" for name in names)]
+    films = space.A.shape[0] - 2 * len(names)
+    states = [*names, *(f"{name}.rate" for name in names), *(f"film_{index + 1}" for index in range(films))]
     dims = ("frequency", "sensor", "input")
     quantities = [sensor.quantity for sensor in sensors]
     units = "m, m/s or m/s2 by the sensor's quantity (rad for rotations), per N or N m"
@@ -163,17 +165,15 @@ def linear_dataset(
     return xr.Dataset(variables, coords=coordinates, attrs=_operation(balance))
 
 
-def run_dataset(system: System, run: Trajectory, outside: Mapping[str, int]) -> xr.Dataset:
+def run_dataset(system: System, run: Recording) -> xr.Dataset:
     """Trajectory of a run: motion of all coordinates, and forces of the bearings.
 
     Parameters
     ----------
     system : System
         Whose run it is.
-    run : Trajectory
-        What was recorded.
-    outside : mapping of str to int
-        Calls outside the map, by bearing.
+    run : Recording
+        What was recorded, with the states.
     """
     variables: dict[str, Any] = {
         "speed": ("time", run.speed, {"units": "rad/s", "long_name": "speed of the system"}),
@@ -181,15 +181,15 @@ def run_dataset(system: System, run: Trajectory, outside: Mapping[str, int]) -> 
         **_ring_variables(system, run.forces, ("time",)),
     }
     for order, values in (
-        ("displacement", run.displacement),
-        ("velocity", run.velocity),
-        ("acceleration", run.acceleration),
+        ("displacement", run.states.displacement),
+        ("velocity", run.states.velocity),
+        ("acceleration", run.states.acceleration),
     ):
         variables |= _by_kind(system, values, ("time",), order)
     names = _bearing_names(system)
     variables["outside_calls"] = (
         "bearing",
-        np.array([outside.get(str(name), 0) for name in names], dtype=np.int64),
+        np.array([run.outside[str(name)] for name in names], dtype=np.int64),
         {"units": "1", "long_name": "law calls outside the map"},
     )
     coordinates = {
@@ -250,9 +250,10 @@ def _ring_variables(
     system: System, forces: Sequence[FloatArray], dims: tuple[str, ...]
 ) -> dict[str, tuple[tuple[str, ...], FloatArray, dict[str, str]]]:
     """Force and moment of the bearings on their inner rings."""
-    if not system.bearings:
+    bearings = system.select(RingElement)
+    if not bearings:
         return {}
-    rings = np.stack([forces[i][..., :6] for i in system.bearings], axis=len(dims))
+    rings = np.stack([forces[i][..., :6] for i in bearings], axis=len(dims))
     return {
         name: (
             (*dims, "bearing", "direction"),
@@ -265,7 +266,7 @@ def _ring_variables(
 
 def _bearing_names(system: System) -> npt.NDArray[np.str_]:
     """Names of the bearings; texts also where there is none."""
-    return np.array([system.elements[i].element.name for i in system.bearings], dtype=np.str_)
+    return np.array([system.elements[i].element.name for i in system.select(RingElement)], dtype=np.str_)
 
 
 def _operation(balance: Equilibrium) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.figures import COLOURS
 from mbs.output.page import grid, headed, shade, shade_handle, whole_numbers
 from mbs.scene.assembly import Model
-from mbs.transient.integration import Trajectory
+from mbs.transient.run import Recording
 
 _RPM = 30.0 / np.pi
 _WIDTH, _COLUMN, _HEIGHT = 9.0, 2.6, 5.8
@@ -23,15 +23,15 @@ _LENGTHS = ((1e-6, "µm", 1e6), (1e-9, "nm", 1e9), (0.0, "pm", 1e12))
 _FORCES = ((1e4, "kN", 1e-3), (1e-1, "N", 1.0), (0.0, "mN", 1e3))
 
 
-def run_figure(model: Model, run: Trajectory, below: float = 0.0, words: str = "") -> Figure:
+def run_figure(model: Model, run: Recording, below: float = 0.0, words: str = "") -> Figure:
     """Bearing force, displacement of the inner ring and speed over time; every bearing in panels of its own.
 
     Parameters
     ----------
     model : Model
         What ran.
-    run : Trajectory
-        The run.
+    run : Recording
+        The run, with its states.
     below : float
         Speed [rad/s] below which the film fades to the dry contact: these times are shaded.
     words : str
@@ -66,10 +66,10 @@ def run_figure(model: Model, run: Trajectory, below: float = 0.0, words: str = "
     return figure
 
 
-def _place(model: Model, run: Trajectory, index: int) -> FloatArray:
+def _place(model: Model, run: Recording, index: int) -> FloatArray:
     """Radial displacement of an inner ring against the outer one [m]."""
     bearing = model.bearings[index]
-    motion = run.displacement @ model.system.relative(bearing.inner, bearing.outer).T
+    motion = run.states.displacement @ model.system.relative(bearing.inner, bearing.outer).T
     return np.asarray(np.hypot(motion[:, 1], motion[:, 2]))
 
 

@@ -17,12 +17,14 @@ from mbs.bearings.films import FilmSource
 from mbs.gears.gear import GearMesh
 from mbs.model.elements import Operation
 from mbs.model.places import Places
+from mbs.model.relaxation import Films
 from mbs.model.system import System
 from mbs.scene import kinds
 from mbs.scene.bodies import build_bodies
 from mbs.scene.contact_laws import ContactLaws, choose_law
-from mbs.scene.kinds import Built, ElementKind, Surroundings
+from mbs.scene.kinds import ElementKind
 from mbs.scene.scene import Scene
+from mbs.scene.surroundings import Built, Surroundings
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +47,9 @@ class Model:
         What knows pressures and films of the contacts, by bearing.
     label : str
         The law in two words, as the legend of a figure has it.
+    memory : {"slow", "memory"}
+        Whether films relax, or have the stiffness and damping of slow motion at any frequency, as laws without films
+        always have.
     """
 
     scene: Scene
@@ -54,16 +59,12 @@ class Model:
     gears: tuple[GearMesh, ...]
     films: Mapping[str, FilmSource]
     label: str
+    memory: Films = "slow"
 
     @property
     def operation(self) -> Operation:
         """The operating speed of the scene, at the start angles of its bearings."""
         return Operation(self.scene.speed)
-
-    @property
-    def outside_calls(self) -> dict[str, int]:
-        """Calls outside the map so far, by element; 0 for one without a map."""
-        return {connected.element.name: connected.element.outside_calls or 0 for connected in self.system.elements}
 
 
 def assemble(
@@ -71,6 +72,7 @@ def assemble(
     law: str | None = None,
     emap: EHDMap | str | Path | None = None,
     clearance: float | None = None,
+    films: Films | None = None,
 ) -> Model:
     """Make a system from a scene.
 
@@ -84,6 +86,10 @@ def assemble(
         Map of the law `map`, or the path of its file.
     clearance : float, optional
         Diametral clearance of all bearings [m], in place of the scene's.
+    films : {"slow", "memory"}, optional
+        Whether films have the stiffness and damping of slow motion at any frequency, or relax, in linear analyses and
+        in runs in time; `DEFAULT_FILMS` of `mbs.model.relaxation` if left out, where the law allows it. Statics do not
+        change.
 
     Returns
     -------
@@ -115,7 +121,7 @@ def assemble(
     problems: list[str] = []
     if clearance is not None:
         scene = _with_clearance(scene, clearance, problems)
-    laws = ContactLaws(choose_law(law, emap), scene, emap)
+    laws = ContactLaws(choose_law(law, emap), scene, emap, films)
     wrong_law = laws.problems()
     problems = [*wrong_law, *problems]
     try:
@@ -143,6 +149,7 @@ def assemble(
         gears=tuple(_shown(built, "gears", GearMesh)),
         films={entry.name: laws.films(entry.bearing) for entry in bearings},
         label=laws.label,
+        memory=laws.memory,
     )
 
 

@@ -12,7 +12,7 @@ from mbs.scene.fields import DEGREE
 from mbs.scene.specs import BearingSpec
 
 if TYPE_CHECKING:
-    from mbs.scene.kinds import Built, Surroundings
+    from mbs.scene.surroundings import Built, Surroundings
 
 
 def read_bearing(section: Table, name: str) -> BearingSpec | None:
@@ -79,13 +79,15 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
     from mbs.bearings.bearing import Bearing
     from mbs.bearings.bearing_element import BearingElement
     from mbs.bearings.bearing_force import BearingForce
+    from mbs.bearings.memory_element import MemoryBearing
     from mbs.bearings.roller_contacts import RollerContacts
     from mbs.bearings.roller_element import RollerElement, roller_body
-    from mbs.scene.kinds import Built
+    from mbs.scene.surroundings import Built
 
     bearing = Bearing(spec.geometry, spec.profile, spec.slices)
     laws = surroundings.laws.of(bearing)
-    plain = BearingElement(
+    memory = surroundings.laws.memory == "memory" and not spec.rollers_as_bodies
+    plain = (MemoryBearing if memory else BearingElement)(
         name=spec.name,
         inner=spec.inner,
         outer=spec.outer,
@@ -100,4 +102,5 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
     if not spec.rollers_as_bodies:
         return Built(plain, plain)
     body = roller_body(f"{spec.name}_rollers", bearing)
-    return Built(RollerElement(plain, RollerContacts(bearing, *laws.single), body.name), plain, (body,))
+    contacts = RollerContacts(bearing, *laws.single)
+    return Built(RollerElement(plain, contacts, body.name, surroundings.laws.memory), plain, (body,))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import get_args
 
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import LawKind
@@ -13,9 +14,14 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import closest
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import NO_CENTRIFUGAL
 from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import DryLaw, Law
+from mbs.model.relaxation import DEFAULT_FILMS, Films
 from mbs.scene.scene import Scene
+
+MEMORY_WORDS = "films with memory"
+"""How people are told that films relax in linear analyses."""
 
 _SAME = 1e-9
 _COMPARED = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
@@ -58,11 +64,14 @@ class ContactLaws:
         Scene with its oil and its constant laws.
     emap : EHDMap or None
         The map of the law `map`.
+    asked : {"slow", "memory"} or None
+        Which films linear analyses are to have; None for `DEFAULT_FILMS` of `mbs.model.relaxation`, where they can.
     """
 
     chosen: str
     scene: Scene
     emap: EHDMap | None
+    asked: Films | None = None
     _made: dict[BearingGeometry, BearingLaws] = field(default_factory=dict, repr=False)
 
     def problems(self) -> list[str]:
@@ -83,7 +92,23 @@ class ContactLaws:
                 f"--law: got {self.chosen!r} with centrifugal = true in {', '.join(centrifugal)}; allowed: the laws "
                 "map and formula, which bring a roller into equilibrium; or centrifugal = false"
             ]
-        return []
+        if self.asked not in (None, *get_args(Films)):
+            return [f"--films: got {self.asked!r:.60}; allowed: {', '.join(get_args(Films))}"]
+        return self._memory_problems() if self.asked == "memory" else []
+
+    @property
+    def memory(self) -> Films:
+        """Whether films relax in linear analyses, "memory", or have stiffness and damping of slow motion, "slow"."""
+        return self.asked or ("slow" if self._memory_problems() else DEFAULT_FILMS)
+
+    def _memory_problems(self) -> list[str]:
+        """Why films cannot relax."""
+        if self.chosen not in ("map", "formula"):
+            got = f"--films: got 'memory' with the law {self.chosen!r:.60}"
+            return [f"{got}; allowed: the laws map and formula, which have films"]
+        bearings = self.scene.bearings
+        centrifugal = [entry.name for entry in bearings if entry.centrifugal and not entry.rollers_as_bodies]
+        return [f"--films: {NO_CENTRIFUGAL}; so has {', '.join(centrifugal)}"] if centrifugal else []
 
     def bearing_problems(self, name: str, geometry: BearingGeometry) -> list[str]:
         """In what the map in force was made for something else than a bearing."""
@@ -114,11 +139,21 @@ class ContactLaws:
     @property
     def label(self) -> str:
         """The law in two words, as the legend of a figure has it."""
-        return law_label(self.chosen, self.emap)
+        return law_label(self.chosen, self.emap) + self._memory_words
 
     @property
     def words(self) -> str:
         """The law, for people."""
+        return self._law_words + self._memory_words
+
+    @property
+    def _memory_words(self) -> str:
+        """What of the films is to be told."""
+        return f", {MEMORY_WORDS}" if self.memory == "memory" else ""
+
+    @property
+    def _law_words(self) -> str:
+        """The law without its films."""
         if self.chosen == "map" and self.emap is not None:
             solver = self.emap.dataset.attrs.get("solver", "")
             made_for = self.emap.bearing.title if self.emap.bearing else ""

@@ -13,7 +13,7 @@ from mbs.scene import fields
 from mbs.scene.fields import DEGREE, MICROMETRE
 
 if TYPE_CHECKING:
-    from mbs.scene.kinds import Built, Surroundings
+    from mbs.scene.surroundings import Built, Surroundings
 
 _DAMPING = Display("N s/m")
 _WORDS_HARMONICS = f"a whole number from 0 to {MOST_HARMONICS}, or a list of at most as many numbers, parts of the mean"
@@ -114,7 +114,7 @@ def build_gears(spec: GearPair, surroundings: Surroundings) -> Built:
         If the gears are not where they mesh, or do not turn as their teeth ask for.
     """
     from mbs.gears.gear import gear_mesh
-    from mbs.scene.kinds import Built
+    from mbs.scene.surroundings import Built
 
     places = surroundings.places
     positions = [places.position(place).tolist() for place in (spec.on, spec.against)]

@@ -1,6 +1,6 @@
 """A run in compiled code: what `run_kernel` needs, prepared for a batch of steps, and the steps between.
 
-Steps that have no table of the law (speeds below the map, where films fade; loads above the map) are made by
+Steps that an element has no compiled answer for (speeds below the map, where films fade; loads above it) are made by
 `mbs.transient.stepping`, from the same state.
 """
 
@@ -12,19 +12,16 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.linalg
 
-from ehdmaps.arrays import BoolArray, FloatArray, IntArray
-from mbs.bearings import slice_table as table
+from ehdmaps.arrays import FloatArray, IntArray
+from mbs.model.blocks import IN_PYTHON, Moment
 from mbs.model.profiles import LoadProfile, SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
 from mbs.transient.linear_part import LinearPart
-from mbs.transient.run_arrays import Course, Films, Numbers, Records, State
+from mbs.transient.run_arrays import Course, Numbers, Records, State
 from mbs.transient.run_elements import RunElements
-from mbs.transient.run_kernel import ABOVE, advance, observe
-from mbs.transient.speed_tables import NODES
+from mbs.transient.run_kernel import advance, advance_anew, observe, start, start_anew
 from mbs.transient.stepping import ITERATIONS, Method, Stepper
-
-Places = Sequence[tuple[IntArray, FloatArray]]
 
 
 class CompiledRun:
@@ -33,7 +30,7 @@ class CompiledRun:
     Parameters
     ----------
     system : System
-        System with elements that `mbs.transient.run_elements.is_known` knows.
+        System whose elements all have a kind in `mbs.transient.kinds`.
     speed : SpeedProfile
         Prescribed speed.
     settings : Settings
@@ -77,7 +74,6 @@ class CompiledRun:
             self._modes if settings.tolerance < math.inf else self._modes[:0],
             self._method,
         )
-        self._films = _room(len(self._elements.films), any(film.varies for film in self._elements.films))
         self._steady, self._varying, self._profiles = _loads(system, modes)
         self._state = State(np.zeros((4, system.size)), np.zeros((3, expand.shape[0])))
         self._records = Records(
@@ -88,6 +84,8 @@ class CompiledRun:
             motions=np.zeros((samples if states else 0, 3, system.size)),
         )
         self._counters = np.zeros(1, dtype=np.int64)
+        self._advance, self._start = (advance, start) if self._elements.ours else (advance_anew, start_anew)
+        self._started = not self._elements.has_states
         self.compiled = 0
         self._take_over()
         observe(self._state, self._records, 0)
@@ -96,6 +94,11 @@ class CompiledRun:
     def iterations(self) -> int:
         """Newton iterations so far."""
         return self._stepper.iterations + int(self._counters[0])
+
+    @property
+    def outside(self) -> IntArray:
+        """How often each element was evaluated outside its map so far."""
+        return self._stepper.outside + self._elements.outside
 
     def steps(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
         """Make steps of length h [s] to the given times.
@@ -117,38 +120,40 @@ class CompiledRun:
         courses = np.array([self._speed.at(time) for time in times.tolist()])
         speeds, angles = np.ascontiguousarray(courses[:, 0]), np.ascontiguousarray(courses[:, 1])
         factors = _factors(self._profiles, times)
-        places = [film.places(speeds) for film in self._elements.films]
+        self._elements.begin(speeds)
         numbers = self._numbers(h)
         self._state.forces[1:] = self._state.forces[0]  # the steps before may have had another length
         done, error = 0, 0.0
         while done < times.size:
             linear, reach = self._linear.about(h, speeds[done:])
-            slots, weights, outside, sound = self._prepare(speeds, places, done, reach)
+            blocks, sound = self._elements.prepare(done, min(done + reach, times.size))
             count = sound.size if sound.all() else int(np.argmin(sound))
-            made, status = 0, ABOVE
+            made, status = 0, IN_PYTHON
             if count:
                 here = slice(done, done + count)
                 course = Course(
+                    times=times[here],
                     speeds=speeds[here],
                     angles=angles[here],
-                    nodes=slots[:count],
-                    weights=weights[:count],
-                    outside=outside[:count],
                     steady=self._steady,
                     varying=self._varying,
                     factors=factors[here],
                     rows=rows[here],
                 )
-                made, status, error = advance(
-                    linear, numbers, self._elements.arrays, self._films, course, self._state, self._records,
+                if not self._started:
+                    begin = float(times[0]) - h
+                    moment = Moment(0, begin, *self._speed.at(begin), 1.0, 1.0)
+                    self._start(linear, blocks, moment, self._state, np.zeros_like(self._elements.outside))
+                    self._started = True
+                made, status, error = self._advance(
+                    linear, numbers, blocks, course, self._state, self._records, self._elements.outside,
                     self._counters,
                 )  # fmt: skip
-                self._elements.hand_over_counts()
                 self.compiled += made
                 done += made
             if made == count > 0:
                 continue
-            if status != ABOVE:
+            if status != IN_PYTHON:
                 return done, error
             wanted = 1 if count else int(np.argmax(sound)) or sound.size
             made, error = self._uncompiled(times[done : done + wanted], h, rows[done : done + wanted])
@@ -161,23 +166,6 @@ class CompiledRun:
         """Outputs (samples, k), forces in all ports (samples, ports), and motions (samples, 3, n) where recorded."""
         records = self._records
         return records.outputs, records.forces @ self._elements.expand, records.motions @ self._modes.T
-
-    def _prepare(
-        self, speeds: FloatArray, places: Places, done: int, reach: int
-    ) -> tuple[IntArray, FloatArray, IntArray, BoolArray]:
-        """Tables for the next steps, at most `reach`: slots, weights, whether outside, and whether there are any."""
-        part, found = slice(done, done + reach), []
-        for index, (film, (nodes, weights)) in enumerate(zip(self._elements.films, places, strict=True)):
-            tables = self._films.tables[index], self._films.numbers[index]
-            found.append((*film.prepare(speeds[part], nodes[part], weights[part], *tables), weights[part]))
-        self._films.in_use[:] = -1.0
-        count = min((entry[0].size for entry in found), default=reach)
-        slots, outside = (np.zeros((count, len(found)), dtype=np.int64) for _ in range(2))
-        weights, sound = np.zeros((count, len(found))), np.ones(count, dtype=bool)
-        for index, (slot, whole, beyond, weight) in enumerate(found):
-            slots[:, index], outside[:, index], weights[:, index] = slot[:count], beyond[:count], weight[:count]
-            sound &= whole[:count]
-        return slots, weights, outside, sound
 
     def _uncompiled(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
         """Make steps by the reference; as `steps`."""
@@ -221,18 +209,6 @@ class CompiledRun:
             residual=self._settings.residual,
             iterations=ITERATIONS,
         )
-
-
-def _room(films: int, varies: bool) -> Films:
-    """Room for tables."""
-    nodes, cells = (NODES, 2 * table.ROWS) if varies else (1, 1)
-    return Films(
-        tables=np.zeros((films, nodes, cells, 8)),
-        numbers=np.zeros((films, nodes, table.NUMBERS)),
-        cells=np.zeros((films, cells, 8)),
-        current=np.zeros((films, table.NUMBERS)),
-        in_use=np.full((films, 2), -1.0),
-    )
 
 
 def _loads(system: System, modes: FloatArray) -> tuple[FloatArray, FloatArray, list[LoadProfile]]:

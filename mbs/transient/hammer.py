@@ -26,7 +26,7 @@ from mbs.model.elements import Input, Sensor
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.profiles import Course, HalfSine, SpeedProfile
 from mbs.settings import Settings
-from mbs.transient.integration import Trajectory, integrate
+from mbs.transient.run import WITH_STATES, States, run
 
 OVERSAMPLING = 16
 """Computed samples for each recorded one. What a half-sine has beyond half the rate of the computed samples folds back,
@@ -183,7 +183,7 @@ def nonlinear_hits(
     sensors: tuple[Sensor, ...],
     test: HammerTest,
     progress: Callable[[], None] | None = None,
-) -> tuple[Hits, ...]:
+) -> tuple[tuple[Hits, ...], dict[str, int]]:
     """Hits at every input, answered by the nonlinear system.
 
     The cage stands at its start angle while the films feel the speed, as in the linear analyses: the rollers that
@@ -198,6 +198,13 @@ def nonlinear_hits(
         The same as for `linear_hits`.
     progress : callable, optional
         Called after each hit.
+
+    Returns
+    -------
+    hits : tuple of Hits
+        One an input.
+    outside : dict of str to int
+        How often each element was evaluated outside its map, by name.
 
     Raises
     ------
@@ -214,17 +221,20 @@ def nonlinear_hits(
     forces = input_matrix(balance, inputs)
     begin = test.quiet * test.step
     part = (np.arange(count) * fine - begin) / test.pulse
+    outside = dict.fromkeys(balance.outside, 0)
     sine = np.where((part > 0.0) & (part < 1.0), np.sin(np.pi * part), 0.0)
 
     def respond(column: int, height: float) -> FloatArray:
         struck = system.with_load(height * forces[:, column], HalfSine(begin, test.pulse))
-        run = integrate(struck, speed, (count - 1) * fine, settings, displacement=balance.displacement)
+        found = run(struck, speed, (count - 1) * fine, settings, displacement=balance.displacement, options=WITH_STATES)
+        for name, calls in found.outside.items():
+            outside[name] += calls
         if progress:
             progress()
-        seen = _sensed(run, sensors, measured, at_rest)
+        seen = _sensed(found.states, sensors, measured, at_rest)
         return _filtered(np.concatenate([height * sine[None], seen]), test)
 
-    return _hits(inputs, sensors, test, respond)
+    return _hits(inputs, sensors, test, respond), outside
 
 
 @dataclass(frozen=True)
@@ -288,12 +298,12 @@ def _filtered(fine: FloatArray, test: HammerTest) -> FloatArray:
     return np.asarray(filtered[:, delay : delay + test.samples], dtype=np.float64)
 
 
-def _sensed(run: Trajectory, sensors: tuple[Sensor, ...], measured: FloatArray, at_rest: FloatArray) -> FloatArray:
+def _sensed(states: States, sensors: tuple[Sensor, ...], measured: FloatArray, at_rest: FloatArray) -> FloatArray:
     """What sensors see of a run, without the equilibrium, shape (sensors, samples)."""
     motion = {
-        "displacement": run.displacement @ measured.T - at_rest,
-        "velocity": run.velocity @ measured.T,
-        "acceleration": run.acceleration @ measured.T,
+        "displacement": states.displacement @ measured.T - at_rest,
+        "velocity": states.velocity @ measured.T,
+        "acceleration": states.acceleration @ measured.T,
     }
     return np.stack([motion[sensor.quantity][:, i] for i, sensor in enumerate(sensors)])
 

@@ -21,12 +21,11 @@ import numpy as np
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.model.elements import Sensor
-from mbs.model.outside_calls import calls_outside
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
 from mbs.transient.compiled_run import CompiledRun
-from mbs.transient.run_elements import is_known
+from mbs.transient.run_elements import in_python
 from mbs.transient.stepping import Stepper
 
 HALVINGS = 10
@@ -42,6 +41,15 @@ SYMMETRIC = 1e-12
 """What the stiffness of bodies and springs may lack of symmetry, as a part of its largest number."""
 
 _ORDERS = {"displacement": 0, "velocity": 1, "acceleration": 2}
+
+
+@dataclass(frozen=True, eq=False)
+class States:
+    """Motion of all coordinates at the samples, shape (samples, n) each [m or rad, per s, per s2]."""
+
+    displacement: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,9 +69,13 @@ class Recording:
     steps, halved, iterations : int
         Steps made, steps taken back, and Newton iterations in all.
     outside : dict of str to int
-        Calls outside the map, by bearing.
+        How often each element was evaluated outside its map, by name.
     compiled : int
         Steps made in compiled code.
+    notes : tuple of str
+        Why no step could be, in sentences; none where it could or was not asked for.
+    states : States
+        Motion of all coordinates; of no samples if it was not asked for.
     """
 
     time: FloatArray
@@ -77,15 +89,28 @@ class Recording:
     iterations: int
     outside: dict[str, int]
     compiled: int
+    notes: tuple[str, ...]
+    states: States
 
 
-@dataclass(frozen=True, eq=False)
-class States:
-    """Motion of all coordinates at the samples, shape (samples, n) each [m or rad, per s, per s2]."""
+@dataclass(frozen=True)
+class Options:
+    """How a run is made and what it keeps, besides the method.
 
-    displacement: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
+    Attributes
+    ----------
+    states : bool
+        Whether the motion of all coordinates is recorded, for runs that are short enough.
+    compiled : bool
+        False: the reference, step by step in Python.
+    """
+
+    states: bool = False
+    compiled: bool = True
+
+
+WITH_STATES = Options(states=True)
+"""Of a run that records the motion of all coordinates."""
 
 
 def run(
@@ -97,8 +122,7 @@ def run(
     displacement: FloatArray | None = None,
     velocity: FloatArray | None = None,
     progress: Callable[[int], None] | None = None,
-    *,
-    compiled: bool = True,
+    options: Options = Options(),
 ) -> Recording:
     """Run a system in time, and record sensors and elements.
 
@@ -118,8 +142,8 @@ def run(
         Motion at time zero; zero if left out.
     progress : callable, optional
         Told the number of samples done: once for each, some at a time.
-    compiled : bool
-        False: the reference, step by step in Python.
+    options : Options
+        What is kept besides, and whether compiled code is used.
 
     Raises
     ------
@@ -128,42 +152,24 @@ def run(
     AnalysisError
         If a step finds no solution although it was halved ten times.
     """
-    return record(system, speed, duration, settings, sensors, displacement, velocity, progress, compiled, False)[0]
-
-
-def record(
-    system: System,
-    speed: SpeedProfile,
-    duration: float,
-    settings: Settings,
-    sensors: Sequence[Sensor],
-    displacement: FloatArray | None,
-    velocity: FloatArray | None,
-    progress: Callable[[int], None] | None,
-    compiled: bool,
-    states: bool,
-) -> tuple[Recording, States]:
-    """`run`, and the motion of all coordinates if `states` (else of no samples)."""
-    plan = _Plan.of(system, sensors, duration, settings, states)
+    plan = _Plan.of(system, sensors, duration, settings, options.states)
     start = [_start(name, given, system) for name, given in (("displacement", displacement), ("velocity", velocity))]
-    with calls_outside(lambda: _outside(system)) as outside:
-        stepper = Stepper(system, speed, settings, start[0], start[1])
-        engine: _Engine
-        if compiled and _has_modes(system) and all(is_known(connected.element) for connected in system.elements):
-            engine = CompiledRun(
-                system, speed, settings, stepper, plan.rows, plan.orders, plan.samples + 1, plan.states
-            )
-        else:
-            engine = _Reference(stepper, plan, settings)
-        steps, halved = _drive(engine, settings, plan.samples, progress)
-        outputs, forces, motions = engine.recorded()
+    stepper = Stepper(system, speed, settings, start[0], start[1])
+    engine: _Engine
+    notes = _notes(system) if options.compiled else ()
+    if options.compiled and not notes:
+        engine = CompiledRun(system, speed, settings, stepper, plan.rows, plan.orders, plan.samples + 1, plan.states)
+    else:
+        engine = _Reference(stepper, plan, settings)
+    steps, halved = _drive(engine, settings, plan.samples, progress)
+    outputs, forces, motions = engine.recorded()
     times = np.asarray(np.arange(plan.samples + 1) * settings.sample, dtype=np.float64)
     courses = np.array([speed.at(time) for time in times])
     ports = [connected.transform.shape[0] for connected in system.elements]
     ends = np.cumsum([0, *ports]).tolist()
     parts = [slice(begin, end) for begin, end in pairwise(ends)]
     count = len(sensors)
-    recording = Recording(
+    return Recording(
         time=times,
         speed=courses[:, 0],
         angle=courses[:, 1],
@@ -173,10 +179,11 @@ def record(
         steps=steps,
         halved=halved,
         iterations=engine.iterations,
-        outside=outside,
+        outside={entry.element.name: int(calls) for entry, calls in zip(system.elements, engine.outside, strict=True)},
         compiled=engine.compiled,
+        notes=notes,
+        states=States(motions[:, 0], motions[:, 1], motions[:, 2]),
     )
-    return recording, States(motions[:, 0], motions[:, 1], motions[:, 2])
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,6 +223,11 @@ class _Engine(Protocol):
     @property
     def iterations(self) -> int:
         """Newton iterations so far."""
+        ...
+
+    @property
+    def outside(self) -> IntArray:
+        """How often each element was evaluated outside its map so far."""
         ...
 
     def steps(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
@@ -277,6 +289,11 @@ class _Reference:
         """Newton iterations so far."""
         return self._stepper.iterations
 
+    @property
+    def outside(self) -> IntArray:
+        """How often each element was evaluated outside its map so far."""
+        return self._stepper.outside
+
     def steps(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
         """Make steps."""
         error = 0.0
@@ -302,6 +319,19 @@ class _Reference:
             self._motions[row] = state
 
 
+def _notes(system: System) -> tuple[str, ...]:
+    """Why a run cannot go in compiled code, in sentences; none if it can."""
+    notes = []
+    if slow := in_python(system.elements):
+        notes.append(
+            f"{', '.join(slow)}: no compiled block, so every step runs in Python, which is many times slower; a kind "
+            "of element gets one by mbs.transient.kinds"
+        )
+    if not _has_modes(system):
+        notes.append("the stiffness is not symmetric, so every step runs in Python, which is many times slower")
+    return tuple(notes)
+
+
 def _has_modes(system: System) -> bool:
     """Whether the linear part has real modes: its stiffness is symmetric, to rounding."""
     stiffness = system.stiffness
@@ -317,10 +347,3 @@ def _start(name: str, given: FloatArray | None, system: System) -> FloatArray:
             f"allowed: {system.size} finite numbers, one a coordinate"
         )
     return values
-
-
-def _outside(system: System) -> dict[str, int]:
-    """Calls outside the map so far, by element that counts them."""
-    return {
-        entry.element.name: calls for entry in system.elements if (calls := entry.element.outside_calls) is not None
-    }

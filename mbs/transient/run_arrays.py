@@ -6,13 +6,6 @@ from typing import NamedTuple
 
 from ehdmaps.arrays import FloatArray, IntArray
 
-FIRST, FILM, ROLLERS, SLICES, AT_SLICES, AT_ANGLES, AT_CELLS, AT_ROLLERS = range(8)
-"""Columns of the table of bearings: first of its ports, its film, numbers of rollers and slices, and where its part
-of the pools begins: slices, angles, arrays over all slices, arrays over rollers."""
-
-START_ANGLE, CAGE_RATE, GEOMETRY = range(3)
-"""Columns of the numbers of bearings; the geometry is the rest."""
-
 
 class Linear(NamedTuple):
     """The linear part at one size of steps, about a reference speed.
@@ -71,81 +64,22 @@ class Numbers(NamedTuple):
     iterations: int
 
 
-class Elements(NamedTuple):
-    """Elements as arrays.
-
-    Attributes
-    ----------
-    bearings : array (bearings, 8), of int
-        See `FIRST` and the others.
-    bearing_numbers : array (bearings, 8)
-        Angle of the first roller, cage angle by that of the system, and the geometry for `bearing_force`.
-    slices, angles, states, rows, rollers, sums : array
-        Pools of what `bearing_force` takes.
-    counts : array (bearings,), of int
-        Calls outside the map.
-    mesh_ports : array (meshes,), of int
-        First port of each gear mesh.
-    mesh_constants, mesh_series : array (meshes, 5), (meshes, 4, harmonics)
-        The same as for `mesh_force`.
-    """
-
-    bearings: IntArray
-    bearing_numbers: FloatArray
-    slices: FloatArray
-    angles: FloatArray
-    states: FloatArray
-    rows: IntArray
-    rollers: FloatArray
-    sums: FloatArray
-    counts: IntArray
-    mesh_ports: IntArray
-    mesh_constants: FloatArray
-    mesh_series: FloatArray
-
-
-class Films(NamedTuple):
-    """Tables of the laws at nodes over the speed, and the tables in use.
-
-    Attributes
-    ----------
-    tables, numbers : array (films, nodes, rows, 8), (films, nodes, 10)
-        The same as in `mbs.bearings.slice_table`.
-    cells, current : array (films, rows, 8), (films, 10)
-        Tables in use.
-    in_use : array (films, 2)
-        Node and weight of those.
-    """
-
-    tables: FloatArray
-    numbers: FloatArray
-    cells: FloatArray
-    current: FloatArray
-    in_use: FloatArray
-
-
 class Course(NamedTuple):
     """What is prescribed at the end of each step.
 
     Attributes
     ----------
-    speeds, angles : array (steps,)
-        [rad/s], [rad].
-    nodes, weights : array (steps, films)
-        Node below the speed, and the part of the way to the next one.
-    outside : array (steps, films), of int
-        Whether speed or temperature lie outside the map.
+    times, speeds, angles : array (steps,)
+        [s], [rad/s], [rad].
     steady, varying, factors : array (n,), (loads, n), (steps, loads)
         Loads, by mode.
     rows : array (steps,), of int
         Rows to record in; negative for not at all.
     """
 
+    times: FloatArray
     speeds: FloatArray
     angles: FloatArray
-    nodes: IntArray
-    weights: FloatArray
-    outside: IntArray
     steady: FloatArray
     varying: FloatArray
     factors: FloatArray

@@ -11,6 +11,8 @@ receptance R = T L^-1 T^T, and Newton has as few unknowns as the elements have p
 
     f - F(x0 + by_q R f, y0 + by_v R f) = 0.
 
+What the elements answer is compiled into the steps, for the types of their blocks (`mbs.model.blocks`).
+
 The inverse follows the speed by its expansion to second order about a reference; the caller moves the reference
 before the third order matters.
 """
@@ -18,41 +20,21 @@ before the third order matters.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numba import njit
+from numba.extending import overload
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.maps.lines import FAST
-from mbs.bearings.bearing_kernel import bearing_force
-from mbs.bearings.slice_table import CELLS, KIND, LIFT_OFF, SAFE_APPROACH
-from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_force
-from mbs.transient.run_arrays import (
-    AT_ANGLES,
-    AT_CELLS,
-    AT_ROLLERS,
-    AT_SLICES,
-    CAGE_RATE,
-    FILM,
-    FIRST,
-    GEOMETRY,
-    ROLLERS,
-    SLICES,
-    START_ANGLE,
-    Course,
-    Elements,
-    Films,
-    Linear,
-    Numbers,
-    Records,
-    State,
-)
+from mbs.model.blocks import FOUND, NO_SOLUTION, Answers, Moment
+from mbs.transient.kinds import KINDS
+from mbs.transient.run_arrays import Course, Linear, Numbers, Records, State
 
-DONE, NO_SOLUTION, TOO_LARGE, ABOVE = range(4)
-"""How `advance` ended: all steps made; Newton found nothing; error above the tolerance; a load above the table."""
-
-PORTS = np.array([1, 2, 4, 5])
-"""Displacements of its port that a bearing feels."""
+DONE, TOO_LARGE = FOUND, 3
+"""How `advance` ended, besides `NO_SOLUTION` and `IN_PYTHON`: all steps made; error above the tolerance."""
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -142,115 +124,78 @@ def _solve(matrix: FloatArray, right: FloatArray) -> bool:
     return True
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def blend(films: Films, film: int, node: int, weight: float) -> None:
-    """Bring the table in use to a place between two nodes: straight in ln of the speed, cell by cell.
-
-    Tables have the same cells in z = (delta - centre)/scale, so that the blend of laws that rise with the approach
-    rises too, and is C1.
+def all_answer(blocks: tuple[Any, ...], moment: Moment, motion: FloatArray, answers: Answers) -> int:
+    """Answers of all elements, in compiled code only: each block by the function of its kind.
 
     Parameters
     ----------
-    films : Films
-        Tables over speed of all bearings; the one in use is written.
-    film : int
-        Index of the bearing.
-    node : int
-        The lower node.
-    weight : float
-        Weight of the upper node, 0 to 1.
+    blocks : tuple of NamedTuple
+        Arrays of all blocks.
+    moment : Moment
+        The step that is asked for.
+    motion : array (2, m)
+        What the elements feel, and its rate.
+    answers : Answers
+        Answers of all elements, filled.
     """
-    if films.in_use[film, 0] == node and films.in_use[film, 1] == weight:
-        return
-    films.in_use[film, 0], films.in_use[film, 1] = node, weight
-    low, cells, current = films.numbers[film, node], films.cells[film], films.current[film]
-    if weight == 0.0:
-        current[:] = low
-        if low[KIND] == CELLS:
-            cells[:] = films.tables[film, node]
-        return
-    other = (node + 1) % films.tables.shape[1]
-    high = films.numbers[film, other]
-    for i in range(low.size):
-        current[i] = low[i] + weight * (high[i] - low[i])
-    # Bounds stay bounds: nodes of the cells move with centre and scale.
-    aside = abs(high[LIFT_OFF] - low[LIFT_OFF])
-    current[LIFT_OFF] = min(low[LIFT_OFF], high[LIFT_OFF]) - aside
-    current[SAFE_APPROACH] = min(low[SAFE_APPROACH], high[SAFE_APPROACH]) - aside
-    if low[KIND] != CELLS:
-        return
-    first, second, mixed = (
-        films.tables[film, node].reshape(-1),
-        films.tables[film, other].reshape(-1),
-        cells.reshape(-1),
-    )
-    for i in range(mixed.size):
-        mixed[i] = first[i] + weight * (second[i] - first[i])
+    raise NotImplementedError
 
 
-@njit(cache=True, error_model="numpy")
-def _bearing(
-    elements: Elements, films: Films, b: int, angle: float, x: FloatArray, y: FloatArray, state: FloatArray,
-    out: FloatArray,
-) -> int:  # fmt: skip
-    """Evaluate a bearing at the motion of its ports, by way of `state` (13,), into `out` (13, 6)."""
-    entry, numbers = elements.bearings[b], elements.bearing_numbers[b]
-    z, n, first, film = entry[ROLLERS], entry[SLICES], entry[FIRST], entry[FILM]
-    state[1], state[2], state[4], state[5] = x[first], x[first + 1], x[first + 2], x[first + 3]
-    state[7], state[8], state[10], state[11] = y[first], y[first + 1], y[first + 2], y[first + 3]
-    state[12] = numbers[START_ANGLE] + numbers[CAGE_RATE] * angle
-    at, turned, on, over = entry[AT_SLICES], entry[AT_ANGLES], entry[AT_CELLS], entry[AT_ROLLERS]
-    status: int = bearing_force(
-        state,
-        numbers[GEOMETRY:],
-        elements.slices[at : at + 2 * n].reshape(2, n),
-        elements.angles[turned : turned + 2 * z].reshape(2, z),
-        films.current[film],
-        films.cells[film],
-        elements.rows[on : on + z * n].reshape(z, n),
-        elements.states[4 * on : 4 * (on + z * n)].reshape(4, z, n),
-        elements.rollers[7 * over : 7 * (over + z)].reshape(7, z),
-        elements.sums[8 * over : 8 * (over + z)].reshape(z, 8),
-        out,
-    )
-    return status
+@overload(all_answer, jit_options={"error_model": "numpy"})
+def _all_answer(blocks: Any, moment: Any, motion: Any, answers: Any) -> Callable[..., int]:
+    """Compile for the types of some blocks: the first one, and then the rest likewise."""
+    if len(blocks) == 0:
+
+        def none(blocks: Any, moment: Any, motion: Any, answers: Any) -> int:
+            return FOUND
+
+        return none
+    answer = {kind.arrays: kind.answer for kind in KINDS.values()}[blocks[0].instance_class]
+
+    def first_and_rest(blocks: Any, moment: Any, motion: Any, answers: Any) -> int:
+        status = answer(blocks[0], moment, motion, answers)
+        if status != FOUND:
+            return status
+        return all_answer(blocks[1:], moment, motion, answers)
+
+    return first_and_rest
 
 
-@njit(cache=True, error_model="numpy")
-def _evaluate(
-    elements: Elements,
-    films: Films,
-    outside: IntArray,
-    speed: float,
-    angle: float,
-    motion: FloatArray,
-    found: FloatArray,
-    by: tuple[float, float],
-) -> int:
-    """Forces of all elements at the motion (2, m) of their ports, and by_q K + by_v C, into `found` (1 + m, m)."""
-    x, y = motion[0], motion[1]
-    force, slopes = found[0], found[1:]
-    by_q, by_v = by
-    state, out, flanks = np.zeros(13), np.empty((13, 6)), np.empty((2, 3))
-    for b in range(elements.bearings.shape[0]):
-        status = _bearing(elements, films, b, angle, x, y, state, out)
-        if status != 0:
-            return NO_SOLUTION if status < 0 else ABOVE
-        elements.counts[b] += outside[elements.bearings[b, FILM]]
-        first = elements.bearings[b, FIRST]
-        for i in range(4):
-            k = PORTS[i]
-            force[first + i] = out[0, k]
-            for j in range(4):
-                slopes[first + i, first + j] = by_q * out[1 + k, PORTS[j]] + by_v * out[7 + k, PORTS[j]]
-    for g in range(elements.mesh_ports.size):
-        first = elements.mesh_ports[g]
-        constants, series = elements.mesh_constants[g], elements.mesh_series[g]
-        mesh_force(constants, series, angle, speed, x[first : first + 2], y[first : first + 2], flanks)
-        for i in range(2):
-            force[first + i] = -flanks[i, FORCE]
-            slopes[first + i, first + i] = by_q * flanks[i, SLOPE] + by_v * flanks[i, BY_RATE]
-    return DONE
+def all_accept(blocks: tuple[Any, ...], moment: Moment) -> None:
+    """Tell all elements with states of their own that a step is made, in compiled code only.
+
+    Parameters
+    ----------
+    blocks : tuple of NamedTuple
+        Arrays of all blocks.
+    moment : Moment
+        The step.
+    """
+    raise NotImplementedError
+
+
+@overload(all_accept, jit_options={"error_model": "numpy"})
+def _all_accept(blocks: Any, moment: Any) -> Callable[..., None]:
+    """Compile for the types of some blocks: the first one, and then the rest likewise."""
+    if len(blocks) == 0:
+
+        def none(blocks: Any, moment: Any) -> None:
+            return
+
+        return none
+    accept = {kind.arrays: kind.accept for kind in KINDS.values()}[blocks[0].instance_class]
+    if accept is None:
+
+        def rest(blocks: Any, moment: Any) -> None:
+            all_accept(blocks[1:], moment)
+
+        return rest
+
+    def first_and_rest(blocks: Any, moment: Any) -> None:
+        accept(blocks[0], moment)
+        all_accept(blocks[1:], moment)
+
+    return first_and_rest
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -297,23 +242,25 @@ def observe(state: State, records: Records, row: int) -> None:
 def advance(
     linear: Linear,
     numbers: Numbers,
-    elements: Elements,
-    films: Films,
+    blocks: tuple[Any, ...],
     course: Course,
     state: State,
     records: Records,
+    outside: IntArray,
     counters: IntArray,
 ) -> tuple[int, int, float]:
     """Make the steps of a course.
 
     Parameters
     ----------
-    linear, numbers, elements, films, course
+    linear, numbers, blocks, course
         What moves.
     state : State
         Overwritten after each step that is made.
     records : Records
-        Records, which are filled.
+        Records of the run, filled.
+    outside : array (elements,), of int
+        Evaluations outside the map, counted up.
     counters : array (1,), of int
         Newton iterations, counted up.
 
@@ -327,7 +274,7 @@ def advance(
     p, v, a, carried = state.motion[0], state.motion[1], state.motion[2], state.motion[3]
     p0, v0, known, right, free = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     found_a, load = np.empty(n), np.empty(n)
-    unmoved, motion, found = np.empty((2, m)), np.empty((2, m)), np.zeros((1 + m, m))
+    unmoved, motion, answers = np.empty((2, m)), np.empty((2, m)), Answers(np.zeros(m), np.zeros((m, m)), outside)
     u, short, jacobian = np.empty(m), np.empty(m), np.empty((m, m))
     reach, receptance = linear.reach[0].copy(), linear.receptance[0].copy()
     h, by_q, by_v = numbers.h, numbers.by_q, numbers.by_v
@@ -365,10 +312,9 @@ def advance(
         for i in range(n):
             right[i] = v0[i] + by_v * free[i]
         _times(linear.ports, right, unmoved[1])
-        for film in range(films.current.shape[0]):
-            blend(films, film, course.nodes[step, film], course.weights[step, film])
         for i in range(m):
             u[i] = 3.0 * (latest[i] - before[i]) + earlier[i]
+        moment = Moment(step, course.times[step], speed, angle, by_q, by_v)
         by_load, largest = _norm(load), 0.0
         status = NO_SOLUTION
         for _ in range(numbers.iterations):
@@ -377,8 +323,8 @@ def advance(
             for i in range(m):
                 motion[0, i] = unmoved[0, i] + by_q * short[i]
                 motion[1, i] = unmoved[1, i] + by_v * short[i]
-            reached = _evaluate(elements, films, course.outside[step], speed, angle, motion, found, (by_q, by_v))
-            if reached != DONE:
+            reached = all_answer(blocks, moment, motion, answers)
+            if reached != FOUND:
                 status = reached
                 break
             for i in range(n):
@@ -388,12 +334,12 @@ def advance(
                 for i in range(n):
                     found_a[i] += u[k] * row[i]
             for i in range(m):
-                short[i] = u[i] - found[0, i]
-            largest = max(largest, by_load, _size(linear.size, found[0]), _norm(found_a))
+                short[i] = u[i] - answers.force[i]
+            largest = max(largest, by_load, _size(linear.size, answers.force), _norm(found_a))
             if _size(linear.size, short) <= numbers.residual * largest:
                 status = DONE
                 break
-            _jacobian(found[1:], receptance, jacobian)
+            _jacobian(answers.slopes, receptance, jacobian)
             if not _solve(jacobian, short):
                 break
             for i in range(m):
@@ -413,6 +359,43 @@ def advance(
             carried[i], a[i] = known[i] + numbers.ratio * found_a[i], found_a[i]
         for i in range(m):
             earlier[i], before[i], latest[i] = before[i], latest[i], u[i]
+        all_accept(blocks, moment)
         if course.rows[step] >= 0:
             observe(state, records, course.rows[step])
     return course.speeds.size, DONE, error
+
+
+@njit(cache=True, error_model="numpy")
+def start(linear: Linear, blocks: tuple[Any, ...], moment: Moment, state: State, outside: IntArray) -> int:
+    """Tell elements with states of their own where a run begins: as a step that ends there.
+
+    Parameters
+    ----------
+    linear, blocks
+        What moves, as of `advance`, for the first steps.
+    moment : Moment
+        The beginning of the run.
+    state : State
+        State there.
+    outside : array (elements,), of int
+        Evaluations outside the map; scratch.
+
+    Returns
+    -------
+    int
+        `FOUND`, or what keeps elements from an answer.
+    """
+    m = linear.ports.shape[0]
+    motion, answers = np.empty((2, m)), Answers(np.zeros(m), np.zeros((m, m)), outside)
+    _times(linear.ports, state.motion[0], motion[0])
+    _times(linear.ports, state.motion[1], motion[1])
+    status: int = all_answer(blocks, moment, motion, answers)
+    if status == FOUND:
+        all_accept(blocks, moment)
+    return status
+
+
+advance_anew = njit(error_model="numpy")(advance.py_func)
+start_anew = njit(error_model="numpy")(start.py_func)
+"""`advance` and `start`, compiled anew in each process: for kinds of elements from elsewhere, see
+`mbs.transient.kinds`."""

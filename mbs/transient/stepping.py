@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -80,6 +81,8 @@ class Stepper:
         Algorithmic acceleration, which the method carries along.
     iterations : int
         Newton iterations so far.
+    outside : array of int, shape (elements,)
+        How often each element was evaluated outside its map so far.
     """
 
     def __init__(
@@ -93,9 +96,11 @@ class Stepper:
         self._system, self._speed, self._settings = system, speed, settings
         ends = np.cumsum([0, *(connected.transform.shape[0] for connected in system.elements)]).tolist()
         self._elements = [
-            (connected.element.evaluate, slice(begin, end))
+            (connected.element, slice(begin, end))
             for connected, begin, end in zip(system.elements, ends[:-1], ends[1:], strict=True)
         ]
+        self._states: list[Any] = [None] * len(self._elements)
+        self._trial = list(self._states)
         self._transform = np.concatenate([np.zeros((0, system.size)), *(c.transform for c in system.elements)])
         ports = ends[-1]
         self._motion, self._port_force, self._unbalanced = np.zeros((2, ports)), np.zeros(ports), np.zeros(system.size)
@@ -106,7 +111,9 @@ class Stepper:
         self._weight = 1.0 / np.sqrt(np.diag(system.mass))
         self.q, self.v = displacement.copy(), velocity.copy()
         self.iterations = 0
+        self.outside = np.zeros(len(self._elements), dtype=np.int64)
         self._residual(self.q, self.v, np.zeros(system.size), 0.0)
+        self._states = list(self._trial)
         self.acceleration = np.asarray(np.linalg.solve(system.mass, -self._unbalanced), dtype=np.float64)
         self.carried = self.acceleration.copy()
 
@@ -146,6 +153,7 @@ class Stepper:
             self.q, self.v = q, v
             self.carried = known + method.ratio * unknown
             self.acceleration = unknown
+            self._states = list(self._trial)
         return error
 
     def _residual(self, q: FloatArray, v: FloatArray, acceleration: FloatArray, time: float) -> tuple[float, float]:
@@ -158,11 +166,14 @@ class Stepper:
             self._linear_steps = (math.nan, math.nan)
         port_motion(self._transform, q, v, self._motion)
         x, rate = self._motion
-        for evaluate, rows in self._elements:
-            f, k, c = evaluate(x[rows], rate[rows], operation)
+        for index, (element, rows) in enumerate(self._elements):
+            answer, self._trial[index] = element.advance(self._states[index], x[rows], rate[rows], operation)
+            f, k, c, outside = answer
             self._port_force[rows] = f
             self._port_stiffness[rows, rows] = k
             self._port_damping[rows, rows] = c
+            if outside:
+                self.outside[index] += 1
         matrices = (system.mass, self._damping, system.stiffness, self._transform, self._weight)
         state = (q, v, acceleration)
         sizes: tuple[float, float] = unbalanced(

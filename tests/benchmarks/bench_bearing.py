@@ -23,7 +23,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.bearing_kernel import bearing_force
+from mbs.bearings.bearing_kernel import force_of_arrays
 from mbs.bearings.force_at_point import ForceAtPoint
 
 SLICES = (11, 21, 41, 81, 161)
@@ -34,10 +34,10 @@ LOAD = 2e3 * np.array([1.0, 1.0]) / math.sqrt(2.0)
 
 
 @njit
-def many(times, state, geometry, slices, angles, numbers, cells, rows, states, rollers, sums, out):
+def many(times, state, sizes, slices, angles, numbers, cells, rows, states, out):
     """Call the kernel many times from compiled code."""
     for _ in range(times):
-        bearing_force(state, geometry, slices, angles, numbers, cells, rows, states, rollers, sums, out)
+        force_of_arrays(state, sizes, slices, angles, numbers, cells, rows, states, out)
 
 
 def best_of(call: Callable[[], object], times: int, repeats: int = 15) -> float:

@@ -50,7 +50,7 @@ from mbs.settings import RunUp, Settings
 from mbs.spectral.levels import Reference, level
 from mbs.spectral.run_signal import RunSignal
 from mbs.spectral.spectra import short_time_spectra
-from mbs.transient.run import Recording, run
+from mbs.transient.run import Options, Recording, run
 
 RPM = math.pi / 30.0
 MIDDLE = 1500.0 * RPM
@@ -291,7 +291,9 @@ def table_error(bench: Bench, duration: float = 5e-3) -> None:
     settings = Settings(1e-5, SAMPLE, 0.9)
     begin, records = time.process_time(), []
     for compiled in (True, False):
-        records.append(run(system, speed, duration, settings, [bench.sensor], start, compiled=compiled))
+        records.append(
+            run(system, speed, duration, settings, [bench.sensor], start, options=Options(compiled=compiled))
+        )
     spent = time.process_time() - begin
     a, b = (record.signals[:, 0] for record in records)
     print(

@@ -10,6 +10,7 @@ from ehdmaps.maps.law import ContactLaw
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
+from mbs.transient.run import WITH_STATES, run
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
 SPEED, TEMPERATURE = 1.0, 330.0
@@ -42,6 +43,11 @@ LAWS = {
 
 def force(law="map", **keywords):
     return BearingForce(bearing(**keywords), LAWS[law]())
+
+
+def integrate(system, speed, duration, settings, displacement=None, velocity=None, progress=None):
+    """A run that records the motion of all coordinates."""
+    return run(system, speed, duration, settings, (), displacement, velocity, progress, WITH_STATES)
 
 
 def equilibrium(element, load, start=5e-6, steps=80):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbs.model.body import Inertia
-from mbs.model.elements import ElementDefaults, Port
+from mbs.model.elements import ElementDefaults, Forces, Port
 
 MASS = Inertia(2.0, 0.01, 0.02)
 
@@ -30,4 +30,4 @@ class OneSided(ElementDefaults):
         depth = max(displacement[1] - self.gap, 0.0)
         f, K = np.zeros(6), np.zeros((6, 6))
         f[1], K[1, 1] = -self.k * depth**1.5, 1.5 * self.k * depth**0.5
-        return f, K, np.zeros((6, 6))
+        return Forces(f, K, np.zeros((6, 6)))

@@ -14,8 +14,8 @@ from ehdmaps.openfoam.solver import OpenFoamSolver
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.spectrum import contact_spectrum
-from tests.openfoam import cases
-from tests.openfoam.comparison import OIL, Place
+from tests.cases import openfoam_runs
+from tests.cases.openfoam_points import OIL, Place
 
 pytestmark = pytest.mark.openfoam
 
@@ -30,10 +30,10 @@ def _frequencies(omegas: np.ndarray) -> np.ndarray:
 
 
 def test_one_krylov_space_gives_what_each_frequency_gives_alone() -> None:
-    settings = replace(cases.parameters(5.0, 8.0, 120, 8), frequencies=(0.0, 1e3, 1e4, 3e4))
-    together = cases.run(settings).results
+    settings = replace(openfoam_runs.parameters(5.0, 8.0, 120, 8), frequencies=(0.0, 1e3, 1e4, 3e4))
+    together = openfoam_runs.run(settings).results
     for index, frequency in enumerate(settings.frequencies):
-        alone = cases.run(replace(settings, frequencies=(frequency,))).results
+        alone = openfoam_runs.run(replace(settings, frequencies=(frequency,))).results
         # each space ends where its largest residual is 1e-8
         assert together.film_compliance[index] == pytest.approx(alone.film_compliance[0], rel=1e-6)
         assert together.loss_compliance[index] == pytest.approx(alone.loss_compliance[0], rel=1e-6)

@@ -43,8 +43,10 @@ def test_modes_by_map(here, capsys, formula_maps):
     )
     assert (status, err) == (0, "")
     assert "law map of NU308, FVA3, solver formula" in out
-    assert "warning: bearing_left: omega b/u is" in out
-    assert "passes 0.3 at" in out
+    assert re.search(
+        r"warning: bearing_left: films are those of slow motion; omega b/u is \S+ at \S+ Hz: there the", out
+    )
+    assert "% wrong, from" in out
     with xr.open_dataset("m.nc") as data:
         check_units(data)
         np.testing.assert_allclose(data["energy_share"].sum("part"), 1.0, rtol=1e-9)
@@ -59,7 +61,7 @@ def test_sweep_of_two_laws_and_clearances(here, capsys, formula_maps):
     assert "law map of NU308, FVA3, solver formula" in out
     assert "case: dry Hertz, 20 um" in out
     assert "by energy: summed, one step" in out
-    assert "warning: bearing_left: omega b/u is up to" in out
+    assert "warning: bearing_left: films are those of slow motion; omega b/u is up to" in out
     with xr.open_dataset("s.nc") as data:
         check_units(data)
         along = data["frequency"].isel(mode=-1)
@@ -71,6 +73,51 @@ def test_sweep_of_two_laws_and_clearances(here, capsys, formula_maps):
         assert data["response_real"].dims == ("case", "speed", "response_frequency", "sensor", "input")
         assert data["bearing_stiffness"].shape == (4, 4, 2)
     assert (here / "s.png").stat().st_size > 10_000
+
+
+def test_sweep_of_films(here, capsys, formula_maps):
+    """Slow films, films with memory and none stand side by side; only films of slow motion are warned of."""
+    status, out, err = run(
+        capsys, "sweep", "nu308_rigid", "--map", formula_maps["NU308"], "--films", "slow", "--films", "memory",
+        "--films", "dry", "--law", "hertz", "--clearance", "20 um", "--speeds", "500 rpm", "2000 rpm", "4", "-o",
+        "s.nc", "--plot", "s.png",
+    )  # fmt: skip
+    assert (status, err) == (0, "")
+    for words in ("formula map, slow films", "formula map, films with memory", "dry Hertz"):
+        assert out.count(f"case: {words}\n") == 1
+    assert "law map of NU308, FVA3, solver formula, films with memory" in out
+    assert out.count("films are those of slow motion") == 2
+    with xr.open_dataset("s.nc") as data:
+        check_units(data)
+        assert data["case"].values.tolist() == [
+            "dry Hertz",
+            "formula map, slow films",
+            "formula map, films with memory",
+        ]
+        np.testing.assert_array_equal(data["frequency"][1], data["frequency"][2])
+        highest = data["complex_damping_ratio"].isel(speed=0).max("complex_mode")
+        assert float(highest[1]) != float(highest[2])
+    assert (here / "s.png").stat().st_size > 10_000
+
+
+def test_films_with_memory_at_one_speed(here, capsys, formula_maps):
+    films = ("--map", formula_maps["NU308"], "--films", "memory")
+    status, out, err = run(capsys, "modes", "nu308_rigid", *films, "-o", "m.nc", "--plot", "m.png")
+    assert (status, err) == (0, "")
+    assert "films with memory" in out and "warning" not in out
+    assert "motions without oscillation that are as quick as films relax" in out
+    status, out, err = run(capsys, "lsa", "nu308_rigid", *films, "-o", "l.nc")
+    assert (status, err) == (0, "")
+    with xr.open_dataset("l.nc") as data:
+        check_units(data)
+        assert "film_1" in data["state"].values
+        assert data.attrs["law"].endswith("films with memory")
+    slow = run(capsys, "statics", "nu308_rigid", *films[:2], "--films", "slow")[1]
+    memory = run(capsys, "statics", "nu308_rigid", *films)[1]
+    kept = [line for line in slow.splitlines() if "films follow as in" not in line and ": law " not in line]
+    assert [line for line in memory.splitlines() if ": law " not in line] == kept
+    dry = run(capsys, "statics", "nu308_rigid", *films[:2], "--films", "dry")[1]
+    assert "law dry Hertz, ISO 16281" in dry
 
 
 def test_linear_analysis_with_rollers_as_bodies(here, capsys, formula_maps):
@@ -141,6 +188,10 @@ def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys, formula_
         (["sweep", "nu308_rigid", "--speeds", "9 rpm", "5 rpm", "x"], "allowed: a whole number from 2"),
         (["sweep", "nu308_rigid", "--speeds", "9 rpm", "5 rpm", "3"], "allowed: rising"),
         (["sweep", "nu308_rigid", "--load-factor", "none"], "--load-factor: got 'none'; allowed: above 0"),
+        (["modes", "nu308_rigid", "--films", "memory"], "--films: got memory without a law that has films; allowed:"),
+        (["modes", "nu308_rigid", "--films", "fast"], "--films: got 'fast'; allowed: memory, slow, dry"),
+        (["sweep", "nu308_rigid", "--films", "dry", "--films", "dry"], "--films: got 'dry' twice; allowed: each once"),
+        (["lsa", "nu308_rigid", "--films", "dry", "--films", "slow"], "--films: got 2 of them; allowed: one"),
         (["sweep", "nu308_rigid"], "no speeds; allowed: --speeds"),
         (["statics", "nu308_rigid", "--plot", "a.xyz"], "--plot: got a.xyz; allowed: a file that ends in .png"),
     ):

@@ -33,7 +33,7 @@ NO_NOUN = re.compile(
 )
 """How a description begins that says no more than a relation, as 'of a roller', or that is one word."""
 
-STILL = {"ehdmaps/maps": 13, "mbs/model": 18}
+STILL = {"ehdmaps/maps": 13}
 """Descriptions without a noun that packages still have: may only fall."""
 
 

@@ -142,6 +142,52 @@ def test_imports_point_one_way(path: Path) -> None:
     assert foreign <= ALLOWED[own], f"{path}: imports {sorted(foreign - ALLOWED[own])}"
 
 
+def _modules_of(path: Path, known: set[str]) -> set[str]:
+    """Modules of this repository that a module imports, those under TYPE_CHECKING and within functions included."""
+    modules = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            modules.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            for alias in node.names:
+                inner = f"{node.module}.{alias.name}"
+                modules.add(inner if inner in known else str(node.module))
+    return modules & known
+
+
+def circles(arrows: dict[str, set[str]]) -> list[list[str]]:
+    """Modules that reach each other: those left when modules that import nothing, or that nobody imports, are gone."""
+    left = {module: set(targets) for module, targets in arrows.items()}
+    while True:
+        imported = set().union(*left.values()) if left else set()
+        free = {module for module, targets in left.items() if not targets or module not in imported}
+        if not free:
+            return [sorted(left)] if left else []
+        left = {module: targets - free for module, targets in left.items() if module not in free}
+
+
+LATE = {("ehdmaps.jobs.job", "ehdmaps.jobs.reader")}
+"""`Job.build` writes a job file and has the reader check it: imported when it is called, and the only such pair."""
+
+
+def test_no_circles_of_modules() -> None:
+    """The packages' `__init__` are shop windows of all, loaded name by name, and are left out."""
+    files = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in FILES}
+    files = {name: path for name, path in files.items() if not name.endswith("__init__")}
+    arrows = {name: _modules_of(path, set(files)) for name, path in files.items()}
+    assert sum(map(len, arrows.values())) > 500  # they are seen at all
+    for module, late in LATE:
+        assert late in arrows[module]
+        arrows[module].discard(late)
+    assert circles(arrows) == []
+
+
+def test_a_circle_is_found() -> None:
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"b"}, "d": {"a"}}) == [["b", "c"]]
+    assert circles({"a": {"a"}}) == [["a"]]
+    assert circles({"a": {"b"}, "b": set()}) == []
+
+
 @pytest.mark.parametrize("path", sorted((ROOT / "mbs" / "analyses").glob("*.py")), ids=lambda p: p.stem)
 def test_analyses_know_no_command_line(path: Path) -> None:
     names = _imported(path)

@@ -15,7 +15,7 @@ from ehdmaps.maps.emap import EHDMap
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.bearing_kernel import bearing_force
+from mbs.bearings.bearing_kernel import force_of_arrays
 from mbs.bearings.roller_contacts import RollerContacts
 from tests.cases.bearings import AT, LAWS, PLANE, bearing, central_difference, force, map_law, single_law
 from tests.cases.laws import OIL, dataset_of
@@ -69,7 +69,7 @@ def test_map_law_is_summed_over_the_slices(conditions, velocity):
     law = map_law()
     element = force(clearance=4e-6)
     speed, temperature, centrifugal_load = conditions
-    got = element(
+    *got, outside = element.evaluate(
         POSE,
         velocity * VELOCITY,
         cage_angle=0.4,
@@ -78,7 +78,7 @@ def test_map_law_is_summed_over_the_slices(conditions, velocity):
         centrifugal_load=centrifugal_load,
     )
     expected = summed(element, POSE, velocity * VELOCITY, 0.4, lambda d, r: law(d, r, *conditions))
-    assert element.outside_calls == (speed > 3.0 or temperature > 343.15)
+    assert outside == (speed > 3.0 or temperature > 343.15)
     for a, b in zip(got, expected, strict=True):
         scale = np.sqrt(np.abs(np.outer(np.diag(b), np.diag(b)))) if b.ndim == 2 else np.max(np.abs(b))
         # the table of the element against the law; more where a coordinate has little stiffness at a high rate
@@ -89,13 +89,15 @@ def test_map_law_is_summed_over_the_slices(conditions, velocity):
 def test_above_the_highest_load_the_law_goes_on(speed):
     pose = np.array([0.0, 60e-6, 0.0, 0.0, 0.0, 0.0])
     element, law = force(), map_law()
-    got = element(pose, entrainment_speed=speed, temperature=330.0)
+    *got, outside = element.evaluate(pose, entrainment_speed=speed, temperature=330.0)
     expected = summed(element, pose, np.zeros(6), 0.0, lambda d, r: law(d, r, speed, 330.0))
     for a, b in zip(got, expected, strict=True):
         np.testing.assert_allclose(a, b, rtol=1e-7, atol=1e-7 * np.max(np.abs(b)))
-    assert element.outside_calls == 1
-    element(0.1 * pose, entrainment_speed=speed, temperature=330.0)
-    assert element.outside_calls == 1
+    assert outside
+    assert not element.evaluate(0.1 * pose, entrainment_speed=speed, temperature=330.0).outside
+    f, K, C = element(pose, entrainment_speed=speed, temperature=330.0)
+    for a, b in zip((f, K, C), got, strict=True):
+        np.testing.assert_array_equal(a, b)
 
 
 @pytest.mark.parametrize("name", ["hertz", "damped hertz", "constant"])
@@ -167,10 +169,10 @@ def test_other_compiled_code_calls_the_kernel():
     expected = point(POSE, VELOCITY, 0.3)
 
     @njit
-    def twice(state, geometry, slices, angles, numbers, cells, rows, states, rollers, sums, out):
+    def twice(state, sizes, slices, angles, numbers, cells, rows, states, out):
         status = 0
         for _ in range(2):
-            status += bearing_force(state, geometry, slices, angles, numbers, cells, rows, states, rollers, sums, out)
+            status += force_of_arrays(state, sizes, slices, angles, numbers, cells, rows, states, out)
         return status
 
     out = np.empty((13, 6))
@@ -342,9 +344,9 @@ def test_bad_roller_contacts():
         contacts(np.full(24, math.nan), **AT)
     with pytest.raises(InputError, match="got the entrainment_speed nan and the temperature nan"):
         contacts(np.zeros(24))
-    assert contacts.outside_calls == 0
-    contacts(np.zeros(24), entrainment_speed=9.0, temperature=330.0)
-    assert contacts.outside_calls == 1
+    assert not contacts.evaluate(np.zeros(24), **AT).outside
+    for _ in range(2):  # the law at these conditions is kept, and so is that they are outside
+        assert contacts.evaluate(np.zeros(24), entrainment_speed=9.0, temperature=330.0).outside
 
 
 def test_roller_contacts_have_exact_derivatives():

@@ -103,7 +103,7 @@ def test_laws_that_do_not_belong():
         BearingForce(Bearing.named("N1014"), map_law())
     assert len(caught.value.problems) == 4
     assert "contact 'inner', radius: got 0.00551515 m; the bearing 'N1014' has 0.00405495 m" in str(caught.value)
-    assert BearingForce(bearing(), map_law(), outside="clamp").outside_calls == 0
+    BearingForce(bearing(), map_law(), outside="clamp")
 
 
 @pytest.mark.parametrize(
@@ -142,7 +142,6 @@ def test_outside_the_map_is_an_error_by_default():
         element(POSE, entrainment_speed=9.0, temperature=330.0)
     with pytest.raises(OutsideMapError, match="temperature: got 400 K"):
         element(POSE, entrainment_speed=1.0, temperature=400.0)
-    assert element.outside_calls == 3
 
 
 def test_bearing_of_another_material_is_softer():

@@ -32,7 +32,7 @@ from mbs.output.run_plot import run_figure
 from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
-from mbs.transient.integration import Trajectory
+from mbs.transient.run import Recording, States
 from tests.cases.bearings import map_law
 
 RPM = np.pi / 30.0
@@ -176,7 +176,21 @@ def trajectory(model, force, speed=None):
     place = zeros.copy()
     place[:, :] = 1e-9
     speed = time * 100.0 if speed is None else speed
-    return Trajectory(time, speed, speed, place, zeros, zeros, (forces, 2.0 * forces), count - 1, 0, count)
+    return Recording(
+        time=time,
+        speed=speed,
+        angle=speed,
+        signals=np.zeros((count, 0)),
+        forces=(forces, 2.0 * forces),
+        motions=(),
+        steps=count - 1,
+        halved=0,
+        iterations=count,
+        outside={},
+        compiled=0,
+        notes=(),
+        states=States(place, zeros, zeros),
+    )
 
 
 class TestRunFigure:

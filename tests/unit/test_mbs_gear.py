@@ -164,7 +164,7 @@ class TestElement:
         row = element.rows[0]
         rng = np.random.default_rng(5)
         q, v = compression * row / (row @ row), rate * row / (row @ row)
-        _, K, C = element.evaluate(q, v, operation)
+        _, K, C, _ = element.evaluate(q, v, operation)
         for matrix, step, place in ((K, 1e-3 * TOUCH, 0), (C, 1e-3 * max(abs(rate), 1e-3), 1)):
             np.testing.assert_array_equal(matrix, matrix.T)
             direction = rng.normal(size=12)

@@ -9,11 +9,11 @@ import pytest
 
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.model.body import Inertia, rigid_body
-from mbs.model.elements import ElementDefaults, Load, Spring
+from mbs.model.elements import ElementDefaults, Forces, Load, Spring
 from mbs.model.profiles import Harmonic, SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
-from mbs.transient.integration import integrate
+from tests.cases.bearings import integrate
 from tests.cases.elements import MASS, OneSided, force, stiff
 
 REST = SpeedProfile.constant(0.0)
@@ -32,20 +32,20 @@ def test_second_order(radius):
         run = integrate(oscillator(4.0), REST, 0.05, Settings(h, 0.05, radius), np.array([1e-3]))
         decay, damped = 1.0, math.sqrt(OMEGA**2 - 1.0)
         exact = 1e-3 * math.exp(-decay * 0.05) * (math.cos(damped * 0.05) + decay / damped * math.sin(damped * 0.05))
-        errors.append(abs(run.displacement[-1, 0] - exact))
+        errors.append(abs(run.states.displacement[-1, 0] - exact))
         assert run.steps == steps
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
 
 
 def test_spectral_radius_one_keeps_the_energy_of_a_linear_system():
     run = integrate(oscillator(), REST, 0.5, Settings(1e-3, 1e-3, 1.0), np.array([1e-3]))
-    energy = 25e3 * run.displacement[:, 0] ** 2 + run.velocity[:, 0] ** 2
+    energy = 25e3 * run.states.displacement[:, 0] ** 2 + run.states.velocity[:, 0] ** 2
     np.testing.assert_allclose(energy, energy[0], rtol=1e-9)  # what Newton leaves over, times 500 steps
 
 
 def test_spectral_radius_dissipates_what_the_step_does_not_resolve():
     run = integrate(oscillator(), REST, 5.0, Settings(0.1, 0.1, 0.5), np.array([1e-3]))
-    assert abs(run.displacement[-1, 0]) < 1e-12
+    assert abs(run.states.displacement[-1, 0]) < 1e-12
 
 
 def test_harmonic_load():
@@ -54,14 +54,16 @@ def test_harmonic_load():
     amplitude = 1.0 / (5e4 - 2.0 * omega**2)
     system = oscillator(0.0, [Load("l", "a", force(y=1.0), profile=Harmonic(10.0))])
     run = integrate(system, REST, 0.3, Settings(1e-4, 1e-3, 1.0), velocity=np.array([amplitude * omega]))
-    np.testing.assert_allclose(run.displacement[:, 0], amplitude * np.sin(omega * run.time), atol=2e-4 * amplitude)
+    np.testing.assert_allclose(
+        run.states.displacement[:, 0], amplitude * np.sin(omega * run.time), atol=2e-4 * amplitude
+    )
 
 
 def test_gyroscopic_precession():
     """A spinning free body, nudged, turns its axis on a circle: the angular momentum stays."""
     body = rigid_body("a", [Inertia(1.0, 0.02, 0.04)], ["theta_y", "theta_z"], spin=1.0)
     run = integrate(System([body]), SpeedProfile.constant(200.0), 0.5, Settings(1e-4, 1e-3, 1.0), velocity=[1e-3, 0.0])
-    momentum = 0.04 * run.velocity + 0.02 * 200.0 * run.displacement @ np.array([[0.0, -1.0], [1.0, 0.0]])
+    momentum = 0.04 * run.states.velocity + 0.02 * 200.0 * run.states.displacement @ np.array([[0.0, -1.0], [1.0, 0.0]])
     np.testing.assert_allclose(
         momentum, np.tile(momentum[0], (run.time.size, 1)), atol=1e-10 * np.abs(momentum[0]).max()
     )
@@ -75,7 +77,7 @@ def test_step_control_meets_its_tolerance_through_an_impact():
     free = integrate(system, REST, 0.04, Settings(1e-3, 1e-3, 1.0, tolerance=1e-8))
     assert free.halved > 0
     assert free.steps < fine.steps / 10
-    np.testing.assert_allclose(free.displacement, fine.displacement, atol=1e-5)
+    np.testing.assert_allclose(free.states.displacement, fine.states.displacement, atol=1e-5)
 
 
 def test_progress_and_samples():
@@ -83,7 +85,7 @@ def test_progress_and_samples():
     run = integrate(oscillator(), REST, 0.01, Settings(1e-3, 2e-3), np.array([1e-3]), progress=seen.append)
     assert seen == [1, 2, 3, 4, 5]
     np.testing.assert_allclose(run.time, np.arange(6) * 2e-3)
-    assert run.displacement.shape == (6, 1)
+    assert run.states.displacement.shape == (6, 1)
 
 
 def test_settings_that_are_not_possible_are_refused_all_at_once():
@@ -105,7 +107,7 @@ class Mad(ElementDefaults):
         self.ports = OneSided("c", "a").ports
 
     def evaluate(self, displacement, velocity, operation):
-        return 1e3 * np.sin(1e14 * displacement + 1.0), 1e30 * np.eye(6), np.zeros((6, 6))
+        return Forces(1e3 * np.sin(1e14 * displacement + 1.0), 1e30 * np.eye(6), np.zeros((6, 6)))
 
 
 def test_a_step_without_solution_is_said():

@@ -161,7 +161,7 @@ class TestAsTheCommand:
         told, progress = counted()
         found = runup(model, progress=progress)
         xr.testing.assert_identical(found.dataset, written("runup"))
-        check_told(told, found.trajectory.steps)
+        check_told(told, found.record.steps)
 
     def test_campbell_of_two_laws(self, model, written):
         other = assemble(model.scene, "constant:hertz")

@@ -22,16 +22,17 @@ from mbs.flexible.attached import Attached
 from mbs.flexible.shaft_parts import Disc, Section
 from mbs.gears.pair import GearPair
 from mbs.model.body import Inertia, rigid_body
-from mbs.model.elements import ElementDefaults, Load, Port, Spring
+from mbs.model.elements import ElementDefaults, Forces, Load, Port, Spring
 from mbs.model.profiles import Course, Harmonic
 from mbs.model.system import System
 from mbs.scene import kinds
 from mbs.scene.assembly import assemble
 from mbs.scene.bodies import build_bodies
-from mbs.scene.kinds import KINDS, Built, ElementKind
+from mbs.scene.kinds import KINDS, ElementKind
 from mbs.scene.reader import parse_scene, read_scene, shipped_systems
 from mbs.scene.scene import Scene
 from mbs.scene.specs import BearingSpec, FlexibleSpec, RigidSpec, ShaftSpec
+from mbs.scene.surroundings import Built
 
 SCENE = """
 schema = 1
@@ -450,7 +451,7 @@ class CouplingElement(ElementDefaults):
         self._matrix = np.diag([0.0, 0.0, 0.0, spec.stiffness, 0.0, 0.0])
 
     def evaluate(self, displacement, velocity, operation):
-        return -self._matrix @ displacement, self._matrix, np.zeros((6, 6))
+        return Forces(-self._matrix @ displacement, self._matrix, np.zeros((6, 6)))
 
 
 def read_coupling(section, name):
@@ -506,7 +507,7 @@ class TestKinds:
         (connected,) = model.system.elements
         assert connected.element.name == "coupling"
         turn = connected.transform @ np.array([0.01, 0.0])
-        force, _, _ = connected.element.evaluate(turn, np.zeros(6), model.operation)
+        force = connected.element.evaluate(turn, np.zeros(6), model.operation).force
         assert force[3] == pytest.approx(-1.0, rel=1e-15)
         assert (model.bearings, model.gears) == ((), ())
 

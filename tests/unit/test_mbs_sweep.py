@@ -11,6 +11,7 @@ import pytest
 
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs.table import Table
+from mbs.bearings.bearing_element import RingElement
 from mbs.commands import sweep as command
 from mbs.commands.cases import load_cases
 from mbs.linearised.steady import steady_system
@@ -18,7 +19,7 @@ from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_point import along_load
 from mbs.linearised.tracking import Match, ModeSet, assurance, compose, match, tracks
 from mbs.model.body import Inertia, rigid_body
-from mbs.model.elements import ElementDefaults, Input, Operation, Port, Sensor, Spring
+from mbs.model.elements import Forces, Input, Operation, Port, Sensor, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.system import System
 from mbs.output.sweep_data import RESPONSES, VARIABLES, sweep_dataset
@@ -118,7 +119,7 @@ class TestMatching:
         assert gone.size == 4
 
 
-class Film(ElementDefaults):
+class Film(RingElement):
     """A bearing along y that holds a preload."""
 
     def __init__(self, stiffness=1e6, name="film", load=100.0, damping=10.0):
@@ -127,7 +128,7 @@ class Film(ElementDefaults):
 
     def evaluate(self, displacement, velocity, operation):
         k, c = self.stiffness * np.outer(Y, Y), self.damping * np.outer(Y, Y)
-        return -k @ displacement - self.load * Y, k, c
+        return Forces(-k @ displacement - self.load * Y, k, c)
 
 
 class Mesh(Film):

@@ -81,11 +81,11 @@ class TestSystem:
         assert "load 'l': got the frame 'tip' of 'a'; allowed: centre" in text
         assert "a and b are 100 mm apart; allowed: the same point" in text
 
-    def test_an_element_says_whether_it_counts(self):
+    def test_an_element_says_whether_it_excites(self):
         class Old:
             name, ports = "old", (Port("a"),)
 
-        with pytest.raises(InputError, match=r"'old', outside_calls: missing; .*\.model\.elements\.ElementDefaults"):
+        with pytest.raises(InputError, match=r"'old', excitation: missing; .*\.model\.elements\.ElementDefaults"):
             System([rigid_body("a", [MASS], ["y"])], (), (), [Old()])
         with pytest.raises(InputError, match="bodies: got none"):
             System([])
@@ -106,7 +106,7 @@ class TestSystem:
         rigid = np.vstack([lever_arm(body.frames["centre"].position) for body in system.bodies])
         motion = rng.normal(size=12)
         connected = system.elements[0]
-        contact = connected.transform.T @ connected.evaluate(motion, motion, Operation())[0]
+        contact = connected.transform.T @ connected.evaluate(motion, motion, Operation()).force
         assert np.abs(contact).max() > 1e-3
         for forces in (system.stiffness @ motion, system.damping @ motion, system.loads(0.0), contact):
             np.testing.assert_allclose(rigid.T @ forces, 0.0, atol=1e-13 * max(np.abs(forces).max(), 1.0))

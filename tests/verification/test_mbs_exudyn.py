@@ -20,7 +20,7 @@ from mbs.model.system import System
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
 from mbs.settings import Settings
-from mbs.transient.integration import integrate
+from tests.cases.bearings import integrate
 
 exu = pytest.importorskip("exudyn", reason="Exudyn is a dependency of the tests alone, and has no wheel everywhere")
 pytestmark = pytest.mark.filterwarnings("ignore")
@@ -180,7 +180,7 @@ def test_response_in_time(model):
     there.settings.solutionSettings.sensorsWritePeriod = step
     assert there.mbs.SolveDynamic(there.settings)
     shaft, left, right = (there.mbs.GetSensorStoredData(name)[:, 2:4] for name in names)
-    ours = run.displacement
+    ours = run.states.displacement
     for theirs, mine in ((shaft, ours[:, :2]), (left, ours[:, 4:6]), (right, ours[:, 6:8])):
         assert np.abs(theirs - mine).max() < 1e-6 * np.abs(mine).max()
     theirs, mine = shaft - left, ours[:, :2] - ours[:, 4:6]

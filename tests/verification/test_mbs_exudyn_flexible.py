@@ -38,7 +38,7 @@ from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Course, SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
-from mbs.transient.integration import integrate
+from tests.cases.bearings import integrate
 
 exu = pytest.importorskip("exudyn", reason="Exudyn is a dependency of the tests alone, and has no wheel everywhere")
 items, fem = pytest.importorskip("exudyn.utilities"), pytest.importorskip("exudyn.FEM")
@@ -370,7 +370,7 @@ def test_spinning_shaft_of_beams(solid):
         [Load("pulse", "shaft:left", np.concatenate([force, np.zeros(3)]), profile=factor)],
     )
     run = integrate(system, SpeedProfile.constant(spin), duration, Settings(step, sample, 1.0))
-    ours = transverse(system, run.displacement)
+    ours = transverse(system, run.states.displacement)
     # The error of the steps there, in a frame that turns: 0.3 % of the tilt at some 0.7 kHz, 2.2 % of the bend at
     # 3 kHz, which fall with the square of the step.
     assert plane(tilt(ours)) > 0.1
@@ -387,7 +387,7 @@ def pulsed(solid, elements):
     run = integrate(
         system, SpeedProfile.constant(SPEED), DURATION, Settings(STEP, STEP, RADIUS_AT_INFINITY), balance.displacement
     )
-    return system, transverse(system, run.displacement)
+    return system, transverse(system, run.states.displacement)
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
-from mbs.transient.integration import integrate
+from tests.cases.bearings import integrate
 
 ALPHA = math.radians(20.0)
 PAIR = GearPair(
@@ -180,7 +180,7 @@ class TestParametricExcitation:
         for steps in (2000, 4000):
             h = duration / steps
             run = integrate(system, SpeedProfile.constant(speed), duration, Settings(h, duration, 1.0), start)
-            found.append(run.displacement[-1, 0])
+            found.append(run.states.displacement[-1, 0])
         scale = float(start[0])
         errors = [abs(value - exact) / scale for value in found]
         assert errors[0] < 3e-3
@@ -199,13 +199,13 @@ class TestSeparation:
         h = 2e-7
         run = integrate(system, SpeedProfile.constant(0.0), 8e-3, Settings(h, h, 1.0), velocity=np.array([self.SPEED]))
         mesh = system.elements[0].element
-        flanks = run.displacement @ (system.elements[0].transform.T @ mesh.rows.T)
+        flanks = run.states.displacement @ (system.elements[0].transform.T @ mesh.rows.T)
         depth = np.maximum(flanks - np.array([0.0, PAIR.backlash]), 0.0)
         s = np.minimum(depth, TOUCH)
         k = 14e9 * 25e-3
         # Of the stated law at rest: k s^3/(6 TOUCH) within TOUCH, k (depth - TOUCH/2)^2/2 and a constant beyond.
         beyond = 0.5 * k * ((depth - 0.5 * TOUCH) ** 2 - 0.25 * TOUCH**2) * (depth > TOUCH)
-        energy = 0.5 * GEAR.polar * run.velocity[:, 0] ** 2 + 25.0 * run.displacement[:, 0] ** 2
+        energy = 0.5 * GEAR.polar * run.states.velocity[:, 0] ** 2 + 25.0 * run.states.displacement[:, 0] ** 2
         energy += (k * s**3 / (6.0 * TOUCH) + beyond).sum(axis=1)
         return run, depth, energy
 

@@ -7,28 +7,24 @@ import math
 import numpy as np
 import pytest
 
-from mbs.bearings import slice_table
+from mbs.bearings import slice_table, speed_tables
 from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_block import Films, blend
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.bearing_kernel import bearing_force
+from mbs.bearings.bearing_kernel import force_of_arrays
 from mbs.bearings.laws import hertz
-from mbs.gears.gear import gear_mesh
-from mbs.gears.pair import GearPair
+from mbs.bearings.speed_tables import NODES, SpeedTables
+from mbs.gears.gear import GearPair, gear_mesh
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation, Sensor, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Course, Harmonic, SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
-from mbs.transient import speed_tables
-from mbs.transient.integration import integrate
-from mbs.transient.run import run
-from mbs.transient.run_arrays import Films
-from mbs.transient.run_kernel import blend
-from mbs.transient.speed_tables import NODES, SpeedTables
+from mbs.transient.run import Options, run
 from mbs.transient.stepping import Method
-from tests.cases.bearings import TEMPERATURE, map_law
+from tests.cases.bearings import TEMPERATURE, integrate, map_law
 
 RPM = math.pi / 30.0
 TEETH = (21, 23)
@@ -79,6 +75,7 @@ def gearbox(law=None, clearance=20e-6, centrifugal=False, loads=()):
     return System(bodies, springs, [drive, *loads], [*elements, mesh])
 
 
+BOTH = (Options(), Options(compiled=False))
 SENSORS = (
     Sensor("d", "shaft_1:left", np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0])),
     Sensor("v", "shaft_2", np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0]), "velocity", "shaft_1"),
@@ -89,7 +86,7 @@ SENSORS = (
 def both(system, speed, duration, settings):
     """The compiled run and the reference, from the equilibrium."""
     start = equilibrium(system, Operation(speed.at(0.0)[0])).displacement
-    found = [run(system, speed, duration, settings, SENSORS, start, compiled=compiled) for compiled in (True, False)]
+    found = [run(system, speed, duration, settings, SENSORS, start, options=how) for how in BOTH]
     assert found[1].compiled == 0
     assert found[0].steps == found[1].steps
     return found
@@ -135,7 +132,7 @@ class TestAgainstTheReference:
         start = equilibrium(system).displacement + 1e-7
         settings = self.SETTINGS
         rest = SpeedProfile.constant(0.0)
-        found = [run(system, rest, 4e-3, settings, SENSORS, start, compiled=compiled) for compiled in (True, False)]
+        found = [run(system, rest, 4e-3, settings, SENSORS, start, options=how) for how in BOTH]
         assert found[0].compiled == found[0].steps
         compare(found, 1e-9)
 
@@ -170,7 +167,7 @@ class TestAgainstTheReference:
         start = equilibrium(system).displacement.copy()
         start[0] += 2e-6
         speed = SpeedProfile.constant(1000.0 * RPM)
-        found = [run(system, speed, 4e-3, settings, SENSORS, start, compiled=compiled) for compiled in (True, False)]
+        found = [run(system, speed, 4e-3, settings, SENSORS, start, options=how) for how in BOTH]
         assert found[0].halved == found[1].halved > 5
         assert found[0].steps == found[1].steps
         compare(found, 1e-9)
@@ -183,10 +180,7 @@ class TestAgainstTheReference:
         velocity[2] = -4.0
         settings = Settings(1e-5, 5e-5, residual=1e-13)
         speed = SpeedProfile.constant(500.0 * RPM)
-        found = [
-            run(system, speed, 12e-3, settings, SENSORS, start, velocity, compiled=compiled)
-            for compiled in (True, False)
-        ]
+        found = [run(system, speed, 12e-3, settings, SENSORS, start, velocity, options=how) for how in BOTH]
         pushes = np.linalg.norm(found[0].forces[-1], axis=1)
         assert np.any(pushes == 0.0)
         assert np.count_nonzero(np.diff((pushes > 0.0).astype(int)) > 0) >= 3
@@ -249,10 +243,10 @@ class TestFilmsOverSpeed:
             state[:] = 0.0
             state[1:3], state[4:6], state[7:9] = rng.uniform(12e-6, 30e-6, 2), rng.uniform(-1e-4, 1e-4, 2), 1e-3
             fresh, mixed = np.empty((13, 6)), np.empty((13, 6))
-            bearing_force(*point.arrays, fresh)
+            force_of_arrays(*point.arrays, fresh)
             arrays = list(point.arrays)
             arrays[4:6] = self.blended(force, np.array([u, 1.0001 * u]))
-            bearing_force(*arrays, mixed)
+            force_of_arrays(*arrays, mixed)
             for i, rows in enumerate((slice(0, 1), slice(1, 7), slice(7, 13))):
                 error = np.abs(mixed[rows] - fresh[rows]).max() / np.abs(fresh[rows]).max()
                 worst[i] = max(worst[i], error)
@@ -292,7 +286,7 @@ class TestPeriod:
             Settings(h, h, radius),
             np.array([1e-6]),
         )
-        phase = np.unwrap(np.angle(found.displacement[:, 0] - 1j * found.velocity[:, 0] / omega))
+        phase = np.unwrap(np.angle(found.states.displacement[:, 0] - 1j * found.states.velocity[:, 0] / omega))
         seen = np.polyfit(found.time, phase, 1)[0]
         assert omega / seen - 1.0 == pytest.approx(part * 0.01, rel=0.05)
 

@@ -25,6 +25,8 @@ STEP = 1e-3
 NODES = 32
 """How many tables are held."""
 
+_KIND = table.LawNumbers._fields.index("kind")
+
 _STANDSTILL = -700.0
 """ln of a speed that stands for rest: the part of the film that is left there is zero in double precision."""
 
@@ -100,7 +102,7 @@ class SpeedTables:
         slots = nodes[:count] % NODES
         following = (nodes[:count] + 1) % NODES
         outside = self._outside[slots]
-        alike = numbers[slots, table.KIND] == numbers[following, table.KIND]
+        alike = numbers[slots, _KIND] == numbers[following, _KIND]
         sound = alike & self._sound[slots] & self._sound[following] & (outside == self._outside[following])
         return slots, sound, outside.astype(np.int64)
 
@@ -125,7 +127,7 @@ class SpeedTables:
             return
         self._outside[slot] = point.outside
         numbers[:] = point.arrays[4]
-        if numbers[table.KIND] == table.CELLS:
+        if numbers[_KIND] == table.CELLS:
             cells[:] = point.arrays[5]
 
     def _fill(self, first: int, last: int, cells: FloatArray, numbers: FloatArray) -> None:
@@ -150,7 +152,7 @@ class SpeedTables:
         self._sound[slot] = False
         if not 0.0 <= centrifugal < law.load_range[1]:
             return
-        arrays, workspace = self._force.law_arrays(law, centrifugal > 0.0)
+        arrays, workspace = self._force.flat_law.arrays(law, centrifugal > 0.0)
         counts = np.zeros(4, dtype=np.int64)
         fits = table.tabulate_law(arrays, workspace, conditions, table.NODES, self._buffer, cells, numbers, counts)
         self._outside[slot] = bool(counts.any())

@@ -1,0 +1,77 @@
+"""How the films of a bearing relax: for linear analyses in which each slice answers at its own frequency.
+
+The film of a slice moves like a damper as long as it can follow, and is locked at high frequency: stiffness and damping
+k and c of the map become k + s c/(1 + s theta), with the relaxation time theta of `ehdmaps.maps.memory_table`. That is
+the law which films with memory follow in time, for small oscillations about an equilibrium.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.maps.law import LawAtPoint
+from ehdmaps.maps.memory_table import MemoryTable, equilibrium_at
+from mbs.bearings.roller_loads import RollerLoads
+from mbs.model.relaxation import Relaxation
+
+
+@njit(cache=True, error_model="numpy")
+def _fill_times(table: MemoryTable, approaches: FloatArray, times: FloatArray) -> None:
+    """Relaxation times of contacts at rest; 0 without load."""
+    for i in range(approaches.size):
+        _, k, _, dy, _, dg = equilibrium_at(table, approaches[i])
+        # k_s = k/(1 - dy) and G' = c k_s/(k_s - k) make theta = c/(k_s - k) = G'/k_s.
+        times[i] = dg * (1.0 - dy) / k if k > 0.0 else 0.0
+
+
+def relaxation_times(law: LawAtPoint, approach: FloatArray) -> FloatArray:
+    """Relaxation times theta of contacts at rest [s], in the shape of their approaches [m]; 0 without load or film.
+
+    Parameters
+    ----------
+    law : LawAtPoint
+        The law at a speed and temperature, without centrifugal load.
+    approach : array
+        Approaches [m].
+    """
+    times = np.zeros(approach.size)
+    _fill_times(law.memory.table, np.ascontiguousarray(approach, dtype=np.float64).reshape(-1), times)
+    return times.reshape(approach.shape)
+
+
+def relaxing(rows: FloatArray, damping: FloatArray, times: FloatArray) -> Relaxation:
+    """Contacts whose films relax; those that do not have a row of zeros.
+
+    Parameters
+    ----------
+    rows : array, shape (r, m)
+        Approach of each contact by the displacements of the ports.
+    damping, times : array, shape (r,)
+        c of each contact [N s/m] and theta [s].
+    """
+    relaxes = (damping > 0.0) & (times > 0.0)
+    some = float(times[relaxes].max()) if relaxes.any() else 1.0
+    times = np.where(relaxes, times, some)
+    return Relaxation(rows * np.sqrt(np.where(relaxes, damping, 0.0) / times)[:, None], times)
+
+
+def bearing_relaxation(law: LawAtPoint, rollers: RollerLoads, slice_length: float) -> Relaxation:
+    """Relaxation of all slices of a bearing with massless rollers, in the pose (6,) of its inner ring.
+
+    Parameters
+    ----------
+    law : LawAtPoint
+        The law at the speed and temperature, without centrifugal load.
+    rollers : RollerLoads
+        The rollers at rest.
+    slice_length : float
+        Length of a slice [m].
+    """
+    x = rollers.position
+    cos, sin = (np.repeat(part[:, None], x.size, axis=1) for part in (np.cos(rollers.angle), np.sin(rollers.angle)))
+    nothing = np.zeros_like(cos)
+    rows = np.stack([nothing, cos, sin, nothing, -sin * x, cos * x], axis=-1).reshape(-1, 6)
+    times = relaxation_times(law, rollers.approach)
+    return relaxing(rows, rollers.damping.reshape(-1) * slice_length, times.reshape(-1))

@@ -1,0 +1,363 @@
+"""Bearings whose films have a memory, in compiled runs: each slice has a state, which goes on when a step is made.
+
+The first question at the end of a new step begins it: films in equilibrium at the first step of a run, else the states
+of the last step that was made. Questions at other motions, and steps that are tried again with another length, leave
+these alone. Tables over the speed are mixed every `KEPT` steps, as slices read them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.maps.law import ContactLaw
+from ehdmaps.maps.lines import FAST
+from ehdmaps.maps.memory_table import MemoryTable, step_of
+from mbs.bearings.bearing_block import FELT, Course, padded, whole
+from mbs.bearings.bearing_kernel import RingMotion, Shape, assemble, check_motion, roller_of, sizes_of
+from mbs.bearings.force_at_point import Arrays
+from mbs.bearings.memory_element import MemoryBearing
+from mbs.bearings.memory_kernel import KEPT, MEMORY, begin, commit, loads, settle
+from mbs.bearings.memory_tables import (
+    CENTRE,
+    HIGHEST,
+    INVERSE_SCALE,
+    LIFT_OFF,
+    MemoryFilms,
+    MemoryTables,
+    room,
+)
+from mbs.bearings.slice_table import LawNumbers
+from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
+from mbs.model.elements import Element
+
+ACCEPTED, LAST, TRIAL, STEPS = range(4)
+"""Times of a run: end of the last step that was made [s], NaN before the first; its length [s], 0 if there was none;
+end of the step that is tried [s]; and how many were made."""
+
+
+class MemoryBearings(NamedTuple):
+    """Bearings with memory as arrays, one row a bearing; rows of slices and rollers are as long as the longest.
+
+    Attributes
+    ----------
+    firsts, places, films_of : array (bearings,), of int
+        First of what each feels, its place among all elements, its film.
+    strict : array (bearings,), of bool
+        Whether the law refuses loads above its map.
+    rollers, slices : array (bearings,), of int
+        How many each has.
+    start_angles, cage_rates : array (bearings,)
+        Angle of the first roller [rad], and cage angle by that of the system.
+    sizes : array (bearings, 6)
+        `Sizes` in their order.
+    positions, profiles : array (bearings, n)
+        Slices, as of `Shape` [m].
+    cos, sin : array (bearings, Z)
+        Directions of the rollers, as of `Shape`.
+    memory : array (bearings, MEMORY Z n)
+        Memory of all slices, see `mbs.bearings.memory_kernel`.
+    approaches : array (Z n,)
+        Work space for one bearing after the other.
+    states : array (bearings, 4 Z n)
+        Loads and tangents of the last answer; the other rows are zero.
+    clock : array (4,)
+        Times of the run.
+    films : MemoryFilms
+        Tables of the laws.
+    course : Course
+        Places of the steps on them.
+    """
+
+    firsts: IntArray
+    places: IntArray
+    films_of: IntArray
+    strict: BoolArray
+    rollers: IntArray
+    slices: IntArray
+    start_angles: FloatArray
+    cage_rates: FloatArray
+    sizes: FloatArray
+    positions: FloatArray
+    profiles: FloatArray
+    cos: FloatArray
+    sin: FloatArray
+    memory: FloatArray
+    approaches: FloatArray
+    states: FloatArray
+    clock: FloatArray
+    films: MemoryFilms
+    course: Course
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _mix(films: MemoryFilms, film: int, node: int, weight: float) -> None:
+    """Bring the table in use to a place between two nodes, straight in ln of the speed."""
+    if films.in_use[film, 0] == node and films.in_use[film, 1] == weight:
+        return
+    films.in_use[film, 0], films.in_use[film, 1] = node, weight
+    other = (node + 1) % films.numbers.shape[1] if weight > 0.0 else node
+    _straight(films.cells[film, node].reshape(-1), films.cells[film, other].reshape(-1), weight,
+              films.mixed_cells[film].reshape(-1))  # fmt: skip
+    _straight(films.load_cells[film, node].reshape(-1), films.load_cells[film, other].reshape(-1), weight,
+              films.mixed_load_cells[film].reshape(-1))  # fmt: skip
+    _straight(films.numbers[film, node], films.numbers[film, other], weight, films.mixed[film])
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _straight(low: FloatArray, high: FloatArray, weight: float, out: FloatArray) -> None:
+    """Straight between two arrays."""
+    for i in range(out.size):
+        out[i] = low[i] + weight * (high[i] - low[i])
+
+
+@njit(cache=True, error_model="numpy")
+def _table(films: MemoryFilms, film: int) -> MemoryTable:
+    """The table in use."""
+    numbers = films.mixed[film]
+    return MemoryTable(
+        films.mixed_cells[film],
+        films.mixed_load_cells[film],
+        numbers[CENTRE],
+        numbers[INVERSE_SCALE],
+        numbers[LIFT_OFF],
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def memory_of(bearings: MemoryBearings, b: int) -> FloatArray:
+    """Memory of the slices of a bearing, shape (MEMORY, Z n), contiguous."""
+    size = bearings.rollers[b] * bearings.slices[b]
+    memory: FloatArray = bearings.memory[b][: MEMORY * size].reshape(MEMORY, size)
+    return memory
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _approaches(motion: RingMotion, shape: Shape, out: FloatArray) -> None:
+    """Approach of all slices, into `out` (Z n,)."""
+    x, lost = shape.positions, shape.profile
+    for j in range(shape.cos.size):
+        roller = roller_of(motion, shape, j)
+        row = out[j * x.size : (j + 1) * x.size]
+        for i in range(x.size):
+            row[i] = roller.gap + x[i] * roller.tilt - lost[i]
+
+
+@njit(cache=True, error_model="numpy")
+def _begin(bearings: MemoryBearings, moment: Moment) -> None:
+    """Begin a step: tables, and what its slices start from."""
+    clock, course, films = bearings.clock, bearings.course, bearings.films
+    clock[TRIAL] = moment.time
+    steps = int(clock[STEPS])
+    for film in range(films.in_use.shape[0]):
+        if films.in_use[film, 0] < 0.0 or steps % KEPT == 0:
+            _mix(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
+    if math.isnan(clock[ACCEPTED]):
+        return
+    growth = (moment.time - clock[ACCEPTED]) / clock[LAST] if clock[LAST] > 0.0 else 0.0
+    for b in range(bearings.firsts.size):
+        begin(_table(films, bearings.films_of[b]), growth, steps, memory_of(bearings, b))
+
+
+@njit(cache=True, error_model="numpy")
+def _answer(bearings: MemoryBearings, b: int, moment: Moment, motion: FloatArray, out: FloatArray) -> int:
+    """Force and tangent of a bearing into `out` (13, 6); status as of `bearing_force`."""
+    z, n, i = bearings.rollers[b], bearings.slices[b], bearings.firsts[b]
+    x, y = motion[0], motion[1]
+    angle = bearings.start_angles[b] + bearings.cage_rates[b] * moment.angle
+    c, s = math.cos(angle), math.sin(angle)
+    ring = RingMotion(x[i], x[i + 1], x[i + 2], x[i + 3], y[i], y[i + 1], y[i + 2], y[i + 3], c, s)
+    shape = Shape(
+        sizes_of(bearings.sizes[b]),
+        bearings.positions[b][:n],
+        bearings.profiles[b][:n],
+        bearings.cos[b][:z],
+        bearings.sin[b][:z],
+    )
+    wrong = check_motion(ring, shape.sizes)
+    if wrong != 0:
+        return wrong
+    size = z * n
+    film = bearings.films_of[b]
+    table, memory, deltas = _table(bearings.films, film), memory_of(bearings, b), bearings.approaches[:size]
+    states = bearings.states[b][: 4 * size].reshape(4, size)
+    _approaches(ring, shape, deltas)
+    clock = bearings.clock
+    if not math.isnan(clock[ACCEPTED]):
+        step = step_of(moment.time - clock[ACCEPTED], clock[LAST])
+        loads(table, step, memory, deltas, states[0], states[1])
+    else:
+        settle(table, deltas, memory, states[0], states[1])
+    numbers = LawNumbers(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, math.inf, math.inf, -math.inf, 1.0)
+    assemble(ring, shape, numbers, states.reshape(4, z, n), out)
+    return 1 if np.max(states[0]) > bearings.films.mixed[film, HIGHEST] else 0
+
+
+@njit(cache=True, error_model="numpy")
+def memory_answer(bearings: MemoryBearings, moment: Moment, motion: FloatArray, answers: Answers) -> int:
+    """Forces and tangents of all bearings at the end of a step; see `mbs.model.blocks.Kind`.
+
+    Parameters
+    ----------
+    bearings : MemoryBearings
+        The bearings, with their states and the tables of their laws.
+    moment : Moment
+        Step, its end, angle, weights of the slopes.
+    motion : array (2, m)
+        Displacements and their rates, among what all elements feel.
+    answers : Answers
+        Answers of all elements, filled.
+    """
+    if bearings.firsts.size == 0:
+        return FOUND
+    if bearings.clock[TRIAL] != moment.time:
+        _begin(bearings, moment)
+    course = bearings.course
+    out = np.empty((13, 6))
+    for b in range(bearings.firsts.size):
+        status = _answer(bearings, b, moment, motion, out)
+        if status < 0:
+            return NO_SOLUTION
+        if status > 0 and bearings.strict[b]:
+            return IN_PYTHON
+        outside = course.outside[moment.step, bearings.films_of[b]]
+        answers.outside[bearings.places[b]] += 1 if status > 0 or outside > 0 else 0
+        first = bearings.firsts[b]
+        for i in range(4):
+            answers.force[first + i] = out[0, FELT[i]]
+            for j in range(4):
+                answers.slopes[first + i, first + j] = moment.by_q * out[1 + FELT[i], FELT[j]]
+    return FOUND
+
+
+@njit(cache=True, error_model="numpy")
+def memory_accept(bearings: MemoryBearings, moment: Moment) -> None:
+    """Make the step: states go on; see `mbs.model.blocks.Kind`.
+
+    Parameters
+    ----------
+    bearings : MemoryBearings
+        The bearings.
+    moment : Moment
+        The step that was answered last.
+    """
+    clock = bearings.clock
+    started = not math.isnan(clock[ACCEPTED])
+    if started:
+        for b in range(bearings.firsts.size):
+            size = bearings.rollers[b] * bearings.slices[b]
+            table = _table(bearings.films, bearings.films_of[b])
+            commit(table, memory_of(bearings, b), bearings.states[b][:size])
+    clock[LAST] = moment.time - clock[ACCEPTED] if started else 0.0
+    clock[ACCEPTED] = moment.time
+    clock[STEPS] += 1.0
+
+
+class MemoryBlock:
+    """The bearings with memory of a run; those with the same law at the same speed and temperature share their tables.
+
+    Parameters
+    ----------
+    members : sequence of Member
+        Elements of the class `MemoryBearing`.
+    """
+
+    def __init__(self, members: Sequence[Member]) -> None:
+        self._films: list[MemoryTables] = []
+        shared: dict[tuple[object, ...], int] = {}
+        films_of = []
+        for member in members:
+            element: MemoryBearing = member.element
+            key = (id(element.law), element.temperature, element.rates[1])
+            if key not in shared:
+                shared[key] = len(self._films)
+                self._films.append(MemoryTables(element.law, element.temperature, element.rates[1]))
+            films_of.append(shared[key])
+        self._places: list[tuple[IntArray, FloatArray]] = []
+        self._speeds = np.zeros(0)
+        self._arrays = _arrays(members, films_of, len(self._films))
+
+    def begin(self, speeds: FloatArray) -> None:
+        """Find the places of the speeds [rad/s] on the tables."""
+        self._speeds = speeds
+        self._places = [film.places(speeds) for film in self._films]
+
+    def prepare(self, first: int, last: int) -> tuple[MemoryBearings, BoolArray]:
+        """Make the tables of the next steps, as many as are held at once.
+
+        Parameters
+        ----------
+        first, last : int
+            Steps of those that `begin` was told.
+        """
+        part, found = slice(first, last), []
+        films = self._arrays.films
+        for index, (film, (nodes, weights)) in enumerate(zip(self._films, self._places, strict=True)):
+            slots, sound, outside = film.prepare(self._speeds[part], nodes[part], weights[part], films, index)
+            found.append((slots, weights[part], outside, sound))
+        films.in_use[:] = -1.0
+        count = min((slots.size for slots, _, _, _ in found), default=last - first)
+        shape, sounds = (count, len(found)), np.ones(count, dtype=np.bool_)
+        course = Course(np.zeros(shape, dtype=np.int64), np.zeros(shape), np.zeros(shape, dtype=np.int64))
+        for index, (slots, weights, outside, sound) in enumerate(found):
+            course.nodes[:, index], course.weights[:, index] = slots[:count], weights[:count]
+            course.outside[:, index] = outside[:count]
+            sounds &= sound[:count]
+        return self._arrays._replace(course=course), sounds
+
+
+def _arrays(members: Sequence[Member], films_of: Sequence[int], films: int) -> MemoryBearings:
+    """The arrays of some bearings, and room for tables."""
+    elements: list[MemoryBearing] = [member.element for member in members]
+    works = [Arrays(element.bearing) for element in elements]
+    rollers = [work.angles.shape[1] for work in works]
+    slices = [work.slices.shape[1] for work in works]
+    cells = max((z * n for z, n in zip(rollers, slices, strict=True)), default=0)
+    none = np.zeros((0, films), dtype=np.int64)
+    return MemoryBearings(
+        firsts=whole(member.first for member in members),
+        places=whole(member.place for member in members),
+        films_of=whole(films_of),
+        strict=np.array([element.law.outside == "error" for element in elements], dtype=np.bool_),
+        rollers=whole(rollers),
+        slices=whole(slices),
+        start_angles=np.array([element.start_angle for element in elements], dtype=np.float64),
+        cage_rates=np.array([element.rates[0] for element in elements], dtype=np.float64),
+        sizes=np.array([work.sizes for work in works], dtype=np.float64).reshape(len(works), 6),
+        positions=padded([work.slices[0] for work in works]),
+        profiles=padded([work.slices[1] for work in works]),
+        cos=padded([work.angles[0] for work in works]),
+        sin=padded([work.angles[1] for work in works]),
+        memory=np.zeros((len(works), MEMORY * cells)),
+        approaches=np.zeros(cells),
+        states=np.zeros((len(works), 4 * cells)),
+        clock=np.array([math.nan, 0.0, math.nan, 0.0]),
+        films=room(films),
+        course=Course(none, np.zeros((0, films)), none.copy()),
+    )
+
+
+def _feels(element: MemoryBearing) -> FloatArray:
+    """Rows of what a bearing feels."""
+    return np.asarray(np.eye(6)[FELT])
+
+
+def _takes(element: Element) -> bool:
+    """Whether the law has a memory in compiled code."""
+    return isinstance(element, MemoryBearing) and isinstance(element.law, ContactLaw)
+
+
+MEMORY_BEARINGS = Kind(
+    arrays=MemoryBearings,
+    answer=memory_answer,
+    feels=_feels,
+    gather=MemoryBlock,
+    takes=_takes,
+    accept=memory_accept,
+)
+"""For `mbs.transient.kinds`."""

@@ -1,0 +1,144 @@
+"""Tables of a contact law with memory over the speed of a system: as `mbs.bearings.speed_tables`, for films in time."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.errors import EhdmapsError
+from ehdmaps.maps.kernel import LOAD_TOLERANCE
+from ehdmaps.maps.law import ContactLaw
+from ehdmaps.maps.memory_table import LOAD_ROWS, ROWS
+
+STEP = 4e-3
+"""Distance of the nodes in ln of the speed: the straight blend between two is right to some 1e-6 of the load."""
+
+NODES = 8
+"""How many tables are held."""
+
+CENTRE, INVERSE_SCALE, LIFT_OFF, HIGHEST = range(4)
+"""Numbers of a table: as of `MemoryTable`, and the load above which slices are counted [N/m]."""
+
+
+class MemoryFilms(NamedTuple):
+    """Tables of the laws at nodes over the speed, and the tables in use.
+
+    Attributes
+    ----------
+    cells, load_cells, numbers : array (films, NODES, 2 ROWS, 12), (films, NODES, LOAD_ROWS, 4), (films, NODES, 4)
+        Tables, as of `ehdmaps.maps.memory_table`.
+    mixed_cells, mixed_load_cells, mixed : array (films, 2 ROWS, 12), (films, LOAD_ROWS, 4), (films, 4)
+        The table in use.
+    in_use : array (films, 2)
+        Node and weight of those; negative for none.
+    """
+
+    cells: FloatArray
+    load_cells: FloatArray
+    numbers: FloatArray
+    mixed_cells: FloatArray
+    mixed_load_cells: FloatArray
+    mixed: FloatArray
+    in_use: FloatArray
+
+
+def room(films: int) -> MemoryFilms:
+    """Room for the tables of so many laws."""
+    return MemoryFilms(
+        cells=np.zeros((films, NODES, 2 * ROWS, 12)),
+        load_cells=np.zeros((films, NODES, LOAD_ROWS, 4)),
+        numbers=np.zeros((films, NODES, 4)),
+        mixed_cells=np.zeros((films, 2 * ROWS, 12)),
+        mixed_load_cells=np.zeros((films, LOAD_ROWS, 4)),
+        mixed=np.zeros((films, 4)),
+        in_use=np.full((films, 2), -1.0),
+    )
+
+
+class MemoryTables:
+    """Tables of one law at one temperature, for a window of speeds.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        The law of a roller between both raceways; all bearings with the same one, the same temperature and rate share
+        the tables.
+    temperature : float
+        [K].
+    rate : float
+        Entrainment speed for each speed of the system [m/rad].
+    """
+
+    def __init__(self, law: ContactLaw, temperature: float, rate: float) -> None:
+        self._law, self._temperature, self._rate = law, temperature, rate
+        self._held = np.full(NODES, math.nan)
+        self._sound = np.zeros(NODES, dtype=np.bool_)
+        self._outside = np.zeros(NODES, dtype=np.bool_)
+
+    def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Nodes below speeds [rad/s], and parts of the way to the next nodes; both zero for one speed alone."""
+        size = np.abs(speeds)
+        if np.all(size == size[0]):
+            return np.zeros(size.size, dtype=np.int64), np.zeros(size.size)
+        place = np.log(np.maximum(size, _STANDSTILL)) / STEP
+        node = np.floor(place)
+        return node.astype(np.int64), place - node
+
+    def prepare(
+        self, speeds: FloatArray, nodes: IntArray, weights: FloatArray, films: MemoryFilms, film: int
+    ) -> tuple[IntArray, BoolArray, IntArray]:
+        """Make the tables for the first of some speeds, as many as are held at once.
+
+        Parameters
+        ----------
+        speeds : array (n,)
+            [rad/s].
+        nodes, weights : array (n,)
+            Nodes and weights from `places`.
+        films : MemoryFilms
+            Room for the tables.
+        film : int
+            Index of this law there.
+
+        Returns
+        -------
+        slots : array (k,)
+            Slots of the tables of the first k speeds.
+        sound : array (k,)
+            Whether the law has an answer at these speeds.
+        outside : array (k,)
+            One where every call counts as outside the map.
+        """
+        if not (np.any(weights) or np.any(nodes)):
+            self._make(0, abs(float(speeds[0])), films, film)
+            sound, outside = self._sound[:1], self._outside[:1]
+            return np.zeros_like(nodes), np.repeat(sound, nodes.size), np.repeat(outside, nodes.size).astype(np.int64)
+        low, high = np.minimum.accumulate(nodes), np.maximum.accumulate(nodes)
+        count = int(np.searchsorted(high - low, NODES - 2, side="right"))
+        for node in range(int(low[count - 1]), int(high[count - 1]) + 2):
+            self._make(node % NODES, math.exp(node * STEP), films, film)
+        slots, following = nodes[:count] % NODES, (nodes[:count] + 1) % NODES
+        return slots, self._sound[slots] & self._sound[following], self._outside[slots].astype(np.int64)
+
+    def _make(self, slot: int, speed: float, films: MemoryFilms, film: int) -> None:
+        """Make the table of a speed, unless it is there."""
+        if self._held[slot] == speed:
+            return
+        self._held[slot] = speed
+        before = dict(self._law.outside_counts)
+        try:
+            at = self._law.at(self._rate * speed, self._temperature)
+            table = at.memory.table
+        except EhdmapsError:
+            self._sound[slot] = False  # the step that asks for it will be told why
+            return
+        self._sound[slot], self._outside[slot] = True, self._law.outside_counts != before
+        films.cells[film, slot], films.load_cells[film, slot] = table.cells, table.load_cells
+        highest = at.point.highest_load * (1.0 + LOAD_TOLERANCE)
+        films.numbers[film, slot] = table.centre, table.inverse_scale, table.lift_off, highest
+
+
+_STANDSTILL = 1e-300

@@ -1,0 +1,80 @@
+"""Gear meshes in compiled runs: each feels the compressions of its two flanks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from ehdmaps.arrays import FloatArray, IntArray
+from mbs.gears.gear import GearMesh
+from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_force
+from mbs.model.blocks import FOUND, Answers, Kind, Member, Moment, SteadyBlock
+
+
+class Meshes(NamedTuple):
+    """Gear meshes as arrays.
+
+    Attributes
+    ----------
+    firsts : array (meshes,), of int
+        First of what each mesh feels.
+    constants, series : array (meshes, 5), (meshes, 4, harmonics)
+        Arrays for `mesh_force`.
+    """
+
+    firsts: IntArray
+    constants: FloatArray
+    series: FloatArray
+
+
+@njit(cache=True, error_model="numpy")
+def meshes_answer(meshes: Meshes, moment: Moment, motion: FloatArray, answers: Answers) -> int:
+    """Forces and slopes of all flanks; see `mbs.model.blocks.Kind`.
+
+    Parameters
+    ----------
+    meshes : Meshes
+        The gear meshes.
+    moment : Moment
+        Angle, speed, weights of the slopes.
+    motion : array (2, m)
+        Compressions and their rates, among what all elements feel.
+    answers : Answers
+        Answers of all elements, filled.
+    """
+    if meshes.firsts.size == 0:
+        return FOUND
+    x, y = motion[0], motion[1]
+    flanks = np.empty((2, 3))
+    for g in range(meshes.firsts.size):
+        first = meshes.firsts[g]
+        constants, series = meshes.constants[g], meshes.series[g]
+        compressions, rates = x[first : first + 2], y[first : first + 2]
+        mesh_force(constants, series, moment.angle, moment.speed, compressions, rates, flanks)
+        for i in range(2):
+            answers.force[first + i] = -flanks[i, FORCE]
+            slope = moment.by_q * flanks[i, SLOPE] + moment.by_v * flanks[i, BY_RATE]
+            answers.slopes[first + i, first + i] = slope
+    return FOUND
+
+
+def _gather(members: Sequence[Member]) -> SteadyBlock:
+    """Arrays of some meshes; series as long as the longest."""
+    made = [member.element.arrays for member in members]
+    series = np.zeros((len(made), 4, max((part.shape[1] for _, part in made), default=0)))
+    for row, (_, part) in zip(series, made, strict=True):
+        row[:, : part.shape[1]] = part
+    constants = np.array([part for part, _ in made]).reshape(len(made), 5)
+    return SteadyBlock(Meshes(np.array([member.first for member in members], dtype=np.int64), constants, series))
+
+
+def _compressions(mesh: GearMesh) -> FloatArray:
+    """Rows of both flanks."""
+    return mesh.rows
+
+
+GEAR_MESHES = Kind(arrays=Meshes, answer=meshes_answer, feels=_compressions, gather=_gather)
+"""For `mbs.transient.kinds`."""

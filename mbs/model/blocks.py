@@ -1,0 +1,154 @@
+"""What a kind of elements brings to run in compiled code: a compiled function, and the arrays that it reads.
+
+A run in time puts all elements of a kind into one block. Its compiled function writes what they answer to a motion;
+the block itself, in Python, holds their arrays and prepares what changes with the speed. `mbs.transient.kinds` lists
+the kinds; `mbs.gears.gear_block` is a short one to look at. This module knows nothing of compiled code.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from mbs.model.elements import Element
+
+FOUND, NO_SOLUTION, IN_PYTHON = 0, 1, 2
+"""What a compiled function returns: all is written; there is no answer to such a motion, so that the step is halved;
+compiled code has none, and the step is made in Python."""
+
+
+class Moment(NamedTuple):
+    """When elements are asked.
+
+    Attributes
+    ----------
+    step : int
+        Index among the steps that were prepared.
+    time, speed, angle : float
+        Time, speed and angle at the end of the step [s], [rad/s], [rad].
+    by_q, by_v : float
+        Slopes are by_q K + by_v C.
+    """
+
+    step: int
+    time: float
+    speed: float
+    angle: float
+    by_q: float
+    by_v: float
+
+
+class Answers(NamedTuple):
+    """What elements answer, each in its own places.
+
+    Attributes
+    ----------
+    force : array (m,)
+        Forces in what the elements feel [N or N m].
+    slopes : array (m, m)
+        by_q K + by_v C, on the blocks of the diagonal.
+    outside : array (elements,), of int
+        Counted up for an element outside its map.
+    """
+
+    force: FloatArray
+    slopes: FloatArray
+    outside: IntArray
+
+
+class Member(NamedTuple):
+    """An element of a block.
+
+    Attributes
+    ----------
+    element : Element
+        The element itself.
+    place : int
+        Place among all elements of the system: where `Answers.outside` counts.
+    first : int
+        First of what it feels.
+    """
+
+    element: Any
+    place: int
+    first: int
+
+
+class Block(Protocol):
+    """All elements of one kind during a run."""
+
+    def begin(self, speeds: FloatArray) -> None:
+        """Take note of the speeds [rad/s] at the ends of the steps to come."""
+        ...
+
+    def prepare(self, first: int, last: int) -> tuple[Any, BoolArray]:
+        """Prepare the steps from `first` on, as many as can be held, at most up to `last`.
+
+        Returns
+        -------
+        arrays : NamedTuple
+            What the compiled function of the kind takes.
+        sound : array of bool, shape (prepared steps,)
+            Whether compiled code has an answer at the speed of each; the others are made in Python.
+        """
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyBlock:
+    """A block whose arrays hold at every speed.
+
+    Attributes
+    ----------
+    arrays : NamedTuple
+        What the compiled function takes.
+    """
+
+    arrays: Any
+
+    def begin(self, speeds: FloatArray) -> None:
+        """Nothing depends on them."""
+
+    def prepare(self, first: int, last: int) -> tuple[Any, BoolArray]:
+        """All steps at once."""
+        return self.arrays, np.ones(last - first, dtype=np.bool_)
+
+
+def _always(element: Any) -> bool:
+    """Every element of the class."""
+    return True
+
+
+@dataclass(frozen=True, eq=False)
+class Kind:
+    """How elements of one class run in compiled code.
+
+    Attributes
+    ----------
+    arrays : type
+        Class of the named tuple that the compiled function takes; one for each kind.
+    answer : callable
+        Compiled function (arrays, Moment, motion, Answers) -> one of `FOUND`, `NO_SOLUTION`, `IN_PYTHON`. `motion` is
+        an array (2, m): what the elements feel, and its rate.
+    feels : callable
+        Rows (felt, ports) of what an element feels of the displacements of its ports. What it does not feel makes no
+        force; fewer rows are fewer unknowns.
+    gather : callable
+        Makes the block of some members; there may be none.
+    takes : callable
+        Whether compiled code has this element of the class.
+    accept : callable or None
+        Compiled function (arrays, Moment) that is called when a step is made, for elements with states of their own;
+        the last answer was then that of the step.
+    """
+
+    arrays: type
+    answer: Callable[..., int]
+    feels: Callable[[Any], FloatArray]
+    gather: Callable[[Sequence[Member]], Block]
+    takes: Callable[[Element], bool] = _always
+    accept: Callable[..., None] | None = None

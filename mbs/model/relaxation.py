@@ -1,0 +1,72 @@
+"""Stiffness that needs time: springs in series with dampers, beside the stiffness and damping of slow motion.
+
+An element whose parts relax answers an oscillation e^(s t) of its ports with
+
+    Z(s) = K + s C - sum_i v_i v_i' s^2 theta_i^2/(1 + s theta_i),
+
+K and C of slow motion, which it keeps exactly at low frequency. Each part i is a damper of v v' theta, which belongs to
+C, in series with a spring of v v': it moves slowly like the damper, and at high frequency like the spring. So the
+element takes up energy at every frequency if C is at least the sum of v v' theta.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ehdmaps.arrays import ComplexArray, FloatArray
+
+Films = Literal["slow", "memory"]
+"""Whether films have stiffness and damping of slow motion at any frequency, or relax."""
+
+DEFAULT_FILMS: Films = "slow"
+"""Which films linear analyses have where none are asked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class Relaxation:
+    """Springs in series with dampers, in the ports of an element or in the coordinates of a system.
+
+    Attributes
+    ----------
+    rows : array, shape (r, m)
+        v of each: root of its spring's stiffness times what it feels of the m displacements [(N/m)^0.5].
+    times : array, shape (r,)
+        theta of each [s], > 0.
+    """
+
+    rows: FloatArray
+    times: FloatArray
+
+    def more(self, s: ComplexArray) -> ComplexArray:
+        """What is added to K + s C at complex frequencies s (k,) [1/s], shape (k, m, m)."""
+        place = np.multiply.outer(s, self.times)
+        return self._summed(np.asarray(-(place**2) / (1.0 + place), dtype=np.complex128))
+
+    def more_of(self, s: ComplexArray, shapes: ComplexArray) -> ComplexArray:
+        """`more` times a shape (m,) at each frequency s (k,), in columns: shapes (m, k), result (m, k)."""
+        place = np.multiply.outer(self.times, s)
+        return np.asarray(self.rows.T @ (-(place**2) / (1.0 + place) * (self.rows @ shapes)), dtype=np.complex128)
+
+    def slope(self, s: ComplexArray) -> ComplexArray:
+        """Derivative of `more` by s, shape (k, m, m)."""
+        place = np.multiply.outer(s, self.times)
+        weights = -self.times * place * (2.0 + place) / (1.0 + place) ** 2
+        return self._summed(np.asarray(weights, dtype=np.complex128))
+
+    @property
+    def damping(self) -> FloatArray:
+        """Part of C that the dampers have, shape (m, m)."""
+        return np.asarray((self.rows.T * self.times) @ self.rows)
+
+    def seen_by(self, transform: FloatArray) -> Relaxation:
+        """The same, by the coordinates (n,) that move the displacements by a transform (m, n)."""
+        return Relaxation(self.rows @ transform, self.times)
+
+    def _summed(self, weights: ComplexArray) -> ComplexArray:
+        """Sum of v v' with weights (k, r), shape (k, m, m)."""
+        m = self.rows.shape[1]
+        products = (self.rows[:, :, None] * self.rows[:, None, :]).reshape(-1, m * m)
+        return np.asarray((weights @ products).reshape(-1, m, m), dtype=np.complex128)

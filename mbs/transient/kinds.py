@@ -1,0 +1,33 @@
+"""The kinds of elements that runs in time have in compiled code.
+
+An element whose class is not here, or which its kind does not take, is called from Python at every step; the run says
+so. A new kind is a row here, and a `mbs.model.blocks.Kind` in the folder of its element.
+
+Of kinds of this package compiled code is kept on disk. A kind from elsewhere is compiled anew in each process: numba
+would not see a change of its function, and would fail where its module cannot be imported.
+"""
+
+from __future__ import annotations
+
+from mbs.bearings.bearing_block import BEARINGS
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.memory_block import MEMORY_BEARINGS
+from mbs.bearings.memory_element import MemoryBearing
+from mbs.gears.gear import GearMesh
+from mbs.gears.gear_block import GEAR_MESHES
+from mbs.model.blocks import Kind
+from mbs.model.elements import Element
+
+KINDS: dict[type, Kind] = {BearingElement: BEARINGS, MemoryBearing: MEMORY_BEARINGS, GearMesh: GEAR_MESHES}
+"""Kind by the class of its elements. ``KINDS[Coupling] = COUPLINGS`` adds one."""
+
+
+def kind_of(element: Element) -> Kind | None:
+    """How an element runs in compiled code; None if it does not. A class that inherits from a known one is another."""
+    kind = KINDS.get(type(element))
+    return kind if kind is not None and kind.takes(element) else None
+
+
+def is_ours(kind: Kind) -> bool:
+    """Whether a kind is part of this package."""
+    return kind.arrays.__module__.partition(".")[0] == __name__.partition(".")[0]

@@ -1,0 +1,183 @@
+"""An element of one's own, defined here: in compiled runs by a block of its own, and from Python without one."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from numba import njit
+
+from ehdmaps.errors import AnalysisError
+from mbs.bearings.bearing_element import RingElement
+from mbs.gears.gear import GearMesh
+from mbs.model.blocks import FOUND, NO_SOLUTION, Kind, SteadyBlock
+from mbs.model.body import Inertia, rigid_body
+from mbs.model.elements import ElementDefaults, Forces, Load, Port, Sensor, Spring
+from mbs.model.profiles import Harmonic, SpeedProfile
+from mbs.model.system import System
+from mbs.output.results import run_dataset
+from mbs.settings import Settings
+from mbs.transient.kinds import KINDS, is_ours, kind_of
+from mbs.transient.run import Options, run
+
+Y, Z = np.eye(6)[1], np.eye(6)[2]
+MASS = Inertia(2.0, 0.01, 0.02)
+
+
+class Cubic(ElementDefaults):
+    """A spring along y, f = -(k y + b y^3) (1 + part sin angle), with a damper: it follows the angle of the system."""
+
+    def __init__(self, name, on, against="ground", k=1e5, b=1e13, c=40.0, part=0.3):
+        self.name, self.ports = name, (Port(on, against),)
+        self.k, self.b, self.c, self.part = k, b, c, part
+
+    def evaluate(self, displacement, velocity, operation):
+        y, factor = displacement[1], 1.0 + self.part * math.sin(operation.angle)
+        force = -(self.k * y + self.b * y**3) * factor - self.c * velocity[1]
+        slope = (self.k + 3.0 * self.b * y * y) * factor
+        return Forces(force * Y, slope * np.outer(Y, Y), self.c * np.outer(Y, Y), bool(abs(y) > 2e-4))
+
+
+class Cubics(NamedTuple):
+    """Cubic springs as arrays; `numbers` has k, b, c, part."""
+
+    firsts: np.ndarray
+    places: np.ndarray
+    numbers: np.ndarray
+
+
+@njit(error_model="numpy")
+def cubics_answer(cubics, moment, motion, answers):
+    """Forces and slopes."""
+    for i in range(cubics.firsts.size):
+        first = cubics.firsts[i]
+        k, b, c, part = cubics.numbers[i, 0], cubics.numbers[i, 1], cubics.numbers[i, 2], cubics.numbers[i, 3]
+        y, rate = motion[0, first], motion[1, first]
+        if not abs(y) < 1.0:
+            return NO_SOLUTION
+        factor = 1.0 + part * math.sin(moment.angle)
+        answers.force[first] = -(k * y + b * y**3) * factor - c * rate
+        answers.slopes[first, first] = moment.by_q * (k + 3.0 * b * y * y) * factor + moment.by_v * c
+        answers.outside[cubics.places[i]] += abs(y) > 2e-4
+    return FOUND
+
+
+def gathered(members):
+    """The block of some springs."""
+    return SteadyBlock(
+        Cubics(
+            np.array([member.first for member in members], dtype=np.int64),
+            np.array([member.place for member in members], dtype=np.int64),
+            np.array([[m.element.k, m.element.b, m.element.c, m.element.part] for m in members]).reshape(-1, 4),
+        )
+    )
+
+
+CUBICS = Kind(arrays=Cubics, answer=cubics_answer, feels=lambda element: Y[None, :], gather=gathered)
+
+SENSORS = (Sensor("y", "a", Y), Sensor("z", "b", Z, "acceleration"))
+SETTINGS = Settings(2e-5, 1e-4, residual=1e-13)
+RAMP = SpeedProfile.ramp(20.0, 200.0, 0.1)
+
+
+@pytest.fixture
+def known(monkeypatch):
+    """The kind is listed."""
+    monkeypatch.setitem(KINDS, Cubic, CUBICS)
+
+
+def machine(cubic=Cubic):
+    """Two bodies, one spring of one's own to the ground and one between them."""
+    bodies = [rigid_body(name, [MASS], ["y", "z"]) for name in ("a", "b")]
+    springs = [Spring(f"s{name}", name, "ground", np.diag([0.0, 1e4, 2e6, 0.0, 0.0, 0.0])) for name in ("a", "b")]
+    shaker = Load("shaker", "a", 150.0 * (Y + 0.2 * Z), profile=Harmonic(60.0))
+    return System(bodies, springs, [shaker], [cubic("first", "a"), cubic("second", "b", "a", k=3e5)])
+
+
+@pytest.mark.slow
+def test_a_block_of_ones_own_runs_compiled_as_python_does(known):
+    """Both make the same steps; they differ by what Newton leaves over, 1e-13 of the forces, grown over the run."""
+    system = machine()
+    compiled, reference = (
+        run(system, RAMP, 0.03, SETTINGS, SENSORS, options=Options(compiled=c)) for c in (True, False)
+    )
+    assert compiled.compiled == compiled.steps == reference.steps == 1500
+    assert (reference.compiled, compiled.notes, reference.notes) == (0, (), ())
+    for found in (compiled, reference):  # evaluations beyond 0.2 mm; both begin Newton elsewhere, so not as many
+        assert 0 < found.outside["second"] < found.outside["first"] <= found.iterations
+    pairs = zip(
+        (*compiled.signals.T, *compiled.forces, *compiled.motions),
+        (*reference.signals.T, *reference.forces, *reference.motions),
+        strict=True,
+    )
+    for got, wanted in pairs:
+        np.testing.assert_allclose(got, wanted, rtol=0.0, atol=1e-9 * np.abs(wanted).max())
+    linear = run(machine(lambda *a, **k: Cubic(*a, **{**k, "b": 0.0})), RAMP, 0.03, SETTINGS, SENSORS)
+    assert np.abs(linear.signals[:, 0] - compiled.signals[:, 0]).max() > 0.1 * np.abs(compiled.signals[:, 0]).max()
+
+
+def test_without_a_block_it_runs_in_python_and_says_so():
+    found = run(machine(), RAMP, 2e-3, SETTINGS, SENSORS)
+    assert found.compiled == 0
+    (note,) = found.notes
+    assert note == (
+        "first (Cubic), second (Cubic): no compiled block, so every step runs in Python, which is many times slower; a "
+        "kind of element gets one by mbs.transient.kinds"
+    )
+
+
+def test_it_is_no_bearing():
+    system = machine()
+    assert system.select(RingElement) == ()
+    assert system.select(Cubic) == (0, 1)
+    dataset = run_dataset(system, run(system, RAMP, 1e-3, SETTINGS, options=Options(states=True)))
+    assert dataset.sizes["bearing"] == 0
+
+
+def test_a_class_that_inherits_is_another_kind(known):
+    """Its forces may be others: they are not taken for those of its parent."""
+
+    class Harder(Cubic):
+        pass
+
+    assert kind_of(Cubic("c", "a")) is CUBICS
+    assert kind_of(Harder("c", "a")) is None
+
+
+def test_only_kinds_of_the_package_are_kept_on_disk():
+    assert is_ours(KINDS[GearMesh])
+    assert not is_ours(CUBICS)
+
+
+@pytest.mark.slow
+def test_a_compiled_step_without_answer_is_halved(known):
+    """The spring is thrown further than it has an answer for: no step of any size leads back."""
+    with pytest.raises(AnalysisError, match="no solution at"):
+        run(machine(), RAMP, 1e-2, SETTINGS, velocity=np.array([1e6, 0.0, 0.0, 0.0]))
+
+
+CACHED = """
+import sys
+from mbs.scene.reader import read_scene
+from mbs.scene.assembly import assemble
+from mbs.transient.run import run
+from mbs.transient.run_kernel import advance
+scene = read_scene("nu308_rigid")
+course = scene.run_up
+run(assemble(scene).system, course.speed, 2e-4, course.settings)
+print(sum(advance.stats.cache_hits.values()), sum(advance.stats.cache_misses.values()))
+"""
+
+
+@pytest.mark.slow
+def test_compiled_steps_are_kept_from_process_to_process():
+    """The second process compiles nothing: the first one, or an earlier run of the tests, left it on disk."""
+    found = []
+    for _ in range(2):
+        result = subprocess.run([sys.executable, "-c", CACHED], capture_output=True, text=True, check=True)
+        found.append(result.stdout.split())
+    assert found[1] == ["1", "0"]

@@ -1,0 +1,160 @@
+"""Bearings whose films have a memory: compiled slices, runs in time against Python, and the linear analyses."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import math
+
+import numpy as np
+import pytest
+from numba import njit
+
+from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.maps.law import ContactLaw
+from ehdmaps.maps.memory_table import advanced, equilibrium_at, step_of
+from mbs import assemble, read_scene
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.laws import hertz
+from mbs.bearings.memory_element import MemoryBearing
+from mbs.bearings.memory_kernel import MEMORY, begin, commit, loads, settle
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import SpeedProfile
+from mbs.transient.run import Options, run
+from tests.cases.laws import CONTACTS, NU308, OIL, SMALL_FIELD
+
+SPEED = 100.0
+
+
+@functools.cache
+def law(outside="clamp"):
+    return ContactLaw("series", CONTACTS, OIL, SMALL_FIELD, outside)
+
+
+def bearing(outside="clamp", **changes):
+    shape = Bearing(dataclasses.replace(NU308, diametral_clearance=20e-6), slices=9)
+    force = BearingForce(shape, law(outside))
+    return MemoryBearing("b", "shaft", "housing", shape, force, 330.0, **changes)
+
+
+@njit
+def by_kernel(table, h, deltas):
+    """Loads of slices over a course, by parabolas."""
+    count, slices = deltas.shape
+    memory, out, tangent = np.zeros((MEMORY, slices)), np.empty((count, slices)), np.empty(slices)
+    settle(table, deltas[0], memory, out[0], tangent)
+    for k in range(1, count):
+        begin(table, 0.0 if k == 1 else 1.0, k, memory)
+        loads(table, step_of(h, 0.0 if k == 1 else h), memory, deltas[k], out[k], tangent)
+        commit(table, memory, out[k])
+    return out
+
+
+@njit
+def by_table(table, h, deltas):
+    """The same slice by slice, from the table itself."""
+    count, slices = deltas.shape
+    out, xi, change = np.empty((count, slices)), deltas[0].copy(), np.zeros(slices)
+    for i in range(slices):
+        out[0, i] = equilibrium_at(table, xi[i])[0]
+    for k in range(1, count):
+        step = step_of(h, 0.0 if k == 1 else h)
+        for i in range(slices):
+            before = equilibrium_at(table, xi[i])[4]
+            out[k, i], _, xi[i] = advanced(table, step, deltas[k, i], before, change[i], xi[i])
+            change[i] = equilibrium_at(table, xi[i])[4] - before
+    return out
+
+
+@pytest.mark.parametrize(("frequency", "amplitude"), [(300.0, 2e-6), (3000.0, 1e-7), (1000.0, 1e-5)])
+def test_slices_by_parabolas_are_those_of_the_table(frequency, amplitude):
+    table = law().at(1.2, 330.0).memory.table
+    random = np.random.default_rng(5)
+    times = 1e-5 * np.arange(300)
+    swing = np.sin(2.0 * math.pi * frequency * times)[:, None] * random.uniform(-1.0, 1.0, 100)
+    deltas = random.uniform(-2e-5, 1e-5, 100) + amplitude * swing
+    exact = by_table(table, 1e-5, deltas)
+    # What parabolas leave out in third order; of light slices, whose load matters little, a few 1e-4.
+    assert by_kernel(table, 1e-5, deltas) == pytest.approx(exact, rel=1e-3, abs=1e-6 * np.max(exact))
+
+
+def test_a_bearing_in_python_answers_small_oscillations_as_the_linear_analyses_have_it():
+    element = bearing()
+    rest = np.array([0.0, 14e-6, 3e-6, 0.0, 1e-5, 2e-5])
+    direction = np.array([0.0, 1.0, 0.5, 0.0, 0.0, 0.0])
+    at_rest = element.evaluate(rest, np.zeros(6), Operation(SPEED))
+    relaxation = element.relaxation(rest, Operation(SPEED))
+    for frequency in (100.0, 2000.0, 10000.0):
+        steps, periods, amplitude = 100, 4, 1e-10
+        h = 1.0 / (steps * frequency)
+        states, forces = None, []
+        for i in range(steps * periods + 1):
+            turn = math.sin(2.0 * math.pi * frequency * i * h)
+            # the cage stands: its angle is not that of the time
+            moved = rest + amplitude * turn * direction
+            answer, states = element.advance(states, moved, np.zeros(6), Operation(SPEED, 0.0, i * h))
+            forces.append(answer.force)
+        last = np.array(forces[-steps:]) - forces[0]
+        place = np.arange(steps * (periods - 1) + 1, steps * periods + 1) / steps
+        found = -2j * np.exp(-2j * math.pi * place) @ last / steps / amplitude
+        s = np.array([2j * math.pi * frequency])
+        z = at_rest.stiffness + s[0] * at_rest.damping + relaxation.more(s)[0]
+        # A hundred steps a period make some 1e-3 of the damper's part; cubics of the table the rest.
+        assert found == pytest.approx(z @ direction, abs=5e-3 * np.max(np.abs(z @ direction)))
+
+
+@functools.cache
+def model(films="memory", outside_speed=1.0):
+    scene = read_scene("nu308_rigid")
+    return assemble(scene, law="formula", films=films)
+
+
+def trajectory(system, compiled, duration=2e-3, **changes):
+    settings = dataclasses.replace(read_scene("nu308_flexible").run_up.settings, step=1e-5, sample=1e-5, **changes)
+    balance = equilibrium(system, Operation(SPEED))
+    start = balance.displacement * 1.02
+    speed = SpeedProfile.constant(SPEED)
+    return run(system, speed, duration, settings, (), start, options=Options(states=True, compiled=compiled))
+
+
+@pytest.mark.slow
+def test_runs_in_compiled_code_are_those_in_python():
+    compiled, python = (trajectory(model().system, how) for how in (True, False))
+    assert compiled.compiled == compiled.steps and python.compiled == 0
+    for ours, reference in zip(compiled.forces, python.forces, strict=True):
+        # Parabolas of the table's cubics, 1e-5 of the force.
+        assert ours == pytest.approx(reference, abs=1e-4 * np.max(np.abs(reference)))
+    slow = trajectory(model("slow").system, True)
+    apart = np.max(np.abs(slow.forces[0] - compiled.forces[0])) / np.max(np.abs(compiled.forces[0]))
+    assert apart > 1e-3  # memory is no round-off
+
+
+@pytest.mark.slow
+def test_steps_that_are_taken_back_leave_no_trace():
+    free = trajectory(model().system, True)
+    held = trajectory(model().system, True, tolerance=1e-11)
+    assert held.halved > 0
+    last = -1
+    # Steps of half the length differ by what the steps are wrong themselves.
+    assert held.states.displacement[last] == pytest.approx(
+        free.states.displacement[last], abs=0.05 * np.max(np.abs(free.states.displacement[last]))
+    )
+
+
+def test_loads_above_the_map_are_refused_or_counted():
+    deep = np.array([0.0, 1.2e-4, 0.0, 0.0, 0.0, 0.0])
+    operation = Operation(SPEED)
+    with pytest.raises(OutsideMapError, match="above the map"):
+        bearing("error").advance(None, deep, np.zeros(6), operation)
+    answer, _ = bearing().advance(None, deep, np.zeros(6), operation)
+    assert np.all(np.isfinite(answer.force))
+
+
+def test_what_has_no_memory_is_refused():
+    shape = Bearing(NU308)
+    with pytest.raises(InputError, match="films: got 'memory' with a law without films; allowed: laws map and formula"):
+        MemoryBearing("b", "shaft", "housing", shape, BearingForce(shape, hertz(shape)), 330.0)
+    with pytest.raises(InputError, match="films: got 'memory' with centrifugal"):
+        bearing(centrifugal=True)
