@@ -139,7 +139,7 @@ def over_time(parts: tuple[float, ...]) -> None:
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--quick", action="store_true", help="fewer points; half a minute")
+    parser.add_argument("--quick", action="store_true", help="fewer points; one minute instead of three")
     quick = parser.parse_args().quick
     over_frequency(25 if quick else 100)
     over_time(QUICK_PARTS if quick else PARTS)
