@@ -162,7 +162,7 @@ def test_response_in_time(model):
     step, duration = 5e-5, 0.05
     y = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
     system = System(
-        SCENE.bodies, SCENE.springs, (*SCENE.loads, Load("pulse", "shaft", y, profile=pulse)), model.bearings
+        model.system.bodies, SCENE.springs, (*SCENE.loads, Load("pulse", "shaft", y, profile=pulse)), model.bearings
     )
     balance = equilibrium(model.system, Operation(SPEED))
     run = integrate(system, SpeedProfile.constant(SPEED), duration, Settings(step, step, 0.6), balance.displacement)
