@@ -49,7 +49,7 @@ def test_script_prints_what_is_shown(made_map, monkeypatch, capsys):
 
 def test_blocks_of_python_compile():
     blocks = re.findall(r"```python\n(.*?)```", README + PYTHON, re.DOTALL)
-    assert len(blocks) == 4
+    assert len(blocks) == 5
     for block in blocks:
         compile(block, "README.md", "exec")
 
@@ -66,8 +66,19 @@ def test_the_scene_made_in_python_has_an_equilibrium():
 
 
 @pytest.mark.slow
+def test_films_with_memory_from_python(made_map, monkeypatch):
+    (block,) = (text for text in re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL) if "memory" in text)
+    monkeypatch.chdir(made_map)
+    Path("memory.py").write_text(block)
+    found = runpy.run_path("memory.py")
+    rest, _, _ = found["fixed"](found["deltas"], 0.0)
+    # pressed together at 0.1 mm/s: a little more than at rest
+    assert np.all(found["w"] > rest) and np.all(found["w"] < 1.2 * rest)
+
+
+@pytest.mark.slow
 def test_a_whole_machine_from_python(made_map, monkeypatch):
-    block = re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL)[1]
+    (block,) = (text for text in re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL) if "SweepRange" in text)
     monkeypatch.chdir(made_map)
     Path("machine.py").write_text(block)
     found = runpy.run_path("machine.py")
