@@ -407,7 +407,7 @@ def test_ctrl_c_in_any_command_is_quiet(capsys, monkeypatch):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("ehdmaps.jobs.commands.show.open_map", interrupted)
+    monkeypatch.setattr("ehdmaps.jobs.commands.show.open_given", interrupted)
     assert run(capsys, "show", "a.nc") == (130, "", "\nstopped\n")
 
 
