@@ -31,7 +31,8 @@ class RunElements:
     Attributes
     ----------
     blocks : tuple of Block
-        All kinds of this package, so that compiled code is the same for all systems, and others that are needed.
+        All kinds of this package without states, so that compiled code is the same for most systems, and others that
+        are needed.
     expand : array, shape (felt, ports)
         What elements feel of their ports, and, on the other side, forces in the ports by those that the elements make.
     outside : array of int, shape (elements,)
@@ -60,7 +61,7 @@ class RunElements:
             members[kind].append(Member(entry.element, place, first))
             felt.append(kind.feels(entry.element))
             first += felt[-1].shape[0]
-        used = [kind for kind, found in members.items() if found or is_ours(kind)]
+        used = [kind for kind, found in members.items() if found or (is_ours(kind) and kind.accept is None)]
         expand = scipy.linalg.block_diag(*felt) if felt else np.zeros((0, 0))
         return cls(
             blocks=tuple(kind.gather(members[kind]) for kind in used),
