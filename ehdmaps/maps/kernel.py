@@ -55,8 +55,16 @@ _LIGHT = 0.3
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def _structural(structure: FloatArray, centrifugal_load: float, load: float) -> tuple[float, float]:
-    """Structural approach of the contacts at a load, and its derivative; the last one carries more."""
+def structural_state(structure: FloatArray, centrifugal_load: float, load: float) -> tuple[float, float]:
+    """Structural approach of the contacts at a load, and its derivative; the last one carries more.
+
+    Parameters
+    ----------
+    structure : array (n, 3)
+        Structural law of each contact, as of `LawTable`.
+    centrifugal_load, load : float
+        What the last contact carries more, and the load of all [N/m].
+    """
     approach = compliance = 0.0
     last = structure.shape[0] - 1
     for i in range(last + 1):
@@ -138,7 +146,7 @@ def _faded_state(point: Point, delta: float) -> State:
     With the approach y of the whole film, (1 - part) E(w(y)) + part y = delta, E the structural approach.
     """
     part, structure, q = point.film, point.structure, point.centrifugal_load
-    empty, _ = _structural(structure, q, 0.0)
+    empty, _ = structural_state(structure, q, 0.0)
     if delta <= (1.0 - part) * empty + part * point.lift_off:
         return 0.0, 0.0, 0.0, 0.0
     offset, scale = point.own.offset, 1.0 / point.own.inverse_scale
@@ -153,7 +161,7 @@ def _faded_state(point: Point, delta: float) -> State:
         growth = exp(place)
         y = offset + 0.5 * scale * (growth - 1.0 / growth)
         state = _full_state(point, y)
-        dry, compliance = _structural(structure, q, state[0])
+        dry, compliance = structural_state(structure, q, state[0])
         excess = (1.0 - part) * dry + part * y - delta
         slope = part
         if state[0] > 0.0:
@@ -294,7 +302,7 @@ def collapse(
     else:
         lift_off = line_approach(own, 0.0)
         held = line_approach(own, held_load)
-    dry, compliance = _structural(table.structure, q, held_load)
+    dry, compliance = structural_state(table.structure, q, held_load)
     held = (1.0 - film) * dry + film * held
     unheld = Point(
         own, inner, outer, table.structure, film, q, inner_lift_off, outer_start, lift_off,

@@ -32,9 +32,10 @@ import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.maps.kernel import evaluate_at
+from ehdmaps.maps.binary_cells import FIRST, SHIFT, last_of, nodes_of, rows_of
+from ehdmaps.maps.kernel import evaluate_at, structural_state
 from ehdmaps.maps.lines import FAST
-from ehdmaps.maps.tables import HALF_SPACE, Point
+from ehdmaps.maps.tables import Point
 
 LOCKED, LOCKED_BY_LOAD = 0.02, 0.087
 """Compliance that locked oil takes off a contact, in 4/E' for each ln(1 + 2 h R/b^2): the first number, and the second
@@ -51,24 +52,17 @@ MOST_LOCKED = 0.6
 LIGHTEST = 1.0
 """Load up to which the cells of a over w are even [N/m]."""
 
-_BITS = 5
-OCTAVES, LOAD_OCTAVES = 14, 24
-SHIFT = np.uint64(52 - _BITS)
-FIRST = np.int64(np.float64(1.0).view(np.int64) >> (52 - _BITS))
-ROWS, LOAD_ROWS = OCTAVES << _BITS, LOAD_OCTAVES << _BITS
+ROWS, LOAD_ROWS = rows_of(14), rows_of(24)
+"""Cells on each side of the centre, and of the load."""
 
+NODES, LOAD_NODES = nodes_of(ROWS), nodes_of(LOAD_ROWS)
+"""Ends of the cells."""
 
-def _nodes(rows: int) -> FloatArray:
-    """Ends of cells, as values from 1 on."""
-    bits: FloatArray = ((FIRST + np.arange(rows + 1)) << np.int64(52 - _BITS)).view(np.float64)
-    return bits
-
-
-NODES, LOAD_NODES = _nodes(ROWS), _nodes(LOAD_ROWS)
-_LAST, _LAST_LOAD = float(np.nextafter(NODES[-1], 0.0)), float(np.nextafter(LOAD_NODES[-1], 0.0))
+_LAST, _LAST_LOAD = last_of(NODES), last_of(LOAD_NODES)
 _LEAST_DAMPING, _LEAST_FILM = 1e-12, 1e-9
 _STEPS = 60
 _EXACT = 1e-13
+_NO_CHANGE = 1e-30
 _NOTHING = 1e-60
 
 
@@ -114,23 +108,6 @@ class Film(NamedTuple):
     radius: float
     modulus: float
     speed: float
-
-
-@njit(cache=True, error_model="numpy")
-def structure_at(structure: FloatArray, load: float) -> tuple[float, float]:
-    """Structural approach [m] of contacts in series at a load [N/m], and its derivative."""
-    approach = compliance = 0.0
-    if load > 0.0:
-        for i in range(structure.shape[0]):
-            kind, a, b = structure[i, 0], structure[i, 1], structure[i, 2]
-            if kind == HALF_SPACE:
-                part = a * load * (b - 0.5 * math.log(load))
-                compliance += part / load - 0.5 * a
-            else:
-                part = a * math.pow(load, b)
-                compliance += b * part / load
-            approach += part
-    return approach, compliance
 
 
 @njit(cache=True, error_model="numpy")
@@ -201,7 +178,7 @@ def fill_memory(
         p[i], k[i], c[i] = evaluate_at(point, xi[i], 0.0, counts)
         y[i], by_y[i] = xi[i], 1.0
         if p[i] > 0.0:
-            dry, compliance = structure_at(point.structure, p[i])
+            dry, compliance = structural_state(point.structure, 0.0, p[i])
             c[i] = max(c[i], _LEAST_DAMPING * k[i])
             stiff = locked_stiffness(film, xi[i], p[i], k[i], c[i], dry, compliance)
             by_y[i] = 1.0 - k[i] / stiff
@@ -241,7 +218,7 @@ def _fill_loads(
         load = LIGHTEST * (nodes[row] - 1.0)
         while i + 2 < p.size and p[i + 1] < load:
             i += 1
-        dry, compliance = structure_at(point.structure, load)
+        dry, compliance = structural_state(point.structure, 0.0, load)
         begin = slopes[i] if p[i] > 0.0 else slopes[i + 1]
         # straight between two nodes, and the last slope goes on
         t = min((load - p[i]) / (p[i + 1] - p[i]), 1.0)
@@ -358,7 +335,13 @@ def step_of(h: float, last: float) -> Step:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def rate_of(step: Step, change: float, last: float) -> tuple[float, float]:
+def fading_of(last: float) -> float:
+    """1.5 by the size of the last change of G: what `rate_of` fades with [1/(N s/m2)]."""
+    return 1.5 / (abs(last) + _NO_CHANGE)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def rate_of(step: Step, change: float, last: float, fading: float) -> tuple[float, float]:
     """x = G' at the end of a step by the changes of G over it and over the last step, and dx/dG.
 
     Backward differences of second order, but where the change falls below two thirds of the last one, at turning
@@ -370,15 +353,16 @@ def rate_of(step: Step, change: float, last: float) -> tuple[float, float]:
     step : Step
         How long.
     change, last : float
-        Change of G over this step and over the last one [N s/m2].
+        Changes of G over this step and over the last one [N s/m2].
+    fading : float
+        `fading_of` the last one.
     """
-    size = abs(last)
-    t = 1.5 * abs(change) / size if size > 1.5 * abs(change) else 1.0
-    fade = t * t * (3.0 - 2.0 * t)
-    slope = 9.0 * t * (1.0 - t) * (1.0 if change >= 0.0 else -1.0) * (1.0 if last >= 0.0 else -1.0)
+    t = abs(change) * fading
+    t = t if t < 1.0 else 1.0
+    turn = 9.0 * t * (1.0 - t)
     return (
-        step.rate * (step.ahead * change - step.back * last * fade),
-        step.rate * (step.ahead - step.back * slope),
+        step.rate * (step.ahead * change - step.back * last * t * t * (3.0 - 2.0 * t)),
+        step.rate * (step.ahead - step.back * (turn if change * last >= 0.0 else -turn)),
     )
 
 
@@ -411,11 +395,11 @@ def advanced(
     left, right = table.lift_off, math.inf
     xi = start if start > left else left
     w = tangent = 0.0
-    before_last = math.inf
-    moved = math.inf
+    before_last = moved = math.inf
+    fading = fading_of(last)
     for _ in range(_STEPS):
         p, dp, y, dy, g, dg = equilibrium_at(table, xi)
-        x, dx = rate_of(step, g - before, last)
+        x, dx = rate_of(step, g - before, last, fading)
         w, slope = load_of(p, dp, x, dx * dg)
         stretched, compliance = approach_at(table, w)
         rise = compliance * slope + dy

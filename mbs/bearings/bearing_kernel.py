@@ -15,16 +15,15 @@ import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.maps.binary_cells import FIRST, SHIFT
 from ehdmaps.maps.kernel import evaluate_at
 from ehdmaps.maps.lines import FAST, unilateral_force
 from ehdmaps.maps.tables import LOAD, Point
 from mbs.bearings.powers import power
 from mbs.bearings.slice_table import (
     CELLS,
-    FIRST,
     LAST,
     ROWS,
-    SHIFT,
     LawNumbers,
     PreparedLaw,
     fixed_tuple,

@@ -22,14 +22,16 @@ from ehdmaps.maps.memory_table import (
     Step,
     advanced,
     equilibrium_at,
+    fading_of,
     load_cell,
+    rate_of,
     state_cell,
 )
 
 LATEST, BEFORE, CHANGE, FADE, LOAD, TRIAL, AROUND, REACH, LOADED, LOAD_REACH = range(10)
 P, Y, G, A = 10, 13, 16, 19
 MEMORY = 22
-"""Rows of the memory of the slices: states after the last two steps, change of G over the last one and 1.5 by its size,
+"""Rows of the memory of the slices: states after the last two steps, change of G over the last one and `fading_of` it,
 load after it; state of the trial; where the parabolas lie and how far they reach, in the state and in the load;
 parabolas. G counts from the last state."""
 
@@ -70,7 +72,7 @@ def settle(table: MemoryTable, delta: FloatArray, memory: FloatArray, load: Floa
         memory[LATEST, i] = memory[BEFORE, i] = memory[TRIAL, i] = xi
         load[i], tangent[i], _, _, _, _ = equilibrium_at(table, xi)
         memory[LOAD, i] = load[i]
-        memory[FADE, i] = 1.0 / _LEAST
+        memory[FADE, i] = fading_of(0.0)
         _read(table, memory, i)
 
 
@@ -142,23 +144,16 @@ def _round(step: Step, memory: FloatArray, delta: FloatArray, load: FloatArray, 
     y0, y1, y2 = memory[Y], memory[Y + 1], memory[Y + 2]
     g0, g1, g2 = memory[G], memory[G + 1], memory[G + 2]
     a0, a1, a2 = memory[A], memory[A + 1], memory[A + 2]
-    rate, forth, back = step.rate, step.ahead, step.back
     left = 0.0
     for i in range(delta.size):
         s = trial[i] - around[i]
         p, dp = p0[i] + s * (p1[i] + s * p2[i]), p1[i] + 2.0 * s * p2[i]
         y, dy = y0[i] + s * (y1[i] + s * y2[i]), y1[i] + 2.0 * s * y2[i]
         g, dg = g0[i] + s * (g1[i] + s * g2[i]), g1[i] + 2.0 * s * g2[i]
-        # as `ehdmaps.maps.memory_table.rate_of`
-        last = change[i]
-        t = abs(g) * fading[i]
-        t = t if t < 1.0 else 1.0
-        x = rate * (forth * g - back * last * t * t * (3.0 - 2.0 * t))
-        turn = 9.0 * t * (1.0 - t)
-        dx = rate * (forth - back * (turn if g * last >= 0.0 else -turn)) * dg
+        x, dx = rate_of(step, g, change[i], fading[i])
         root = math.sqrt(x * x + p * p + _LEAST)
         w = x + root
-        slope = (w * dx + p * dp) / root
+        slope = (w * dx * dg + p * dp) / root
         v = w - loaded[i]
         a, compliance = a0[i] + v * (a1[i] + v * a2[i]), a1[i] + 2.0 * v * a2[i]
         stiff = slope / (compliance * slope + dy)
@@ -236,12 +231,12 @@ def commit(table: MemoryTable, memory: FloatArray, load: FloatArray) -> None:
         g = g0[i] + s * (g1[i] + s * g2[i])
         change[i] = g
         g0[i] -= g
-        fading[i] = 1.5 / (abs(g) + _LEAST)
+        fading[i] = fading_of(g)
     if far > 0.0:
         for i in range(load.size):
             if not abs(trial[i] - around[i]) <= reach[i]:
                 change[i] = equilibrium_at(table, trial[i])[4] - equilibrium_at(table, latest[i])[4]
-                fading[i] = 1.5 / (abs(change[i]) + _LEAST)
+                fading[i] = fading_of(change[i])
                 around[i] = math.inf
     for i in range(load.size):
         before[i], latest[i] = latest[i], trial[i]

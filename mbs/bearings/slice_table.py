@@ -16,6 +16,7 @@ from numba import njit
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.maps.binary_cells import last_of, nodes_of, rows_of
 from ehdmaps.maps.bulk import evaluate_many_at
 from ehdmaps.maps.kernel import LOAD_TOLERANCE, collapse
 from ehdmaps.maps.lines import FAST, line_approach, line_state
@@ -24,16 +25,13 @@ from ehdmaps.maps.tables import ApproachTable, LawTable, Point
 fixed_tuple: Any = to_fixed_tuple
 """The first numbers of an array as a tuple, in compiled code."""
 
-_OCTAVES, _BITS = 14, 5
-ROWS = _OCTAVES << _BITS
+ROWS = rows_of(14)
 """Rows of the table on each side of the centre."""
 
-SHIFT = np.uint64(52 - _BITS)
-FIRST = np.int64(np.float64(1.0).view(np.int64) >> (52 - _BITS))
-NODES: FloatArray = ((FIRST + np.arange(ROWS + 1)) << np.int64(52 - _BITS)).view(np.float64)
+NODES = nodes_of(ROWS)
 """Ends of the cells, as values of a."""
 
-LAST = float(np.nextafter(NODES[-1], 0.0))
+LAST = last_of(NODES)
 
 POWER, CELLS = 0.0, 1.0
 """Kinds of prepared laws."""

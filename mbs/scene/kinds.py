@@ -75,5 +75,5 @@ KINDS = (
 
 
 def kind_of(spec: object) -> ElementKind | None:
-    """The kind of a machine element; None for a class that is none."""
+    """The kind to which a spec belongs; None if no kind has its class."""
     return next((kind for kind in KINDS if type(spec) is kind.spec), None)

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from ehdmaps.errors import InputError, OutsideMapError
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.memory import FilmState
-from ehdmaps.maps.memory_table import advanced, approach_at, equilibrium_at, rate_of, step_of
+from ehdmaps.maps.memory_table import advanced, approach_at, equilibrium_at, fading_of, rate_of, step_of
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD, ValleyField
 
 WARM = 330.0
@@ -190,7 +190,7 @@ def test_rate_has_the_sign_of_the_change_and_rises_with_it(ratio):
     step = step_of(ratio, 1.0)
     for last in (-2.0, 0.0, 1e-3, 3.0):
         changes = np.linspace(-5.0, 5.0, 20001)
-        found = np.array([rate_of(step, change, last) for change in changes])
+        found = np.array([rate_of(step, change, last, fading_of(last)) for change in changes])
         assert np.all(found[:, 0] * changes >= 0.0)
         assert np.all(found[:, 1] > 0.0)
         quotient = np.diff(found[:, 0]) / np.diff(changes)
