@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +11,7 @@ from ehdmaps.errors import EhdmapsError
 from ehdmaps.maps.kernel import LOAD_TOLERANCE
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.memory_table import LOAD_ROWS, ROWS
+from mbs.bearings.speed_window import Made, SpeedWindow
 
 STEP = 4e-3
 """Distance of the nodes in ln of the speed: the straight blend between two is right to some 1e-6 of the load."""
@@ -74,71 +74,39 @@ class MemoryTables:
 
     def __init__(self, law: ContactLaw, temperature: float, rate: float) -> None:
         self._law, self._temperature, self._rate = law, temperature, rate
-        self._held = np.full(NODES, math.nan)
-        self._sound = np.zeros(NODES, dtype=np.bool_)
-        self._outside = np.zeros(NODES, dtype=np.bool_)
+        self._window = SpeedWindow(STEP, NODES)
 
     def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Nodes below speeds [rad/s], and parts of the way to the next nodes; both zero for one speed alone."""
-        size = np.abs(speeds)
-        if np.all(size == size[0]):
-            return np.zeros(size.size, dtype=np.int64), np.zeros(size.size)
-        place = np.log(np.maximum(size, _STANDSTILL)) / STEP
-        node = np.floor(place)
-        return node.astype(np.int64), place - node
+        """Nodes and weights of speeds [rad/s], see `SpeedWindow.places`."""
+        return self._window.places(speeds)
 
     def prepare(
         self, speeds: FloatArray, nodes: IntArray, weights: FloatArray, films: MemoryFilms, film: int
     ) -> tuple[IntArray, BoolArray, IntArray]:
-        """Make the tables for the first of some speeds, as many as are held at once.
+        """Make the tables for the first of some speeds, see `SpeedWindow.prepare`.
 
         Parameters
         ----------
         speeds : array (n,)
-            [rad/s].
+            Speeds [rad/s].
         nodes, weights : array (n,)
             Nodes and weights from `places`.
         films : MemoryFilms
             Room for the tables.
         film : int
             Index of this law there.
-
-        Returns
-        -------
-        slots : array (k,)
-            Slots of the tables of the first k speeds.
-        sound : array (k,)
-            Whether the law has an answer at these speeds.
-        outside : array (k,)
-            One where every call counts as outside the map.
         """
-        if not (np.any(weights) or np.any(nodes)):
-            self._make(0, abs(float(speeds[0])), films, film)
-            sound, outside = self._sound[:1], self._outside[:1]
-            return np.zeros_like(nodes), np.repeat(sound, nodes.size), np.repeat(outside, nodes.size).astype(np.int64)
-        low, high = np.minimum.accumulate(nodes), np.maximum.accumulate(nodes)
-        count = int(np.searchsorted(high - low, NODES - 2, side="right"))
-        for node in range(int(low[count - 1]), int(high[count - 1]) + 2):
-            self._make(node % NODES, math.exp(node * STEP), films, film)
-        slots, following = nodes[:count] % NODES, (nodes[:count] + 1) % NODES
-        return slots, self._sound[slots] & self._sound[following], self._outside[slots].astype(np.int64)
+        return self._window.prepare(speeds, nodes, weights, lambda slot, speed, _: self._made(slot, speed, films, film))
 
-    def _make(self, slot: int, speed: float, films: MemoryFilms, film: int) -> None:
-        """Make the table of a speed, unless it is there."""
-        if self._held[slot] == speed:
-            return
-        self._held[slot] = speed
+    def _made(self, slot: int, speed: float, films: MemoryFilms, film: int) -> Made:
+        """Make the table of a speed."""
         before = dict(self._law.outside_counts)
         try:
             at = self._law.at(self._rate * speed, self._temperature)
             table = at.memory.table
         except EhdmapsError:
-            self._sound[slot] = False  # the step that asks for it will be told why
-            return
-        self._sound[slot], self._outside[slot] = True, self._law.outside_counts != before
+            return Made(sound=False)  # the step that asks for it will be told why
         films.cells[film, slot], films.load_cells[film, slot] = table.cells, table.load_cells
         highest = at.point.highest_load * (1.0 + LOAD_TOLERANCE)
         films.numbers[film, slot] = table.centre, table.inverse_scale, table.lift_off, highest
-
-
-_STANDSTILL = 1e-300
+        return Made(sound=True, outside=self._law.outside_counts != before)

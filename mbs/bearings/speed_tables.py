@@ -8,8 +8,6 @@ that the blend is wrong by less than the tables are: `STEP` makes some 1e-8 of l
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
@@ -18,6 +16,7 @@ from ehdmaps.maps.law import ContactLaw
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.force_at_point import ForceAtPoint
+from mbs.bearings.speed_window import Made, SpeedWindow
 
 STEP = 1e-3
 """Distance of the nodes in ln of the speed."""
@@ -26,9 +25,6 @@ NODES = 32
 """How many tables are held."""
 
 _KIND = table.LawNumbers._fields.index("kind")
-
-_STANDSTILL = -700.0
-"""ln of a speed that stands for rest: the part of the film that is left there is zero in double precision."""
 
 
 class SpeedTables:
@@ -52,66 +48,34 @@ class SpeedTables:
     def __init__(self, force: BearingForce, temperature: float, rates: tuple[float, float]) -> None:
         self._force, self._temperature, self._rates = force, temperature, rates
         self.varies = isinstance(force.law, ContactLaw)
-        self._range = (0, -1)
-        self._fixed: float | None = None
-        self._sound = np.zeros(NODES, dtype=bool)
-        self._outside = np.zeros(NODES, dtype=bool)
+        self._window = SpeedWindow(STEP, NODES, self.varies)
         self._buffer = np.empty((8, 2 * table.ROWS + 1))
 
     def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Nodes below speeds [rad/s], and parts of the way to the next nodes; both zero for one speed alone."""
-        size = np.abs(speeds)
-        if not self.varies or np.all(size == size[0]):
-            return np.zeros(size.size, dtype=np.int64), np.zeros(size.size)
-        with np.errstate(divide="ignore"):
-            place = np.maximum(np.log(size), _STANDSTILL) / STEP
-        node = np.floor(place)
-        return node.astype(np.int64), place - node
+        """Nodes and weights of speeds [rad/s], see `SpeedWindow.places`."""
+        return self._window.places(speeds)
 
     def prepare(
         self, speeds: FloatArray, nodes: IntArray, weights: FloatArray, cells: FloatArray, numbers: FloatArray
     ) -> tuple[IntArray, BoolArray, IntArray]:
-        """Make the tables for the first of some speeds, as many as are held at once.
+        """Make the tables for the first of some speeds, see `SpeedWindow.prepare`.
 
         Parameters
         ----------
         speeds : array (n,)
-            [rad/s].
+            Speeds [rad/s].
         nodes, weights : array (n,)
             Nodes and weights from `places`.
         cells, numbers : array (NODES, rows, 8), (NODES, 10)
             Tables, kept from call to call.
-
-        Returns
-        -------
-        slots : array (k,)
-            Slots of the tables of the first k speeds.
-        sound : array (k,)
-            Whether tables hold the law there; else it must be called for each slice.
-        outside : array (k,)
-            One where every call counts as outside the map.
         """
-        if not self.varies or not (np.any(weights) or np.any(nodes)):
-            self._fix(abs(float(speeds[0])), cells, numbers)
-            sound, outside = self._sound[:1], self._outside[:1]
-            return np.zeros_like(nodes), np.repeat(sound, nodes.size), np.repeat(outside, nodes.size).astype(np.int64)
-        low, high = np.minimum.accumulate(nodes), np.maximum.accumulate(nodes)
-        count = int(np.searchsorted(high - low, NODES - 2, side="right"))
-        first, last = int(low[count - 1]), int(high[count - 1]) + 1
-        self._fill(first, last, cells, numbers)
-        slots = nodes[:count] % NODES
-        following = (nodes[:count] + 1) % NODES
-        outside = self._outside[slots]
-        alike = numbers[slots, _KIND] == numbers[following, _KIND]
-        sound = alike & self._sound[slots] & self._sound[following] & (outside == self._outside[following])
-        return slots, sound, outside.astype(np.int64)
 
-    def _fix(self, speed: float, cells: FloatArray, numbers: FloatArray) -> None:
-        """The table of one speed, in the first place."""
-        if self._fixed is not None and (self._fixed == speed or not self.varies):
-            return
-        self._fixed, self._range = speed, (0, -1)
-        self._copy(0, self._force_at(self._conditions(speed)), cells[0], numbers[0])
+        def make(slot: int, speed: float, alone: bool) -> Made:
+            if alone:
+                return self._copied(self._force_at(self._conditions(speed)), cells[slot], numbers[slot])
+            return self._made(speed, cells[slot], numbers[slot])
+
+        return self._window.prepare(speeds, nodes, weights, make)
 
     def _force_at(self, conditions: tuple[float, float, float]) -> ForceAtPoint | None:
         """The force there, or none where it refuses: the step that asks for it will be told why."""
@@ -120,47 +84,36 @@ class SpeedTables:
         except EhdmapsError:
             return None
 
-    def _copy(self, slot: int, point: ForceAtPoint | None, cells: FloatArray, numbers: FloatArray) -> None:
+    def _copied(self, point: ForceAtPoint | None, cells: FloatArray, numbers: FloatArray) -> Made:
         """Take over a table or a power law."""
-        self._sound[slot] = point is not None and point.tabulated
         if point is None:
-            return
-        self._outside[slot] = point.outside
+            return Made(sound=False)
         numbers[:] = point.arrays[4]
         if numbers[_KIND] == table.CELLS:
             cells[:] = point.arrays[5]
+        return _told(point.tabulated, point.outside, numbers)
 
-    def _fill(self, first: int, last: int, cells: FloatArray, numbers: FloatArray) -> None:
-        """Tables of the nodes first to last; the node k lies at the place k modulo NODES."""
-        begin, end = self._range if self._fixed is None else (0, -1)
-        self._fixed = None
-        for node in range(first, last + 1):
-            if not begin <= node <= end:
-                self._make(node, cells[node % NODES], numbers[node % NODES])
-        # The window only grows where what it held before is still there.
-        low, high = min(first, begin), max(last, end)
-        touching = begin <= end and first <= end + 1 and last >= begin - 1
-        self._range = (low, high) if touching and high - low < NODES else (first, last)
-
-    def _make(self, node: int, cells: FloatArray, numbers: FloatArray) -> None:
-        """Make one table."""
-        law, slot = self._force.law, node % NODES
+    def _made(self, speed: float, cells: FloatArray, numbers: FloatArray) -> Made:
+        """Make the table of a speed."""
+        law = self._force.law
         assert isinstance(law, ContactLaw)
-        speed = math.exp(node * STEP)
         conditions = np.array(self._conditions(speed))
         centrifugal = float(conditions[2])
-        self._sound[slot] = False
         if not 0.0 <= centrifugal < law.load_range[1]:
-            return
+            return Made(sound=False)
         arrays, workspace = self._force.flat_law.arrays(law, centrifugal > 0.0)
         counts = np.zeros(4, dtype=np.int64)
         fits = table.tabulate_law(arrays, workspace, conditions, table.NODES, self._buffer, cells, numbers, counts)
-        self._outside[slot] = bool(counts.any())
         if not fits:
-            self._copy(slot, self._force_at(self._conditions(speed)), cells, numbers)
-        elif not (self._outside[slot] and law.outside == "error"):
-            self._sound[slot] = True
+            return self._copied(self._force_at(self._conditions(speed)), cells, numbers)
+        outside = bool(counts.any())
+        return _told(not (outside and law.outside == "error"), outside, numbers)
 
     def _conditions(self, speed: float) -> tuple[float, float, float]:
         """Entrainment speed, temperature, centrifugal load."""
         return self._rates[0] * speed, self._temperature, self._rates[1] * speed**2
+
+
+def _told(sound: bool, outside: bool, numbers: FloatArray) -> Made:
+    """What there is to say of a table; only tables of the same kind that count alike are blended."""
+    return Made(sound, outside, 2 * int(numbers[_KIND]) + int(outside))
