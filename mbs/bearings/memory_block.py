@@ -14,13 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.lines import FAST
 from ehdmaps.maps.memory_table import MemoryTable, step_of
-from mbs.bearings.bearing_block import FELT, Course, padded, whole
-from mbs.bearings.bearing_kernel import RingMotion, Shape, assemble, check_motion, roller_of, sizes_of
-from mbs.bearings.force_at_point import Arrays
+from mbs.bearings.bearing_kernel import RingMotion, Shape, assemble, check_motion, roller_of
 from mbs.bearings.memory_element import MemoryBearing
 from mbs.bearings.memory_kernel import KEPT, MEMORY, begin, commit, loads, settle
 from mbs.bearings.memory_tables import (
@@ -32,6 +30,18 @@ from mbs.bearings.memory_tables import (
     MemoryTables,
     room,
 )
+from mbs.bearings.rings import (
+    Course,
+    CourseOfFilms,
+    Rings,
+    answer_ring,
+    course_of,
+    feels,
+    gather_rings,
+    motion_of,
+    shape_of,
+    shared,
+)
 from mbs.bearings.slice_table import LawNumbers
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
 from mbs.model.elements import Element
@@ -42,28 +52,18 @@ end of the step that is tried [s]; and how many were made."""
 
 
 class MemoryBearings(NamedTuple):
-    """Bearings with memory as arrays, one row a bearing; rows of slices and rollers are as long as the longest.
+    """Bearings with memory as arrays, one row a bearing.
 
     Attributes
     ----------
-    firsts, places, films_of : array (bearings,), of int
-        First of what each feels, its place among all elements, its film.
+    rings : Rings
+        What does not change.
     strict : array (bearings,), of bool
         Whether the law refuses loads above its map.
-    rollers, slices : array (bearings,), of int
-        How many each has.
-    start_angles, cage_rates : array (bearings,)
-        Angle of the first roller [rad], and cage angle by that of the system.
-    sizes : array (bearings, 6)
-        `Sizes` in their order.
-    positions, profiles : array (bearings, n)
-        Slices, as of `Shape` [m].
-    cos, sin : array (bearings, Z)
-        Directions of the rollers, as of `Shape`.
     memory : array (bearings, MEMORY Z n)
         Memory of all slices, see `mbs.bearings.memory_kernel`.
     approaches : array (Z n,)
-        Work space for one bearing after the other.
+        Work space for one bearing after the other [m].
     states : array (bearings, 4 Z n)
         Loads and tangents of the last answer; the other rows are zero.
     clock : array (4,)
@@ -74,19 +74,8 @@ class MemoryBearings(NamedTuple):
         Places of the steps on them.
     """
 
-    firsts: IntArray
-    places: IntArray
-    films_of: IntArray
+    rings: Rings
     strict: BoolArray
-    rollers: IntArray
-    slices: IntArray
-    start_angles: FloatArray
-    cage_rates: FloatArray
-    sizes: FloatArray
-    positions: FloatArray
-    profiles: FloatArray
-    cos: FloatArray
-    sin: FloatArray
     memory: FloatArray
     approaches: FloatArray
     states: FloatArray
@@ -132,7 +121,7 @@ def _table(films: MemoryFilms, film: int) -> MemoryTable:
 @njit(cache=True, error_model="numpy")
 def memory_of(bearings: MemoryBearings, b: int) -> FloatArray:
     """Memory of the slices of a bearing, shape (MEMORY, Z n), contiguous."""
-    size = bearings.rollers[b] * bearings.slices[b]
+    size = bearings.rings.rollers[b] * bearings.rings.slices[b]
     memory: FloatArray = bearings.memory[b][: MEMORY * size].reshape(MEMORY, size)
     return memory
 
@@ -160,30 +149,20 @@ def _begin(bearings: MemoryBearings, moment: Moment) -> None:
     if math.isnan(clock[ACCEPTED]):
         return
     growth = (moment.time - clock[ACCEPTED]) / clock[LAST] if clock[LAST] > 0.0 else 0.0
-    for b in range(bearings.firsts.size):
-        begin(_table(films, bearings.films_of[b]), growth, steps, memory_of(bearings, b))
+    for b in range(bearings.rings.firsts.size):
+        begin(_table(films, bearings.rings.films_of[b]), growth, steps, memory_of(bearings, b))
 
 
 @njit(cache=True, error_model="numpy")
 def _answer(bearings: MemoryBearings, b: int, moment: Moment, motion: FloatArray, out: FloatArray) -> int:
     """Force and tangent of a bearing into `out` (13, 6); status as of `bearing_force`."""
-    z, n, i = bearings.rollers[b], bearings.slices[b], bearings.firsts[b]
-    x, y = motion[0], motion[1]
-    angle = bearings.start_angles[b] + bearings.cage_rates[b] * moment.angle
-    c, s = math.cos(angle), math.sin(angle)
-    ring = RingMotion(x[i], x[i + 1], x[i + 2], x[i + 3], y[i], y[i + 1], y[i + 2], y[i + 3], c, s)
-    shape = Shape(
-        sizes_of(bearings.sizes[b]),
-        bearings.positions[b][:n],
-        bearings.profiles[b][:n],
-        bearings.cos[b][:z],
-        bearings.sin[b][:z],
-    )
+    rings = bearings.rings
+    z, n, film = rings.rollers[b], rings.slices[b], rings.films_of[b]
+    ring, shape = motion_of(rings, b, moment, motion), shape_of(rings, b)
     wrong = check_motion(ring, shape.sizes)
     if wrong != 0:
         return wrong
     size = z * n
-    film = bearings.films_of[b]
     table, memory, deltas = _table(bearings.films, film), memory_of(bearings, b), bearings.approaches[:size]
     states = bearings.states[b][: 4 * size].reshape(4, size)
     _approaches(ring, shape, deltas)
@@ -213,25 +192,19 @@ def memory_answer(bearings: MemoryBearings, moment: Moment, motion: FloatArray, 
     answers : Answers
         Answers of all elements, filled.
     """
-    if bearings.firsts.size == 0:
-        return FOUND
     if bearings.clock[TRIAL] != moment.time:
         _begin(bearings, moment)
-    course = bearings.course
+    course, rings = bearings.course, bearings.rings
     out = np.empty((13, 6))
-    for b in range(bearings.firsts.size):
+    for b in range(rings.firsts.size):
         status = _answer(bearings, b, moment, motion, out)
         if status < 0:
             return NO_SOLUTION
         if status > 0 and bearings.strict[b]:
             return IN_PYTHON
-        outside = course.outside[moment.step, bearings.films_of[b]]
-        answers.outside[bearings.places[b]] += 1 if status > 0 or outside > 0 else 0
-        first = bearings.firsts[b]
-        for i in range(4):
-            answers.force[first + i] = out[0, FELT[i]]
-            for j in range(4):
-                answers.slopes[first + i, first + j] = moment.by_q * out[1 + FELT[i], FELT[j]]
+        outside = course.outside[moment.step, rings.films_of[b]]
+        answers.outside[rings.places[b]] += 1 if status > 0 or outside > 0 else 0
+        answer_ring(rings.firsts[b], moment, out, answers)
     return FOUND
 
 
@@ -249,9 +222,9 @@ def memory_accept(bearings: MemoryBearings, moment: Moment) -> None:
     clock = bearings.clock
     started = not math.isnan(clock[ACCEPTED])
     if started:
-        for b in range(bearings.firsts.size):
-            size = bearings.rollers[b] * bearings.slices[b]
-            table = _table(bearings.films, bearings.films_of[b])
+        for b in range(bearings.rings.firsts.size):
+            size = bearings.rings.rollers[b] * bearings.rings.slices[b]
+            table = _table(bearings.films, bearings.rings.films_of[b])
             commit(table, memory_of(bearings, b), bearings.states[b][:size])
     clock[LAST] = moment.time - clock[ACCEPTED] if started else 0.0
     clock[ACCEPTED] = moment.time
@@ -268,24 +241,31 @@ class MemoryBlock:
     """
 
     def __init__(self, members: Sequence[Member]) -> None:
-        self._films: list[MemoryTables] = []
-        shared: dict[tuple[object, ...], int] = {}
-        films_of = []
-        for member in members:
-            element: MemoryBearing = member.element
-            key = (id(element.law), element.temperature, element.rates[1])
-            if key not in shared:
-                shared[key] = len(self._films)
-                self._films.append(MemoryTables(element.law, element.temperature, element.rates[1]))
-            films_of.append(shared[key])
-        self._places: list[tuple[IntArray, FloatArray]] = []
-        self._speeds = np.zeros(0)
-        self._arrays = _arrays(members, films_of, len(self._films))
+        elements: list[MemoryBearing] = [member.element for member in members]
+        films_of, firsts = shared((id(element.law), element.temperature, element.rates[1]) for element in elements)
+        tables = [
+            MemoryTables(element.law, element.temperature, element.rates[1])
+            for element in (elements[first] for first in firsts)
+        ]
+        rings, films = gather_rings(members, films_of), room(len(tables))
+        self._course = CourseOfFilms(
+            [table.places for table in tables],
+            lambda film, *places: tables[film].prepare(*places, films, film),
+        )
+        self._arrays = MemoryBearings(
+            rings=rings,
+            strict=np.array([element.law.outside == "error" for element in elements], dtype=np.bool_),
+            memory=np.zeros((len(elements), MEMORY * rings.most_slices)),
+            approaches=np.zeros(rings.most_slices),
+            states=np.zeros((len(elements), 4 * rings.most_slices)),
+            clock=np.array([math.nan, 0.0, math.nan, 0.0]),
+            films=films,
+            course=course_of(0, len(tables)),
+        )
 
     def begin(self, speeds: FloatArray) -> None:
         """Find the places of the speeds [rad/s] on the tables."""
-        self._speeds = speeds
-        self._places = [film.places(speeds) for film in self._films]
+        self._course.begin(speeds)
 
     def prepare(self, first: int, last: int) -> tuple[MemoryBearings, BoolArray]:
         """Make the tables of the next steps, as many as are held at once.
@@ -295,56 +275,9 @@ class MemoryBlock:
         first, last : int
             Steps of those that `begin` was told.
         """
-        part, found = slice(first, last), []
-        films = self._arrays.films
-        for index, (film, (nodes, weights)) in enumerate(zip(self._films, self._places, strict=True)):
-            slots, sound, outside = film.prepare(self._speeds[part], nodes[part], weights[part], films, index)
-            found.append((slots, weights[part], outside, sound))
-        films.in_use[:] = -1.0
-        count = min((slots.size for slots, _, _, _ in found), default=last - first)
-        shape, sounds = (count, len(found)), np.ones(count, dtype=np.bool_)
-        course = Course(np.zeros(shape, dtype=np.int64), np.zeros(shape), np.zeros(shape, dtype=np.int64))
-        for index, (slots, weights, outside, sound) in enumerate(found):
-            course.nodes[:, index], course.weights[:, index] = slots[:count], weights[:count]
-            course.outside[:, index] = outside[:count]
-            sounds &= sound[:count]
-        return self._arrays._replace(course=course), sounds
-
-
-def _arrays(members: Sequence[Member], films_of: Sequence[int], films: int) -> MemoryBearings:
-    """The arrays of some bearings, and room for tables."""
-    elements: list[MemoryBearing] = [member.element for member in members]
-    works = [Arrays(element.bearing) for element in elements]
-    rollers = [work.angles.shape[1] for work in works]
-    slices = [work.slices.shape[1] for work in works]
-    cells = max((z * n for z, n in zip(rollers, slices, strict=True)), default=0)
-    none = np.zeros((0, films), dtype=np.int64)
-    return MemoryBearings(
-        firsts=whole(member.first for member in members),
-        places=whole(member.place for member in members),
-        films_of=whole(films_of),
-        strict=np.array([element.law.outside == "error" for element in elements], dtype=np.bool_),
-        rollers=whole(rollers),
-        slices=whole(slices),
-        start_angles=np.array([element.start_angle for element in elements], dtype=np.float64),
-        cage_rates=np.array([element.rates[0] for element in elements], dtype=np.float64),
-        sizes=np.array([work.sizes for work in works], dtype=np.float64).reshape(len(works), 6),
-        positions=padded([work.slices[0] for work in works]),
-        profiles=padded([work.slices[1] for work in works]),
-        cos=padded([work.angles[0] for work in works]),
-        sin=padded([work.angles[1] for work in works]),
-        memory=np.zeros((len(works), MEMORY * cells)),
-        approaches=np.zeros(cells),
-        states=np.zeros((len(works), 4 * cells)),
-        clock=np.array([math.nan, 0.0, math.nan, 0.0]),
-        films=room(films),
-        course=Course(none, np.zeros((0, films)), none.copy()),
-    )
-
-
-def _feels(element: MemoryBearing) -> FloatArray:
-    """Rows of what a bearing feels."""
-    return np.asarray(np.eye(6)[FELT])
+        course, sound = self._course.prepare(first, last)
+        self._arrays.films.in_use[:] = -1.0
+        return self._arrays._replace(course=course), sound
 
 
 def _takes(element: Element) -> bool:
@@ -355,7 +288,7 @@ def _takes(element: Element) -> bool:
 MEMORY_BEARINGS = Kind(
     arrays=MemoryBearings,
     answer=memory_answer,
-    feels=_feels,
+    feels=feels,
     gather=MemoryBlock,
     takes=_takes,
     accept=memory_accept,

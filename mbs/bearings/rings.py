@@ -1,0 +1,238 @@
+"""Bearings of a compiled run as arrays: what does not change of them, how their rings move, and where their tables lie.
+
+Blocks with and without memory of the films share this; `mbs.bearings.bearing_block` and `mbs.bearings.memory_block`
+add what each slice needs.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_kernel import RingMotion, Shape, sizes_of
+from mbs.bearings.force_at_point import Arrays
+from mbs.model.blocks import Answers, Member, Moment
+
+FELT = np.array([1, 2, 4, 5])
+"""Displacements of its port that a bearing feels: y, z, theta_y, theta_z."""
+
+
+class Rings(NamedTuple):
+    """Bearings as arrays, one row a bearing; rows of slices and rollers are as long as the longest.
+
+    Attributes
+    ----------
+    firsts, places, films_of : array (bearings,), of int
+        First of what each feels, its place among all elements, its film.
+    rollers, slices : array (bearings,), of int
+        How many each has.
+    start_angles, cage_rates : array (bearings,)
+        Angle of the first roller [rad], and cage angle by that of the system.
+    sizes : array (bearings, 6)
+        `Sizes` in their order.
+    positions, profiles : array (bearings, n)
+        Slices, see `Shape` [m].
+    cos, sin : array (bearings, Z)
+        Directions of the rollers, see `Shape`.
+    """
+
+    firsts: IntArray
+    places: IntArray
+    films_of: IntArray
+    rollers: IntArray
+    slices: IntArray
+    start_angles: FloatArray
+    cage_rates: FloatArray
+    sizes: FloatArray
+    positions: FloatArray
+    profiles: FloatArray
+    cos: FloatArray
+    sin: FloatArray
+
+    @property
+    def most_slices(self) -> int:
+        """Slices of all rollers together, of the bearing that has most."""
+        return int(np.max(self.rollers * self.slices, initial=0))
+
+
+class Course(NamedTuple):
+    """Where the tables of some steps lie.
+
+    Attributes
+    ----------
+    nodes, weights : array (steps, films)
+        Node below the speed, and the part of the way to the next one.
+    outside : array (steps, films), of int
+        Whether speed or temperature lie outside the map.
+    """
+
+    nodes: IntArray
+    weights: FloatArray
+    outside: IntArray
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def motion_of(rings: Rings, b: int, moment: Moment, motion: FloatArray) -> RingMotion:
+    """Motion of the inner ring of a bearing against the outer one.
+
+    Parameters
+    ----------
+    rings : Rings
+        All bearings.
+    b : int
+        Which one.
+    moment : Moment
+        The moment, for the angle of the cage.
+    motion : array (2, m)
+        Displacements and their rates, among what all elements feel.
+    """
+    i, x, y = rings.firsts[b], motion[0], motion[1]
+    angle = rings.start_angles[b] + rings.cage_rates[b] * moment.angle
+    c, s = math.cos(angle), math.sin(angle)
+    return RingMotion(x[i], x[i + 1], x[i + 2], x[i + 3], y[i], y[i + 1], y[i + 2], y[i + 3], c, s)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def shape_of(rings: Rings, b: int) -> Shape:
+    """What does not change of a bearing."""
+    z, n = rings.rollers[b], rings.slices[b]
+    return Shape(
+        sizes_of(rings.sizes[b]), rings.positions[b][:n], rings.profiles[b][:n], rings.cos[b][:z], rings.sin[b][:z]
+    )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def answer_ring(first: int, moment: Moment, out: FloatArray, answers: Answers) -> None:
+    """Put force, stiffness and damping of a bearing among the answers of all elements.
+
+    Parameters
+    ----------
+    first : int
+        First of what the bearing feels.
+    moment : Moment
+        Weights of the slopes.
+    out : array (13, 6)
+        Force, six rows of stiffness, six rows of damping.
+    answers : Answers
+        Answers of all elements, filled.
+    """
+    for i in range(4):
+        k = FELT[i]
+        answers.force[first + i] = out[0, k]
+        for j in range(4):
+            slope = moment.by_q * out[1 + k, FELT[j]] + moment.by_v * out[7 + k, FELT[j]]
+            answers.slopes[first + i, first + j] = slope
+
+
+def feels(element: BearingElement) -> FloatArray:
+    """Rows of what a bearing feels, shape (4, 6)."""
+    return np.asarray(np.eye(6)[FELT])
+
+
+def gather_rings(members: Sequence[Member], films_of: Sequence[int]) -> Rings:
+    """The arrays of some bearings, and which film each has."""
+    elements: list[BearingElement] = [member.element for member in members]
+    works = [Arrays(element.bearing) for element in elements]
+    return Rings(
+        firsts=_whole(member.first for member in members),
+        places=_whole(member.place for member in members),
+        films_of=_whole(films_of),
+        rollers=_whole(work.angles.shape[1] for work in works),
+        slices=_whole(work.slices.shape[1] for work in works),
+        start_angles=np.array([element.start_angle for element in elements], dtype=np.float64),
+        cage_rates=np.array([element.rates[0] for element in elements], dtype=np.float64),
+        sizes=np.array([work.sizes for work in works], dtype=np.float64).reshape(len(works), 6),
+        positions=_padded([work.slices[0] for work in works]),
+        profiles=_padded([work.slices[1] for work in works]),
+        cos=_padded([work.angles[0] for work in works]),
+        sin=_padded([work.angles[1] for work in works]),
+    )
+
+
+Places = tuple[IntArray, FloatArray]
+Prepared = tuple[IntArray, BoolArray, IntArray]
+
+
+class CourseOfFilms:
+    """Where the tables of the films of a run lie, step after step.
+
+    Parameters
+    ----------
+    places : sequence of callable
+        Nodes and weights of speeds (n,) [rad/s], a function for each film.
+    prepare : callable
+        Function that makes the tables of a film, by its index, for the first of some speeds, their nodes and weights.
+    """
+
+    def __init__(
+        self,
+        places: Sequence[Callable[[FloatArray], Places]],
+        prepare: Callable[[int, FloatArray, IntArray, FloatArray], Prepared],
+    ) -> None:
+        self._place, self._prepare = places, prepare
+        self._places: list[Places] = []
+        self._speeds = np.zeros(0)
+
+    def begin(self, speeds: FloatArray) -> None:
+        """Find the places of the speeds [rad/s] on the tables."""
+        self._speeds = speeds
+        self._places = [place(speeds) for place in self._place]
+
+    def prepare(self, first: int, last: int) -> tuple[Course, BoolArray]:
+        """Have the tables of the next steps made, as many as are held at once, and say which steps have one.
+
+        Parameters
+        ----------
+        first, last : int
+            Steps of those that `begin` was told.
+        """
+        part = slice(first, last)
+        found = [
+            (*self._prepare(film, self._speeds[part], nodes[part], weights[part]), weights[part])
+            for film, (nodes, weights) in enumerate(self._places)
+        ]
+        count = min((slots.size for slots, _, _, _ in found), default=last - first)
+        course, whole = course_of(count, len(found)), np.ones(count, dtype=np.bool_)
+        for film, (slots, sound, outside, weights) in enumerate(found):
+            course.nodes[:, film], course.weights[:, film] = slots[:count], weights[:count]
+            course.outside[:, film] = outside[:count]
+            whole &= sound[:count]
+        return course, whole
+
+
+def course_of(steps: int, films: int) -> Course:
+    """Room for the course of some steps."""
+    shape = (steps, films)
+    return Course(np.zeros(shape, dtype=np.int64), np.zeros(shape), np.zeros(shape, dtype=np.int64))
+
+
+def shared(keys: Iterable[tuple[object, ...]]) -> tuple[list[int], list[int]]:
+    """Number of the film of each bearing, by what makes films alike; and which bearing is the first with each film."""
+    numbers: dict[tuple[object, ...], int] = {}
+    films_of: list[int] = []
+    firsts: list[int] = []
+    for place, key in enumerate(keys):
+        if key not in numbers:
+            numbers[key] = len(firsts)
+            firsts.append(place)
+        films_of.append(numbers[key])
+    return films_of, firsts
+
+
+def _padded(rows: Sequence[FloatArray]) -> FloatArray:
+    """Rows of several lengths as one array, with zeros behind."""
+    padded = np.zeros((len(rows), max((row.size for row in rows), default=0)))
+    for place, row in zip(padded, rows, strict=True):
+        place[: row.size] = row
+    return padded
+
+
+def _whole(numbers: Iterable[int]) -> IntArray:
+    """Whole numbers as an array."""
+    return np.array(list(numbers), dtype=np.int64)
