@@ -177,6 +177,7 @@ def _reduce(commands: Any) -> None:
 
 def _hammer(command: argparse.ArgumentParser) -> None:
     """Add the options of a simulated hammer test; its -o is a universal file."""
+    _films(command, compares=False)
     command.add_argument("--hits", type=int, default=8, metavar="N", help="at each input of the scene (8)")
     command.add_argument(
         "--noise", type=float, default=0.01, metavar="PART", help="standard deviation over the peak of a channel (0.01)"

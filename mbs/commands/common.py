@@ -31,8 +31,6 @@ RESOLUTION = 150
 MORE_DAMPING = "films as a rule are stiffer and damp less than computed here"
 """What is known of motion above the low-frequency limit."""
 
-NO_LONGER_VALID = f"above it stiffness and damping of slow motion are no longer valid, {MORE_DAMPING}"
-
 
 class Told:
     """Progress of an analysis on stderr: a callable that is told how much is done, and of how much.
@@ -68,25 +66,6 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
     ]
 
 
-def film_warnings(limits: Sequence[FilmLimit], frequencies: Iterable[float]) -> list[str]:
-    """Lines on frequencies above the low-frequency limit of the films."""
-    lines = []
-    highest = max(frequencies, default=0.0)
-    for limit in limits:
-        ratio = limit.ratio(highest)
-        if limit.entrainment_speed == 0.0:
-            lines.append(
-                f"warning: {limit.bearing}: at rest no film: the stiffness is that of dry contacts, no damping"
-            )
-        elif ratio > HIGHEST_RATIO:
-            lines.append(
-                f"warning: {limit.bearing}: omega b/u is {ratio:.2g} at {highest:.5g} Hz and passes {HIGHEST_RATIO} at "
-                f"{limit.frequency:.4g} Hz (b = {limit.half_width * 1e6:.3g} um, "
-                f"u = {limit.entrainment_speed:.3g} m/s): {NO_LONGER_VALID}"
-            )
-    return lines
-
-
 def slow_film_warnings(
     limits: Sequence[FilmLimit], errors: Sequence[SlowFilmError], frequencies: Iterable[float]
 ) -> list[str]:
@@ -102,7 +81,11 @@ def slow_film_warnings(
         Frequencies of the result [Hz].
     """
     highest = max(frequencies, default=0.0)
-    lines = film_warnings([limit for limit in limits if limit.entrainment_speed == 0.0], [highest])
+    lines = [
+        f"warning: {limit.bearing}: at rest no film: the stiffness is that of dry contacts, no damping"
+        for limit in limits
+        if limit.entrainment_speed == 0.0
+    ]
     ratios = {limit.bearing: limit.ratio(highest) for limit in limits}
     for entry in errors:
         error = entry.at(highest)

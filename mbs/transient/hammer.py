@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.fft import next_fast_len
-from scipy.linalg import expm
+from scipy.linalg import expm, matrix_balance
 from scipy.signal import firwin, upfirdn
 
 from ehdmaps.arrays import FloatArray
@@ -187,8 +187,9 @@ def nonlinear_hits(
     """Hits at every input, answered by the nonlinear system.
 
     The cage stands at its start angle while the films feel the speed, as in the linear analyses: the rollers that
-    pass would excite the system besides the hammer. Integrated by the trapezoidal rule, which damps nothing; its
-    frequencies are low by (omega h)^2/12, 0.2 % at the highest frequency of interest and 0.05 % at half of it.
+    pass would excite the system besides the hammer. Films with memory begin in equilibrium. Integrated by the
+    trapezoidal rule, which damps nothing; its frequencies are low by (omega h)^2/12, 0.2 % at the highest frequency of
+    interest and 0.05 % at half of it.
 
     Parameters
     ----------
@@ -249,16 +250,16 @@ class _CageAtRest(SpeedProfile):
 def _free_response(A: FloatArray, b: FloatArray, C: FloatArray, d: FloatArray, test: HammerTest) -> FloatArray:
     """Response (1 + sensors, computed samples) to a half-sine of height 1, the force itself first."""
     n, fine = A.shape[0], test.step / OVERSAMPLING
-    # Velocities in units of the highest frequency: a matrix of one size is kinder to the exponential.
-    scale = np.repeat([1.0, 1.0 / (2.0 * np.pi * test.highest)], n // 2)
+    # States in units in which rows and columns are of one size: kinder to the exponential.
+    balanced, (unit, _) = matrix_balance(A, permute=False, separate=True)
     rate = np.pi / test.pulse
     turning = np.zeros((n + 2, n + 2))
-    turning[:n, :n] = scale[:, None] * A / scale
-    turning[:n, n] = scale * b
+    turning[:n, :n] = balanced
+    turning[:n, n] = b / unit
     turning[n, n + 1], turning[n + 1, n] = rate, -rate
     outputs = np.zeros((1 + C.shape[0], n + 2))
     outputs[0, n] = 1.0
-    outputs[1:, :n], outputs[1:, n] = C / scale, d
+    outputs[1:, :n], outputs[1:, n] = C * unit, d
     through = expm(turning * fine)
     state = np.zeros(n + 2)
     state[n + 1] = 1.0

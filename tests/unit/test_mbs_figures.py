@@ -16,14 +16,13 @@ from mbs.analyses.film_limits import lowest_limits
 from mbs.analyses.reach import Fade, axes_outside, fade_of, share_below
 from mbs.bearings.bearing_force import BearingForce
 from mbs.commands import modes as modes_command
-from mbs.commands.common import film_course, film_warnings
+from mbs.commands.common import film_course
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.commands.runup import _changes
 from mbs.linearised.linear import frequency_response
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.sweep import sweep
 from mbs.linearised.tracking import numbers
-from mbs.linearised.validity import FilmLimit
 from mbs.model.equilibrium import equilibrium
 from mbs.output.modes_plot import modes_figure
 from mbs.output.page import SHADE
@@ -151,12 +150,6 @@ class TestReach:
 
 
 class TestWords:
-    def test_quicker_motion_is_said_to_be_beyond_the_limit(self):
-        (line,) = film_warnings([FilmLimit("a", 50e-6, 1.0)], [2000.0])
-        # omega b/u = 2 pi 2000 50e-6
-        assert "a: omega b/u is 0.63 at 2000 Hz and passes 0.3 at 954.9 Hz" in line
-        assert "above it stiffness and damping of slow motion are no longer valid" in line
-
     def test_a_course_names_both_ends(self, films):
         (line,) = film_course(films, (500.0 * RPM, 1000.0 * RPM))
         assert "valid (omega b/u up to 0.3) up to" in line and "Hz at 500 rpm" in line and "Hz at 1000 rpm" in line
