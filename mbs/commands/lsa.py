@@ -12,7 +12,7 @@ from scipy.signal import find_peaks
 from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.analyses.lsa import lsa
 from mbs.commands.cases import load_model
-from mbs.commands.common import heading, outside_at, slow_film_warnings, write
+from mbs.commands.common import film_lines, heading, outside_at, write
 from mbs.commands.reach import fade_lines
 from mbs.linearised.linear import response_unit
 from mbs.linearised.validity import DynamicLoad
@@ -26,7 +26,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     model, scene, frequencies = found.model, found.model.scene, found.frequencies
     figure = None
     if arguments.plot:
-        limit = min((entry.frequency for entry in found.limits), default=math.inf)
+        limit = min((entry.frequency for entry in found.errors), default=math.inf)
         figure = response_figure(model, frequencies, found.responses, limit, _lifting_notes(found.lifting))
     outside = outside_at(model, found.balance)
     amplitudes = {
@@ -38,7 +38,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"{found.asked} frequencies, and {frequencies.size - found.asked} more around lightly "
         "damped modes",
         *_peaks(model, frequencies, found.responses),
-        *slow_film_warnings(found.limits, found.errors, frequencies),
+        *film_lines(found.errors, frequencies),
         *(
             f"warning: {load.element}: {load.dynamic:.3g} N of dynamic load at {load.frequency:.4g} Hz exceed the "
             f"static {load.static:.4g} N (input {load.input} at its amplitude of {amplitudes[load.input]}): contacts "

@@ -12,9 +12,13 @@ from matplotlib.ticker import ScalarFormatter
 from ehdmaps.figures import SHADE, SHADE_ALPHA, typeset
 from ehdmaps.units import TEMPERATURE
 from mbs.analyses.case import clearance_text
+from mbs.linearised.validity import NOTABLE
 from mbs.scene.assembly import Model
 
 _SIZE = (9.0, 5.5)
+
+ESTIMATED = f"estimated error of the films above {100.0 * NOTABLE:g} %"
+"""How figures call the range in which the films that an analysis has are notably wrong."""
 
 
 def page(model: Model, words: str, panels: int, stacked: bool = False) -> tuple[Figure, list[Axes]]:

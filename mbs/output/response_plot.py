@@ -13,8 +13,7 @@ from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.figures import COLOURS, typeset
 from ehdmaps.units import RPM
 from mbs.linearised.linear import response_unit
-from mbs.linearised.validity import HIGHEST_RATIO
-from mbs.output.page import grid, page, shade
+from mbs.output.page import ESTIMATED, grid, page, shade
 from mbs.scene.assembly import Model
 
 _ROUND_OFF = 1e-6
@@ -86,7 +85,7 @@ def _limit(axes: Sequence[Axes], limit: float) -> None:
         shade(panel, max(limit, low), high)
         panel.set_xlim(low, high)
     axes[0].annotate(
-        f"omega b/u above {HIGHEST_RATIO}: low-frequency films no longer valid",
+        ESTIMATED,
         (0.99, 0.03),
         xycoords="axes fraction",
         ha="right",
