@@ -58,7 +58,7 @@ def likeness(first: ComplexArray, second: ComplexArray, mass: FloatArray) -> flo
     return float(abs(first.conj() @ mass @ second) ** 2 / (sizes[0] * sizes[1]))
 
 
-def machine(
+def compare(
     emap: EHDMap, scene: str, clearance: float, rpm: float, known: dict[tuple[float, float], ExactFilms]
 ) -> None:
     """Print the modes of a machine at a speed, and the errors of its bearings."""
