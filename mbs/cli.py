@@ -38,7 +38,7 @@ def parser() -> argparse.ArgumentParser:
         command = _scene_command(commands, name, words, compares=False)
         if name == "modes":
             _modes(command)
-        _films(command, compares=False)
+        _films(command, compares=name == "lsa")
     sweep = _scene_command(commands, "sweep", "modes, bearings and frequency responses over speed", compares=True)
     _films(sweep, compares=True)
     _sweep(sweep)

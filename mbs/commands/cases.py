@@ -62,7 +62,9 @@ def load_model(arguments: argparse.Namespace, kind: Kind = RESULT) -> Model:
     return load_cases(arguments, several=False, kind=kind)[0].model
 
 
-def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind = RESULT) -> list[Case]:
+def load_cases(
+    arguments: argparse.Namespace, several: bool = True, kind: Kind = RESULT, *, several_films: bool = False
+) -> list[Case]:
     """Read scene, laws, maps, clearances and load factors into models; all problems at once.
 
     Parameters
@@ -74,6 +76,8 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
         Whether laws and maps stand side by side; else a law goes before a map.
     kind : Kind
         Kind of file that -o writes.
+    several_films : bool
+        Whether kinds of films stand side by side where laws and maps do not.
 
     Raises
     ------
@@ -92,7 +96,7 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
         problems += [
             f"--{option}: got {len(given)} of them; allowed: one; `mbs sweep` and `mbs campbell` compare more"
             for option in ("law", "map", "clearance", "films")
-            if len(given := _given(arguments, option)) > 1
+            if len(given := _given(arguments, option)) > 1 and not (option == "films" and several_films)
         ]
         laws = laws[:1] if _given(arguments, "law") else laws
     if hasattr(arguments, "films"):

@@ -27,7 +27,7 @@ from mbs.linearised.validity import FilmError, memory_error
 from mbs.model.equilibrium import equilibrium
 from mbs.output.modes_plot import modes_figure
 from mbs.output.page import SHADE
-from mbs.output.response_plot import response_figure
+from mbs.output.response_plot import Curves, comparison_figure, response_figure
 from mbs.output.run_plot import run_figure
 from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import assemble
@@ -357,7 +357,7 @@ def responses(dry):
 
 class TestResponseFigure:
     def test_phase_of_an_undamped_system_does_not_flicker(self, dry, responses):
-        figure = response_figure(dry, *responses)
+        figure = response_figure(dry, Curves("a", *responses))
         phase = np.concatenate([line.get_ydata() for line in figure.axes[-1].lines])
         # Only 0 and 180 degrees: -180 is the same as 180, and is drawn as that.
         assert np.nanmin(phase) > -1.0
@@ -365,19 +365,30 @@ class TestResponseFigure:
     def test_lines_break_where_the_phase_passes_180_degrees(self, dry):
         frequencies = np.linspace(1.0, 2.0, 50)
         turning = np.exp(-1j * 6.0 * np.pi * frequencies)[:, None, None] * np.ones((1, 2, 1))
-        figure = response_figure(dry, frequencies, turning)
+        figure = response_figure(dry, Curves("a", frequencies, turning))
         line = figure.axes[-1].lines[0].get_ydata()
         assert np.count_nonzero(np.isnan(line)) == 3
         assert np.nanmax(np.abs(np.diff(line))) < 270.0
 
     def test_frequencies_above_the_limit_are_shaded(self, dry, responses):
-        figure = response_figure(dry, *responses, 500.0, ["contacts lift off"])
+        figure = response_figure(dry, Curves("a", *responses, 500.0), ["contacts lift off"])
         for panel in figure.axes:
             ((begin, end),) = bands(panel)
             assert (begin, end) == (500.0, panel.get_xlim()[1])
         assert any("estimated error" in text for text in texts(figure))
         assert "contacts lift off" in texts(figure)
-        assert not any(bands(panel) for panel in response_figure(dry, *responses, math.inf).axes)
+        assert not any(bands(panel) for panel in response_figure(dry, Curves("a", *responses, math.inf)).axes)
+
+    def test_cases_side_by_side_have_a_legend_and_lines_where_their_films_end(self, dry, responses):
+        figure = comparison_figure(dry, [Curves("a", *responses, 500.0), Curves("b", *responses)], ["lifts"])
+        words = texts(figure)
+        assert (
+            "a (from the upright line at 500 Hz on: estimated error of the films above 5 %)" in words and "b" in words
+        )
+        assert any("laws side by side" in word for word in words)
+        assert not any(bands(panel) for panel in figure.axes)
+        upright = [line for line in figure.axes[0].lines if list(line.get_xdata()) == [500.0, 500.0]]
+        assert len(upright) == 1
 
 
 @pytest.fixture(scope="module")
