@@ -14,12 +14,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.fft import next_fast_len
-from scipy.linalg import expm, matrix_balance
+from scipy.linalg import expm
 from scipy.signal import firwin, upfirdn
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.linearised.linear import input_matrix, sensor_matrix, state_space
+from mbs.linearised.linear import StateSpace, input_matrix, sensor_matrix, state_space
 from mbs.linearised.modes import Modes
 from mbs.modal.records import LONGEST, Channel, Hits, Measured
 from mbs.model.elements import Input, Sensor
@@ -163,7 +163,7 @@ def linear_hits(
     space = state_space(balance, inputs, sensors)
     answers = []
     for column in range(len(inputs)):
-        response = _free_response(space.A, space.B[:, column], space.C, space.D[:, column], test)
+        response = _free_response(space, column, balance.system.size, test)
         if not np.all(np.isfinite(response)):
             raise AnalysisError(
                 "hammer test: the motion after a hit grows beyond all bounds; the linearised system is not stable: "
@@ -247,19 +247,23 @@ class _CageAtRest(SpeedProfile):
         return self.course(time), 0.0
 
 
-def _free_response(A: FloatArray, b: FloatArray, C: FloatArray, d: FloatArray, test: HammerTest) -> FloatArray:
-    """Response (1 + sensors, computed samples) to a half-sine of height 1, the force itself first."""
+def _free_response(space: StateSpace, column: int, size: int, test: HammerTest) -> FloatArray:
+    """Response (1 + sensors, computed samples) to a half-sine of height 1 at an input, the force itself first."""
+    A, b, C, d = space.A, space.B[:, column], space.C, space.D[:, column]
     n, fine = A.shape[0], test.step / OVERSAMPLING
-    # States in units in which rows and columns are of one size: kinder to the exponential.
-    balanced, (unit, _) = matrix_balance(A, permute=False, separate=True)
+    # A matrix of one size is kinder to the exponential: velocities in units of the highest frequency, and films, which
+    # follow velocities, by the roots of their springs.
+    springs = np.linalg.norm(A[2 * size :, size : 2 * size], axis=1)
+    slow = 1.0 / (2.0 * np.pi * test.highest)
+    scale = np.concatenate([np.ones(size), np.full(size, slow), 1.0 / np.maximum(springs, 1e-30)])
     rate = np.pi / test.pulse
     turning = np.zeros((n + 2, n + 2))
-    turning[:n, :n] = balanced
-    turning[:n, n] = b / unit
+    turning[:n, :n] = scale[:, None] * A / scale
+    turning[:n, n] = scale * b
     turning[n, n + 1], turning[n + 1, n] = rate, -rate
     outputs = np.zeros((1 + C.shape[0], n + 2))
     outputs[0, n] = 1.0
-    outputs[1:, :n], outputs[1:, n] = C * unit, d
+    outputs[1:, :n], outputs[1:, n] = C / scale, d
     through = expm(turning * fine)
     state = np.zeros(n + 2)
     state[n + 1] = 1.0
