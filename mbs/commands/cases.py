@@ -20,10 +20,10 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
 from ehdmaps.units import closest, quantity
 from mbs.analyses.case import Case, common_clearance
-from mbs.model.relaxation import Films
+from mbs.model.relaxation import DEFAULT_FILMS, Films
 from mbs.output.results import RESULT
 from mbs.scene.assembly import Model, assemble
-from mbs.scene.contact_laws import MEMORY_WORDS, law_label
+from mbs.scene.contact_laws import FILM_WORDS, law_label
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
@@ -225,9 +225,9 @@ def _filmed(law: _Law, films: str, compared: bool) -> _Law:
     """A law with its films."""
     if films == "dry":
         return _Law(law_label("hertz"), "hertz")
-    words = MEMORY_WORDS if films == "memory" else "slow films"
-    label = f"{law.label}, {words}" if compared or films == "memory" else law.label
-    return dataclasses.replace(law, label=label, films="memory" if films == "memory" else "slow")
+    kind: Films = "memory" if films == "memory" else "slow"
+    label = f"{law.label}, {FILM_WORDS[kind]}" if compared or kind != DEFAULT_FILMS else law.label
+    return dataclasses.replace(law, label=label, films=kind)
 
 
 def read_clearance(text: str, problems: list[str]) -> float | None:

@@ -25,7 +25,7 @@ from mbs.linearised.validity import NOTABLE, FilmError
 from mbs.model.equilibrium import Equilibrium
 from mbs.output.results import write_dataset
 from mbs.scene.assembly import Model
-from mbs.scene.contact_laws import MEMORY_WORDS
+from mbs.scene.contact_laws import FILM_WORDS
 
 RESOLUTION = 150
 
@@ -88,32 +88,17 @@ def film_lines(errors: Sequence[FilmError], frequencies: Iterable[float], words:
     return lines
 
 
-_FILMS = {"slow": "films of slow motion", "memory": MEMORY_WORDS}
-
-
 def _film_line(entry: FilmError, frequency: float, words: str) -> str:
     """A line on one bearing; a warning where the error is notable."""
     error = entry.at(frequency)
     line = (
-        f"{entry.bearing}: {_FILMS[entry.films]}; estimated error of the dynamic stiffness along the load at "
+        f"{entry.bearing}: {FILM_WORDS[entry.films]}; estimated error of the dynamic stiffness along the load at "
         f"{frequency:.5g} Hz{words}: {100.0 * error:.2g} %"
     )
     if error <= NOTABLE:
         return line
     more = f"warning: {line}, from {entry.frequency:.4g} Hz on more than {100.0 * NOTABLE:g} %"
     return more + ("; with --films memory films follow at their own frequency" if entry.films == "slow" else "")
-
-
-def film_label(model: Model) -> str:
-    """The law of a model in two words, and which films it has if it has any.
-
-    Parameters
-    ----------
-    model : Model
-        The machine with its law.
-    """
-    slow = model.has_films and model.memory == "slow"
-    return f"{model.label}, {_FILMS['slow']}" if slow else model.label
 
 
 def film_course(model: Model, speeds: Iterable[float]) -> list[str]:
@@ -129,7 +114,7 @@ def film_course(model: Model, speeds: Iterable[float]) -> list[str]:
     if not shown:
         return []
     return [
-        f"{_FILMS[model.memory]}: dynamic stiffness along the load with an estimated error of up to "
+        f"{FILM_WORDS[model.memory]}: dynamic stiffness along the load with an estimated error of up to "
         f"{100.0 * NOTABLE:g} % up to {', '.join(shown)}"
     ]
 

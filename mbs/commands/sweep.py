@@ -44,6 +44,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *heading(case.model),
             *([f"  case: {case.label}"] if len(cases) > 1 else []),
             *_course(entry),
+            *_films(case.model),
             *_bearings(entry),
             *_undamped(entry),
             *_complex(entry),
@@ -135,6 +136,16 @@ def _course(result: Sweep) -> list[str]:
     error = result.responses.error
     shown = f"; responses within {error.max():.1g} of direct solutions" if result.responses.values.size else ""
     return [f"  {result.speeds.size} speeds from {_first(result)} to {_last(result)}{between}{shown}"]
+
+
+def _films(model: Model) -> list[str]:
+    """A line on which numbers have films of which frequency, where films have memory."""
+    if model.memory != "memory":
+        return []
+    return [
+        "  k and c of bearings and undamped modes are those of slow motion; complex modes and responses have films of "
+        "their own frequency"
+    ]
 
 
 def _bearings(result: Sweep) -> list[str]:

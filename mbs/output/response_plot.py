@@ -56,7 +56,7 @@ def response_figure(model: Model, case: Curves, notes: Sequence[str] = ()) -> Fi
     model : Model
         Model with its sensors and inputs.
     case : Curves
-        Its responses; the range in which its films are notably wrong is shaded.
+        Responses of the case; the range in which its films are notably wrong is shaded.
     notes : sequence of str
         Lines below the panels, such as warnings.
     """

@@ -12,9 +12,7 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.maps.emap import EHDMap, open_map
-from ehdmaps.maps.law import ContactLaw
 from mbs.bearings.bearing_element import BearingElement
-from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.films import FilmSource
 from mbs.gears.gear import GearMesh
 from mbs.model.elements import Operation
@@ -62,13 +60,6 @@ class Model:
     films: Mapping[str, FilmSource]
     label: str
     memory: Films = "slow"
-
-    @property
-    def has_films(self) -> bool:
-        """Whether the law has films."""
-        return any(
-            isinstance(entry.force, BearingForce) and isinstance(entry.force.law, ContactLaw) for entry in self.bearings
-        )
 
     @property
     def operation(self) -> Operation:

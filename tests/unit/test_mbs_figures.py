@@ -158,13 +158,13 @@ class TestWords:
         more = -((s * 1e-3) ** 2) / (1.0 + s * 1e-3)
         assert entry.at(100.0) == pytest.approx(abs(more) / abs(1.0 + s * 1e-3 + more))
         (line,) = film_lines([entry], [50.0, 100.0])
-        assert line.startswith("warning: a: films of slow motion; estimated error of the dynamic stiffness along the ")
+        assert line.startswith("warning: a: slow films; estimated error of the dynamic stiffness along the ")
         assert (
             f"load at 100 Hz: {100.0 * entry.at(100.0):.2g} %, from {entry.frequency:.4g} Hz on more than 5 %" in line
         )
         assert line.endswith("; with --films memory films follow at their own frequency")
         (line,) = film_lines([entry], [1.0], " and 500 rpm")
-        assert line.startswith("a: films of slow motion; ") and "load at 1 Hz and 500 rpm: " in line
+        assert line.startswith("a: slow films; ") and "load at 1 Hz and 500 rpm: " in line
 
     def test_films_with_memory_have_an_error_too(self):
         entry = FilmError("a", "memory", False, 1.0, 1e-3, np.array([1.0, 0.0]), *[np.array([1e-3, 1.0])] * 2)
@@ -189,7 +189,7 @@ class TestWords:
 
     def test_a_course_names_both_ends(self, films):
         (line,) = film_course(films, (500.0 * RPM, 1000.0 * RPM))
-        assert line.startswith("films of slow motion: dynamic stiffness along the load with an estimated error of up ")
+        assert line.startswith("slow films: dynamic stiffness along the load with an estimated error of up ")
         assert "Hz at 500 rpm" in line and "Hz at 1000 rpm" in line
         assert film_course(films, (0.0,)) == []
 
