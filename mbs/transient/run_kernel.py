@@ -28,6 +28,7 @@ from numba import njit
 from numba.extending import overload
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.copies import put
 from ehdmaps.maps.lines import FAST
 from mbs.model.blocks import FOUND, NO_SOLUTION, Answers, Moment
 from mbs.transient.kinds import KINDS
@@ -233,9 +234,10 @@ def observe(state: State, records: Records, row: int) -> None:
         for j in range(motion.size):
             total += seen[j] * motion[j]
         records.outputs[row, i] = total
-    records.forces[row] = state.forces[0]
+    put(state.forces[0], records.forces[row])
     if records.motions.shape[0] > 0:
-        records.motions[row] = state.motion[:3]
+        for order in range(3):
+            put(state.motion[order], records.motions[row, order])
 
 
 @njit(cache=True, error_model="numpy")
@@ -283,7 +285,7 @@ def advance(
     for step in range(course.speeds.size):
         speed, angle = course.speeds[step], course.angles[step]
         by = speed - linear.reference
-        load[:] = course.steady
+        put(course.steady, load)
         for i in range(course.varying.shape[0]):
             factor = course.factors[step, i]
             for j in range(n):
@@ -300,12 +302,11 @@ def advance(
             for i in range(n):
                 right[i] -= by * free[i]
             _expanded_times(linear.inverse, by, right, free)
-            _expanded(linear.reach, by, reach)
-            _expanded(linear.receptance, by, receptance)
         else:
             _times(linear.inverse[0], right, free)
-            if linear.turning:
-                reach[:], receptance[:] = linear.reach[0], linear.receptance[0]
+        if linear.turning:
+            _expanded(linear.reach, by, reach)
+            _expanded(linear.receptance, by, receptance)
         for i in range(n):
             right[i] = p0[i] + by_q * free[i]
         _times(linear.ports, right, unmoved[0])
