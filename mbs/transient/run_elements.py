@@ -31,14 +31,14 @@ class RunElements:
     Attributes
     ----------
     blocks : tuple of Block
-        All kinds of this package without states, so that compiled code is the same for most systems, and others that
-        are needed.
+        The kinds that are needed; where all of them are of this package, also its others without states, so that
+        compiled code is the same for most systems.
     expand : array, shape (felt, ports)
         What elements feel of their ports, and, on the other side, forces in the ports by those that the elements make.
     outside : array of int, shape (elements,)
         How often each was evaluated outside its map so far.
     ours : bool
-        Whether all kinds are of this package.
+        Whether all kinds that are needed are of this package.
     has_states : bool
         Whether some elements have states of their own.
     """
@@ -61,13 +61,14 @@ class RunElements:
             members[kind].append(Member(entry.element, place, first))
             felt.append(kind.feels(entry.element))
             first += felt[-1].shape[0]
-        used = [kind for kind, found in members.items() if found or (is_ours(kind) and kind.accept is None)]
+        ours = all(is_ours(kind) for kind, found in members.items() if found)
+        used = [kind for kind, found in members.items() if found or (ours and is_ours(kind) and kind.accept is None)]
         expand = scipy.linalg.block_diag(*felt) if felt else np.zeros((0, 0))
         return cls(
             blocks=tuple(kind.gather(members[kind]) for kind in used),
             expand=np.asarray(expand, dtype=np.float64),
             outside=np.zeros(len(connected), dtype=np.int64),
-            ours=all(map(is_ours, used)),
+            ours=ours,
             has_states=any(found and kind.accept is not None for kind, found in members.items()),
         )
 
