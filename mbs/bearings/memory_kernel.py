@@ -15,6 +15,7 @@ import math
 from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.copies import put
 from ehdmaps.maps.lines import FAST
 from ehdmaps.maps.memory_table import (
     LIGHTEST,
@@ -234,4 +235,4 @@ def commit(table: MemoryTable, memory: FloatArray, load: FloatArray) -> None:
                 around[i] = math.inf
     for i in range(load.size):
         before[i], latest[i] = latest[i], trial[i]
-    memory[LOAD] = load
+    put(load, memory[LOAD])

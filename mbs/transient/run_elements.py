@@ -31,14 +31,14 @@ class RunElements:
     Attributes
     ----------
     blocks : tuple of Block
-        All kinds of this package without states, so that compiled code is the same for most systems, and others that
-        are needed.
+        The kinds that are needed; where all of them are of this package, also its others without states, so that
+        compiled code is the same for most systems.
     expand : array, shape (felt, ports)
         What elements feel of their ports, and, on the other side, forces in the ports by those that the elements make.
     outside : array of int, shape (elements,)
         How often each was evaluated outside its map so far.
     ours : bool
-        Whether all kinds are of this package.
+        Whether all kinds that are needed are of this package.
     stateful : tuple of (StatefulBlock, tuple of int)
         Blocks of elements with states of their own, each with the places of its members among all elements.
     """
@@ -61,14 +61,15 @@ class RunElements:
             members[kind].append(Member(entry.element, place, first))
             felt.append(kind.feels(entry.element))
             first += felt[-1].shape[0]
-        used = [kind for kind, found in members.items() if found or (is_ours(kind) and kind.accept is None)]
+        ours = all(is_ours(kind) for kind, found in members.items() if found)
+        used = [kind for kind, found in members.items() if found or (ours and is_ours(kind) and kind.accept is None)]
         expand = scipy.linalg.block_diag(*felt) if felt else np.zeros((0, 0))
         blocks = tuple(kind.gather(members[kind]) for kind in used)
         return cls(
             blocks=blocks,
             expand=np.asarray(expand, dtype=np.float64),
             outside=np.zeros(len(connected), dtype=np.int64),
-            ours=all(map(is_ours, used)),
+            ours=ours,
             stateful=tuple(
                 (cast(StatefulBlock, block), tuple(member.place for member in members[kind]))
                 for kind, block in zip(used, blocks, strict=True)

@@ -144,10 +144,10 @@ class Stepper:
             largest = max(largest, scale)
             if size <= self._settings.residual * largest:
                 break
-            try:
-                unknown = unknown - self._correction(by_q, by_v)
-            except np.linalg.LinAlgError:
+            change = self._correction(by_q, by_v)
+            if change is None:
                 return math.inf
+            unknown = unknown - change
         else:
             return math.inf
         error = method.error_weight(h) * float(np.max(np.abs(unknown - self.acceleration)))
@@ -183,15 +183,16 @@ class Stepper:
         )
         return sizes
 
-    def _correction(self, by_q: float, by_v: float) -> FloatArray:
-        """Newton's change of the acceleration at the end of the step, for the last residual."""
+    def _correction(self, by_q: float, by_v: float) -> FloatArray | None:
+        """Newton's change of the acceleration at the end of the step, for the last residual; None if there is none."""
         if self._linear_steps != (by_q, by_v):
             system = self._system
             self._linear = system.mass + by_v * self._damping + by_q * system.stiffness
             self._linear_steps = (by_q, by_v)
         ports = (self._transform, self._port_stiffness, self._port_damping)
-        change = np.asarray(correction(self._linear, *ports, by_q, by_v, self._unbalanced), dtype=np.float64)
-        return change
+        change = np.empty_like(self._unbalanced)
+        found: bool = correction(self._linear, *ports, by_q, by_v, self._unbalanced, change)
+        return change if found else None
 
     @property
     def forces(self) -> FloatArray:
