@@ -172,7 +172,7 @@ def _answer(bearings: MemoryBearings, b: int, moment: Moment, motion: FloatArray
         loads(table, step, memory, deltas, states[0], states[1])
     else:
         settle(table, deltas, memory, states[0], states[1])
-    numbers = LawNumbers(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, math.inf, math.inf, -math.inf, 1.0)
+    numbers = LawNumbers(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, math.inf, math.inf, -math.inf, 1.0)
     assemble(ring, shape, numbers, states.reshape(4, z, n), out)
     return 1 if np.max(states[0]) > bearings.films.mixed[film, HIGHEST] else 0
 
