@@ -160,10 +160,8 @@ class BearingElement(RingElement):
         return self.film_relaxation(displacement, operation) if self.films == "memory" else None
 
     def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
-        """See `RingElement.film_relaxation`; None with centrifugal load too."""
+        """See `RingElement.film_relaxation`; with centrifugal load the times are those without it, as an estimate."""
         if not isinstance(self.force, BearingForce) or not isinstance(self.force.law, ContactLaw):
-            return None
-        if self.centrifugal_load(operation) != 0.0:
             return None
         law = self.force.law.at(self.entrainment_speed(operation), self.temperature)
         return bearing_relaxation(law, self.rollers(displacement, operation), self.bearing.slice_length)

@@ -16,8 +16,7 @@ from ehdmaps.figures import COLOURS, typeset
 from ehdmaps.units import RPM
 from mbs.linearised.linear import response_unit
 from mbs.linearised.sweep_result import Sweep, UndampedSweep
-from mbs.linearised.validity import HIGHEST_RATIO
-from mbs.output.page import shade, shade_handle, whole_numbers
+from mbs.output.page import ESTIMATED, shade, shade_handle, whole_numbers
 
 _LEAST_SHARE = 0.05
 _MOST_MAPS = 4
@@ -26,9 +25,9 @@ _LEVELS_SHOWN = 50.0
 _NOTHING = 1e-4
 _DASHES = ("-", "--", "-.", ":")
 _LIMIT = (0.0, (5.0, 1.5, 1.0, 1.5))
-"""Dashes of the limit omega b/u = 0.3."""
+"""Dashes of the frequency from which on the films are notably wrong."""
 
-_ABOVE = f"omega b/u = {HIGHEST_RATIO}: films not valid above"
+_ABOVE = f"above the line: {ESTIMATED}"
 _BELOW = "below the map, film fades to dry"
 _LEAST_ROOM = 0.028
 """Between two numbers of modes, as a part of the axis."""
@@ -59,7 +58,7 @@ def sweep_figure(
     labels : sequence of str
         What each is.
     limits : sequence of array, shape (speeds,)
-        Frequency of each sweep at which omega b/u is 0.3 [Hz]; NaN for laws without films.
+        Frequency of each sweep from which on the films are notably wrong [Hz]; NaN for laws without films.
     below : float
         Speed below which the film fades to the dry contact: shaded [rad/s].
     """
