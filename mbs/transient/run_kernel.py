@@ -335,37 +335,5 @@ def advance(
     return course.speeds.size, DONE, error
 
 
-@njit(cache=True, error_model="numpy")
-def start(linear: Linear, blocks: tuple[Any, ...], moment: Moment, state: State, outside: IntArray) -> int:
-    """Tell elements with states of their own where a run begins: as a step that ends there.
-
-    Parameters
-    ----------
-    linear, blocks
-        What moves, as of `advance`, for the first steps.
-    moment : Moment
-        The beginning of the run.
-    state : State
-        State there.
-    outside : array (elements,), of int
-        Evaluations outside the map; scratch.
-
-    Returns
-    -------
-    int
-        `FOUND`, or what keeps elements from an answer.
-    """
-    m = linear.ports.shape[0]
-    motion, answers = np.empty((2, m)), Answers(np.zeros(m), np.zeros((m, m)), outside)
-    _times(linear.ports, state.motion[0], motion[0])
-    _times(linear.ports, state.motion[1], motion[1])
-    status: int = all_answer(blocks, moment, motion, answers)
-    if status == FOUND:
-        all_accept(blocks, moment)
-    return status
-
-
 advance_anew = njit(error_model="numpy")(advance.py_func)
-start_anew = njit(error_model="numpy")(start.py_func)
-"""`advance` and `start`, compiled anew in each process: for kinds of elements from elsewhere, see
-`mbs.transient.kinds`."""
+"""`advance`, compiled anew in each process: for kinds of elements from elsewhere, see `mbs.transient.kinds`."""

@@ -113,6 +113,11 @@ def test_films_with_memory_at_one_speed(here, capsys, formula_maps):
         check_units(data)
         assert "film_1" in data["state"].values
         assert data.attrs["law"].endswith("films with memory")
+    struck = ("--hits", "1", "--highest", "9 kHz", "--duration", "10 ms", "-o", "h.uff")
+    status, out, err = run(capsys, "hammer", "nu308_rigid", *films, *struck)
+    assert (status, err) == (0, "")
+    assert "films with memory; estimated error" in out
+    assert "slow films; estimated error" in run(capsys, "hammer", "nu308_rigid", *films[:3], "slow", *struck)[1]
     slow = run(capsys, "statics", "nu308_rigid", *films[:2], "--films", "slow")[1]
     memory = run(capsys, "statics", "nu308_rigid", *films)[1]
     kept = [line for line in slow.splitlines() if "films follow as in" not in line and ": law " not in line]
