@@ -32,6 +32,7 @@ from ehdmaps.physics.solution import (
     no_spectrum,
     slow_spectrum,
 )
+from ehdmaps.physics.traction import FilmProfile
 
 HEAVIEST_LOAD_NUMBER = 2e6
 """Moes' M above which the film is too thin for double precision to see it beside the elastic deflection."""
@@ -135,6 +136,30 @@ class ReynoldsSolver(ContactSolverDefaults):
         found = group_spectrum(M, L, groups, self.resolution, 2.0 * math.pi * frequencies * half / speed)
         unit = 4.0 / contact.reduced_modulus  # b/(p_H R)
         return FilmSpectrum(film, frequencies, unit * found.compliance, unit * found.errors)
+
+    def film_profile(
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint
+    ) -> tuple[FilmSolution, FilmProfile | None]:
+        """Solve one point, with pressure and film along it; None for these where there is no film or no solution.
+
+        Parameters
+        ----------
+        contact : LineContact
+            The contact.
+        lubricant : Lubricant
+            The oil.
+        point : OperatingPoint
+            Load, speed and temperature.
+        """
+        film, groups = self._solve(contact, lubricant.at(point.temperature), point, None)
+        profile = None if groups is None else groups.profile
+        if profile is None or not film.status.usable:
+            return film, None
+        half = float(half_width(point.load, contact.radius, contact.reduced_modulus))
+        peak = float(max_pressure(point.load, contact.radius, contact.reduced_modulus))
+        return film, FilmProfile(
+            half * profile.position, peak * profile.pressure, half**2 / contact.radius * profile.film
+        )
 
     def _solve(
         self, contact: LineContact, state: LubricantState, point: OperatingPoint, previous: Profile | None
