@@ -132,7 +132,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         load, speed = point.load, point.entrainment_speed
         _, M, L = line_problem(contact, state, load, speed)
         half = float(half_width(load, contact.radius, contact.reduced_modulus))
-        found = group_spectrum(M, L, groups, self.resolution, 2.0 * math.pi * frequencies * half / speed)
+        found = group_spectrum(M, L, groups, 2.0 * math.pi * frequencies * half / speed)
         unit = 4.0 / contact.reduced_modulus  # b/(p_H R)
         return FilmSpectrum(film, frequencies, unit * found.compliance, unit * found.errors)
 

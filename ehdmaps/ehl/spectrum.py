@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.ehl.linearisation import Linearisation
+from ehdmaps.ehl.linearisation import Arrays, Linearisation, solved, storage
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 
 SMALL_RESIDUAL = 1e-13
@@ -21,6 +21,8 @@ SMALL_RESIDUAL = 1e-13
 
 CHECK_EVERY = 3
 """Vectors that are added between two looks at the residual."""
+
+_TINY = float(np.finfo(float).tiny)
 
 
 def film_compliances(linear: Linearisation, frequencies: FloatArray) -> ComplexArray:
@@ -38,10 +40,17 @@ def film_compliances(linear: Linearisation, frequencies: FloatArray) -> ComplexA
     ndarray, shape (k,)
         Film compliances in units of b/(p_H R).
     """
-    static = linear.solve(linear.unit)
-    norm = float(np.linalg.norm(static))
-    fastest = float(np.max(frequencies))
-    size = linear.size
+    moved = _moved(linear.arrays, linear.unit, linear.height, np.ascontiguousarray(frequencies, dtype=float))
+    return np.asarray(-moved - DRY_COMPLIANCE)
+
+
+@njit(cache=True)
+def _moved(linear: Arrays, unit: FloatArray, height: int, frequencies: FloatArray) -> ComplexArray:
+    """Motion of the unknown `height` for a unit load, at each frequency."""
+    static = solved(linear, unit)
+    norm = np.linalg.norm(static)
+    fastest = np.max(frequencies)
+    size = unit.size
     basis = np.empty((size + 1, size))
     hessenberg = np.zeros((size + 1, size))
     basis[0] = static / norm
@@ -51,29 +60,29 @@ def film_compliances(linear: Linearisation, frequencies: FloatArray) -> ComplexA
         count += 1
         if count % CHECK_EVERY == 0 and _residual(hessenberg, count, fastest) < SMALL_RESIDUAL:
             break
-        if hessenberg[count, count - 1] < np.finfo(float).tiny:
+        if hessenberg[count, count - 1] < _TINY:
             break
-    heights = np.ascontiguousarray(basis[:count, linear.height])
-    moved = norm * _projected(hessenberg, count, heights, np.ascontiguousarray(frequencies, dtype=float))
-    return np.asarray(-moved - DRY_COMPLIANCE)
+    return norm * _projected(hessenberg, count, basis[:count, height].copy(), frequencies)
 
 
-def _extend(linear: Linearisation, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
+@njit(cache=True)
+def _extend(linear: Arrays, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
     """Add T times the last vector to the basis, orthogonal to all before it; twice, for round-off."""
-    found = linear.solve(linear.storage(basis[count]))
+    found = solved(linear, storage(linear, basis[count]))
     for _ in range(2):
         along = basis[: count + 1] @ found
         hessenberg[: count + 1, count] += along
         found -= along @ basis[: count + 1]
-    length = float(np.linalg.norm(found))
+    length = np.linalg.norm(found)
     hessenberg[count + 1, count] = length
-    basis[count + 1] = found / max(length, np.finfo(float).tiny)
+    basis[count + 1] = found / max(length, _TINY)
 
 
+@njit(cache=True)
 def _residual(hessenberg: FloatArray, count: int, frequency: float) -> float:
     """What the space leaves of the equations at a frequency, relative to the static response."""
     last = abs(_reduced(hessenberg, count, frequency)[count - 1])
-    return float(frequency * hessenberg[count, count - 1] * last)
+    return frequency * hessenberg[count, count - 1] * last
 
 
 @njit(cache=True)

@@ -298,7 +298,7 @@ def test_estimate_says_where_a_wave_is_not_resolved() -> None:
     M, L = 20.0, 15.0
     solution = solved(M, L)
     omega = np.array([1.0, 20.0, 30.0])
-    found = group_spectrum(M, L, solution, Resolution(), omega)
+    found = group_spectrum(M, L, solution, omega)
     fine = Resolution(density=40.0)
     exact = _responses(solve_groups(roelands_problem(M, L), M, L, fine), omega, fine)
     wrong = np.abs(found.compliance - exact) / np.abs(exact)
