@@ -85,8 +85,8 @@ class GroupSolution:
     """Film of one point in units of b, p_H, b^2/R and b/u, with estimated relative errors.
 
     Those of film offset, film compliance and loss are positive where the value is too large, the others always.
-    `profile` is the fine solution and `rough` the coarse one, `linear` and `rough_linear` the equations about them; None
-    where there is none.
+    `profile` is the fine solution and `rough` the coarse one, `linear` and `rough_linear` the equations about them;
+    None where there is none.
     """
 
     outcome: int

@@ -73,7 +73,7 @@ def _extend(linear: Arrays, basis: FloatArray, hessenberg: FloatArray, count: in
         along = basis[: count + 1] @ found
         hessenberg[: count + 1, count] += along
         found -= along @ basis[: count + 1]
-    length = np.linalg.norm(found)
+    length = float(np.linalg.norm(found))
     hessenberg[count + 1, count] = length
     basis[count + 1] = found / max(length, _TINY)
 
@@ -82,7 +82,7 @@ def _extend(linear: Arrays, basis: FloatArray, hessenberg: FloatArray, count: in
 def _residual(hessenberg: FloatArray, count: int, frequency: float) -> float:
     """What the space leaves of the equations at a frequency, relative to the static response."""
     last = abs(_reduced(hessenberg, count, frequency)[count - 1])
-    return frequency * hessenberg[count, count - 1] * last
+    return float(frequency * hessenberg[count, count - 1] * last)
 
 
 @njit(cache=True)
