@@ -22,7 +22,8 @@ LOCKED, LOCKED_BY_LOAD = 0.02, 0.087
 """Compliance that locked oil takes off a contact, in 4/E' for each ln(1 + 2 h R/b^2): the first number, and the second
 one times -d(ln h)/d(ln w), which is 1 for a rigid film of constant viscosity, and falls where its inlet is
 piezoviscous or it is elastic. Fitted with FVA 3: the complex stiffness is right within 7 % up to ten natural
-frequencies, and with other oils within 6 % up to L = 40 and 9 % above."""
+frequencies, and with other oils within 6 % up to L = 40 and 9 % above. A factor from the map makes
+that 5 % and 7 %."""
 
 LONGEST = 1.4
 """Longest relaxation time c/(k_s - k) in natural times sqrt(b^2 + 2 h R)/u. Fitted likewise."""

@@ -24,7 +24,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import load_and_speed, moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
-from ehdmaps.physics.solution import contact_solution
+from ehdmaps.physics.solution import ContactSolverDefaults, contact_solution
 from ehdmaps.physics.spectrum import contact_spectrum
 from tests.cases.ehl import isoviscous_problem, roelands_problem, solved
 from tests.cases.laws import CONTACTS, OIL
@@ -341,3 +341,19 @@ def test_film_in_time_says_where_it_ends() -> None:
     motion = follow(solution.profile, LOAD * np.array([1.0, 0.05, 0.05]), 0.01)
     assert np.isfinite(motion.height[1])
     assert np.isnan(motion.height[-1])
+
+
+def test_line_over_natural_frequencies_is_the_spectrum_of_each_of_its_points() -> None:
+    """One solution for all of it, beside a solve of each point anew, which has the same grids but another start."""
+    solver = ReynoldsSolver()
+    line = (CONTACTS[0], OIL, (3e4, 1e5, 3e5), 1.7, 313.15)
+    found = solver.line_spectra(*line)
+    assert [spectrum.film.film_offset for spectrum in found] == [film.film_offset for film in solver.solve_line(*line)]
+    again = ContactSolverDefaults.line_spectra(solver, *line)
+    for load, spectrum, anew in zip(line[2], found, again, strict=True):
+        half = float(half_width(load, CONTACTS[0].radius, CONTACTS[0].reduced_modulus))
+        time = math.sqrt(half**2 + 2.0 * spectrum.film.film_offset * CONTACTS[0].radius) / 1.7
+        assert 2.0 * math.pi * spectrum.frequencies * time == pytest.approx(solver.natural_frequencies, rel=1e-12)
+        # Newton's tolerance, and where the spike stands: far below the error of the grid.
+        bound = np.maximum(0.1 * spectrum.largest_error, 1e-4) * np.abs(spectrum.compliance)
+        assert np.all(np.abs(spectrum.compliance - anew.compliance) < bound)
