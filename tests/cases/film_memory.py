@@ -7,7 +7,7 @@ this approach and are to give the load back.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -28,12 +28,11 @@ from ehdmaps.maps.law import LawAtPoint
 from ehdmaps.maps.locked_film import film_of, locked_stiffness
 from ehdmaps.maps.locked_fit import fitted_factor, response_error
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.hertz import half_width
+from ehdmaps.physics.hertz import half_width, natural_time
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, valley_load_number
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
-from ehdmaps.physics.solution import natural_to_hertz
 from ehdmaps.physics.spectrum import contact_spectrum
 
 CONTACT = LineContact("line", 5.515e-3, STEEL, "iso16281", roller_length=15e-3)
@@ -56,6 +55,9 @@ FINER = 4
 
 NATURAL = np.geomspace(0.01, 10.0, 25)
 """omega T at which complex stiffnesses are compared."""
+
+PLACES = np.array([0.1, 0.3, 1.0, 3.0, 10.0, 30.0])
+"""omega T at which errors are told one by one."""
 
 REST = (0.4, 0.7, 1.5, 2.0)
 """Loads at which the curves at rest are compared, over that of the start."""
@@ -337,6 +339,8 @@ class Response:
         frequencies makes it, and with the closed formula of the locked film.
     worst : float
         omega T at which the law with memory is worst.
+    at_places : tuple of float
+        Errors of the law with memory at `PLACES`.
     stated : float
         Largest error that the solver states.
     """
@@ -348,6 +352,7 @@ class Response:
     slow: float
     dry: float
     worst: float
+    at_places: tuple[float, ...]
     stated: float
 
 
@@ -370,20 +375,20 @@ def response(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> Res
     half = float(half_width(load, contact.radius, contact.reduced_modulus))
     if not film.status.usable:
         raise NoSolutionError(f"none at {load:.6g} N/m, {speed:.6g} m/s, {point.temperature:.6g} K")
-    natural = np.array(solver.natural_frequencies)
-    frequencies = natural_to_hertz((*NATURAL, *natural), film, contact, point)
-    found = solver.film_spectrum(contact, oil, point, frequencies)
-    omega = 2.0 * math.pi * frequencies[: NATURAL.size]
-    whole = contact_spectrum(found, contact, point)
-    spectrum = replace(whole, dynamic_stiffness=whole.dynamic_stiffness[: NATURAL.size])
-    exact, k = spectrum.dynamic_stiffness, spectrum.solution.stiffness
+    natural = natural_time(load, film.film_offset, speed, contact.radius, contact.reduced_modulus)
+    omega, held = NATURAL / natural, np.array(solver.natural_frequencies)
+    asked = np.concatenate([NATURAL, PLACES, held]) / (2.0 * math.pi * natural)
+    found = solver.film_spectrum(contact, oil, point, asked)
+    spectrum = contact_spectrum(found, contact, point)
+    exact, k = spectrum.dynamic_stiffness[: omega.size], spectrum.solution.stiffness
+    beyond = spectrum.dynamic_stiffness[omega.size : -held.size]
     loss = lifted_loss(np.array(spectrum.solution.damping / k**2), np.array(half), speed, np.array(1.0 / k))
     c = float(loss) * k**2
     solids = float(contact.structural_compliance(load))
-    kept, locked = found.compliance[NATURAL.size :], film_of((contact,), speed)
-    error = response_error(np.array([solids]), kept[None], found.largest_error[None, NATURAL.size :])
+    kept, locked = found.compliance[-held.size :], film_of((contact,), speed)
+    error = response_error(np.array([solids]), kept[None], found.largest_error[None, -held.size :])
     factor = fitted_factor(
-        locked, load, film.film_offset, solids, film.film_compliance, float(loss), natural, kept, float(error[0])
+        locked, load, film.film_offset, solids, film.film_compliance, float(loss), held, kept, float(error[0])
     )
     stiff, by_formula = (locked_stiffness(locked, film.film_offset, load, k, c, solids, each) for each in (factor, 1.0))
     wrong = np.abs(relaxing(k, c, stiff, omega) / exact - 1.0)
@@ -398,7 +403,8 @@ def response(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> Res
         float(np.max(np.abs((k + 1j * omega * c) / exact - 1.0))),
         float(np.max(np.abs(1.0 / (solids * exact) - 1.0))),
         float(NATURAL[np.argmax(wrong)]),
-        float(np.max(whole.dynamic_stiffness_error)),
+        tuple(np.abs(relaxing(k, c, stiff, PLACES / natural) / beyond - 1.0).tolist()),
+        float(np.max(spectrum.dynamic_stiffness_error[: omega.size])),
     )
 
 

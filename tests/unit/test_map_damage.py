@@ -177,7 +177,7 @@ DAMAGES = {
     "soft link to itself": (of_hdf5(lambda f: f.__setitem__("self", h5py.SoftLink("/self"))), ANY),
     "cut to nothing": (cut(0.0), "cannot be read"),
     "cut in the middle": (cut(0.5), "cannot be read"),
-    "bytes overwritten": (overwritten(0.5, 2000), ANY),
+    "bytes overwritten": (overwritten(0.3, 2000), ANY),
     "negative load": (set_value("load", 0, -1e4), "coordinate load holds -10000 N m-1; allowed: 1e-06 to"),
     "load of zero": (set_value("load", 0, 0.0), "coordinate load holds 0 N m-1"),
     "load NaN": (set_value("load", 1, np.nan), "coordinate load is empty or holds values that are not finite"),
