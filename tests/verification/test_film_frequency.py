@@ -359,6 +359,6 @@ def test_line_over_natural_frequencies_is_the_spectrum_of_each_of_its_points() -
         half = float(half_width(load, CONTACTS[0].radius, CONTACTS[0].reduced_modulus))
         time = math.sqrt(half**2 + 2.0 * spectrum.film.film_offset * CONTACTS[0].radius) / 1.7
         assert 2.0 * math.pi * spectrum.frequencies * time == pytest.approx(solver.natural_frequencies, rel=1e-12)
-        # Newton's tolerance, and where the spike stands: far below the error of the grid.
-        bound = np.maximum(0.1 * spectrum.largest_error, 1e-4) * np.abs(spectrum.compliance)
+        # Another start lays another grid about the spike: the difference is within the error that is stated.
+        bound = np.maximum(spectrum.largest_error, 1e-4) * np.abs(spectrum.compliance)
         assert np.all(np.abs(spectrum.compliance - anew.compliance) < bound)
