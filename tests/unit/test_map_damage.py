@@ -310,6 +310,10 @@ DAMAGES = {
 }
 
 
+DRAWN_ALIKE = ("group: film negative", "group: not needed", "group: two failed")
+"""Maps that open and whose law is refused as for "group: film NaN": the picture of the grid is the same."""
+
+
 def used(path):
     """Open a map and take from it what a multibody model needs."""
     emap = open_map(path)
@@ -330,7 +334,8 @@ def test_a_damaged_map_is_told_in_words(unsealed, tmp_path, capsys, name):
     else:
         used(path)
     figure, table = str(tmp_path / "a.png"), str(path)
-    for command in (["show", table], ["plot", table, "-o", figure], ["compare", table, str(unsealed)]):
+    pictures = [] if name in DRAWN_ALIKE else [["plot", table, "-o", figure]]
+    for command in (["show", table], *pictures, ["compare", table, str(unsealed)]):
         status = main(command)
         told = capsys.readouterr()
         assert status in (0, 2)
