@@ -196,10 +196,10 @@ def levels(record: Recording) -> np.ndarray:
     found = RunSignal(record.time, record.speed, record.angle, record.signals[:, 0])
     found = found.part(round(FORGOTTEN * found.rate), found.time.size)
     spectra = short_time_spectra(found, WINDOW, BANDS[0])
-    rows = []
+    line, rows = float(spectra.frequencies[1] - spectra.frequencies[0]), []
     for low, high in BANDS:
         inside = (spectra.frequencies >= low) & (spectra.frequencies < high)
-        rows.append(level(spectra.power[:, inside].sum(axis=1), 1e-6))
+        rows.append(level(spectra.power[:, inside].sum(axis=1) * line / spectra.noise_bandwidth, 1e-6))
     return np.array(rows)
 
 
@@ -218,14 +218,14 @@ def run_table(base: Scene, emap: EHDMap, duration: float) -> None:
         cells = "".join(f"{f'{np.median(row):+.2f} {row.min():+.2f} {row.max():+.2f}':>24}" for row in found - plain)
         print(f"{rollers.name:14}{1e6 * step:10.1f}{record.iterations / record.steps:8.2f}{cells}", flush=True)
     assert plain is not None
-    print(f"highest sum level with massless rollers {plain[0].max():.1f} dB less a constant of the window")
+    print(f"highest sum level with massless rollers: {plain[0].max():.1f} dB")
 
 
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description="Rollers as bodies beside massless rollers in the gearbox.")
     parser.add_argument("map", help="Reynolds map of the NU308, by `ehdmaps generate nu308`")
-    parser.add_argument("--run-up", action="store_true", help="the ramp in time; four minutes a second of it")
+    parser.add_argument("--run-up", action="store_true", help="the ramp in time, a minute a second")
     parser.add_argument("--duration", type=float, default=5.0, help="of the ramp, from its beginning [s]")
     given = parser.parse_args()
     base, emap = read_scene("gearbox"), ehdmaps.open_map(given.map)
