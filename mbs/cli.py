@@ -38,14 +38,16 @@ def parser() -> argparse.ArgumentParser:
         command = _scene_command(commands, name, words, compares=False)
         if name == "modes":
             _modes(command)
-        _films(command, compares=False)
+        _films(command, compares=name == "lsa")
     sweep = _scene_command(commands, "sweep", "modes, bearings and frequency responses over speed", compares=True)
     _films(sweep, compares=True)
     _sweep(sweep)
     campbell = _scene_command(commands, "campbell", "run-up in time as levels over speed and frequency", compares=True)
     _films(campbell, compares=True)
     _campbell(campbell)
-    _hammer(_scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=False))
+    hammer = _scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=False)
+    _films(hammer, compares=False)
+    _hammer(hammer)
     _modal_fit(commands)
     _bearing(commands)
     _plan(commands)
@@ -96,7 +98,7 @@ def _campbell(command: argparse.ArgumentParser) -> None:
     command.add_argument("--sensor", metavar="NAME", help="a sensor; default: the first of an acceleration")
     command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
     command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
-    command.add_argument("--modes", action="store_true", help="draw in the modes of the linear system")
+    command.add_argument("--modes", action="store_true", help="draw in the linear modes, with the films of each run")
 
 
 def _load_and_angle(command: argparse.ArgumentParser) -> None:

@@ -9,6 +9,8 @@ high that they do not, the space grows to that of all unknowns, which is exact.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numba import njit
 
@@ -38,9 +40,53 @@ def film_compliances(linear: Linearisation, frequencies: FloatArray) -> ComplexA
     ndarray, shape (k,)
         Film compliances in units of b/(p_H R).
     """
+    space = film_space(linear, float(np.max(frequencies)))
+    return space.compliances(np.ascontiguousarray(frequencies, dtype=float))
+
+
+@dataclass(frozen=True, eq=False)
+class FilmSpace:
+    """The Krylov space of a film, projected: what gives its compliance at any frequency, real or complex.
+
+    Attributes
+    ----------
+    norm : float
+        Length of the static response.
+    hessenberg : ndarray, shape (n, n)
+        T in the space.
+    heights : ndarray, shape (n,)
+        H0 of its vectors.
+    """
+
+    norm: float
+    hessenberg: FloatArray
+    heights: FloatArray
+
+    def compliances(self, frequencies: FloatArray | ComplexArray) -> ComplexArray:
+        """Film compliances S in units of b/(p_H R) at Omega = omega b/u, shape (k,).
+
+        Parameters
+        ----------
+        frequencies : ndarray, shape (k,)
+            Frequencies Omega; complex for a motion e^(lambda t), -i lambda b/u. With a size up to that of which the
+            space was made.
+        """
+        moved = self.norm * _projected(self.hessenberg, self.heights.size, self.heights, frequencies)
+        return np.asarray(-moved - DRY_COMPLIANCE)
+
+
+def film_space(linear: Linearisation, fastest: float) -> FilmSpace:
+    """Return the Krylov space that serves all frequencies up to a highest one.
+
+    Parameters
+    ----------
+    linear : Linearisation
+        The equations about a steady solution.
+    fastest : float
+        Highest Omega = omega b/u.
+    """
     static = linear.solve(linear.unit)
     norm = float(np.linalg.norm(static))
-    fastest = float(np.max(frequencies))
     size = linear.size
     basis = np.empty((size + 1, size))
     hessenberg = np.zeros((size + 1, size))
@@ -54,8 +100,7 @@ def film_compliances(linear: Linearisation, frequencies: FloatArray) -> ComplexA
         if hessenberg[count, count - 1] < np.finfo(float).tiny:
             break
     heights = np.ascontiguousarray(basis[:count, linear.height])
-    moved = norm * _projected(hessenberg, count, heights, np.ascontiguousarray(frequencies, dtype=float))
-    return np.asarray(-moved - DRY_COMPLIANCE)
+    return FilmSpace(norm, np.ascontiguousarray(hessenberg[:count, :count]), heights)
 
 
 def _extend(linear: Linearisation, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
@@ -77,7 +122,9 @@ def _residual(hessenberg: FloatArray, count: int, frequency: float) -> float:
 
 
 @njit(cache=True)
-def _projected(hessenberg: FloatArray, count: int, heights: FloatArray, frequencies: FloatArray) -> ComplexArray:
+def _projected(
+    hessenberg: FloatArray, count: int, heights: FloatArray, frequencies: FloatArray | ComplexArray
+) -> ComplexArray:
     """H0 of the reduced equations at each frequency, for a start of length one."""
     found = np.empty(frequencies.size, dtype=np.complex128)
     for i in range(frequencies.size):
@@ -90,7 +137,7 @@ def _projected(hessenberg: FloatArray, count: int, heights: FloatArray, frequenc
 
 
 @njit(cache=True)
-def _reduced(hessenberg: FloatArray, count: int, frequency: float) -> ComplexArray:
+def _reduced(hessenberg: FloatArray, count: int, frequency: complex) -> ComplexArray:
     """Solve (I + i Omega H) y = e_1 by elimination: a Hessenberg matrix has one entry a column to eliminate."""
     matrix = 1j * frequency * hessenberg[:count, :count]
     right = np.zeros(count, dtype=np.complex128)

@@ -18,7 +18,7 @@ coverage       whether a map covers what is needed
 case           the models that an analysis compares, with their labels
 progress       how an analysis tells how far it is
 reach          where the films of a law begin, and calls outside its map
-film_limits    up to which frequency the films follow
+film_errors    how wrong the films are estimated to be over frequency
 =============  ====================================================================================
 
 Nothing is imported here: take the functions from `mbs`, or from their modules.

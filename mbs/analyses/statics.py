@@ -8,7 +8,7 @@ import xarray as xr
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.solids import STEEL
-from mbs.analyses.film_limits import ring_motions
+from mbs.analyses.film_errors import ring_motions
 from mbs.bearings.contact_report import BearingContacts, bearing_contacts, overload
 from mbs.bearings.films import DryContacts
 from mbs.model.elements import Operation

@@ -13,11 +13,12 @@ import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.maps.memory import FilmState
 from ehdmaps.maps.memory_table import step_of
 from mbs.bearings.bearing_kernel import Sizes, sizes_of
 from mbs.bearings.memory_block import ACCEPTED, LAST, STEPS, TRIAL
-from mbs.bearings.memory_kernel import KEPT, MEMORY, begin, commit, loads, settle
-from mbs.bearings.memory_rollers import MemoryRollers
+from mbs.bearings.memory_kernel import CHANGE, KEPT, LATEST, LOAD, MEMORY, begin, commit, loads, resume
+from mbs.bearings.memory_rollers import ContactStates, MemoryRollers
 from mbs.bearings.memory_tables import HIGHEST, MemoryFilms, MemoryTables, mix, room, table_in_use
 from mbs.bearings.rings import Course, CourseOfFilms, course_of, shared
 from mbs.bearings.roller_places import (
@@ -84,8 +85,6 @@ def _begin(bearings: MemoryRollerBearings, moment: Moment) -> None:
     for film in range(films.in_use.shape[0]):
         if films.in_use[film, 0] < 0.0 or steps % KEPT == 0:
             mix(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
-    if math.isnan(clock[ACCEPTED]):
-        return
     growth = (moment.time - clock[ACCEPTED]) / clock[LAST] if clock[LAST] > 0.0 else 0.0
     for b in range(bearings.strict.size):
         for side in range(2):
@@ -123,11 +122,8 @@ def _answer(
         table = table_in_use(films, rollers.films_of[b, side])
         memory = _memory_of(bearings, b, side)
         answered = bearings.answered[b, side][: 2 * z * n].reshape(2, z * n)
-        if math.isnan(clock[ACCEPTED]):
-            settle(table, deltas, memory, answered[0], answered[1])
-        else:
-            step = step_of(moment.time - clock[ACCEPTED], clock[LAST])
-            loads(table, step, memory, deltas, answered[0], answered[1])
+        step = step_of(moment.time - clock[ACCEPTED], clock[LAST])
+        loads(table, step, memory, deltas, answered[0], answered[1])
         highest = 0.0
         for j in range(z):
             w, dw = answered[0, j * n : (j + 1) * n], answered[1, j * n : (j + 1) * n]
@@ -190,14 +186,12 @@ def memory_rollers_accept(bearings: MemoryRollerBearings, moment: Moment) -> Non
         The step that was answered last.
     """
     clock, rollers = bearings.clock, bearings.rollers
-    started = not math.isnan(clock[ACCEPTED])
-    if started:
-        for b in range(bearings.strict.size):
-            size = rollers.rings.rollers[b] * rollers.rings.slices[b]
-            for side in range(2):
-                table = table_in_use(bearings.films, rollers.films_of[b, side])
-                commit(table, _memory_of(bearings, b, side), bearings.answered[b, side][:size])
-    clock[LAST] = moment.time - clock[ACCEPTED] if started else 0.0
+    for b in range(bearings.strict.size):
+        size = rollers.rings.rollers[b] * rollers.rings.slices[b]
+        for side in range(2):
+            table = table_in_use(bearings.films, rollers.films_of[b, side])
+            commit(table, _memory_of(bearings, b, side), bearings.answered[b, side][:size])
+    clock[LAST] = moment.time - clock[ACCEPTED]
     clock[ACCEPTED] = moment.time
     clock[STEPS] += 1.0
 
@@ -248,6 +242,36 @@ class MemoryRollerBlock:
         course, sound = self._course.prepare(first, last)
         self._arrays.films.in_use[:] = -1.0
         return self._arrays._replace(course=course), sound
+
+    def states(self) -> list[ContactStates]:
+        """Films of both contacts of each bearing after the last step that was made."""
+        last, time = float(self._arrays.clock[LAST]), float(self._arrays.clock[ACCEPTED])
+        found = []
+        for b in range(self._arrays.strict.size):
+            inner, outer = (self._films(b, side, last) for side in range(2))
+            found.append(ContactStates((inner, outer), time))
+        return found
+
+    def resume(self, states: Sequence[ContactStates]) -> None:
+        """Go on from the films that each bearing has in Python.
+
+        Parameters
+        ----------
+        states : sequence of ContactStates
+            One a bearing, all after the same step.
+        """
+        for b, (both, time) in enumerate(states):
+            for side, films in enumerate(both):
+                rows = _memory_of.py_func(self._arrays, b, side)
+                resume(films.approach.reshape(-1), films.change.reshape(-1), films.load.reshape(-1), rows)
+                self._arrays.clock[: TRIAL + 1] = time, films.step, math.nan
+
+    def _films(self, b: int, side: int, last: float) -> FilmState:
+        """Films of one side of a bearing, which have made a step of a length last."""
+        rings, rows = self._arrays.rollers.rings, _memory_of.py_func(self._arrays, b, side)
+        shape = int(rings.rollers[b]), int(rings.slices[b])
+        approach, change, load = (rows[row].reshape(shape).copy() for row in (LATEST, CHANGE, LOAD))
+        return FilmState(approach, change, load, last)
 
 
 MEMORY_ROLLERS = Kind(

@@ -73,9 +73,9 @@ class Contact(NamedTuple):
     Attributes
     ----------
     load, moment : float
-        Of the loads [N], and of the loads times the places of the slices [N m].
+        Sum of the loads [N], and of the loads times the places of the slices [N m].
     flat, mixed, tilted : float
-        Of the slopes by_q k + by_v c, and of these times the places, once and twice.
+        Sum of the slopes by_q k + by_v c, and of these times the places, once and twice.
     """
 
     load: float
@@ -156,7 +156,7 @@ def add_contact(rollers: Rollers, b: int, j: int, side: int, place: Place, conta
     b, j, side : int
         Which bearing, which of its rollers, and which contact.
     place : Place
-        Where the roller stands.
+        Place of the roller.
     contact : Contact
         Sums over the slices.
     answers : Answers

@@ -20,10 +20,10 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
 from ehdmaps.units import closest, quantity
 from mbs.analyses.case import Case, common_clearance
-from mbs.model.relaxation import Films
+from mbs.model.relaxation import DEFAULT_FILMS, Films
 from mbs.output.results import RESULT
 from mbs.scene.assembly import Model, assemble
-from mbs.scene.contact_laws import MEMORY_WORDS, law_label
+from mbs.scene.contact_laws import FILM_WORDS, law_label
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
@@ -62,7 +62,9 @@ def load_model(arguments: argparse.Namespace, kind: Kind = RESULT) -> Model:
     return load_cases(arguments, several=False, kind=kind)[0].model
 
 
-def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind = RESULT) -> list[Case]:
+def load_cases(
+    arguments: argparse.Namespace, several: bool = True, kind: Kind = RESULT, *, several_films: bool = False
+) -> list[Case]:
     """Read scene, laws, maps, clearances and load factors into models; all problems at once.
 
     Parameters
@@ -74,6 +76,8 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
         Whether laws and maps stand side by side; else a law goes before a map.
     kind : Kind
         Kind of file that -o writes.
+    several_films : bool
+        Whether kinds of films stand side by side where laws and maps do not.
 
     Raises
     ------
@@ -92,7 +96,7 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
         problems += [
             f"--{option}: got {len(given)} of them; allowed: one; `mbs sweep` and `mbs campbell` compare more"
             for option in ("law", "map", "clearance", "films")
-            if len(given := _given(arguments, option)) > 1
+            if len(given := _given(arguments, option)) > 1 and not (option == "films" and several_films)
         ]
         laws = laws[:1] if _given(arguments, "law") else laws
     if hasattr(arguments, "films"):
@@ -221,9 +225,9 @@ def _filmed(law: _Law, films: str, compared: bool) -> _Law:
     """A law with its films."""
     if films == "dry":
         return _Law(law_label("hertz"), "hertz")
-    words = MEMORY_WORDS if films == "memory" else "slow films"
-    label = f"{law.label}, {words}" if compared or films == "memory" else law.label
-    return dataclasses.replace(law, label=label, films="memory" if films == "memory" else "slow")
+    kind: Films = "memory" if films == "memory" else "slow"
+    label = f"{law.label}, {FILM_WORDS[kind]}" if compared or kind != DEFAULT_FILMS else law.label
+    return dataclasses.replace(law, label=label, films=kind)
 
 
 def read_clearance(text: str, problems: list[str]) -> float | None:

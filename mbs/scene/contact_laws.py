@@ -20,8 +20,8 @@ from mbs.bearings.laws import DryLaw, Law
 from mbs.model.relaxation import DEFAULT_FILMS, Films
 from mbs.scene.scene import Scene
 
-MEMORY_WORDS = "films with memory"
-"""How people are told that films relax in linear analyses."""
+FILM_WORDS: dict[Films, str] = {"memory": "films with memory", "slow": "slow films"}
+"""How people are told that films relax, or that they have stiffness and damping of slow motion at any frequency."""
 
 _SAME = 1e-9
 _COMPARED = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
@@ -103,7 +103,7 @@ class ContactLaws:
 
     def _memory_problems(self) -> list[str]:
         """Why films cannot relax."""
-        if self.chosen not in ("map", "formula"):
+        if not self._has_films:
             got = f"--films: got 'memory' with the law {self.chosen!r:.60}"
             return [f"{got}; allowed: the laws map and formula, which have films"]
         bearings = self.scene.bearings
@@ -138,18 +138,23 @@ class ContactLaws:
 
     @property
     def label(self) -> str:
-        """The law in two words, as the legend of a figure has it."""
-        return law_label(self.chosen, self.emap) + self._memory_words
+        """The law in a few words, as the legend of a figure has it; of its films only what is not the default."""
+        return law_label(self.chosen, self.emap) + (self._film_words if self.memory != DEFAULT_FILMS else "")
 
     @property
     def words(self) -> str:
         """The law, for people."""
-        return self._law_words + self._memory_words
+        return self._law_words + self._film_words
 
     @property
-    def _memory_words(self) -> str:
-        """What of the films is to be told."""
-        return f", {MEMORY_WORDS}" if self.memory == "memory" else ""
+    def _film_words(self) -> str:
+        """Which films the law has, where it has films."""
+        return f", {FILM_WORDS[self.memory]}" if self._has_films else ""
+
+    @property
+    def _has_films(self) -> bool:
+        """Whether the law has films."""
+        return self.chosen in ("map", "formula")
 
     @property
     def _law_words(self) -> str:

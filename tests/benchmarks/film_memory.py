@@ -31,6 +31,7 @@ from tests.cases.film_memory import (
     COURSES,
     FVA3,
     LARGE_COURSES,
+    PLACES,
     THICK,
     THIN,
     Errors,
@@ -77,9 +78,10 @@ def over_frequency(count: int) -> None:
     """Print the table of complex stiffness, and its worst points."""
     print("complex stiffness up to omega T = 10, largest error of a contact [%]: median, largest of all contacts")
     print(f"{'oil':<10s}{'contacts':>9s}{'memory':>14s}{'above 5 %':>11s}{'slow':>14s}{'dry':>16s}{'solver':>9s}")
-    worst = []
+    worst, every = [], []
     for name, oil in OILS.items():
         found = responses(oil, count)
+        every += found
         cells = ""
         for law, width, digits in (("memory", 14, "1f"), ("slow", 14, "1f"), ("dry", 16, "3g")):
             values = [100.0 * getattr(each, law) for each in found]
@@ -89,6 +91,11 @@ def over_frequency(count: int) -> None:
         stated = 100.0 * max(each.stated for each in found)
         print(f"{name:<10s}{count:9d}{cells}{stated:9.2f}", flush=True)
         worst += [(name, each) for each in sorted(found, key=lambda each: -each.memory)[:3]]
+    print("law with memory over frequency [%]: median, 95 of 100 contacts, largest")
+    wrong = 100.0 * np.array([each.at_places for each in every])
+    for column, place in enumerate(PLACES):
+        one = wrong[:, column]
+        print(f"  omega T {place:4g}: {np.median(one):6.2f} {np.percentile(one, 95.0):6.2f} {one.max():6.2f}")
     print("worst points of the law with memory")
     for name, each in worst:
         print(f"  {name:<10s} M {each.M:.3g}, L {each.L:.3g}: {100 * each.memory:.1f} % at omega T = {each.worst:.2g}")

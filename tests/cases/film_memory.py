@@ -55,6 +55,9 @@ FINER = 4
 NATURAL = np.geomspace(0.01, 10.0, 25)
 """omega T at which complex stiffnesses are compared."""
 
+PLACES = np.array([0.1, 0.3, 1.0, 3.0, 10.0, 30.0])
+"""omega T at which errors are told one by one."""
+
 REST = (0.4, 0.7, 1.5, 2.0)
 """Loads at which the curves at rest are compared, over that of the start."""
 
@@ -334,6 +337,8 @@ class Response:
         Largest relative error of the complex stiffness by each law.
     worst : float
         omega T at which the law with memory is worst.
+    at_places : tuple of float
+        Errors of the law with memory at `PLACES`.
     stated : float
         Largest error that the solver states.
     """
@@ -344,6 +349,7 @@ class Response:
     slow: float
     dry: float
     worst: float
+    at_places: tuple[float, ...]
     stated: float
 
 
@@ -364,11 +370,14 @@ def response(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> Res
     solver, load, speed = ReynoldsSolver(), point.load, point.entrainment_speed
     (film,) = solver.solve_line(contact, oil, (load,), speed, point.temperature)
     half = float(half_width(load, contact.radius, contact.reduced_modulus))
-    omega = NATURAL * speed / math.sqrt(half**2 + 2.0 * film.film_offset * contact.radius)
-    spectrum = contact_spectrum(solver.film_spectrum(contact, oil, point, omega / (2.0 * math.pi)), contact, point)
+    natural = math.sqrt(half**2 + 2.0 * film.film_offset * contact.radius) / speed
+    omega = NATURAL / natural
+    asked = np.concatenate([NATURAL, PLACES]) / (2.0 * math.pi * natural)
+    spectrum = contact_spectrum(solver.film_spectrum(contact, oil, point, asked), contact, point)
     if not spectrum.solution.status.usable:
         raise NoSolutionError(f"none at {load:.6g} N/m, {speed:.6g} m/s, {point.temperature:.6g} K")
-    exact, k = spectrum.dynamic_stiffness, spectrum.solution.stiffness
+    exact, k = spectrum.dynamic_stiffness[: omega.size], spectrum.solution.stiffness
+    beyond = spectrum.dynamic_stiffness[omega.size :]
     loss = lifted_loss(np.array(spectrum.solution.damping / k**2), np.array(half), speed, np.array(1.0 / k))
     c = float(loss) * k**2
     dry, compliance = float(contact.structural_approach(load)), float(contact.structural_compliance(load))
@@ -386,7 +395,8 @@ def response(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> Res
         float(np.max(np.abs((k + 1j * omega * c) / exact - 1.0))),
         float(np.max(np.abs(1.0 / (compliance * exact) - 1.0))),
         float(NATURAL[np.argmax(wrong)]),
-        float(np.max(spectrum.dynamic_stiffness_error)),
+        tuple(np.abs(relaxing(k, c, stiff, PLACES / natural) / beyond - 1.0).tolist()),
+        float(np.max(spectrum.dynamic_stiffness_error[: omega.size])),
     )
 
 

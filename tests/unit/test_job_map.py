@@ -418,8 +418,17 @@ def test_compare_refuses_maps_without_common_points():
         compare(first, other, ("a", "b"))
 
 
-@pytest.mark.parametrize("text", [SMALL, LINE, SMALL.replace("points = 7", "points = 2")])
-@pytest.mark.parametrize("solver", [None, HertzSolver(), Holey((1e3, 1e4, 31622.776601683792), version="1")])
+@pytest.mark.parametrize(
+    ("text", "solver"),
+    [
+        (SMALL, None),
+        (LINE, None),
+        (SMALL.replace("points = 7", "points = 2"), None),
+        (LINE, HertzSolver()),
+        (SMALL, Holey((1e3, 1e4, 31622.776601683792), version="1")),
+    ],
+    ids=["bearing", "one contact", "two loads", "dry", "holes"],
+)
 def test_every_kind_of_map_can_be_drawn(tmp_path, text, solver):
     plot_map(EHDMap(made(job_of(text), solver)), tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
