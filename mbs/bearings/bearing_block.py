@@ -88,6 +88,7 @@ def _between(low: FloatArray, high: FloatArray, weight: float, out: FloatArray) 
         coefficient=mixed.coefficient,
         exponent=mixed.exponent,
         damping=mixed.damping,
+        damping_time=mixed.damping_time,
         centre=mixed.centre,
         inverse_scale=mixed.inverse_scale,
         highest=mixed.highest,

@@ -229,9 +229,10 @@ def slice_approaches(motion: RingMotion, shape: Shape, out: FloatArray) -> None:
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def _power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray) -> None:
-    """States of w = a delta^b with a constant damping; rollers without load are left out."""
+    """States of w = a delta^b with c = damping + damping_time dw; rollers without load are left out."""
     x, lost = shape.positions, shape.profile
-    a, b, damping = numbers.coefficient, numbers.exponent, numbers.damping
+    a, b, damping, time = numbers.coefficient, numbers.exponent, numbers.damping, numbers.damping_time
+    bend = time * (b - 1.0) / b
     for j in range(shape.cos.size):
         roller = roller_of(motion, shape, j)
         w, dw, c, dc = states[0, j], states[1, j], states[2, j], states[3, j]
@@ -246,8 +247,10 @@ def _power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states:
             dw[i] = slope if delta > 0.0 else 0.0
             w[i] = slope * safe / b if delta > 0.0 else 0.0
         for i in range(x.size):
-            c[i] = damping if w[i] > 0.0 else 0.0
-            dc[i] = 0.0
+            loaded = w[i] > 0.0
+            c[i] = damping + time * dw[i] if loaded else 0.0
+            # The second derivative of the power, from load and slope.
+            dc[i] = bend * dw[i] * dw[i] / (w[i] if loaded else 1.0)
 
 
 Motion = tuple[float, float]
@@ -401,7 +404,7 @@ def assemble_slices(motion: RingMotion, shape: Shape, states: FloatArray, out: F
     out : array (13, 6)
         Force, six rows of stiffness, six rows of zeros.
     """
-    numbers = LawNumbers(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, math.inf, math.inf, -math.inf, 1.0)
+    numbers = LawNumbers(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, math.inf, math.inf, -math.inf, 1.0)
     assemble(motion, shape, numbers, states, out)
 
 

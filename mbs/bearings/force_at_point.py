@@ -32,8 +32,8 @@ Triple = tuple[FloatArray, FloatArray, FloatArray]
 _MOST_TILT = 0.5
 _SIX, _OUT = (6,), (13, 6)
 _POWER = table.LawNumbers(
-    kind=table.POWER, coefficient=0.0, exponent=0.0, damping=0.0, centre=0.0, inverse_scale=0.0, highest=0.0,
-    safe_approach=0.0, lift_off=0.0, slope=1.0,
+    kind=table.POWER, coefficient=0.0, exponent=0.0, damping=0.0, damping_time=0.0, centre=0.0, inverse_scale=0.0,
+    highest=0.0, safe_approach=0.0, lift_off=0.0, slope=1.0,
 )  # fmt: skip
 _BY_SLICES = _POWER._replace(lift_off=-math.inf, safe_approach=math.inf)
 """Where the law is called for each slice, slopes are whole and loads are counted there."""
@@ -135,7 +135,9 @@ class ForceAtPoint:
                     "allowed: 0; only a map's law brings rollers into equilibrium"
                 )
             length = bearing.geometry.roller_length
-            _set_power(numbers, law.coefficient / length, law.exponent, law.damping / length, math.inf)
+            _set_power(
+                numbers, law.coefficient / length, law.exponent, math.inf, law.damping / length, law.damping_time
+            )
         else:
             self._prepare(law)
         w = self._work
@@ -227,7 +229,7 @@ class ForceAtPoint:
             b = float(point.structure[0, 2])
             a = float(np.sum(point.structure[:, 1]))
             highest = min(point.highest_load * (1.0 + LOAD_TOLERANCE), point.held_load)
-            _set_power(work.numbers, a ** (-1.0 / b), 1.0 / b, 0.0, highest)
+            _set_power(work.numbers, a ** (-1.0 / b), 1.0 / b, highest)
             return
         self._by_slices = True
         work.numbers[:] = _BY_SLICES
@@ -303,12 +305,20 @@ def check_conditions(conditions: tuple[float, float, float]) -> float:
     return float(conditions[2])
 
 
-def _set_power(numbers: FloatArray, coefficient: float, exponent: float, damping: float, highest: float) -> None:
-    """Write a law w = a delta^b."""
+def _set_power(
+    numbers: FloatArray,
+    coefficient: float,
+    exponent: float,
+    highest: float,
+    damping: float = 0.0,
+    damping_time: float = 0.0,
+) -> None:
+    """Write a law w = a delta^b, with its dampers."""
     numbers[:] = _POWER._replace(
         coefficient=coefficient,
         exponent=exponent,
         damping=damping,
+        damping_time=damping_time,
         highest=highest,
         safe_approach=(highest / coefficient) ** (1.0 / exponent),
     )

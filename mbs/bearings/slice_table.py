@@ -47,8 +47,10 @@ class LawNumbers(NamedTuple):
     ----------
     kind : float
         POWER or CELLS.
-    coefficient, exponent, damping : float
-        Constants of w = a delta^b [N/m], and c per unit length [N s/m2]; for POWER.
+    coefficient, exponent : float
+        Constants of w = a delta^b [N/m]; for POWER.
+    damping, damping_time : float
+        Constant part of c per unit length [N s/m2], and the ratio of its other part to dw/d approach [s]; for POWER.
     centre, inverse_scale : float
         Places of the table [m], [1/m]; for CELLS.
     highest : float
@@ -65,6 +67,7 @@ class LawNumbers(NamedTuple):
     coefficient: float
     exponent: float
     damping: float
+    damping_time: float
     centre: float
     inverse_scale: float
     highest: float
@@ -95,7 +98,7 @@ class PreparedLaw(NamedTuple):
 @njit(cache=True, error_model="numpy")
 def law_numbers(numbers: FloatArray) -> LawNumbers:
     """The numbers of a law from an array (NUMBERS,) in their order."""
-    return LawNumbers(*fixed_tuple(numbers, 10))
+    return LawNumbers(*fixed_tuple(numbers, 11))
 
 
 @njit(cache=True, error_model="numpy")
@@ -199,8 +202,8 @@ def tabulate(
         if w[i] <= highest:
             safe = delta[i]
     found = LawNumbers(
-        kind=CELLS, coefficient=0.0, exponent=0.0, damping=0.0, centre=centre, inverse_scale=inverse, highest=highest,
-        safe_approach=safe, lift_off=delta[first - 1], slope=inverse,
+        kind=CELLS, coefficient=0.0, exponent=0.0, damping=0.0, damping_time=0.0, centre=centre,
+        inverse_scale=inverse, highest=highest, safe_approach=safe, lift_off=delta[first - 1], slope=inverse,
     )  # fmt: skip
     store_numbers(found, numbers)
     _fill(z, inverse, w, dw, c, dc, cells)
