@@ -80,6 +80,7 @@ class Compiled:
         return status, self.rows.T @ self.answers.force, self.rows.T @ slopes @ self.rows
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("films", "force", "slope"), [("dry", 1e-12, 1e-12), ("slow", 1e-8, 1e-6)])
 def test_compiled_contacts_are_those_in_python(films, force, slope):
     """Dry to rounding; with films to what tables are wrong, see `mbs.bearings.slice_table`."""
