@@ -195,11 +195,11 @@ class BearingBlock:
             (id(_force_of(element).law), element.temperature, *element.rates[1:]) for element in elements
         )
         tables = [
-            SpeedTables(_force_of(element), element.temperature, element.rates[1:])
+            SpeedTables(element.bearing, _force_of(element).flat_law, element.temperature, element.rates[1:])
             for element in (elements[first] for first in firsts)
         ]
         rings = gather_rings(members, films_of)
-        films = _room(len(tables), any(table.varies for table in tables))
+        films = room_of(len(tables), any(table.varies for table in tables))
         self._course = CourseOfFilms(
             [table.places for table in tables],
             lambda film, *places: tables[film].prepare(*places, films.tables[film], films.numbers[film]),
@@ -235,7 +235,7 @@ def _force_of(element: BearingElement) -> BearingForce:
     return element.force
 
 
-def _room(films: int, varies: bool) -> Films:
+def room_of(films: int, varies: bool) -> Films:
     """Room for tables."""
     nodes, cells = (NODES, 2 * table.ROWS) if varies else (1, 1)
     return Films(

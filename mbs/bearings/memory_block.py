@@ -16,21 +16,12 @@ from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.lines import FAST
 from ehdmaps.maps.memory import FilmState
-from ehdmaps.maps.memory_table import MemoryTable, step_of
+from ehdmaps.maps.memory_table import step_of
 from mbs.bearings.bearing_kernel import assemble_slices, check_motion, slice_approaches
 from mbs.bearings.memory_element import FilmStates, MemoryBearing
 from mbs.bearings.memory_kernel import CHANGE, KEPT, LATEST, LOAD, MEMORY, begin, commit, loads, resume
-from mbs.bearings.memory_tables import (
-    CENTRE,
-    HIGHEST,
-    INVERSE_SCALE,
-    LIFT_OFF,
-    MemoryFilms,
-    MemoryTables,
-    room,
-)
+from mbs.bearings.memory_tables import HIGHEST, MemoryFilms, MemoryTables, mix, room, table_in_use
 from mbs.bearings.rings import (
     Course,
     CourseOfFilms,
@@ -84,40 +75,6 @@ class MemoryBearings(NamedTuple):
     course: Course
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def _mix(films: MemoryFilms, film: int, node: int, weight: float) -> None:
-    """Bring the table in use to a place between two nodes, straight in ln of the speed."""
-    if films.in_use[film, 0] == node and films.in_use[film, 1] == weight:
-        return
-    films.in_use[film, 0], films.in_use[film, 1] = node, weight
-    other = (node + 1) % films.numbers.shape[1] if weight > 0.0 else node
-    _straight(films.cells[film, node].reshape(-1), films.cells[film, other].reshape(-1), weight,
-              films.mixed_cells[film].reshape(-1))  # fmt: skip
-    _straight(films.load_cells[film, node].reshape(-1), films.load_cells[film, other].reshape(-1), weight,
-              films.mixed_load_cells[film].reshape(-1))  # fmt: skip
-    _straight(films.numbers[film, node], films.numbers[film, other], weight, films.mixed[film])
-
-
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def _straight(low: FloatArray, high: FloatArray, weight: float, out: FloatArray) -> None:
-    """Straight between two arrays."""
-    for i in range(out.size):
-        out[i] = low[i] + weight * (high[i] - low[i])
-
-
-@njit(cache=True, error_model="numpy")
-def _table(films: MemoryFilms, film: int) -> MemoryTable:
-    """The table in use."""
-    numbers = films.mixed[film]
-    return MemoryTable(
-        films.mixed_cells[film],
-        films.mixed_load_cells[film],
-        numbers[CENTRE],
-        numbers[INVERSE_SCALE],
-        numbers[LIFT_OFF],
-    )
-
-
 @njit(cache=True, error_model="numpy")
 def memory_of(bearings: MemoryBearings, b: int) -> FloatArray:
     """Memory of the slices of a bearing, shape (MEMORY, Z n), contiguous."""
@@ -134,10 +91,10 @@ def _begin(bearings: MemoryBearings, moment: Moment) -> None:
     steps = int(clock[STEPS])
     for film in range(films.in_use.shape[0]):
         if films.in_use[film, 0] < 0.0 or steps % KEPT == 0:
-            _mix(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
+            mix(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
     growth = (moment.time - clock[ACCEPTED]) / clock[LAST] if clock[LAST] > 0.0 else 0.0
     for b in range(bearings.rings.firsts.size):
-        begin(_table(films, bearings.rings.films_of[b]), growth, steps, memory_of(bearings, b))
+        begin(table_in_use(films, bearings.rings.films_of[b]), growth, steps, memory_of(bearings, b))
 
 
 @njit(cache=True, error_model="numpy")
@@ -150,7 +107,7 @@ def _answer(bearings: MemoryBearings, b: int, moment: Moment, motion: FloatArray
     if wrong != 0:
         return wrong
     size = z * n
-    table, memory, deltas = _table(bearings.films, film), memory_of(bearings, b), bearings.approaches[:size]
+    table, memory, deltas = table_in_use(bearings.films, film), memory_of(bearings, b), bearings.approaches[:size]
     states = bearings.states[b][: 4 * size].reshape(4, size)
     slice_approaches(ring, shape, deltas)
     step = step_of(moment.time - bearings.clock[ACCEPTED], bearings.clock[LAST])
@@ -204,7 +161,7 @@ def memory_accept(bearings: MemoryBearings, moment: Moment) -> None:
     clock = bearings.clock
     for b in range(bearings.rings.firsts.size):
         size = bearings.rings.rollers[b] * bearings.rings.slices[b]
-        table = _table(bearings.films, bearings.rings.films_of[b])
+        table = table_in_use(bearings.films, bearings.rings.films_of[b])
         commit(table, memory_of(bearings, b), bearings.states[b][:size])
     clock[LAST] = moment.time - clock[ACCEPTED]
     clock[ACCEPTED] = moment.time

@@ -104,8 +104,12 @@ class RollerElement(RingElement):
             entrainment_speed=plain.entrainment_speed(operation),
             temperature=plain.temperature,
         )
-        found.force[12:] += plain.centrifugal_load(operation) * plain.bearing.geometry.roller_length
+        found.force[12:] += self.outward(operation)
         return found
+
+    def outward(self, operation: Operation) -> float:
+        """Centrifugal force of a roller [N]; zero where it is left out."""
+        return self.plain.centrifugal_load(operation) * self.plain.bearing.geometry.roller_length
 
 
 def ring_matrices(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:

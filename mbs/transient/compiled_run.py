@@ -73,6 +73,7 @@ class CompiledRun:
             np.ascontiguousarray(expand @ ports @ modes),
             self._modes if settings.tolerance < math.inf else self._modes[:0],
             self._method,
+            self._elements.alone,
         )
         self._steady, self._varying, self._profiles = _loads(system, modes)
         self._state = State(np.zeros((4, system.size)), np.zeros((3, expand.shape[0])))

@@ -15,6 +15,11 @@ from mbs.model.system import Connected
 from mbs.transient.kinds import KINDS, is_ours, kind_of
 
 
+def _is_common(kind: Kind) -> bool:
+    """Whether compiled code has a kind even where there are none: neither states nor coordinates of their own."""
+    return kind.accept is None and kind.alone is None
+
+
 def in_python(connected: Sequence[Connected]) -> list[str]:
     """Names of the elements that no kind takes, each with its class: they are called from Python."""
     return [
@@ -31,10 +36,12 @@ class RunElements:
     Attributes
     ----------
     blocks : tuple of Block
-        The kinds that are needed; where all of them are of this package, also its others without states, so that
-        compiled code is the same for most systems.
+        The kinds that are needed; where all of them are of this package, also its other common ones, so that compiled
+        code is the same for most systems.
     expand : array, shape (felt, ports)
         What elements feel of their ports, and, on the other side, forces in the ports by those that the elements make.
+    alone : int
+        How many rows at the beginning of `expand` are of coordinates that nothing else touches.
     outside : array of int, shape (elements,)
         How often each was evaluated outside its map so far.
     ours : bool
@@ -45,6 +52,7 @@ class RunElements:
 
     blocks: tuple[Block, ...]
     expand: FloatArray
+    alone: int
     outside: IntArray
     ours: bool
     stateful: tuple[tuple[StatefulBlock, tuple[int, ...]], ...]
@@ -53,21 +61,27 @@ class RunElements:
     def of(cls, connected: Sequence[Connected]) -> RunElements:
         """Elements that all have a kind."""
         members: dict[Kind, list[Member]] = {kind: [] for kind in KINDS.values()}
-        felt: list[FloatArray] = []
-        first = 0
-        for place, entry in enumerate(connected):
-            kind = kind_of(entry.element)
+        of_connected = [kind_of(entry.element) for entry in connected]
+        alone, felt = [], []
+        for kind, entry in zip(of_connected, connected, strict=True):
             assert kind is not None
-            members[kind].append(Member(entry.element, place, first))
+            none = np.zeros((0, entry.transform.shape[0]))
+            alone.append(none if kind.alone is None else kind.alone(entry.element))
             felt.append(kind.feels(entry.element))
-            first += felt[-1].shape[0]
+        own, first = 0, sum(rows.shape[0] for rows in alone)
+        count = first
+        for place, (kind, entry) in enumerate(zip(of_connected, connected, strict=True)):
+            assert kind is not None
+            members[kind].append(Member(entry.element, place, first, own))
+            own, first = own + alone[place].shape[0], first + felt[place].shape[0]
         ours = all(is_ours(kind) for kind, found in members.items() if found)
-        used = [kind for kind, found in members.items() if found or (ours and is_ours(kind) and kind.accept is None)]
-        expand = scipy.linalg.block_diag(*felt) if felt else np.zeros((0, 0))
+        used = [kind for kind, found in members.items() if found or (ours and is_ours(kind) and _is_common(kind))]
+        parts = [scipy.linalg.block_diag(*rows) if rows else np.zeros((0, 0)) for rows in (alone, felt)]
         blocks = tuple(kind.gather(members[kind]) for kind in used)
         return cls(
             blocks=blocks,
-            expand=np.asarray(expand, dtype=np.float64),
+            expand=np.asarray(np.concatenate(parts), dtype=np.float64),
+            alone=count,
             outside=np.zeros(len(connected), dtype=np.int64),
             ours=ours,
             stateful=tuple(

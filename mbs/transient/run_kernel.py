@@ -169,18 +169,20 @@ def _all_accept(blocks: Any, moment: Any) -> Callable[..., None]:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _jacobian(slopes: FloatArray, receptance: FloatArray, out: FloatArray) -> None:
-    """1 + (by_q K + by_v C) R; the slopes are zero but for blocks on the diagonal."""
+def _jacobian(slopes: FloatArray, receptance: FloatArray, alone: int, out: FloatArray) -> None:
+    """1 + (by_q K + by_v C) R; slopes are zero but for the elements' own, R is diagonal for what is alone."""
     m = out.shape[0]
     for i in range(m):
         row = out[i]
         row[:] = 0.0
         row[i] = 1.0
-        for k in range(m):
+        for k in range(alone):
+            row[k] += slopes[i, k] * receptance[k, k]
+        for k in range(alone, m):
             slope = slopes[i, k]
             if slope != 0.0:
                 by = receptance[k]
-                for j in range(m):
+                for j in range(alone, m):
                     row[j] += slope * by[j]
 
 
@@ -309,7 +311,7 @@ def advance(
             if _size(linear.size, short) <= numbers.residual * largest:
                 status = DONE
                 break
-            _jacobian(answers.slopes, receptance, jacobian)
+            _jacobian(answers.slopes, receptance, linear.alone, jacobian)
             if not eliminate(jacobian, short):
                 break
             for i in range(m):

@@ -12,6 +12,7 @@ from ehdmaps.errors import AnalysisError, InputError, OutsideMapError
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.force_at_point import FlatLaw
 from mbs.bearings.laws import hertz
 from mbs.bearings.speed_tables import NODES, STEP, SpeedTables
 from mbs.model.body import Inertia, rigid_body
@@ -211,7 +212,7 @@ class TestOutsideTheMap:
 class TestSpeedTables:
     def tables(self):
         bearing = Bearing.named("NU308").with_slices(5)
-        return SpeedTables(BearingForce(bearing, map_law()), TEMPERATURE, (1.0, 0.0))
+        return SpeedTables(bearing, FlatLaw(map_law()), TEMPERATURE, (1.0, 0.0))
 
     def room(self):
         return np.zeros((NODES, 2 * 448, 8)), np.zeros((NODES, 10))

@@ -228,7 +228,7 @@ class TestFilmsOverSpeed:
     @staticmethod
     def blended(force, speeds):
         """Numbers and cells at the first of some speeds, and whether there are tables."""
-        tables = SpeedTables(force, TEMPERATURE, (1.0, 0.0))
+        tables = SpeedTables(force.bearing, force.flat_law, TEMPERATURE, (1.0, 0.0))
         rows = 2 * slice_table.ROWS
         films = Films(
             np.zeros((1, NODES, rows, 8)), np.zeros((1, NODES, 10)), np.zeros((1, rows, 8)), np.zeros((1, 10)),
