@@ -20,7 +20,7 @@ def put(values: FloatArray, out: FloatArray) -> None:
     values : array, shape (n,)
         What is copied; its length is not looked at.
     out : array, shape (n,)
-        Overwritten.
+        Row that is overwritten.
     """
     for i in range(out.size):
         out[i] = values[i]

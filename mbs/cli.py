@@ -122,10 +122,10 @@ def _variants(command: argparse.ArgumentParser) -> None:
         "--vary",
         nargs="+",
         action="append",
-        required=True,
+        default=[],
         metavar=("KEY", "VALUE"),
         help="a key and its values, such as clearance '0 um' '15 um', one at a time around the base; more than once "
-        f"for more keys. Keys: {VARIED_KEYS}",
+        f"for more keys, left out: the base alone. Keys: {VARIED_KEYS}",
     )
     command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
     command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')

@@ -65,10 +65,10 @@ def resume(approach: FloatArray, change: FloatArray, load: FloatArray, memory: F
         Memory of the slices; written. Parabolas are read at the next step.
     """
     memory[:] = 0.0
-    memory[LATEST], memory[BEFORE], memory[TRIAL] = approach, approach, approach
-    memory[CHANGE], memory[LOAD], memory[AROUND] = change, load, math.inf
     for i in range(approach.size):
-        memory[FADE, i] = fading_of(change[i])
+        memory[LATEST, i] = memory[BEFORE, i] = memory[TRIAL, i] = approach[i]
+        memory[CHANGE, i], memory[FADE, i] = change[i], fading_of(change[i])
+        memory[LOAD, i], memory[AROUND, i] = load[i], math.inf
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)

@@ -14,9 +14,9 @@ _WIDTH, _TOP, _LINE = 7.2, 1.6, 0.19
 """Width of the page, what stands above and below, and height of a line [inch]."""
 
 _MARKS = (
-    ("median_difference", "o", COLOURS[0], "median of the windows"),
-    ("energy_difference", "s", COLOURS[2], "mean energy"),
     ("highest_difference", "D", COLOURS[3], "highest of each, at any speed"),
+    ("energy_difference", "s", COLOURS[2], "mean energy"),
+    ("median_difference", "o", COLOURS[0], "median of the windows"),
 )
 
 
@@ -38,7 +38,7 @@ def variants_figure(title: str, dataset: xr.Dataset, labels: Sequence[str]) -> F
     ]
     sensors = dataset["sensor"].values.tolist()
     figure = Figure(figsize=(_WIDTH, _TOP + _LINE * len(names)), layout="constrained")
-    figure.suptitle(title, fontsize=8)
+    figure.suptitle(typeset(f"{title}\nsum level of {labels[1]} minus that of {labels[0]}"), fontsize=8)
     panels = figure.subplots(1, len(sensors), sharex=True, sharey=True, squeeze=False)[0]
     lines = np.arange(len(names))
     for column, (panel, sensor) in enumerate(zip(panels, sensors, strict=True)):
@@ -52,11 +52,11 @@ def variants_figure(title: str, dataset: xr.Dataset, labels: Sequence[str]) -> F
         panel.axvline(0.0, color="0.4", lw=0.7)
         panel.axhline(0.5, color="0.4", lw=0.4)
         panel.set_title(f"sensor {sensor}", fontsize=8)
+        panel.set_xlabel("dB", fontsize=7)
         panel.tick_params(labelsize=7)
         panel.grid(axis="x", lw=0.3)
     panels[0].set_yticks(lines, names)
     panels[0].invert_yaxis()
-    figure.supxlabel(f"sum level of {labels[1]} minus that of {labels[0]}, dB", fontsize=8)
     handles, words_of = panels[0].get_legend_handles_labels()
     bar = panels[0].collections[0]
     figure.legend([*handles, bar], [*words_of, "5 to 95 % of the windows"], loc="outside lower center", ncols=4,
