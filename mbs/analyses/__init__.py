@@ -20,6 +20,7 @@ case           the models that an analysis compares, with their labels
 varied         what comparisons vary, one row a key
 progress       how an analysis tells how far it is
 reach          where the films of a law begin, and calls outside its map
+losses         what contacts feel at an equilibrium, and what rolling costs there
 film_errors    how wrong the films are estimated to be over frequency
 =============  ====================================================================================
 

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM, TEMPERATURE, quantity
 from mbs.analyses.case import Case
@@ -38,14 +39,15 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     found = result.sweeps
     lines: list[str] = []
     outside: list[str] = []
-    for case, entry, calls in zip(cases, found, result.outside, strict=True):
+    torques = result.dataset["rolling_torque"].values
+    for case, entry, calls, torque in zip(cases, found, result.outside, torques, strict=True):
         outside += _outside(case, entry, calls)
         lines += [
             *heading(case.model),
             *([f"  case: {case.label}"] if len(cases) > 1 else []),
             *_course(entry),
             *_films(case.model),
-            *_bearings(entry),
+            *_bearings(entry, torque),
             *_undamped(entry),
             *_complex(entry),
             *_exchanged(entry),
@@ -148,8 +150,8 @@ def _films(model: Model) -> list[str]:
     ]
 
 
-def _bearings(result: Sweep) -> list[str]:
-    """Lines of stiffness and damping of the bearings at the first and the last speed."""
+def _bearings(result: Sweep, torque: FloatArray) -> list[str]:
+    """Lines of stiffness, damping and rolling torque (speeds, bearings) of the bearings at the first and last speed."""
     lines = []
     entry = result.bearings
     for index, name in enumerate(entry.names):
@@ -163,6 +165,11 @@ def _bearings(result: Sweep) -> list[str]:
             f"  {name}: {changed}; along the load k {k[0] * 1e-6:.4g} to {k[1] * 1e-6:.4g} N/um ({_change(*k)}), "
             f"c {c[0]:.4g} to {c[1]:.4g} N s/m ({_change(*c)}){spread}"
         )
+        if np.all(np.isfinite(torque[:, index])):
+            lines.append(
+                f"  {name}: rolling torque {1e3 * torque[0, index]:.4g} to {1e3 * torque[-1, index]:.4g} N mm "
+                "(flooded films only)"
+            )
     return lines
 
 

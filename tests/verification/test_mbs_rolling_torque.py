@@ -10,10 +10,12 @@ import pytest
 from ehdmaps.maps.emap import open_map
 from ehdmaps.physics.rolling import RIGID_ROLLING_CONSTANT
 from ehdmaps.physics.solids import STEEL
+from mbs import SweepRange, SweepSettings, assemble, read_scene, statics, sweep
 from mbs.analyses.bearing_point import BearingPoint, bearing_points
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import FormulaFilms, MapFilms
 from mbs.bearings.laws import hertz
+from mbs.model.elements import Operation
 
 WARM, LOAD, SPEEDS = 313.15, 923.0, (500.0, 1500.0, 2500.0)
 RPM = math.pi / 30.0
@@ -93,3 +95,25 @@ def test_idle_rollers_lag_in_films_of_their_own():
     v = (couette - 0.25 * rolling) / (couette + 0.25 * rolling)
     assert v == pytest.approx(0.11, abs=5e-3)
     assert 2.0 * couette * (1.0 - v) / rolling == pytest.approx(0.55, abs=5e-3)
+
+
+def test_a_scene_has_the_torque_of_its_bearings_at_rest_and_over_speed(reynolds_map):
+    """Statics and a sweep at the same speed, and one of both bearings by itself under its load."""
+    emap = open_map(reynolds_map)
+    model = assemble(read_scene("nu308_rigid"), emap=emap)
+    speed = RPM * 1000.0
+    still = statics(model, Operation(speed)).dataset
+    swept = sweep(model, SweepSettings(SweepRange(speed, 2.0 * speed, 2))).dataset
+    np.testing.assert_allclose(swept["rolling_torque"].values[0, 0], still["rolling_torque"], rtol=1e-9)
+    np.testing.assert_allclose(swept["rolling_power"].values[0, 0], speed * still["rolling_torque"].values, rtol=1e-9)
+    assert np.all(swept["rolling_torque"].values[0, 1] > 1.3 * still["rolling_torque"].values)
+    bearing = model.bearings[0].bearing
+    load = tuple(-still["bearing_force"].values[0][1:3])
+    ((alone,),) = bearing_points(bearing, emap.law("series"), MapFilms(emap), [load], [speed], WARM)
+    # 1e-6: the equilibria of both
+    assert alone.loss.torque == pytest.approx(float(still["rolling_torque"][0]), rel=1e-6)
+
+
+def test_a_scene_without_a_map_has_none():
+    found = sweep(assemble(read_scene("nu308_rigid")), SweepSettings(SweepRange(50.0, 100.0, 2))).dataset
+    assert np.all(np.isnan(found["rolling_torque"].values)) and found["rolling_torque"].attrs["units"] == "N m"
