@@ -30,6 +30,7 @@ import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.copies import put
 from ehdmaps.physics.isotherm import Isotherm, density, log_viscosity
 
 FITTED_STEP = 1.0
@@ -88,7 +89,7 @@ def node_pressure(unknowns: FloatArray) -> FloatArray:
     """Pressure at all nodes, shape (n + 1,), from the unknowns, shape (n + 2,)."""
     n = unknowns.size - 2
     pressure = np.zeros(n + 1)
-    pressure[1:n] = unknowns[: n - 1]
+    put(unknowns, pressure[1:n])
     return pressure
 
 
@@ -283,10 +284,10 @@ def stored_mass_jacobian(
     for j in range(1, n):
         column = -weight * kernel[:, j]
         column[j] += step[j] * rho_slope[j] * gap[j]
-        by_unknowns[:, j - 1] = _accumulate(column)
+        put(_accumulate(column), by_unknowns[:, j - 1])
     by_unknowns[:, n - 1] = 0.0
-    by_unknowns[:, n] = _accumulate(weight * (unknowns[n] + x))
-    by_unknowns[:, n + 1] = _accumulate(weight)
+    put(_accumulate(weight * (unknowns[n] + x)), by_unknowns[:, n])
+    put(_accumulate(weight), by_unknowns[:, n + 1])
     return by_unknowns
 
 

@@ -32,6 +32,7 @@ from ehdmaps.physics.solution import (
     no_spectrum,
     slow_spectrum,
 )
+from ehdmaps.physics.traction import FilmProfile
 
 HEAVIEST_LOAD_NUMBER = 2e6
 """Moes' M above which the film is too thin for double precision to see it beside the elastic deflection."""
@@ -136,6 +137,30 @@ class ReynoldsSolver(ContactSolverDefaults):
         unit = 4.0 / contact.reduced_modulus  # b/(p_H R)
         return FilmSpectrum(film, frequencies, unit * found.compliance, unit * found.errors)
 
+    def film_profile(
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint
+    ) -> tuple[FilmSolution, FilmProfile | None]:
+        """Solve one point, with pressure and film along it; None for these where there is no film or no solution.
+
+        Parameters
+        ----------
+        contact : LineContact
+            The contact.
+        lubricant : Lubricant
+            The oil.
+        point : OperatingPoint
+            Load, speed and temperature.
+        """
+        film, groups = self._solve(contact, lubricant.at(point.temperature), point, None)
+        profile = None if groups is None else groups.profile
+        if profile is None or not film.status.usable:
+            return film, None
+        half = float(half_width(point.load, contact.radius, contact.reduced_modulus))
+        peak = float(max_pressure(point.load, contact.radius, contact.reduced_modulus))
+        return film, FilmProfile(
+            half * profile.position, peak * profile.pressure, half**2 / contact.radius * profile.film
+        )
+
     def _solve(
         self, contact: LineContact, state: LubricantState, point: OperatingPoint, previous: Profile | None
     ) -> tuple[FilmSolution, GroupSolution | None]:
@@ -193,12 +218,16 @@ def dry_film(peak: float, reason: str) -> FilmSolution:
         central_film=0.0,
         minimum_film=0.0,
         max_pressure=peak,
+        rolling_force=0.0,
+        mass_flow=0.0,
         film_offset_error=0.0,
         film_compliance_error=0.0,
         loss_compliance_error=0.0,
         central_film_error=0.0,
         minimum_film_error=0.0,
         max_pressure_error=0.0,
+        rolling_force_error=0.0,
+        mass_flow_error=0.0,
     )
 
 
@@ -224,7 +253,7 @@ def _in_si(
     speed: float,
     seconds: float,
 ) -> FilmSolution:
-    """Scale films by b^2/R, the compliance by b/(p_H R), the loss by b^2/(p_H R u)."""
+    """Scale films by b^2/R, the compliance by b/(p_H R), the loss by b^2/(p_H R u), the rolling force by p_H b^2/R."""
     film = half * half / contact.radius
     compliance = half / (peak * contact.radius)
     status, reason = Status.CONVERGED, ""
@@ -243,12 +272,16 @@ def _in_si(
         central_film=groups.central_film * film,
         minimum_film=groups.minimum_film * film,
         max_pressure=groups.max_pressure * peak,
+        rolling_force=groups.rolling_force * film * peak,
+        mass_flow=groups.mass_flow * film * state.density * speed,
         film_offset_error=groups.film_offset_error,
         film_compliance_error=groups.film_compliance_error,
         loss_compliance_error=groups.loss_error,
         central_film_error=groups.central_film_error,
         minimum_film_error=groups.minimum_film_error,
         max_pressure_error=groups.max_pressure_error,
+        rolling_force_error=groups.rolling_force_error,
+        mass_flow_error=groups.mass_flow_error,
         iterations=groups.steps,
         solve_seconds=seconds,
         viscosity_extrapolated=groups.max_pressure * peak > state.fitted_pressure,

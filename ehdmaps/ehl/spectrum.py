@@ -68,7 +68,8 @@ class FilmSpace:
         Parameters
         ----------
         frequencies : ndarray, shape (k,)
-            Frequencies Omega; complex for a motion e^(lambda t), -i lambda b/u. With a size up to that of which the space was made.
+            Frequencies Omega; complex for a motion e^(lambda t), -i lambda b/u. With a size up to that of which the
+            space was made.
         """
         moved = self.norm * _projected(self.hessenberg, self.heights.size, self.heights, frequencies)
         return np.asarray(-moved - DRY_COMPLIANCE)

@@ -10,10 +10,11 @@ import xarray as xr
 
 from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
-from ehdmaps.jobs.tasks import LineTask
+from ehdmaps.jobs.tasks import LineTask, with_later_fields
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import FILMS
 from ehdmaps.maps.backbone_plan import BackbonePlan, plan_backbone
+from ehdmaps.maps.rolling_film import NAMES as ROLLING
 from ehdmaps.physics.solution import ContactSolver, Status
 
 
@@ -55,12 +56,12 @@ def backbone_group(refined: Refinement, results: Mapping[str, Arrays]) -> xr.Dat
     """Put the lines in their places: the group "backbone" of the map file."""
     plan = refined.plan
     shape = (len(plan.zeta), len(plan.speeds), len(plan.temperatures))
-    values = {name: np.full(shape, np.nan) for name in FILMS}
+    values = {name: np.full(shape, np.nan) for name in (*FILMS, *ROLLING)}
     status = np.full(shape, schema.NOT_NEEDED, dtype=np.int8)
     for line, task in zip(plan.lines, refined.tasks, strict=True):
         first, speed, temperature = line.place
         along = slice(first, first + task.points)
-        arrays = results[task.key]
+        arrays = with_later_fields(results[task.key])
         status[along, speed, temperature] = arrays["status"]
         usable = np.isin(arrays["status"], [int(known) for known in Status if known.usable])
         for name, array in values.items():

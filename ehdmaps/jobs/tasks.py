@@ -30,6 +30,8 @@ _TYPES: Mapping[str, Any] = {
     "viscosity_extrapolated": np.int8,
 }
 FILM_FIELDS = tuple(field.name for field in fields(FilmSolution))
+LATER_FIELDS = ("rolling_force", "mass_flow", "rolling_force_error", "mass_flow_error")
+"""Fields that came after maps had been made: results that lack them, and took days, are taken over without them."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +80,7 @@ class LineTask:
             "solver": self.solver.name,
             "settings": self.solver.settings(),
             "version": solver_version(self.solver),
-            "fields": FILM_FIELDS,
+            "fields": [name for name in FILM_FIELDS if name not in LATER_FIELDS],
         }
         return hashlib.sha256(record_json(record).encode()).hexdigest()
 
@@ -113,6 +115,12 @@ def film_arrays(films: list[FilmSolution] | tuple[FilmSolution, ...]) -> Arrays:
     return {
         name: np.array([getattr(film, name) for film in films], _TYPES.get(name, np.float64)) for name in FILM_FIELDS
     }
+
+
+def with_later_fields(arrays: Arrays) -> Arrays:
+    """A line as it was stored, with NaN for the fields that there were not yet when it was solved."""
+    missing = {name: np.full(arrays["status"].shape, np.nan) for name in LATER_FIELDS if name not in arrays}
+    return {**arrays, **missing}
 
 
 def line_tasks(job: Job, solver: ContactSolver) -> tuple[LineTask, ...]:

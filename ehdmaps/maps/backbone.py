@@ -206,8 +206,8 @@ class BackboneField:
         """
         chosen = self._contacts[contact]
         results = np.empty((3, *loads.shape))
-        by_speed = [_lagrange(self._log_speeds, math.log(u * self._reference.radius / chosen.radius)) for u in speeds]
-        by_temperature = [_lagrange(self._temperatures, float(T)) for T in temperatures]
+        by_speed = [lagrange(self._log_speeds, math.log(u * self._reference.radius / chosen.radius)) for u in speeds]
+        by_temperature = [lagrange(self._temperatures, float(T)) for T in temperatures]
         for n, T in enumerate(temperatures):
             columns, column_weights = by_temperature[n]
             for m, u in enumerate(speeds):
@@ -239,7 +239,7 @@ class BackboneField:
         return np.stack([offset, compliance, lifted_loss(loss, width, speed, total)])
 
 
-def _lagrange(nodes: FloatArray, at: float) -> tuple[IntArray, FloatArray]:
+def lagrange(nodes: FloatArray, at: float) -> tuple[IntArray, FloatArray]:
     """Indices and Lagrange weights of the nodes around `at`; linear through the end nodes beyond them."""
     count = min(NEIGHBOURS, nodes.size)
     if not nodes[0] <= at <= nodes[-1]:

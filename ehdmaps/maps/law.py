@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.errors import InputError, MapError, OutsideMapError
 from ehdmaps.maps import bulk, kernel
 from ehdmaps.maps.compilation import (
     Resolution,
@@ -23,6 +23,7 @@ from ehdmaps.maps.dry import DryField
 from ehdmaps.maps.excursions import Axis, Excursion, Range
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.memory import FilmMemory, FilmState
+from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE, ApproachTable, LawTable, Point
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
@@ -64,6 +65,8 @@ class ContactLaw:
         highest load and `SPEED_REACH` times the highest speed, and as `clamp` beyond; temperature is held.
     resolution : Resolution, optional
         Spacing of the nodes of the table.
+    rolling : RollingFilm, optional
+        Rolling force of the contacts, where the map holds it.
 
     Raises
     ------
@@ -87,6 +90,7 @@ class ContactLaw:
         field: FilmField,
         outside: OutsidePolicy = "error",
         resolution: Resolution | None = None,
+        rolling: RollingFilm | None = None,
     ) -> None:
         if outside not in get_args(OutsidePolicy):
             raise InputError(f"contact law, outside: got {outside!r}; allowed: {', '.join(get_args(OutsidePolicy))}")
@@ -102,6 +106,7 @@ class ContactLaw:
         self._dry = field.dry
         self._field = DryField(field) if field.dry else field
         self._resolution = resolution
+        self.rolling = rolling
         self._plain = self._law_table()
         self._latest: LawAtPoint | None = None
 
@@ -402,6 +407,47 @@ class LawAtPoint:
     def memory(self) -> FilmMemory:
         """The law with films that need time, for steps in time."""
         return FilmMemory(self.point, self.law.contacts, self.entrainment_speed, self._check_loads)
+
+    def rolling_force(self, load: npt.ArrayLike) -> FloatArray:
+        """Rolling force of each contact at a load on the inner one, both walls together [N/m].
+
+        The power that the films take is its sum over the contacts times |u|, per length. For loads outside the map see
+        `ehdmaps.maps.rolling_film`.
+
+        Parameters
+        ----------
+        load : float or array
+            w [N/m], >= 0; the outer contact of `series` carries the centrifugal load besides.
+
+        Returns
+        -------
+        array (contacts, ...)
+            In the order of `ContactLaw.contacts`, over the shape of the loads.
+
+        Raises
+        ------
+        InputError
+            For loads that are no finite numbers >= 0.
+        MapError
+            If the map holds no rolling force.
+        """
+        if self.law.rolling is None:
+            raise MapError(
+                "contact law, rolling force: the map holds none, or not at all its points; allowed: maps without holes "
+                "by the solvers reynolds and openfoam, of schema 3; generate it again"
+            )
+        loads = _floats(load=load)["load"]
+        _check_finite({"load": loads})
+        if np.any(loads < 0.0):
+            raise InputError(f"contact law, load: got {float(np.min(loads)):.6g} N/m; allowed: >= 0")
+        extra = {"outer": self.centrifugal_load}
+        u, T = self.entrainment_speed, self.temperature
+        return np.stack(
+            [
+                self.law.rolling.rolling_force(contact.name, loads + extra.get(contact.name, 0.0), u, T)
+                for contact in self.law.contacts
+            ]
+        )
 
     def _check_loads(self, loads: FloatArray) -> None:
         """Count loads above the map, and raise where the law does."""

@@ -41,12 +41,15 @@ class FilmState:
         Approach at which each film would be in equilibrium [m].
     change : array
         What the last step changed in its squeezing G [N s/m2], see `ehdmaps.maps.memory_table`.
+    load : array
+        Load at the end of the last step [N/m].
     step : float
         Length of the last step [s]; 0 after a rest.
     """
 
     approach: FloatArray
     change: FloatArray
+    load: FloatArray
     step: float = 0.0
 
 
@@ -114,7 +117,9 @@ class FilmMemory:
             For approaches that are no finite numbers.
         """
         approach = np.maximum(_finite("delta", delta), self._table.lift_off)
-        return FilmState(approach, np.zeros_like(approach))
+        loads = np.empty(approach.size)
+        _loads_at_rest(self._table, np.ascontiguousarray(approach).reshape(-1), loads)
+        return FilmState(approach, np.zeros_like(approach), loads.reshape(approach.shape))
 
     def advance(self, state: FilmState, delta: npt.ArrayLike, dt: float) -> tuple[Any, Any, FilmState]:
         """A step in time. The state that goes in is left as it is: the step may be tried again.
@@ -156,7 +161,14 @@ class FilmMemory:
         _advance_many(self._table, float(dt), state.step, flat, before, change, found)
         w, tangent, approach, changed = (row.reshape(ends.shape) for row in found)
         self._check(w)
-        return w[()], tangent[()], FilmState(approach, changed, float(dt))
+        return w[()], tangent[()], FilmState(approach, changed, w, float(dt))
+
+
+@njit(cache=True, error_model="numpy")
+def _loads_at_rest(table: MemoryTable, approach: FloatArray, loads: FloatArray) -> None:
+    """Loads of films in equilibrium, flat."""
+    for i in range(approach.size):
+        loads[i] = equilibrium_at(table, approach[i])[0]
 
 
 @njit(cache=True, error_model="numpy")

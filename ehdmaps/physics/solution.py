@@ -60,10 +60,15 @@ class FilmSolution:
         h at the contact centre, smallest h [m].
     max_pressure : float
         [Pa].
+    rolling_force : float
+        Int h dp/dx dx, what both walls feel together against pure rolling [N/m]; the film takes the power
+        rolling_force u per length. See `ehdmaps.physics.rolling`.
+    mass_flow : float
+        Mass of oil that goes through the contact, per length and time [kg/(m s)].
     film_offset_error, film_compliance_error, loss_compliance_error : float
         Estimated numerical errors, relative to the value beside them; positive where the value is too large, so that
         errors of compliance and loss that come from one cause can cancel in the damping.
-    central_film_error, minimum_film_error, max_pressure_error : float
+    central_film_error, minimum_film_error, max_pressure_error, rolling_force_error, mass_flow_error : float
         The same without a sign.
     iterations : int
         Newton steps (or the solver's own count), all grids together.
@@ -81,12 +86,16 @@ class FilmSolution:
     central_film: float = math.nan
     minimum_film: float = math.nan
     max_pressure: float = math.nan
+    rolling_force: float = math.nan
+    mass_flow: float = math.nan
     film_offset_error: float = math.nan
     film_compliance_error: float = math.nan
     loss_compliance_error: float = math.nan
     central_film_error: float = math.nan
     minimum_film_error: float = math.nan
     max_pressure_error: float = math.nan
+    rolling_force_error: float = math.nan
+    mass_flow_error: float = math.nan
     iterations: int = 0
     solve_seconds: float = 0.0
     viscosity_extrapolated: bool = False
@@ -129,7 +138,7 @@ class ContactSolution:
     damping : float
         c [N s/m2].
     film_offset_error, film_compliance_error, stiffness_error, damping_error : float
-    central_film_error, minimum_film_error, max_pressure_error : float
+    central_film_error, minimum_film_error, max_pressure_error, rolling_force_error, mass_flow_error : float
         Estimated relative numerical errors.
     loss_compliance_error : float
         The same, positive where the error of the loss has the sign of that of the film compliance: the two can cancel
@@ -149,6 +158,8 @@ class ContactSolution:
     central_film: float
     minimum_film: float
     max_pressure: float
+    rolling_force: float
+    mass_flow: float
     film_offset_error: float
     film_compliance_error: float
     loss_compliance_error: float
@@ -157,6 +168,8 @@ class ContactSolution:
     central_film_error: float
     minimum_film_error: float
     max_pressure_error: float
+    rolling_force_error: float
+    mass_flow_error: float
     iterations: int
     solve_seconds: float
     viscosity_extrapolated: bool
@@ -359,6 +372,8 @@ def contact_solution(film: FilmSolution, contact: LineContact, point: OperatingP
         central_film=film.central_film,
         minimum_film=film.minimum_film,
         max_pressure=film.max_pressure,
+        rolling_force=film.rolling_force,
+        mass_flow=film.mass_flow,
         film_offset_error=abs(film.film_offset_error),
         film_compliance_error=abs(film.film_compliance_error),
         loss_compliance_error=film.loss_compliance_error * math.copysign(1.0, film.film_compliance_error),
@@ -367,6 +382,8 @@ def contact_solution(film: FilmSolution, contact: LineContact, point: OperatingP
         central_film_error=film.central_film_error,
         minimum_film_error=film.minimum_film_error,
         max_pressure_error=film.max_pressure_error,
+        rolling_force_error=film.rolling_force_error,
+        mass_flow_error=film.mass_flow_error,
         iterations=film.iterations,
         solve_seconds=film.solve_seconds,
         viscosity_extrapolated=film.viscosity_extrapolated,

@@ -56,6 +56,7 @@ def film_errors(
                 damping=damping,
                 springs=(relaxation.rows @ motion) ** 2,
                 times=relaxation.times,
+                natural=element.natural_times(ports, operation),
             )
         )
     return found

@@ -11,6 +11,7 @@ from ehdmaps.physics.solids import STEEL
 from mbs.analyses.film_errors import ring_motions
 from mbs.bearings.contact_report import BearingContacts, bearing_contacts, overload
 from mbs.bearings.films import DryContacts
+from mbs.bearings.rolling_loss import RollingLoss, rolling_loss
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.free_motion import free_lines, free_motions
@@ -30,6 +31,8 @@ class StaticsResult:
         Displacements, forces, stiffness and damping.
     contacts : tuple of BearingContacts
         Pressures and films, one a bearing.
+    losses : tuple of RollingLoss
+        What rolling costs, one a bearing.
     overloads : tuple of str
         Bearings whose pressures are above the static limit.
     free : tuple of str
@@ -41,6 +44,7 @@ class StaticsResult:
     model: Model
     balance: Equilibrium
     contacts: tuple[BearingContacts, ...]
+    losses: tuple[RollingLoss, ...]
     overloads: tuple[str, ...]
     free: tuple[str, ...]
     dataset: xr.Dataset
@@ -71,13 +75,14 @@ def statics(model: Model, operation: Operation | None = None) -> StaticsResult:
     balance = equilibrium(model.system, operation or model.operation)
     free = tuple(free_lines(free_motions(balance)))
     contacts = tuple(_contacts(model, balance, index) for index in range(len(model.bearings)))
+    losses = tuple(_loss(model, balance, index, state) for index, state in enumerate(contacts))
     overloads = tuple(
         f"{bearing.name}: {sentence}"
         for bearing, state in zip(model.bearings, contacts, strict=True)
         if (sentence := overload(state))
     )
-    dataset = described(statics_dataset(balance, contacts, (*overloads, *free)), **law_attributes(model))
-    return StaticsResult(model, balance, contacts, overloads, free, dataset)
+    dataset = described(statics_dataset(balance, contacts, losses, (*overloads, *free)), **law_attributes(model))
+    return StaticsResult(model, balance, contacts, losses, overloads, free, dataset)
 
 
 def _contacts(model: Model, balance: Equilibrium, index: int) -> BearingContacts:
@@ -94,3 +99,16 @@ def _contacts(model: Model, balance: Equilibrium, index: int) -> BearingContacts
         return bearing_contacts(model.films[bearing.name], *point)
     except InputError:  # the oil has no viscosity at this temperature, where a law is held at its edge
         return bearing_contacts(DryContacts(bearing.bearing.geometry.contacts(STEEL, "iso16281")), *point)
+
+
+def _loss(model: Model, balance: Equilibrium, index: int, contacts: BearingContacts) -> RollingLoss:
+    """What rolling costs in a bearing."""
+    bearing, motion = ring_motions(model, balance.displacement)[index]
+    operation = balance.operation
+    return rolling_loss(
+        contacts,
+        bearing.rollers(motion, operation).load,
+        bearing.bearing.slice_length,
+        bearing.entrainment_speed(operation),
+        (bearing.inner_spin - bearing.outer_spin) * operation.speed,
+    )

@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.copies import put
 from ehdmaps.maps.lines import FAST
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_element import BearingElement
@@ -122,9 +123,9 @@ def blend(films: Films, film: int, node: int, weight: float) -> None:
     low, cells, current = films.numbers[film, node], films.cells[film], films.current[film]
     tabulated = law_numbers(low).kind == CELLS
     if weight == 0.0:
-        current[:] = low
+        put(low, current)
         if tabulated:
-            cells[:] = films.tables[film, node]
+            put(films.tables[film, node].reshape(-1), cells.reshape(-1))
         return
     other = (node + 1) % films.tables.shape[1]
     _between(low, films.numbers[film, other], weight, current)

@@ -166,13 +166,13 @@ class ForceAtPoint:
     def _found(self, pose: npt.ArrayLike, velocity: npt.ArrayLike | None, cage_angle: float) -> tuple[FloatArray, bool]:
         """Force, stiffness and damping in rows (13, 6), and whether a slice was outside the map."""
         state, own_pose, own_velocity = self._state
-        own_pose[...] = pose if type(pose) is np.ndarray and pose.shape == _SIX else _vector("pose", pose)
+        own_pose[...] = pose if type(pose) is np.ndarray and pose.shape == _SIX else six_numbers("pose", pose)
         if velocity is None:
             own_velocity[...] = 0.0
         elif type(velocity) is np.ndarray and velocity.shape == _SIX:
             own_velocity[...] = velocity
         else:
-            own_velocity[...] = _vector("velocity", velocity)
+            own_velocity[...] = six_numbers("velocity", velocity)
         state[12] = cage_angle
         out: FloatArray = np.empty(_OUT)
         status = self._from_law(out) if self._by_slices else force_of_arrays(*self.arrays, out)
@@ -211,7 +211,7 @@ class ForceAtPoint:
     def _prepare(self, law: ContactLaw) -> None:
         """Make the law of this point ready for compiled code."""
         work = self._work
-        q = _check_conditions(self.conditions)
+        q = check_conditions(self.conditions)
         if q >= 0.0 and q < law.load_range[1]:
             conditions = np.array(self.conditions, dtype=np.float64)
             arrays, workspace = self._flat_law.arrays(law, q > 0.0)
@@ -259,7 +259,7 @@ class ForceAtPoint:
         """Raise what a status asks for; above the load of the table ask the law itself. Whether outside the map."""
         work, law = self._work, self._flat_law.law
         if status < 0:
-            _raise_state(work.state, work.sizes, status == NOT_FINITE)
+            raise_state(work.state, work.sizes, status == NOT_FINITE)
         if not isinstance(law, ContactLaw):
             return False
         if status > 0 and not self._by_slices:
@@ -278,8 +278,19 @@ class ForceAtPoint:
         return True
 
 
-def _check_conditions(conditions: tuple[float, float, float]) -> float:
-    """Refuse conditions that are missing or not finite; the centrifugal load."""
+def check_conditions(conditions: tuple[float, float, float]) -> float:
+    """Refuse conditions that are missing or not finite; the centrifugal load.
+
+    Parameters
+    ----------
+    conditions : (float, float, float)
+        u [m/s], T [K], centrifugal load [N/m].
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
     problems = []
     for name, value in zip(("entrainment_speed", "temperature", "centrifugal_load"), conditions, strict=True):
         try:
@@ -318,8 +329,21 @@ def _one_power(structure: FloatArray) -> bool:
     return bool(np.all(structure[:, 0] == POWER_LAW) and np.ptp(structure[:, 2]) < 1e-12)
 
 
-def _vector(name: str, given: Any) -> FloatArray:
-    """Six numbers."""
+def six_numbers(name: str, given: Any) -> FloatArray:
+    """Six numbers of a pose or a velocity, or an error.
+
+    Parameters
+    ----------
+    name : str
+        pose or velocity, for messages.
+    given : object
+        What was given.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
     try:
         values = np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError):
@@ -332,8 +356,23 @@ def _vector(name: str, given: Any) -> FloatArray:
     return values
 
 
-def _raise_state(state: FloatArray, sizes: Sizes, not_finite: bool) -> None:
-    """Say what is wrong about pose, velocity or cage angle."""
+def raise_state(state: FloatArray, sizes: Sizes, not_finite: bool) -> None:
+    """Say what is wrong about pose, velocity or cage angle.
+
+    Parameters
+    ----------
+    state : array (13,)
+        Pose (6), velocity (6), cage angle.
+    sizes : Sizes
+        Sizes of the bearing.
+    not_finite : bool
+        Whether some are no finite numbers; else they are too large.
+
+    Raises
+    ------
+    InputError
+        Always.
+    """
     named = {"pose": state[:6], "velocity": state[6:12], "cage_angle": state[12:]}
     if not_finite:
         raise InputError(

@@ -19,7 +19,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.maps.law import ContactLaw, LawAtPoint
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.film_relaxation import relaxation_times, relaxing
+from mbs.bearings.film_relaxation import natural_times, relaxation_times, relaxing
 from mbs.bearings.laws import DryLaw, Law
 from mbs.model.elements import Forces
 from mbs.model.relaxation import Relaxation
@@ -145,6 +145,26 @@ class RollerContacts:
             damping.append(c.reshape(-1))
             times.append(relaxation_times(law.at(entrainment_speed, temperature), delta).reshape(-1))
         return relaxing(np.concatenate(rows), np.concatenate(damping), np.concatenate(times))
+
+    def natural_times(
+        self, displacement: npt.ArrayLike, *, cage_angle: float, entrainment_speed: float, temperature: float
+    ) -> FloatArray:
+        """Natural times of all contacts at rest, in the order of `relaxation` [s]; none for laws without films.
+
+        Parameters
+        ----------
+        displacement, cage_angle, entrainment_speed, temperature
+            The same as for `relaxation`.
+        """
+        q = self._vector("displacement", displacement)
+        times = []
+        for side, law in enumerate(self.laws):
+            if not isinstance(law, ContactLaw):
+                return np.zeros(0)
+            flat, tilted = self._rows(side, cage_angle)
+            delta = (flat @ q)[:, None] + self._x * (tilted @ q)[:, None] - self._lost
+            times.append(natural_times(law.at(entrainment_speed, temperature), delta).reshape(-1))
+        return np.concatenate(times)
 
     def settled(
         self,

@@ -84,6 +84,16 @@ class RollerElement(RingElement):
             temperature=plain.temperature,
         )
 
+    def natural_times(self, displacement: FloatArray, operation: Operation) -> FloatArray:
+        """See `RingElement.natural_times`."""
+        plain = self.plain
+        return self.contacts.natural_times(
+            displacement,
+            cage_angle=plain.cage_angle(operation),
+            entrainment_speed=plain.entrainment_speed(operation),
+            temperature=plain.temperature,
+        )
+
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Forces on rings and rollers, stiffness and damping, see `Element.evaluate`."""
         plain = self.plain

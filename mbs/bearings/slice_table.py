@@ -16,6 +16,7 @@ from numba import njit
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.copies import put
 from ehdmaps.maps.binary_cells import last_of, nodes_of, rows_of
 from ehdmaps.maps.bulk import evaluate_many_at
 from ehdmaps.maps.kernel import LOAD_TOLERANCE, collapse
@@ -183,11 +184,14 @@ def tabulate(
     rate, forces = buffer[6, first:end], np.empty((3, end - first))
     rate[:] = 0.0
     evaluate_many_at(free, delta[first:end], rate, forces, counts)
-    w[first:end], dw[first:end], c[first:end] = forces[0], forces[1], forces[2]
+    put(forces[0], w[first:end])
+    put(forces[1], dw[first:end])
+    put(forces[2], c[first:end])
     # At a high rate the slope is nearly all damping.
     rate[:] = _PROBE
     evaluate_many_at(free, delta[first:end], rate, forces, counts)
-    dc[first:end] = (forces[1] - dw[first:end]) / _PROBE
+    for i in range(first, end):
+        dc[i] = (forces[1, i - first] - dw[i]) / _PROBE
     for i in range(first):
         w[i] = dw[i] = c[i] = dc[i] = 0.0
     for i in range(end, 2 * rows + 1):

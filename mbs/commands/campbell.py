@@ -101,8 +101,8 @@ def _overlay(entry: LawRun) -> Overlay | None:
     if entry.modes is None:
         return None
     found = entry.modes.damped
-    swinging = (found.bearing_share >= _LEAST_SHARE) & (found.damping_ratio <= _MOST_DAMPED)
-    shown = swinging.any(axis=0)
+    shown = (np.nan_to_num(found.bearing_share) >= _LEAST_SHARE).any(axis=0)
+    swinging = found.damping_ratio <= _MOST_DAMPED
     return Overlay(entry.modes.speeds, np.where(swinging, found.frequency, np.nan)[:, shown])
 
 

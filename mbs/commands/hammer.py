@@ -17,6 +17,7 @@ from mbs.commands.common import Told, film_lines, heading, outside_at
 from mbs.linearised.modes import Modes
 from mbs.modal.uff import UFF, Measurement
 from mbs.modal.uff_writing import write_uff
+from mbs.scene.contact_laws import FILM_WORDS
 from mbs.scene.fields import MILLISECOND
 from mbs.transient.hammer import HammerTest
 
@@ -33,7 +34,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *(f"warning: {name}: {n} calls outside the map" for name, n in found.outside_hits.items() if n),
     ]
     path = Path(arguments.output)
-    title = f"{scene.name}, {model.label}: {test.hits} hits a place, simulated"
+    films = FILM_WORDS[model.memory]
+    # The file stands alone: it says its films also where they are the default.
+    label = f"{model.label}, {films}" if found.errors and films not in model.label else model.label
+    title = f"{scene.name}, {label}: {test.hits} hits a place, simulated"
     write_uff(path, Measurement(title, hits))
     lines = [
         *heading(model, scene.speed),

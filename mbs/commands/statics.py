@@ -19,6 +19,7 @@ from mbs.commands.common import heading, outside_at, write
 from mbs.commands.reach import fade_lines
 from mbs.linearised.validity import NOTABLE
 from mbs.model.equilibrium import Equilibrium
+from mbs.output.bearing_text import loss_words
 from mbs.output.plot import statics_figure
 from mbs.scene.assembly import Model
 
@@ -53,6 +54,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             f"{np.count_nonzero(rollers.load > 0.0)} of {rollers.load.size} rollers loaded, the most with "
             f"{float(rollers.load.max()):.5g} N",
             f"  {_contact_words(contacts[index])}",
+            f"  {loss_words(found.losses[index])}",
             *_matrix("K [N/m, N/rad; N m/m, N m/rad]", stiffness),
             *_matrix("C [the same times s]", damping),
         ]

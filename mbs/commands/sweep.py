@@ -79,6 +79,7 @@ def _figure(cases: Sequence[Case], found: Sequence[Sweep]) -> Figure:
         [case.label for case in cases],
         [notable_from(case.model, entry.speeds, entry.displacement) for case, entry in zip(cases, found, strict=True)],
         max((fade.speed for fade in fades), default=0.0),
+        [case.model.memory == "memory" for case in cases],
     )
 
 

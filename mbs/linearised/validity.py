@@ -41,7 +41,7 @@ def memory_error(place: FloatArray) -> FloatArray:
     >>> memory_error(np.array([0.0, 1.0, 10.0])).tolist()
     [0.0, 0.015, 0.041]
     """
-    x, steps = np.log(np.maximum(place, 1e-30)), np.log(_PLACES)
+    x, steps = np.log(np.clip(place, 1e-30, 1e30)), np.log(_PLACES)
     cell = np.clip(np.searchsorted(steps, x) - 1, 0, steps.size - 2)
     slope = np.diff(np.log(_WITHIN)) / np.diff(steps)
     found = np.exp(np.log(_WITHIN)[cell] + slope[cell] * (x - steps[cell]))
@@ -53,8 +53,8 @@ class FilmError:
     """How far the films that an analysis has may be from true ones: along the load of a bearing, over frequency.
 
     The error is |dZ/Z| of the dynamic stiffness Z. That of films of slow motion is their difference from films with
-    memory. That of films with memory is `memory_error`, with the longest relaxation time of the slices, which is 0.6 to
-    1.4 natural times, in place of their natural times.
+    memory. That of films with memory is the mean of `memory_error` of its slices, each with the weight of c over its
+    natural time, which is some measure of its stiffness and all that is known of it here.
 
     Attributes
     ----------
@@ -68,6 +68,8 @@ class FilmError:
         k [N/m] and c [N s/m] of slow motion.
     springs, times : array, shape (r,)
         Stiffness [N/m] and relaxation time [s] of each slice, as of `mbs.model.relaxation`.
+    natural : array, shape (r,)
+        Natural time of each slice [s].
     """
 
     bearing: str
@@ -77,6 +79,7 @@ class FilmError:
     damping: float
     springs: FloatArray
     times: FloatArray
+    natural: FloatArray
 
     def error(self, frequencies: FloatArray) -> FloatArray:
         """Estimated |dZ/Z| at frequencies (k,) [Hz]; 0 at rest."""
@@ -84,7 +87,9 @@ class FilmError:
         if self.at_rest or not np.any(self.springs > 0.0):
             return np.zeros(omega.shape)
         if self.films == "memory":
-            return memory_error(omega * float(self.times[self.springs > 0.0].max()))
+            weights = np.where(self.springs > 0.0, self.springs * self.times / np.maximum(self.natural, 1e-30), 0.0)
+            errors = memory_error(np.multiply.outer(omega, self.natural))
+            return np.asarray(errors @ (weights / weights.sum()), dtype=np.float64)
         place = 1j * np.multiply.outer(omega, self.times)
         more = -(place**2 / (1.0 + place)) @ self.springs
         return np.asarray(np.abs(more) / np.abs(self.stiffness + 1j * omega * self.damping + more), dtype=np.float64)

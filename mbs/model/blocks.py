@@ -98,6 +98,18 @@ class Block(Protocol):
         ...
 
 
+class StatefulBlock(Block, Protocol):
+    """All elements of a kind with states of their own, which follow a run from Python to compiled code and back."""
+
+    def states(self) -> Sequence[Any]:
+        """States of each member after the last step that was made, as its `Element.advance` has them."""
+        ...
+
+    def resume(self, states: Sequence[Any]) -> None:
+        """Go on from states that `Element.advance` of each member gave: at the beginning, and after steps in Python."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class SteadyBlock:
     """A block whose arrays hold at every speed.
@@ -143,7 +155,7 @@ class Kind:
         Whether compiled code has this element of the class.
     accept : callable or None
         Compiled function (arrays, Moment) that is called when a step is made, for elements with states of their own;
-        the last answer was then that of the step.
+        the last answer was then that of the step. Their block is a `StatefulBlock`.
     """
 
     arrays: type

@@ -187,8 +187,9 @@ def nonlinear_hits(
     """Hits at every input, answered by the nonlinear system.
 
     The cage stands at its start angle while the films feel the speed, as in the linear analyses: the rollers that
-    pass would excite the system besides the hammer. Integrated by the trapezoidal rule, which damps nothing; its
-    frequencies are low by (omega h)^2/12, 0.2 % at the highest frequency of interest and 0.05 % at half of it.
+    pass would excite the system besides the hammer. Films with memory begin in equilibrium. Integrated by the
+    trapezoidal rule, which damps nothing; its frequencies are low by (omega h)^2/12, 0.2 % at the highest frequency of
+    interest and 0.05 % at half of it.
 
     Parameters
     ----------

@@ -113,12 +113,45 @@ def test_films_with_memory_at_one_speed(here, capsys, formula_maps):
         check_units(data)
         assert "film_1" in data["state"].values
         assert data.attrs["law"].endswith("films with memory")
+    struck = ("--hits", "1", "--highest", "9 kHz", "--duration", "10 ms", "-o", "h.uff")
+    status, out, err = run(capsys, "hammer", "nu308_rigid", *films, *struck)
+    assert (status, err) == (0, "")
+    assert "films with memory; estimated error" in out
+    assert "slow films; estimated error" in run(capsys, "hammer", "nu308_rigid", *films[:3], "slow", *struck)[1]
     slow = run(capsys, "statics", "nu308_rigid", *films[:2], "--films", "slow")[1]
     memory = run(capsys, "statics", "nu308_rigid", *films)[1]
-    kept = [line for line in slow.splitlines() if "films follow as in" not in line and ": law " not in line]
+    kept = [line for line in slow.splitlines() if ": law " not in line]
+    assert any("K and C are those of slow motion" in line for line in kept)
     assert [line for line in memory.splitlines() if ": law " not in line] == kept
     dry = run(capsys, "statics", "nu308_rigid", *films[:2], "--films", "dry")[1]
     assert "law dry Hertz, ISO 16281" in dry
+
+
+def test_films_side_by_side_in_a_linear_analysis(here, capsys, formula_maps):
+    films = ("--films", "slow", "--films", "memory", "--films", "dry")
+    status, out, err = run(capsys, "lsa", "nu308_rigid", "--map", formula_maps["NU308"], *films, "--plot", "l.png")
+    assert (status, err) == (0, "")
+    assert [line.strip() for line in out.splitlines() if "case: " in line] == [
+        "case: formula map, slow films",
+        "case: formula map, films with memory",
+        "case: dry Hertz",
+    ]
+    assert out.count("warning: bearing_left: slow films; estimated error") == 1
+    assert out.count("\nbearing_left: films with memory; estimated error") == 1
+    assert (here / "l.png").stat().st_size > 10_000
+
+
+def test_a_hammer_test_says_which_films_it_had(here, capsys, formula_maps):
+    given = ("hammer", "nu308_rigid", "--map", formula_maps["NU308"], "--clearance", "20 um", "--hits", "1")
+    found = []
+    for films in ("slow", "memory"):
+        status, out, _ = run(capsys, *given, "--films", films, "-o", f"{films}.uff", "--duration", "0.05 s")
+        assert status == 0
+        found.append(re.findall(r"^ +\d+ +(\S+) Hz", out, re.MULTILINE))
+    # the eigenvalues that are expected, and the records, are those of the films that were asked for
+    assert found[0] != found[1]
+    assert "formula map, slow films: 1 hits" in (here / "slow.uff").read_text()
+    assert "formula map, films with memory: 1 hits" in (here / "memory.uff").read_text()
 
 
 def test_linear_analysis_with_rollers_as_bodies(here, capsys, formula_maps):

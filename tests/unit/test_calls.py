@@ -20,9 +20,7 @@ from ehdmaps.physics.solution import ContactSolverDefaults, Status
 NU308, FVA3 = BearingGeometry.named("NU308"), Lubricant.named("FVA3")
 CONTACT = NU308.contacts(STEEL, "iso16281")[0]
 AXES = {"loads": (1e4, 33333.3, 1e5), "entrainment_speeds": (0.7, 2.0), "temperatures": (313.15, 333.15)}
-SAME = [
-    entry.name for entry in schema.table() if not entry.axis and entry.name not in ("solve_seconds", "friction_force")
-]
+SAME = [entry.name for entry in schema.table() if not entry.axis and entry.name != "solve_seconds"]
 
 
 def built(**changes: object) -> Job:

@@ -153,7 +153,7 @@ class TestReach:
 class TestWords:
     def test_films_of_slow_motion_are_said_to_be_wrong(self):
         """One slice of k = c = spring = 1 and theta = 1 ms: Z = k + s c - s^2 theta^2/(1 + s theta)."""
-        entry = FilmError("a", "slow", False, 1.0, 1e-3, np.array([1.0]), np.array([1e-3]))
+        entry = FilmError("a", "slow", False, 1.0, 1e-3, np.array([1.0]), *[np.array([1e-3])] * 2)
         s = 2j * math.pi * 100.0
         more = -((s * 1e-3) ** 2) / (1.0 + s * 1e-3)
         assert entry.at(100.0) == pytest.approx(abs(more) / abs(1.0 + s * 1e-3 + more))
@@ -167,8 +167,8 @@ class TestWords:
         assert line.startswith("a: slow films; ") and "load at 1 Hz and 500 rpm: " in line
 
     def test_films_with_memory_have_an_error_too(self):
-        entry = FilmError("a", "memory", False, 1.0, 1e-3, np.array([1.0, 0.0]), np.array([1e-3, 1.0]))
-        # omega theta = 1 of the only slice that relaxes
+        entry = FilmError("a", "memory", False, 1.0, 1e-3, np.array([1.0, 0.0]), *[np.array([1e-3, 1.0])] * 2)
+        # omega T = 1 of the only slice that relaxes
         (line,) = film_lines([entry], [1e3 / (2.0 * math.pi)])
         assert line.startswith("a: films with memory; estimated error") and line.endswith(": 1.5 %")
         (line,) = film_lines([entry], [30e3 / (2.0 * math.pi)])
@@ -182,7 +182,7 @@ class TestWords:
         assert 0.015 < memory_error(np.array([2.0]))[0] < 0.031
 
     def test_at_rest_there_is_no_film(self):
-        entry = FilmError("a", "slow", True, 1.0, 0.0, np.array([0.0]), np.array([1.0]))
+        entry = FilmError("a", "slow", True, 1.0, 0.0, np.array([0.0]), *[np.array([1.0])] * 2)
         assert entry.at(1e4) == 0.0 and entry.frequency == math.inf
         (line,) = film_lines([entry], [1e4])
         assert line == "warning: a: at rest no film: the stiffness is that of dry contacts, no damping"

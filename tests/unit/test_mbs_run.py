@@ -20,10 +20,11 @@ from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
+from mbs.transient.integration_kernel import eliminate
 from mbs.transient.kinds import kind_of
 from mbs.transient.linear_part import LinearPart
 from mbs.transient.run import CHUNK, Options, run
-from mbs.transient.run_kernel import _expanded_times, _solve
+from mbs.transient.run_kernel import _expanded_times
 from mbs.transient.stepping import Method
 from tests.cases.bearings import TEMPERATURE, integrate, map_law
 
@@ -278,12 +279,12 @@ class TestAlgebra:
             if n > 1:
                 matrix[0, 0] = 0.0  # needs a pivot
             expected = np.linalg.solve(matrix, right)
-            assert _solve(matrix.copy(), right)
+            assert eliminate(matrix.copy(), right)
             np.testing.assert_allclose(right, expected, rtol=1e-9)
 
     @pytest.mark.parametrize("wrong", [0.0, math.nan, math.inf])
     def test_solve_says_that_it_cannot(self, wrong):
-        assert not _solve(np.full((2, 2), wrong), np.ones(2))
+        assert not eliminate(np.full((2, 2), wrong), np.ones(2))
 
     def test_expansion_over_the_speed(self):
         """As good as it is said to be up to the speed to which it is said to be good, and wrong well beyond."""

@@ -15,7 +15,7 @@ from ehdmaps.ehl.frequency import group_spectrum
 from ehdmaps.ehl.grid import GridShape
 from ehdmaps.ehl.line import LOAD, GroupSolution, Resolution, linearised_profile, solve_groups
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.ehl.spectrum import film_compliances
+from ehdmaps.ehl.spectrum import film_compliances, film_space
 from ehdmaps.ehl.transient import follow
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
@@ -84,14 +84,17 @@ def test_krylov_space_against_a_direct_solve_at_each_frequency(M: float, L: floa
     assert solution.profile is not None
     linear = linearised_profile(solution.profile, Resolution())
     assert (linear.grid_mass is not None) == (solution.profile.spike is not None)
-    frequencies = np.geomspace(0.01, 30.0, 12) / _natural(solution)
+    real = np.geomspace(0.01, 30.0, 12) / _natural(solution)
+    # complex ones are of modes: e^(lambda t), Omega = -i lambda b/u
+    frequencies = np.concatenate([real, (1.0 + 0.25j) * real[:-1]])
     rates = np.column_stack([linear.storage(column) for column in np.eye(linear.size)])
     direct = [
         -np.linalg.solve(linear.matrix + 1j * frequency * rates, linear.unit.astype(complex))[linear.height]
         - DRY_COMPLIANCE
         for frequency in frequencies
     ]
-    found = film_compliances(linear, frequencies)
+    found = film_space(linear, float(real[-1])).compliances(frequencies)
+    np.testing.assert_array_equal(found[: real.size], film_compliances(linear, real))
     # round-off of both: condition 1e4 to 1e6 of the matrix
     assert np.max(np.abs(found - direct) / np.abs(SOLIDS + np.array(direct))) < 1e-9
 
@@ -286,7 +289,9 @@ def test_errors_at_a_frequency_and_their_estimates() -> None:
             found.damping_error,
         )
         table.append([float(s[0]) / float(w[0]) for s, w in zip(stated, wrong, strict=True)])
-    ratios = np.array(table)[:60]
+        if len(table) == 60:
+            break
+    ratios = np.array(table)
     assert len(ratios) == 60
     # an estimate that bounds 90 % of all points bounds at least 49 of 60 drawn ones with 98 % probability
     assert np.all(np.count_nonzero(ratios >= 1.0, axis=0) >= 49), np.mean(ratios >= 1.0, axis=0)
