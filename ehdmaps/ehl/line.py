@@ -86,12 +86,15 @@ class GroupSolution:
 
     The rolling force has the unit p_H b^2/R, the mass flow b^2/R times density at rest and u.
     Those of film offset, film compliance and loss are positive where the value is too large, the others always.
-    `profile` is the fine solution and `rough` the coarse one, None where there is none.
+    `profile` is the fine solution and `rough` the coarse one, `linear` and `rough_linear` the equations about them;
+    None where there is none.
     """
 
     outcome: int
     profile: Profile | None
     rough: Profile | None = None
+    linear: Linearisation | None = None
+    rough_linear: Linearisation | None = None
     film_offset: float = math.nan
     film_compliance: float = math.nan
     loss: float = math.nan
@@ -171,9 +174,9 @@ def _solve_once(
     steps += more
     if fine is None:
         return GroupSolution(outcome=outcome, profile=None, steps=steps)
-    response = linearised_profile(fine, resolution).slow_response()
-    rough = linearised_profile(coarse, resolution).slow_response()
-    return _assembled(M, L, fine, coarse, response, rough, resolution, steps)
+    linear, rough = linearised_profile(fine, resolution), linearised_profile(coarse, resolution)
+    solution = _assembled(M, L, fine, coarse, linear.slow_response(), rough.slow_response(), resolution, steps)
+    return replace(solution, linear=linear, rough_linear=rough)
 
 
 def _converged(

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ehdmaps.arrays import FloatArray
@@ -29,6 +30,7 @@ from ehdmaps.physics.solution import (
     FilmSolution,
     FilmSpectrum,
     Status,
+    natural_to_hertz,
     no_spectrum,
     slow_spectrum,
 )
@@ -87,6 +89,14 @@ class ReynoldsSolver(ContactSolverDefaults):
         return True
 
     @property
+    def natural_frequencies(self) -> tuple[float, ...]:
+        """Octaves over which the complex stiffness of a contact goes from that of slow motion to that of a locked film.
+
+        They cost a sixth of a map's time.
+        """
+        return (0.5, 1.0, 2.0, 4.0, 8.0)
+
+    @property
     def resolution(self) -> Resolution:
         """The same settings, as the solve in groups takes them."""
         return Resolution(density=self.density, inlet_length=self.inlet_length, tolerance=self.tolerance)
@@ -110,15 +120,42 @@ class ReynoldsSolver(ContactSolverDefaults):
         temperature: float,
     ) -> tuple[FilmSolution, ...]:
         """Films at each load, each from the one before it; arguments as of `ContactSolver.solve_line`."""
+        solved = self._solve_line(contact, lubricant, loads, entrainment_speed, temperature)
+        return tuple(film for film, _ in solved)
+
+    def line_spectra(
+        self,
+        contact: LineContact,
+        lubricant: Lubricant,
+        loads: tuple[float, ...],
+        entrainment_speed: float,
+        temperature: float,
+    ) -> tuple[FilmSpectrum, ...]:
+        """The same films, each over frequency from its one solution; arguments as of `ContactSolver.line_spectra`."""
+        solved = self._solve_line(contact, lubricant, loads, entrainment_speed, temperature)
         state = lubricant.at(temperature)
-        films = []
+        spectra = []
+        for load, (film, groups) in zip(loads, solved, strict=True):
+            point = OperatingPoint(load, entrainment_speed, temperature)
+            frequencies = natural_to_hertz(self.natural_frequencies, film, contact, point)
+            spectra.append(self._spectrum(contact, state, point, film, groups, frequencies))
+        return tuple(spectra)
+
+    def _solve_line(
+        self,
+        contact: LineContact,
+        lubricant: Lubricant,
+        loads: tuple[float, ...],
+        entrainment_speed: float,
+        temperature: float,
+    ) -> Iterator[tuple[FilmSolution, GroupSolution | None]]:
+        """Films at each load, each from the one before it, with their solutions in groups."""
+        state = lubricant.at(temperature)
         previous: Profile | None = None
         for load in loads:
-            OperatingPoint(load, entrainment_speed, temperature)
             film, groups = self._solve(contact, state, OperatingPoint(load, entrainment_speed, temperature), previous)
-            films.append(film)
             previous = previous if groups is None else groups.profile
-        return tuple(films)
+            yield film, groups
 
     def film_spectrum(
         self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: FloatArray
@@ -126,6 +163,18 @@ class ReynoldsSolver(ContactSolverDefaults):
         """Film of one point over frequency, from one solution; arguments as of `ContactSolver.film_spectrum`."""
         state = lubricant.at(point.temperature)
         film, groups = self._solve(contact, state, point, None)
+        return self._spectrum(contact, state, point, film, groups, frequencies)
+
+    def _spectrum(
+        self,
+        contact: LineContact,
+        state: LubricantState,
+        point: OperatingPoint,
+        film: FilmSolution,
+        groups: GroupSolution | None,
+        frequencies: FloatArray,
+    ) -> FilmSpectrum:
+        """A solved film over frequency."""
         if not film.status.usable:
             return no_spectrum(film, frequencies)
         if groups is None:
@@ -133,7 +182,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         load, speed = point.load, point.entrainment_speed
         _, M, L = line_problem(contact, state, load, speed)
         half = float(half_width(load, contact.radius, contact.reduced_modulus))
-        found = group_spectrum(M, L, groups, self.resolution, 2.0 * math.pi * frequencies * half / speed)
+        found = group_spectrum(M, L, groups, 2.0 * math.pi * frequencies * half / speed)
         unit = 4.0 / contact.reduced_modulus  # b/(p_H R)
         return FilmSpectrum(film, frequencies, unit * found.compliance, unit * found.errors)
 

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.ehl.linearisation import Linearisation
+from ehdmaps.ehl.linearisation import Arrays, Linearisation, solved, storage
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 
 SMALL_RESIDUAL = 1e-13
@@ -23,6 +23,8 @@ SMALL_RESIDUAL = 1e-13
 
 CHECK_EVERY = 3
 """Vectors that are added between two looks at the residual."""
+
+_TINY = float(np.finfo(float).tiny)
 
 
 def film_compliances(linear: Linearisation, frequencies: FloatArray) -> ComplexArray:
@@ -85,9 +87,15 @@ def film_space(linear: Linearisation, fastest: float) -> FilmSpace:
     fastest : float
         Highest Omega = omega b/u.
     """
-    static = linear.solve(linear.unit)
+    return FilmSpace(*_space(linear.arrays, linear.unit, linear.height, fastest))
+
+
+@njit(cache=True)
+def _space(linear: Arrays, unit: FloatArray, height: int, fastest: float) -> tuple[float, FloatArray, FloatArray]:
+    """Length of the static response, T in the space of its vectors, and the unknown `height` of these."""
+    static = solved(linear, unit)
     norm = float(np.linalg.norm(static))
-    size = linear.size
+    size = unit.size
     basis = np.empty((size + 1, size))
     hessenberg = np.zeros((size + 1, size))
     basis[0] = static / norm
@@ -97,24 +105,25 @@ def film_space(linear: Linearisation, fastest: float) -> FilmSpace:
         count += 1
         if count % CHECK_EVERY == 0 and _residual(hessenberg, count, fastest) < SMALL_RESIDUAL:
             break
-        if hessenberg[count, count - 1] < np.finfo(float).tiny:
+        if hessenberg[count, count - 1] < _TINY:
             break
-    heights = np.ascontiguousarray(basis[:count, linear.height])
-    return FilmSpace(norm, np.ascontiguousarray(hessenberg[:count, :count]), heights)
+    return norm, hessenberg[:count, :count].copy(), basis[:count, height].copy()
 
 
-def _extend(linear: Linearisation, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
+@njit(cache=True)
+def _extend(linear: Arrays, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
     """Add T times the last vector to the basis, orthogonal to all before it; twice, for round-off."""
-    found = linear.solve(linear.storage(basis[count]))
+    found = solved(linear, storage(linear, basis[count]))
     for _ in range(2):
         along = basis[: count + 1] @ found
         hessenberg[: count + 1, count] += along
         found -= along @ basis[: count + 1]
     length = float(np.linalg.norm(found))
     hessenberg[count + 1, count] = length
-    basis[count + 1] = found / max(length, np.finfo(float).tiny)
+    basis[count + 1] = found / max(length, _TINY)
 
 
+@njit(cache=True)
 def _residual(hessenberg: FloatArray, count: int, frequency: float) -> float:
     """What the space leaves of the equations at a frequency, relative to the static response."""
     last = abs(_reduced(hessenberg, count, frequency)[count - 1])

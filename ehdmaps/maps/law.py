@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,6 +23,7 @@ from ehdmaps.maps.compilation import (
 from ehdmaps.maps.dry import DryField
 from ehdmaps.maps.excursions import Axis, Excursion, Range
 from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.locked_film import FORMULA, LockedFactors, locked_compliances
 from ehdmaps.maps.memory import FilmMemory, FilmState
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE, ApproachTable, LawTable, Point
@@ -33,6 +35,9 @@ OutsidePolicy = Literal["error", "clamp", "asymptote"]
 
 LOAD_REACH, SPEED_REACH = 100.0, 10.0
 """How far the policy `asymptote` goes, as multiples of the highest load and speed; it holds the edge beyond."""
+
+_LOAD_STEP = 0.1
+"""Step of ln of the load between the factors of the locked film."""
 
 _CAUSES: Mapping[str, int] = {"load": LOAD, "entrainment_speed": SPEED, "temperature": TEMPERATURE}
 
@@ -285,6 +290,36 @@ class ContactLaw:
         memory = self._latest.memory
         return memory.advance(memory.settled(delta) if state is None else state, delta, dt)
 
+    def locked_factors(self, entrainment_speed: float, temperature: float) -> LockedFactors:
+        """What the map says of the locked film, as factors of its closed formula; ones where it says nothing.
+
+        Several contacts in series have the sum of their locked compliances. Speed and temperature are held at the edges
+        of the map.
+
+        Parameters
+        ----------
+        entrainment_speed, temperature : float
+            u [m/s], of either sign, and T [K].
+        """
+        field = self._field
+        (slow, fast), (cold, hot) = field.speed_range, field.temperature_range
+        u, T = min(max(abs(entrainment_speed), slow), fast), min(max(temperature, cold), hot)
+        lowest, highest = field.load_range
+        loads = np.geomspace(lowest, highest, 2 + math.ceil(math.log(highest / lowest) / _LOAD_STEP))
+        whole, offset, compliance = np.zeros((3, loads.size))
+        for contact in self.contacts:
+            known = field.locked_factors(contact.name, loads, u, T)
+            if known is None:
+                return FORMULA
+            films = field.films(contact.name, loads[:, None, None], np.array([u]), np.array([T]))
+            own_offset, own_compliance = films[0][:, 0, 0], films[1][:, 0, 0]
+            by_formula = locked_compliances((contact,), own_offset, loads, own_compliance)
+            whole += by_formula * known
+            offset += own_offset
+            compliance += own_compliance
+        factors = whole / locked_compliances(self.contacts, offset, loads, compliance)
+        return LockedFactors(math.log(lowest), (loads.size - 1) / math.log(highest / lowest), factors)
+
     def _law_table(self) -> LawTable:
         """Everything but the single contacts of a series."""
         highest = self.load_range[1]
@@ -406,7 +441,8 @@ class LawAtPoint:
     @cached_property
     def memory(self) -> FilmMemory:
         """The law with films that need time, for steps in time."""
-        return FilmMemory(self.point, self.law.contacts, self.entrainment_speed, self._check_loads)
+        factors = self.law.locked_factors(self.entrainment_speed, self.temperature)
+        return FilmMemory(self.point, self.law.contacts, self.entrainment_speed, factors, self._check_loads)
 
     def rolling_force(self, load: npt.ArrayLike) -> FloatArray:
         """Rolling force of each contact at a load on the inner one, both walls together [N/m].

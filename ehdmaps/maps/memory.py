@@ -24,7 +24,8 @@ from numba import njit
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps import memory_table
-from ehdmaps.maps.memory_table import Film, MemoryTable, advanced, equilibrium_at, fill_memory, step_of
+from ehdmaps.maps.locked_film import LockedFactors, film_of
+from ehdmaps.maps.memory_table import MemoryTable, advanced, equilibrium_at, fill_memory, step_of
 from ehdmaps.maps.tables import Point
 from ehdmaps.physics.contact import LineContact
 
@@ -64,6 +65,8 @@ class FilmMemory:
         What is in series.
     entrainment_speed : float
         u [m/s], of either sign.
+    factors : LockedFactors
+        Factors of the closed formula of the locked film.
     check : callable
         Is told the loads of each step [N/m]; it may raise for those above the map.
 
@@ -78,6 +81,7 @@ class FilmMemory:
         point: Point,
         contacts: Sequence[LineContact],
         entrainment_speed: float,
+        factors: LockedFactors,
         check: Callable[[FloatArray], None],
     ) -> None:
         if point.centrifugal_load != 0.0:
@@ -86,17 +90,12 @@ class FilmMemory:
                 "without memory for rollers with centrifugal load"
             )
         self._check = check
-        film = Film(
-            len(contacts),
-            sum(contact.radius for contact in contacts) / len(contacts),
-            contacts[0].reduced_modulus,
-            abs(entrainment_speed),
-        )
+        film = film_of(contacts, entrainment_speed)
         cells = np.zeros((2 * memory_table.ROWS, 12))
         load_cells = np.zeros((memory_table.LOAD_ROWS, 4))
-        self._table = fill_memory(
-            point, film, memory_table.NODES, memory_table.LOAD_NODES, cells, load_cells, np.zeros(4, dtype=np.int64)
-        )
+        nodes, load_nodes = memory_table.NODES, memory_table.LOAD_NODES
+        counts = np.zeros(4, dtype=np.int64)
+        self._table = fill_memory(point, film, factors, nodes, load_nodes, cells, load_cells, counts)
 
     @property
     def table(self) -> MemoryTable:

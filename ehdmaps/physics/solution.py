@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Protocol
 
@@ -16,6 +16,7 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.hertz import natural_time
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.structure import structured
@@ -124,6 +125,13 @@ class FilmSpectrum:
     compliance: ComplexArray
     errors: ComplexArray
 
+    @property
+    def largest_error(self) -> FloatArray:
+        """Largest estimate of the error at each frequency, relative to the magnitude of S, shape (k,)."""
+        largest, size = np.max(np.abs(self.errors), axis=1), np.abs(self.compliance)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(largest == 0.0, 0.0, largest / size)
+
 
 @dataclass(frozen=True)
 class ContactSolution:
@@ -206,6 +214,11 @@ class ContactSolver(Protocol):
         ...
 
     @property
+    def natural_frequencies(self) -> tuple[float, ...]:
+        """omega sqrt(b^2 + 2 h R)/u at which the backbone of its maps holds the film compliance; none if empty."""
+        ...
+
+    @property
     def provenance(self) -> Mapping[str, str]:
         """Further attributes of its maps, by name."""
         ...
@@ -253,6 +266,23 @@ class ContactSolver(Protocol):
         """
         ...
 
+    def line_spectra(
+        self,
+        contact: LineContact,
+        lubricant: Lubricant,
+        loads: tuple[float, ...],
+        entrainment_speed: float,
+        temperature: float,
+    ) -> tuple[FilmSpectrum, ...]:
+        """Films of `solve_line`, each over `natural_frequencies`; arguments as of `solve_line`.
+
+        Parameters
+        ----------
+        contact, lubricant, loads, entrainment_speed, temperature
+            The arguments of `ContactSolver.solve_line`.
+        """
+        ...
+
     def settings(self) -> dict[str, float | int | str]:
         """Everything that changes the numbers, by name; goes into the map's attributes and the store's key."""
         ...
@@ -280,6 +310,11 @@ class ContactSolverDefaults:
         return False
 
     @property
+    def natural_frequencies(self) -> tuple[float, ...]:
+        """Its maps hold films of slow motion only."""
+        return ()
+
+    @property
     def provenance(self) -> Mapping[str, str]:
         """Its maps get no further attributes."""
         return {}
@@ -300,6 +335,50 @@ class ContactSolverDefaults:
         """
         (film,) = self.solve_line(contact, lubricant, (point.load,), point.entrainment_speed, point.temperature)
         return slow_spectrum(film, frequencies)
+
+    def line_spectra(
+        self: ContactSolver,
+        contact: LineContact,
+        lubricant: Lubricant,
+        loads: tuple[float, ...],
+        entrainment_speed: float,
+        temperature: float,
+    ) -> tuple[FilmSpectrum, ...]:
+        """Films of a line, and each once more over frequency; arguments as of `ContactSolver`.
+
+        Parameters
+        ----------
+        contact, lubricant, loads, entrainment_speed, temperature
+            The arguments of `ContactSolver.solve_line`.
+        """
+        spectra = []
+        for load, film in zip(
+            loads, self.solve_line(contact, lubricant, loads, entrainment_speed, temperature), strict=True
+        ):
+            point = OperatingPoint(load, entrainment_speed, temperature)
+            at = natural_to_hertz(self.natural_frequencies, film, contact, point)
+            found = self.film_spectrum(contact, lubricant, point, at) if film.status.usable else no_spectrum(film, at)
+            spectra.append(replace(found, film=film))
+        return tuple(spectra)
+
+
+def natural_to_hertz(
+    natural: tuple[float, ...], film: FilmSolution, contact: LineContact, point: OperatingPoint
+) -> FloatArray:
+    """Frequencies [Hz] of natural frequencies omega sqrt(b^2 + 2 h R)/u; NaN where the film has no solution.
+
+    Parameters
+    ----------
+    natural : tuple of float
+        Natural frequencies.
+    film : FilmSolution
+        The film at rest.
+    contact, point
+        What it belongs to.
+    """
+    modulus = contact.reduced_modulus
+    time = natural_time(point.load, film.film_offset, point.entrainment_speed, contact.radius, modulus)
+    return np.array(natural) / (2.0 * math.pi * time)
 
 
 def slow_spectrum(film: FilmSolution, frequencies: FloatArray) -> FilmSpectrum:

@@ -25,9 +25,10 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import lifted_loss
 from ehdmaps.maps.law import LawAtPoint
-from ehdmaps.maps.memory_table import Film, locked_stiffness
+from ehdmaps.maps.locked_film import film_of, locked_stiffness
+from ehdmaps.maps.locked_fit import fitted_factor, response_error
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.hertz import half_width
+from ehdmaps.physics.hertz import half_width, natural_time
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, valley_load_number
 from ehdmaps.physics.operating_point import OperatingPoint
@@ -333,8 +334,9 @@ class Response:
     ----------
     M, L : float
         Moes' numbers.
-    memory, slow, dry : float
-        Largest relative error of the complex stiffness by each law.
+    memory, formula, slow, dry : float
+        Largest relative error of the complex stiffness by each law: with memory as the response at the solver's natural
+        frequencies makes it, and with the closed formula of the locked film.
     worst : float
         omega T at which the law with memory is worst.
     at_places : tuple of float
@@ -346,6 +348,7 @@ class Response:
     M: float
     L: float
     memory: float
+    formula: float
     slow: float
     dry: float
     worst: float
@@ -370,20 +373,24 @@ def response(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> Res
     solver, load, speed = ReynoldsSolver(), point.load, point.entrainment_speed
     (film,) = solver.solve_line(contact, oil, (load,), speed, point.temperature)
     half = float(half_width(load, contact.radius, contact.reduced_modulus))
-    natural = math.sqrt(half**2 + 2.0 * film.film_offset * contact.radius) / speed
-    omega = NATURAL / natural
-    asked = np.concatenate([NATURAL, PLACES]) / (2.0 * math.pi * natural)
-    spectrum = contact_spectrum(solver.film_spectrum(contact, oil, point, asked), contact, point)
-    if not spectrum.solution.status.usable:
+    if not film.status.usable:
         raise NoSolutionError(f"none at {load:.6g} N/m, {speed:.6g} m/s, {point.temperature:.6g} K")
+    natural = natural_time(load, film.film_offset, speed, contact.radius, contact.reduced_modulus)
+    omega, held = NATURAL / natural, np.array(solver.natural_frequencies)
+    asked = np.concatenate([NATURAL, PLACES, held]) / (2.0 * math.pi * natural)
+    found = solver.film_spectrum(contact, oil, point, asked)
+    spectrum = contact_spectrum(found, contact, point)
     exact, k = spectrum.dynamic_stiffness[: omega.size], spectrum.solution.stiffness
-    beyond = spectrum.dynamic_stiffness[omega.size :]
+    beyond = spectrum.dynamic_stiffness[omega.size : -held.size]
     loss = lifted_loss(np.array(spectrum.solution.damping / k**2), np.array(half), speed, np.array(1.0 / k))
     c = float(loss) * k**2
-    dry, compliance = float(contact.structural_approach(load)), float(contact.structural_compliance(load))
-    stiff = locked_stiffness(
-        Film(1, contact.radius, contact.reduced_modulus, speed), dry - film.film_offset, load, k, c, dry, compliance
+    solids = float(contact.structural_compliance(load))
+    kept, locked = found.compliance[-held.size :], film_of((contact,), speed)
+    error = response_error(np.array([solids]), kept[None], found.largest_error[None, -held.size :])
+    factor = fitted_factor(
+        locked, load, film.film_offset, solids, film.film_compliance, float(loss), held, kept, float(error[0])
     )
+    stiff, by_formula = (locked_stiffness(locked, film.film_offset, load, k, c, solids, each) for each in (factor, 1.0))
     wrong = np.abs(relaxing(k, c, stiff, omega) / exact - 1.0)
     state = oil.at(point.temperature)
     alpha = state.pressure_viscosity.pressure_viscosity
@@ -392,8 +399,9 @@ def response(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> Res
         float(M),
         float(L),
         float(np.max(wrong)),
+        float(np.max(np.abs(relaxing(k, c, by_formula, omega) / exact - 1.0))),
         float(np.max(np.abs((k + 1j * omega * c) / exact - 1.0))),
-        float(np.max(np.abs(1.0 / (compliance * exact) - 1.0))),
+        float(np.max(np.abs(1.0 / (solids * exact) - 1.0))),
         float(NATURAL[np.argmax(wrong)]),
         tuple(np.abs(relaxing(k, c, stiff, PLACES / natural) / beyond - 1.0).tolist()),
         float(np.max(spectrum.dynamic_stiffness_error[: omega.size])),

@@ -243,8 +243,10 @@ def test_a_solver_that_lacks_members_is_told_which():
         assert lacking == [
             "solver Old, slow",
             "solver Old, wants_backbone",
+            "solver Old, natural_frequencies",
             "solver Old, provenance",
             "solver Old, film_spectrum",
+            "solver Old, line_spectra",
         ]
     found = ehdmaps.solve_points(CONTACT, FVA3, GRID, Complete())
     np.testing.assert_array_equal(found["stiffness"], ehdmaps.solve_points(CONTACT, FVA3, GRID, "formula")["stiffness"])

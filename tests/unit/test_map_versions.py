@@ -19,24 +19,41 @@ from ehdmaps.maps.emap import EHDMap, open_map
 from tests.cases.laws import dataset_of
 
 DATA = Path(__file__).parents[1] / "data"
-OLD = DATA / "schema1.nc"
-"""NU308 by the solver reynolds, with a standstill and a backbone, as `ehdmaps generate` wrote it in schema 1."""
+OLD, OLD_2 = DATA / "schema1.nc", DATA / "schema2.nc"
+"""NU308 by the solver reynolds, with a standstill and a backbone, as `ehdmaps generate` wrote it in schema 1 and 2."""
 
-RECORDED = json.loads((DATA / "schema1.json").read_text())
-"""Values of its laws by the code that made it: points (approach, rate, speed, temperature) and (w, dw/ddelta, dw/drate)
-of the laws of the backbone, and of those of the grid alone."""
+RECORDED = {path: json.loads(path.with_suffix(".json").read_text()) for path in (OLD, OLD_2)}
+"""Values of their laws by the code that made them: points (approach, rate, speed, temperature) and (w, dw/ddelta,
+dw/drate) of the laws of the backbone, and of those of the grid alone; of schema 2 also loads and tangents of a course
+in time with films that have a memory."""
+
+NEXT = schema.SCHEMA_VERSION + 1
 
 SAME_CODE = 1e-12
 """Relative: what compilers and powers of other machines may round otherwise. The record is no evidence of accuracy."""
 
 
+@pytest.mark.parametrize("path", [OLD, OLD_2], ids=["schema 1", "schema 2"])
 @pytest.mark.parametrize("laws", ["laws", "grid_laws"])
 @pytest.mark.parametrize("kind", ["series", "inner", "outer"])
-def test_laws_of_an_old_map_are_as_they_were(laws, kind):
-    emap = open_map(OLD)
+def test_laws_of_an_old_map_are_as_they_were(path, laws, kind):
+    emap, recorded = open_map(path), RECORDED[path]
     law = (emap if laws == "laws" else EHDMap(emap.dataset)).law(kind)
-    found = [law(*point) for point in RECORDED["points"]]
-    np.testing.assert_allclose(found, RECORDED[laws][kind], rtol=SAME_CODE)
+    found = [law(*point) for point in recorded["points"]]
+    np.testing.assert_allclose(found, recorded[laws][kind], rtol=SAME_CODE)
+
+
+@pytest.mark.parametrize("kind", ["series", "inner", "outer"])
+def test_films_with_memory_of_an_old_map_are_as_they_were(kind):
+    """It knows no response over frequency: its films lock by the closed formula."""
+    recorded = RECORDED[OLD_2]
+    memory = open_map(OLD_2).law(kind).at(1.0, 313.15).memory
+    state, found = memory.settled(recorded["course"][0]), []
+    for approach in recorded["course"]:
+        w, tangent, state = memory.advance(state, approach, recorded["step"])
+        found.append((w, tangent))
+    # The state is found to 1e-13 of the table's scale.
+    np.testing.assert_allclose(found, recorded["memory"][kind], rtol=1e-10)
 
 
 def test_an_old_map_holds_what_it_held_and_its_films():
@@ -111,6 +128,22 @@ def test_versions_that_nobody_knows_are_refused(tmp_path, version):
         open_map(path)
 
 
+def test_a_map_of_schema_2_holds_what_it_held():
+    emap = open_map(OLD_2)
+    assert emap.dataset.attrs["schema_version"] == 2
+    check_content(emap.dataset, emap.backbone, "old")
+    for held, group in ((emap.dataset, None), (emap.backbone, "backbone")):
+        with netCDF4.Dataset(OLD_2) as file:
+            file.set_auto_maskandscale(False)
+            variables = (file if group is None else file[group]).variables
+            names = [entry.name for entry in schema.table(group or schema.GRID, 2) if entry.dtype == "float64"]
+            for name in (name for name in names if name in variables):
+                assert np.array_equal(held[name].values, variables[name][...], equal_nan=True)
+    other = open_map(OLD_2, structural_law="half_space")
+    assert other.dataset.attrs["schema_version"] == schema.SCHEMA_VERSION
+    assert schema.NATURAL not in other.backbone.variables
+
+
 def test_an_old_map_that_calls_itself_new_is_refused(tmp_path):
     path = tmp_path / "map.nc"
     shutil.copy(OLD, path)
@@ -136,14 +169,14 @@ def test_what_the_table_of_the_version_does_not_name_is_left_alone(tmp_path):
 def test_one_row_of_the_table_makes_a_variable_or_an_axis(tmp_path, monkeypatch):
     """As the text of the table says: written, read, checked and sealed; older maps open as before."""
     rows = (
-        schema.Variable("heat_flow", "W m-1", "heat that the contact gives off", required=False, since=4),
+        schema.Variable("heat_flow", "W m-1", "heat that the contact gives off", required=False, since=NEXT),
         schema.Variable(
             "frequency",
             "Hz",
             "frequency of small motion",
             required=False,
             dims=("frequency",),
-            since=4,
+            since=NEXT,
             limits=(0.0, 1e9),
         ),
         schema.Variable(
@@ -152,12 +185,12 @@ def test_one_row_of_the_table_makes_a_variable_or_an_axis(tmp_path, monkeypatch)
             "film compliance at a frequency",
             required=False,
             dims=(*schema.DIMS, "frequency"),
-            since=4,
+            since=NEXT,
         ),
     )
     monkeypatch.setattr(schema, "TABLE", schema.TABLE + rows)
-    monkeypatch.setattr(schema, "SCHEMA_VERSION", 4)
-    plain = dataset_of().assign_attrs(schema_version=4)
+    monkeypatch.setattr(schema, "SCHEMA_VERSION", NEXT)
+    plain = dataset_of().assign_attrs(schema_version=NEXT)
     shape = plain["film_offset"].shape
     values = {name: plain[name].values for name in plain.data_vars}
     values |= {"heat_flow": np.full(shape, 0.1), "film_response": np.full((*shape, 2), 1e-12)}
@@ -198,4 +231,4 @@ def test_every_row_names_its_version():
 
 
 def test_fixture_is_small():
-    assert OLD.stat().st_size < 200_000
+    assert OLD.stat().st_size < 200_000 and OLD_2.stat().st_size < 200_000

@@ -24,7 +24,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import load_and_speed, moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
-from ehdmaps.physics.solution import contact_solution
+from ehdmaps.physics.solution import ContactSolverDefaults, contact_solution
 from ehdmaps.physics.spectrum import contact_spectrum
 from tests.cases.ehl import isoviscous_problem, roelands_problem, solved
 from tests.cases.laws import CONTACTS, OIL
@@ -303,7 +303,7 @@ def test_estimate_says_where_a_wave_is_not_resolved() -> None:
     M, L = 20.0, 15.0
     solution = solved(M, L)
     omega = np.array([1.0, 20.0, 30.0])
-    found = group_spectrum(M, L, solution, Resolution(), omega)
+    found = group_spectrum(M, L, solution, omega)
     fine = Resolution(density=40.0)
     exact = _responses(solve_groups(roelands_problem(M, L), M, L, fine), omega, fine)
     wrong = np.abs(found.compliance - exact) / np.abs(exact)
@@ -346,3 +346,19 @@ def test_film_in_time_says_where_it_ends() -> None:
     motion = follow(solution.profile, LOAD * np.array([1.0, 0.05, 0.05]), 0.01)
     assert np.isfinite(motion.height[1])
     assert np.isnan(motion.height[-1])
+
+
+def test_line_over_natural_frequencies_is_the_spectrum_of_each_of_its_points() -> None:
+    """One solution for all of it, beside a solve of each point anew, which has the same grids but another start."""
+    solver = ReynoldsSolver()
+    line = (CONTACTS[0], OIL, (3e4, 1e5, 3e5), 1.7, 313.15)
+    found = solver.line_spectra(*line)
+    assert [spectrum.film.film_offset for spectrum in found] == [film.film_offset for film in solver.solve_line(*line)]
+    again = ContactSolverDefaults.line_spectra(solver, *line)
+    for load, spectrum, anew in zip(line[2], found, again, strict=True):
+        half = float(half_width(load, CONTACTS[0].radius, CONTACTS[0].reduced_modulus))
+        time = math.sqrt(half**2 + 2.0 * spectrum.film.film_offset * CONTACTS[0].radius) / 1.7
+        assert 2.0 * math.pi * spectrum.frequencies * time == pytest.approx(solver.natural_frequencies, rel=1e-12)
+        # Another start lays another grid about the spike: the difference is within the error that is stated.
+        bound = np.maximum(spectrum.largest_error, 1e-4) * np.abs(spectrum.compliance)
+        assert np.all(np.abs(spectrum.compliance - anew.compliance) < bound)
