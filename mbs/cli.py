@@ -57,6 +57,7 @@ def parser() -> argparse.ArgumentParser:
         "variants",
         "a difference between two laws in a run-up under single changes, as a table",
         compares=True,
+        clearances=False,
     )
     _films(variants, compares=True)
     _variants(variants)
@@ -246,8 +247,10 @@ def _modal_fit(commands: Any) -> None:
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
 
 
-def _scene_command(commands: Any, name: str, words: str, compares: bool) -> argparse.ArgumentParser:
-    """Add a command on a scene; one that compares takes several laws, maps and clearances."""
+def _scene_command(
+    commands: Any, name: str, words: str, compares: bool, clearances: bool = True
+) -> argparse.ArgumentParser:
+    """Add a command on a scene; one that compares takes several laws and maps, and clearances if it says so."""
     command: argparse.ArgumentParser = commands.add_parser(name, help=words, description=words)
     command.add_argument("scene", metavar="SCENE")
     # What comes twice is an error of the command, in words, where it does not compare.
@@ -261,7 +264,8 @@ def _scene_command(commands: Any, name: str, words: str, compares: bool) -> argp
         "--clearance",
         metavar="LENGTH",
         action="append",
-        help=f'diametral clearance of all bearings, such as "20 um", in place of the scene\'s{more}',
+        help='diametral clearance of all bearings, such as "20 um", in place of the scene\'s'
+        + (more if clearances else ""),
     )
     command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
