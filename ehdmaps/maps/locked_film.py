@@ -94,10 +94,12 @@ def locked_compliance(film: Film, offset: float, load: float, compliance: float)
     ----------
     film : Film
         Geometry and moduli.
-    offset, compliance : float
-        Film offset [m] and film compliance [m2/N] of all contacts together.
+    offset : float
+        Film offset of all contacts together [m].
     load : float
-        [N/m], > 0.
+        Load [N/m], > 0.
+    compliance : float
+        Film compliance of all contacts together [m2/N].
     """
     each = max(offset, 0.0) / film.contacts
     square = 8.0 * load * film.radius / (math.pi * film.modulus)

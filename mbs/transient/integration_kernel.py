@@ -122,7 +122,22 @@ def correction(
 ) -> bool:
     """Newton's change of the acceleration, into `change` (n,); False if there is none.
 
-    The Jacobian is `linear` and what the elements add to it: T^T (by_q K + by_v C) T, K and C those of the ports.
+    The Jacobian is `linear` and what the elements add to it: T^T (by_q K + by_v C) T.
+
+    Parameters
+    ----------
+    linear : ndarray, shape (n, n)
+        Jacobian without the elements.
+    transform : ndarray, shape (m, n)
+        Displacements of the ports by the coordinates, T.
+    port_stiffness, port_damping : ndarray, shape (m, m)
+        K and C of the ports.
+    by_q, by_v : float
+        Derivatives of displacement and rate by the acceleration [s2], [s].
+    force : ndarray, shape (n,)
+        Forces that are out of balance.
+    change : ndarray, shape (n,)
+        Change of the acceleration; written.
     """
     matrix = linear.copy()
     m, n = transform.shape

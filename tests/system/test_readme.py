@@ -49,7 +49,7 @@ def test_script_prints_what_is_shown(made_map, monkeypatch, capsys):
 
 def test_blocks_of_python_compile():
     blocks = re.findall(r"```python\n(.*?)```", README + PYTHON, re.DOTALL)
-    assert len(blocks) == 5
+    assert len(blocks) == 6
     for block in blocks:
         compile(block, "README.md", "exec")
 
@@ -74,6 +74,17 @@ def test_films_with_memory_from_python(made_map, monkeypatch):
     rest, _, _ = found["fixed"](found["deltas"], 0.0)
     # pressed together at 0.1 mm/s: a little more than at rest
     assert np.all(found["w"] > rest) and np.all(found["w"] < 1.2 * rest)
+
+
+@pytest.mark.slow
+def test_a_bearing_in_time_from_python(made_map, monkeypatch):
+    (block,) = (text for text in re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL) if "force.advance(" in text)
+    monkeypatch.chdir(made_map)
+    Path("bearing.py").write_text(block)
+    found = runpy.run_path("bearing.py")
+    # the inner ring moves along y and z: rollers there are loaded, and push it back
+    assert found["films"].load.max() > 1e3
+    assert np.all(found["forces"].force[1:3] < 0.0)
 
 
 @pytest.mark.slow
