@@ -35,6 +35,7 @@ from ehdmaps.physics.solution import (
     slow_spectrum,
 )
 from ehdmaps.physics.spectrum import neighbours, read_beside
+from ehdmaps.physics.wall_stress import wall_stress_note
 
 CAVITATION_RANGE = 1e-6
 """Pressure over which liquid turns into the cavitated mixture, over the largest of the film (about)."""
@@ -319,7 +320,7 @@ class OpenFoamSolver(ContactSolverDefaults):
             if isinstance(error, RunError):
                 status, iterations = error.status, done + error.iterations
             return FilmSolution(status, f"{stage}: {error}", iterations=iterations, solve_seconds=seconds), None, None
-        return _film(contact, state, coarse, grid, time.perf_counter() - began), coarse, grid
+        return _film(contact, state, coarse, grid, time.perf_counter() - began, self.shear == "newtonian"), coarse, grid
 
     def parameters(
         self,
@@ -400,7 +401,12 @@ def _expected_film(contact: LineContact, state: LubricantState, point: Operating
 
 
 def _film(
-    contact: LineContact, state: LubricantState, coarse: GridSolution, fine: GridSolution, seconds: float
+    contact: LineContact,
+    state: LubricantState,
+    coarse: GridSolution,
+    fine: GridSolution,
+    seconds: float,
+    newtonian: bool,
 ) -> FilmSolution:
     """The fine solution with its errors, estimated as a third of the difference between both.
 
@@ -418,6 +424,10 @@ def _film(
         notes.append("film thicker than 1 % of the radius: the gap is that of a parabola")
     elif found.loss_compliance[0] < 0.0:
         notes.append("negative damping at the valley of an isothermal film; a contact law takes zero")
+    if newtonian:
+        notes.append(wall_stress_note(fine.film.x, fine.film.pressure, fine.film.film))
+    largest_error = abs(error(found.max_pressure, rough.max_pressure))
+    largest_error += peak_sampling_error(fine.film.x, fine.film.pressure, cusp=True)
     return FilmSolution(
         status=status,
         reason="; ".join(filter(None, notes)),
@@ -432,9 +442,8 @@ def _film(
         loss_compliance_error=error(found.loss_compliance[0], rough.loss_compliance[0]),
         central_film_error=abs(error(found.central_film, rough.central_film)),
         minimum_film_error=abs(error(found.minimum_film, rough.minimum_film)),
-        max_pressure_error=abs(error(found.max_pressure, rough.max_pressure))
-        + peak_sampling_error(fine.film.x, fine.film.pressure, cusp=True),
+        max_pressure_error=largest_error,
         iterations=rough.iterations + found.iterations,
         solve_seconds=seconds,
-        viscosity_extrapolated=found.max_pressure > state.fitted_pressure,
+        viscosity_extrapolated=found.max_pressure * (1.0 + largest_error) > state.fitted_pressure,
     )

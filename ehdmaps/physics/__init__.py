@@ -22,6 +22,7 @@ films               published film formulas: rigid, Dowson-Higginson, Pan-Hamroc
 unilateral          how damping acts in a contact that cannot pull; what kernels compile
 damping             published damping formulas: rolling film, squeeze film, Dietl
 peak                what the largest of sampled pressures lacks to the peak
+wall_stress         shear stress at the walls over pressure: where no oil is Newtonian
 thermal             reduction of the film by inlet shear heating
 structure           film and solids together: approach, stiffness, damping
 solution            `FilmSolution`, `ContactSolution`, `Status`, the Protocol `ContactSolver` and its defaults
