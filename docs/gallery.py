@@ -1,6 +1,7 @@
 """Pages of the examples: text, code, and the printed lines and figure of a run while the documentation is built.
 
-An example whose text, and the packages it runs on, are as they were at the last build is not run again.
+An example whose text, and the packages it runs on, are as they were at the last run is not run again: the tests of the
+examples read these pages too.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import hashlib
 import os
 import subprocess
 import sys
+from importlib import metadata
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -31,27 +33,53 @@ def make_gallery() -> None:
     ExampleError
         An example fails, or leaves no figure.
     """
-    PAGES.mkdir(exist_ok=True)
-    sources = hashlib.sha256()
-    for path in sorted([*ROOT.glob("ehdmaps/**/*.py"), *ROOT.glob("mbs/**/*.py"), *ROOT.glob("mbs/systems/*.toml")]):
-        sources.update(path.read_bytes())
+    sources = surroundings()
     examples = sorted(EXAMPLES.glob("[0-9][0-9]_*.py"))
     for example in examples:
-        _make_page(example, sources.hexdigest())
+        make_page(example, sources)
     names = {example.stem for example in examples}
     for page in PAGES.glob("*.md"):
         if page.stem not in names:
             page.unlink()
 
 
-def _make_page(example: Path, sources: str) -> None:
-    """Run an example and write its page, if either changed."""
+def surroundings() -> str:
+    """What the result of an example may depend on besides its text: Python, all packages, and the files of ours."""
+    installed = sorted(f"{each.name} {each.version}" for each in metadata.distributions())
+    found = hashlib.sha256("\n".join([sys.version, *installed]).encode())
+    shapes = ("ehdmaps/**/*.py", "ehdmaps/**/*.toml", "mbs/**/*.py", "mbs/systems/*.toml", "mbs/systems/*.nc")
+    for path in sorted(path for shape in shapes for path in ROOT.glob(shape)):
+        found.update(path.read_bytes())
+    return found.hexdigest()
+
+
+def make_page(example: Path, sources: str) -> Path:
+    """Run an example and write its page, if either changed.
+
+    Parameters
+    ----------
+    example : Path
+        The program.
+    sources : str
+        Found by `surroundings`.
+
+    Returns
+    -------
+    Path
+        The page; the figure lies in the folder of the same name.
+
+    Raises
+    ------
+    ExampleError
+        The example fails, or leaves no figure.
+    """
+    PAGES.mkdir(exist_ok=True)
     code = example.read_text(encoding="utf-8")
     state = hashlib.sha256(f"{Path(__file__).read_text(encoding='utf-8')}{sources}{code}".encode()).hexdigest()
     page, folder = PAGES / f"{example.stem}.md", PAGES / example.stem
     mark = f"% {state}"  # a comment of myst
     if page.is_file() and page.read_text(encoding="utf-8").startswith(mark):
-        return
+        return page
     folder.mkdir(exist_ok=True)
     for old in folder.iterdir():
         old.unlink()
@@ -71,6 +99,7 @@ def _make_page(example: Path, sources: str) -> None:
         f"File: `examples/{example.name}`",
     ]
     page.write_text("\n\n".join(text) + "\n", encoding="utf-8")
+    return page
 
 
 def _run(example: Path, folder: Path) -> str:

@@ -23,7 +23,7 @@ what bodies are     `flexible` (beams, finite elements, reduction)
 what connects them  `bearings` (the bearing force), `gears`
 linear              `linearised` (modes, responses, over speed); `modal` (identified from hammer hits)
 in time             `transient` (method, compiled runs); `spectral` (levels over speed and order)
-analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, hammer, plan
+analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, variants, hammer, plan
 for people          `output` (datasets, figures), `commands`, `cli`; `systems` (shipped scenes)
 ==================  ====================================================================================
 
@@ -49,6 +49,8 @@ if TYPE_CHECKING:
     from mbs.analyses.runup import runup
     from mbs.analyses.statics import statics
     from mbs.analyses.sweep import SweepSettings, sweep
+    from mbs.analyses.variants import Variation, variants
+    from mbs.analyses.varied import LawChoice
     from mbs.bearings.bearing import Bearing
     from mbs.bearings.bearing_force import BearingForce
     from mbs.flexible.attached import Attached
@@ -78,6 +80,7 @@ __all__ = [
     "HammerSettings",
     "Inertia",
     "Input",
+    "LawChoice",
     "Load",
     "LsaSettings",
     "Model",
@@ -95,6 +98,7 @@ __all__ = [
     "Spring",
     "SweepRange",
     "SweepSettings",
+    "Variation",
     "assemble",
     "campbell",
     "hammer",
@@ -107,6 +111,7 @@ __all__ = [
     "shipped_systems",
     "statics",
     "sweep",
+    "variants",
 ]
 
 _HOMES = {
@@ -122,6 +127,7 @@ _HOMES = {
     "HammerSettings": "analyses.hammer",
     "Inertia": "model.body",
     "Input": "model.elements",
+    "LawChoice": "analyses.varied",
     "Load": "model.elements",
     "LsaSettings": "analyses.lsa",
     "Model": "scene.assembly",
@@ -139,6 +145,7 @@ _HOMES = {
     "Spring": "model.elements",
     "SweepRange": "settings",
     "SweepSettings": "analyses.sweep",
+    "Variation": "analyses.variants",
     "assemble": "scene.assembly",
     "campbell": "analyses.campbell",
     "hammer": "analyses.hammer",
@@ -151,6 +158,7 @@ _HOMES = {
     "shipped_systems": "scene.reader",
     "statics": "analyses.statics",
     "sweep": "analyses.sweep",
+    "variants": "analyses.variants",
 }
 
 

@@ -12,8 +12,15 @@ from ehdmaps.errors import AnalysisError
 from ehdmaps.program import Parser, run
 from mbs.model.relaxation import DEFAULT_FILMS
 
+VARIED_KEYS = "clearance, temperature, films, housing-damping, ramp, start-angle, load-factor, step, slices, law"
+"""The keys of `mbs.analyses.varied.VARIED`, which takes longer to import than a command to be refused."""
+
 _MORE = "; more than once to compare"
-_LAW = "hertz | formula | constant:NAME | map; default: map with --map, else hertz. NAME is a table [laws.NAME]"
+_LAW = (
+    "hertz | hertz:TIME | hertz:DAMPING | formula | constant:NAME | map; default: map with --map, else hertz. TIME is "
+    "damping over stiffness of a dry contact ('hertz:1.25e-5 s'; usual: 0.25e-5 to 2.5e-5 s), DAMPING a constant one "
+    "('hertz:100 N s/m' of each contact of a roller), NAME a table [laws.NAME]"
+)
 _STRUCTURE = "law of the solids in the contacts of a map: iso16281 | palmgren | half_space; default: that of its job"
 
 
@@ -38,14 +45,25 @@ def parser() -> argparse.ArgumentParser:
         command = _scene_command(commands, name, words, compares=False)
         if name == "modes":
             _modes(command)
-        _films(command, compares=False)
+        _films(command, compares=name == "lsa")
     sweep = _scene_command(commands, "sweep", "modes, bearings and frequency responses over speed", compares=True)
     _films(sweep, compares=True)
     _sweep(sweep)
     campbell = _scene_command(commands, "campbell", "run-up in time as levels over speed and frequency", compares=True)
     _films(campbell, compares=True)
     _campbell(campbell)
-    _hammer(_scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=False))
+    variants = _scene_command(
+        commands,
+        "variants",
+        "a difference between two laws in a run-up under single changes, as a table",
+        compares=True,
+        clearances=False,
+    )
+    _films(variants, compares=True)
+    _variants(variants)
+    hammer = _scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=False)
+    _films(hammer, compares=False)
+    _hammer(hammer)
     _modal_fit(commands)
     _bearing(commands)
     _plan(commands)
@@ -96,7 +114,22 @@ def _campbell(command: argparse.ArgumentParser) -> None:
     command.add_argument("--sensor", metavar="NAME", help="a sensor; default: the first of an acceleration")
     command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
     command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
-    command.add_argument("--modes", action="store_true", help="draw in the modes of the linear system")
+    command.add_argument("--modes", action="store_true", help="draw in the linear modes, with the films of each run")
+
+
+def _variants(command: argparse.ArgumentParser) -> None:
+    """Add the options of single changes."""
+    command.add_argument(
+        "--vary",
+        nargs="+",
+        action="append",
+        default=[],
+        metavar=("KEY", "VALUE"),
+        help="a key and its values, such as clearance '0 um' '15 um', one at a time around the base; more than once "
+        f"for more keys, left out: the base alone. Keys: {VARIED_KEYS}",
+    )
+    command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
+    command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
 
 
 def _load_and_angle(command: argparse.ArgumentParser) -> None:
@@ -141,7 +174,12 @@ def _bearing(commands: Any) -> None:
     command.add_argument("--temperature", metavar="TEMPERATURE", help='of the oil, such as "60 degC" (40 degC)')
     command.add_argument("--map", metavar="MAP.nc", help="made by `ehdmaps generate` for this bearing")
     command.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
-    command.add_argument("--law", metavar="LAW", help="hertz | formula | map; default: map with --map, else hertz")
+    command.add_argument(
+        "--law",
+        metavar="LAW",
+        help="hertz | hertz:TIME | hertz:DAMPING (TIME: damping over stiffness) | formula | map; default: map with "
+        "--map, else hertz",
+    )
     command.add_argument(
         "--oil", metavar="NAME", help="oil without a map: FVA3, Spirax MA 80W; default: the file's, else FVA3"
     )
@@ -209,8 +247,10 @@ def _modal_fit(commands: Any) -> None:
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
 
 
-def _scene_command(commands: Any, name: str, words: str, compares: bool) -> argparse.ArgumentParser:
-    """Add a command on a scene; one that compares takes several laws, maps and clearances."""
+def _scene_command(
+    commands: Any, name: str, words: str, compares: bool, clearances: bool = True
+) -> argparse.ArgumentParser:
+    """Add a command on a scene; one that compares takes several laws and maps, and clearances if it says so."""
     command: argparse.ArgumentParser = commands.add_parser(name, help=words, description=words)
     command.add_argument("scene", metavar="SCENE")
     # What comes twice is an error of the command, in words, where it does not compare.
@@ -224,7 +264,8 @@ def _scene_command(commands: Any, name: str, words: str, compares: bool) -> argp
         "--clearance",
         metavar="LENGTH",
         action="append",
-        help=f'diametral clearance of all bearings, such as "20 um", in place of the scene\'s{more}',
+        help='diametral clearance of all bearings, such as "20 um", in place of the scene\'s'
+        + (more if clearances else ""),
     )
     command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.ehl.line import GroupSolution, Resolution, linearised_profile, response_share
+from ehdmaps.ehl.line import GroupSolution, response_share
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.spectrum import film_compliances
 from ehdmaps.physics.spectrum import NEIGHBOUR, neighbours, read_beside
@@ -35,9 +35,7 @@ class GroupSpectrum(NamedTuple):
     errors: ComplexArray
 
 
-def group_spectrum(
-    M: float, L: float, solution: GroupSolution, resolution: Resolution, frequencies: FloatArray
-) -> GroupSpectrum:
+def group_spectrum(M: float, L: float, solution: GroupSolution, frequencies: FloatArray) -> GroupSpectrum:
     """Film compliance of a solved point at some frequencies.
 
     The error is what the difference between both grids at the same frequency leaves: a share of it as for slow motion,
@@ -51,14 +49,11 @@ def group_spectrum(
         Moes' load and lubricant parameters of the point.
     solution : GroupSolution
         Converged solution of the point.
-    resolution : Resolution
-        Settings of the solve that gave it.
     frequencies : ndarray, shape (k,)
         Omega = omega b/u, > 0.
     """
-    fine, rough = solution.profile, solution.rough
-    assert fine is not None
-    assert rough is not None
+    fine, linear, rough = solution.profile, solution.linear, solution.rough_linear
+    assert fine is not None and linear is not None and rough is not None
     cell = _widest_cell(fine) if M > CARRIED_ABOVE else 0.0
     last = RESOLVED / cell if cell > 0.0 else math.inf
     beside = np.column_stack(
@@ -69,8 +64,8 @@ def group_spectrum(
         ]
     )
     where, index = np.unique(beside, return_inverse=True)
-    found = film_compliances(linearised_profile(fine, resolution), where)
-    difference = film_compliances(linearised_profile(rough, resolution), where) - found
+    found = film_compliances(linear, where)
+    difference = film_compliances(rough, where) - found
     index = index.reshape(beside.shape)
     nearby = read_beside(difference, where, index, frequencies)
     share = response_share(M, L, fine.spike is not None)

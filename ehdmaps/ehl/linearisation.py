@@ -16,12 +16,13 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import lu_factor, lu_solve
+from numba import njit
+from scipy.linalg import lu_factor
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid
-from ehdmaps.ehl.reynolds import LineProblem, residual, stored_mass, stored_mass_rate
+from ehdmaps.ehl.reynolds import LineProblem, StoredOil, residual, stored_mass, stored_mass_rate, stored_oil
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 
 
@@ -38,6 +39,74 @@ class Response(NamedTuple):
 
     compliance: float
     loss: float
+
+
+class Arrays(NamedTuple):
+    """A `Linearisation` for compiled code.
+
+    Attributes
+    ----------
+    scale : ndarray, shape (size,)
+        What the rows were multiplied by, in the order of the factors.
+    factors : ndarray, shape (size, size)
+        LU factors of the scaled matrix, row by row.
+    order : ndarray of int, shape (size,)
+        The row of the matrix that each row of the factors stands for.
+    x, kernel : ndarray, shapes (n + 1,) and (n + 1, n + 1)
+        Nodes and deflection.
+    exit_at : float
+        Place of the exit.
+    stored : StoredOil
+        Stored oil of the nodes.
+    carried : ndarray, shape (n + 1,)
+        Mass per length that a face which moves with the exit sweeps.
+    grid_mass : ndarray, shape (n + 1,)
+        Stored mass per shift of the spike; zero where the grid follows none.
+    """
+
+    scale: FloatArray
+    factors: FloatArray
+    order: IntArray
+    x: FloatArray
+    kernel: FloatArray
+    exit_at: float
+    stored: StoredOil
+    carried: FloatArray
+    grid_mass: FloatArray
+
+
+@njit(cache=True, fastmath={"contract", "reassoc"})
+def solved(linear: Arrays, right: FloatArray) -> FloatArray:
+    """Solve matrix z = right, both of shape (size,)."""
+    factors, size = linear.factors, right.size
+    found = np.empty(size)
+    for i in range(size):
+        total = linear.scale[i] * right[linear.order[i]]
+        row = factors[i]
+        for j in range(i):
+            total -= row[j] * found[j]
+        found[i] = total
+    for i in range(size - 1, -1, -1):
+        total = found[i]
+        row = factors[i]
+        for j in range(i + 1, size):
+            total -= row[j] * found[j]
+        found[i] = total / row[i]
+    return found
+
+
+@njit(cache=True)
+def storage(linear: Arrays, rate: FloatArray) -> FloatArray:
+    """What the time derivative adds to the equations for a rate of the unknowns, both of shape (size,)."""
+    n = linear.x.size - 1
+    mass_rate = stored_mass_rate(linear.stored, linear.x, linear.kernel, linear.exit_at, rate[: n + 2])
+    mass_rate -= linear.carried * rate[n]
+    if rate.size > n + 2:
+        mass_rate += linear.grid_mass * rate[n + 2]
+    added = np.zeros(rate.size)
+    added[:n] = -mass_rate[:n]
+    added[n] = mass_rate[n]
+    return added
 
 
 @dataclass(frozen=True)
@@ -85,33 +154,33 @@ class Linearisation:
         return unit
 
     @cached_property
-    def _carried(self) -> FloatArray:
-        """Mass per length that a face which moves with the exit sweeps."""
-        return stored_mass(self.problem, self.grid.x, self.grid.step, self.kernel, self.unknowns)[1]
-
-    @cached_property
-    def _factors(self) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
-        """Scale of the rows, and LU factors of the scaled matrix."""
+    def arrays(self) -> Arrays:
+        """The same for compiled code, the matrix factorised."""
+        grid, n = self.grid, self.unknowns.size - 2
         scale = 1.0 / np.max(np.abs(self.matrix), axis=1)
-        return scale, lu_factor(self.matrix * scale[:, None], overwrite_a=True, check_finite=False)
+        factors, swaps = lu_factor(self.matrix * scale[:, None], overwrite_a=True, check_finite=False)
+        order = np.arange(self.size)
+        for row, other in enumerate(swaps):
+            order[row], order[other] = order[other], order[row]
+        return Arrays(
+            scale=scale[order],
+            factors=np.ascontiguousarray(factors),
+            order=order,
+            x=grid.x,
+            kernel=self.kernel,
+            exit_at=float(self.unknowns[n]),
+            stored=stored_oil(self.problem, grid.x, grid.step, self.kernel, self.unknowns),
+            carried=stored_mass(self.problem, grid.x, grid.step, self.kernel, self.unknowns)[1],
+            grid_mass=np.zeros(n + 1) if self.grid_mass is None else self.grid_mass,
+        )
 
     def storage(self, rate: FloatArray) -> FloatArray:
         """What the time derivative adds to the equations for a rate of the unknowns, both of shape (size,)."""
-        size = self.unknowns.size
-        n = size - 2
-        added = np.zeros(self.size)
-        mass_rate = stored_mass_rate(self.problem, self.grid.x, self.grid.step, self.kernel, self.unknowns, rate[:size])
-        mass_rate -= self._carried * rate[n]
-        if self.grid_mass is not None:
-            mass_rate += self.grid_mass * rate[size]
-        added[:n] = -mass_rate[:n]
-        added[n] = mass_rate[n]
-        return added
+        return storage(self.arrays, rate)
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solve matrix z = right, both of shape (size,)."""
-        scale, factors = self._factors
-        return np.asarray(lu_solve(factors, scale * right, check_finite=False))
+        return solved(self.arrays, right)
 
     def slow_response(self) -> Response:
         """Film compliance and loss in the limit of slow motion."""

@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.copies import put
 from ehdmaps.ehl.reynolds import LineProblem, film, residual, steepest_viscosity_step
 
 LOG_VISCOSITY_STEP = 5.0
@@ -180,7 +181,7 @@ def hertz_start(
     centre = np.argmin(np.abs(x + exit_guess))
     deflection = kernel[centre] @ pressure
     start = np.empty(n + 2)
-    start[: n - 1] = pressure[1:n]
+    put(pressure[1:n], start[: n - 1])
     start[n - 1] = film_guess
     start[n] = exit_guess
     start[n + 1] = film_guess - 0.5 * (exit_guess + x[centre]) ** 2 + deflection

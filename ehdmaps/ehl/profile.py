@@ -10,6 +10,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.elastic import DRY_DATUM
 from ehdmaps.ehl.grid import Grid, Layout, Spike
 from ehdmaps.ehl.reynolds import LineProblem, film, node_pressure
+from ehdmaps.physics.rolling import film_times_rise, rolling_force_of_inlet
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,26 @@ class Profile:
     def film_offset(self) -> float:
         """Dry minus lubricated approach [b^2/R]: H0 above the datum of the dry contact."""
         return float(self.unknowns[-1]) - DRY_DATUM
+
+    @property
+    def mass_flow(self) -> float:
+        """Mass of oil through the contact [b^2/R], over density at rest and speed."""
+        return float(self.unknowns[-3])
+
+    @property
+    def rolling_force(self) -> float:
+        """Int H dP, that of the inlet before the grid included [b^2/R p_H]."""
+        before = rolling_force_of_inlet(
+            -float(self.position[0]), float(self.film[0]), self.mass_flow, self.problem.wedge, radius=1.0
+        )
+        return film_times_rise(self.film, self.pressure) + before
+
+    @property
+    def fourth_order_share(self) -> float:
+        """What the terms of fourth order change in the rolling force, as a share of it."""
+        film, rise = self.film, np.diff(self.pressure)
+        plain = float(0.5 * (film[1:] + film[:-1]) @ rise)
+        return abs(plain - film_times_rise(film, self.pressure)) / self.rolling_force
 
 
 def front_cell(profile: Profile) -> int:

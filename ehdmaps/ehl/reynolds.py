@@ -30,6 +30,7 @@ import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.copies import put
 from ehdmaps.physics.isotherm import Isotherm, density, log_viscosity
 
 FITTED_STEP = 3.0
@@ -88,7 +89,7 @@ def node_pressure(unknowns: FloatArray) -> FloatArray:
     """Pressure at all nodes, shape (n + 1,), from the unknowns, shape (n + 2,)."""
     n = unknowns.size - 2
     pressure = np.zeros(n + 1)
-    pressure[1:n] = unknowns[: n - 1]
+    put(unknowns, pressure[1:n])
     return pressure
 
 
@@ -281,19 +282,41 @@ def stored_mass(
     return _accumulate(mass * step), _carried(mass)
 
 
+class StoredOil(NamedTuple):
+    """How the oil that a cell stores goes with film and pressure: all that the rate of a stored mass needs of the oil.
+
+    Attributes
+    ----------
+    by_film : ndarray, shape (n + 1,)
+        Stored oil of each node per film thickness: rho times the cell.
+    by_pressure : ndarray, shape (n + 1,)
+        Stored oil of each node per pressure at a standing film.
+    """
+
+    by_film: FloatArray
+    by_pressure: FloatArray
+
+
+@njit(cache=True)
+def stored_oil(
+    problem: LineProblem, x: FloatArray, step: FloatArray, kernel: FloatArray, unknowns: FloatArray
+) -> StoredOil:
+    """Stored oil of each node by film and pressure."""
+    n = x.size - 1
+    log_eta, slope, rho, rho_slope = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
+    oil(problem, node_pressure(unknowns), log_eta, slope, rho, rho_slope)
+    return StoredOil(rho * step, rho_slope * film(x, kernel, unknowns) * step)
+
+
 @njit(cache=True)
 def stored_mass_rate(
-    problem: LineProblem, x: FloatArray, step: FloatArray, kernel: FloatArray, unknowns: FloatArray, rate: FloatArray
+    stored: StoredOil, x: FloatArray, kernel: FloatArray, exit_at: float, rate: FloatArray
 ) -> FloatArray:
     """Derivative of `stored_mass`[0] for a rate of the unknowns, shape (n + 2,), on a grid that moves with the exit."""
     n = x.size - 1
-    pressure = node_pressure(unknowns)
-    log_eta, slope, rho, rho_slope = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
-    oil(problem, pressure, log_eta, slope, rho, rho_slope)
-    gap = film(x, kernel, unknowns)
     pressure_rate = node_pressure(rate)
-    gap_rate = rate[n + 1] + (unknowns[n] + x) * rate[n] - kernel @ pressure_rate
-    return _accumulate((rho * gap_rate + rho_slope * gap * pressure_rate) * step)
+    gap_rate = rate[n + 1] + (exit_at + x) * rate[n] - kernel @ pressure_rate
+    return _accumulate(stored.by_film * gap_rate + stored.by_pressure * pressure_rate)
 
 
 @njit(cache=True)
@@ -311,10 +334,10 @@ def stored_mass_jacobian(
     for j in range(1, n):
         column = -weight * kernel[:, j]
         column[j] += step[j] * rho_slope[j] * gap[j]
-        by_unknowns[:, j - 1] = _accumulate(column)
+        put(_accumulate(column), by_unknowns[:, j - 1])
     by_unknowns[:, n - 1] = 0.0
-    by_unknowns[:, n] = _accumulate(weight * (unknowns[n] + x))
-    by_unknowns[:, n + 1] = _accumulate(weight)
+    put(_accumulate(weight * (unknowns[n] + x)), by_unknowns[:, n])
+    put(_accumulate(weight), by_unknowns[:, n + 1])
     return by_unknowns
 
 

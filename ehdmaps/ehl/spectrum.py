@@ -9,11 +9,13 @@ high that they do not, the space grows to that of all unknowns, which is exact.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.ehl.linearisation import Linearisation
+from ehdmaps.ehl.linearisation import Arrays, Linearisation, solved, storage
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 
 SMALL_RESIDUAL = 1e-13
@@ -21,6 +23,8 @@ SMALL_RESIDUAL = 1e-13
 
 CHECK_EVERY = 3
 """Vectors that are added between two looks at the residual."""
+
+_TINY = float(np.finfo(float).tiny)
 
 
 def film_compliances(linear: Linearisation, frequencies: FloatArray) -> ComplexArray:
@@ -38,10 +42,60 @@ def film_compliances(linear: Linearisation, frequencies: FloatArray) -> ComplexA
     ndarray, shape (k,)
         Film compliances in units of b/(p_H R).
     """
-    static = linear.solve(linear.unit)
+    space = film_space(linear, float(np.max(frequencies)))
+    return space.compliances(np.ascontiguousarray(frequencies, dtype=float))
+
+
+@dataclass(frozen=True, eq=False)
+class FilmSpace:
+    """The Krylov space of a film, projected: what gives its compliance at any frequency, real or complex.
+
+    Attributes
+    ----------
+    norm : float
+        Length of the static response.
+    hessenberg : ndarray, shape (n, n)
+        T in the space.
+    heights : ndarray, shape (n,)
+        H0 of its vectors.
+    """
+
+    norm: float
+    hessenberg: FloatArray
+    heights: FloatArray
+
+    def compliances(self, frequencies: FloatArray | ComplexArray) -> ComplexArray:
+        """Film compliances S in units of b/(p_H R) at Omega = omega b/u, shape (k,).
+
+        Parameters
+        ----------
+        frequencies : ndarray, shape (k,)
+            Frequencies Omega; complex for a motion e^(lambda t), -i lambda b/u. With a size up to that of which the
+            space was made.
+        """
+        moved = self.norm * _projected(self.hessenberg, self.heights.size, self.heights, frequencies)
+        return np.asarray(-moved - DRY_COMPLIANCE)
+
+
+def film_space(linear: Linearisation, fastest: float) -> FilmSpace:
+    """Return the Krylov space that serves all frequencies up to a highest one.
+
+    Parameters
+    ----------
+    linear : Linearisation
+        The equations about a steady solution.
+    fastest : float
+        Highest Omega = omega b/u.
+    """
+    return FilmSpace(*_space(linear.arrays, linear.unit, linear.height, fastest))
+
+
+@njit(cache=True)
+def _space(linear: Arrays, unit: FloatArray, height: int, fastest: float) -> tuple[float, FloatArray, FloatArray]:
+    """Length of the static response, T in the space of its vectors, and the unknown `height` of these."""
+    static = solved(linear, unit)
     norm = float(np.linalg.norm(static))
-    fastest = float(np.max(frequencies))
-    size = linear.size
+    size = unit.size
     basis = np.empty((size + 1, size))
     hessenberg = np.zeros((size + 1, size))
     basis[0] = static / norm
@@ -51,25 +105,25 @@ def film_compliances(linear: Linearisation, frequencies: FloatArray) -> ComplexA
         count += 1
         if count % CHECK_EVERY == 0 and _residual(hessenberg, count, fastest) < SMALL_RESIDUAL:
             break
-        if hessenberg[count, count - 1] < np.finfo(float).tiny:
+        if hessenberg[count, count - 1] < _TINY:
             break
-    heights = np.ascontiguousarray(basis[:count, linear.height])
-    moved = norm * _projected(hessenberg, count, heights, np.ascontiguousarray(frequencies, dtype=float))
-    return np.asarray(-moved - DRY_COMPLIANCE)
+    return norm, hessenberg[:count, :count].copy(), basis[:count, height].copy()
 
 
-def _extend(linear: Linearisation, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
+@njit(cache=True)
+def _extend(linear: Arrays, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
     """Add T times the last vector to the basis, orthogonal to all before it; twice, for round-off."""
-    found = linear.solve(linear.storage(basis[count]))
+    found = solved(linear, storage(linear, basis[count]))
     for _ in range(2):
         along = basis[: count + 1] @ found
         hessenberg[: count + 1, count] += along
         found -= along @ basis[: count + 1]
     length = float(np.linalg.norm(found))
     hessenberg[count + 1, count] = length
-    basis[count + 1] = found / max(length, np.finfo(float).tiny)
+    basis[count + 1] = found / max(length, _TINY)
 
 
+@njit(cache=True)
 def _residual(hessenberg: FloatArray, count: int, frequency: float) -> float:
     """What the space leaves of the equations at a frequency, relative to the static response."""
     last = abs(_reduced(hessenberg, count, frequency)[count - 1])
@@ -77,7 +131,9 @@ def _residual(hessenberg: FloatArray, count: int, frequency: float) -> float:
 
 
 @njit(cache=True)
-def _projected(hessenberg: FloatArray, count: int, heights: FloatArray, frequencies: FloatArray) -> ComplexArray:
+def _projected(
+    hessenberg: FloatArray, count: int, heights: FloatArray, frequencies: FloatArray | ComplexArray
+) -> ComplexArray:
     """H0 of the reduced equations at each frequency, for a start of length one."""
     found = np.empty(frequencies.size, dtype=np.complex128)
     for i in range(frequencies.size):
@@ -90,7 +146,7 @@ def _projected(hessenberg: FloatArray, count: int, heights: FloatArray, frequenc
 
 
 @njit(cache=True)
-def _reduced(hessenberg: FloatArray, count: int, frequency: float) -> ComplexArray:
+def _reduced(hessenberg: FloatArray, count: int, frequency: complex) -> ComplexArray:
     """Solve (I + i Omega H) y = e_1 by elimination: a Hessenberg matrix has one entry a column to eliminate."""
     matrix = 1j * frequency * hessenberg[:count, :count]
     right = np.zeros(count, dtype=np.complex128)

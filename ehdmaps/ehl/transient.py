@@ -97,7 +97,8 @@ def _follow(
         mass_before = (before * mass_old + long_before * mass_older) / time_step
         exit_before = (before * old[n] + long_before * older[n]) / time_step
         start = old.copy() if k == 0 else 2.0 * old - older
-        start[: n - 1] = np.maximum(start[: n - 1], 0.0)
+        for i in range(n - 1):
+            start[i] = max(start[i], 0.0)
         found, taken = _one_step(
             problem,
             x,
@@ -148,11 +149,12 @@ def _one_step(
         mass, carried = stored_mass(problem, x, step, kernel, unknowns)
         growth = rate * mass + mass_before - carried * (rate * unknowns[n] + exit_before)
         by_unknowns = rate * stored_mass_jacobian(problem, x, step, kernel, unknowns)
-        by_unknowns[:, n] -= rate * carried
-        out[:n] -= growth[:n]
-        out[n] += growth[n]
-        matrix[:n] -= by_unknowns[:n]
-        matrix[n] += by_unknowns[n]
+        for f in range(n + 1):
+            by_unknowns[f, n] -= rate * carried[f]
+            side = -1.0 if f < n else 1.0
+            out[f] += side * growth[f]
+            for j in range(size):
+                matrix[f, j] += side * by_unknowns[f, j]
         move = solve_scaled(matrix, -out)
         peak = max(np.max(unknowns[: n - 1]), 1e-300)
         last = max(

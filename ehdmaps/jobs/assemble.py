@@ -15,7 +15,7 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.jobs.holes import filled, isolated_holes
 from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
-from ehdmaps.jobs.tasks import LineTask, solver_version
+from ehdmaps.jobs.tasks import LineTask, solver_version, with_later_fields
 from ehdmaps.maps import schema
 from ehdmaps.maps.records import contacts_json
 from ehdmaps.maps.structure import derived
@@ -31,6 +31,8 @@ _FILLED_FIELDS = (
     "central_film",
     "minimum_film",
     "max_pressure",
+    "rolling_force",
+    "mass_flow",
 )
 _ALWAYS = ("status", "reason", "iterations", "solve_seconds", "viscosity_extrapolated")
 """Fields of a film that a hole keeps."""
@@ -75,7 +77,7 @@ def _films(job: Job, tasks: Sequence[LineTask], results: Mapping[str, Arrays]) -
     films: dict[str, npt.NDArray[Any]] = {}
     for task in tasks:
         contact, start, speed, temperature = task.place
-        for name, line in results[task.key].items():
+        for name, line in with_later_fields(results[task.key]).items():
             if name not in films:
                 films[name] = np.empty(job.shape, dtype=object if line.dtype.kind == "U" else line.dtype)
             films[name][contact, start : start + task.points, speed, temperature] = line

@@ -69,6 +69,14 @@ def parser() -> argparse.ArgumentParser:
         metavar=("FROM", "TO", "POINTS"),
         help='response at many frequencies, spaced logarithmically: "10 Hz" "20 kHz" 60; with --plot as a picture',
     )
+    solve.add_argument(
+        "--slide-to-roll",
+        nargs=3,
+        metavar=("FROM", "TO", "POINTS"),
+        help="reynolds: traction over the slide-to-roll ratio, spaced logarithmically: 0.001 1 7",
+    )
+    solve.add_argument("--eyring-stress", metavar="STRESS", help='for --slide-to-roll; default: "6 MPa"')
+    solve.add_argument("--limiting-ratio", metavar="RATIO", help="limiting stress over pressure; default: 0.05")
     solve.add_argument("--solver", metavar="NAME", help=_SOLVER)
     solve.add_argument("--json", action="store_true", help="one object a contact, SI, per unit length")
     solve.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from ehdmaps.errors import InputError
@@ -20,6 +21,7 @@ from ehdmaps.jobs.report import (
     value_lines,
 )
 from ehdmaps.maps import schema
+from ehdmaps.maps.backbone import ERROR
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.physics.bearing import BearingGeometry
@@ -151,6 +153,16 @@ def _backbone_lines(backbone: xr.Dataset) -> Iterator[str]:
     yield "refinement lines of the contact law (group backbone)"
     solved = int((backbone["status"].values != schema.NOT_NEEDED).sum())
     yield f"  {solved} points: {sizes[0]} loads about the damping valley, {sizes[1]} speeds, {sizes[2]} temperatures"
+    if schema.NATURAL not in backbone.variables:
+        yield "  response over frequency: none; films in time lock by a closed formula"
+        return
+    at, error = backbone[schema.NATURAL].values, backbone[ERROR].values
+    known = error[np.isfinite(error)]
+    words = f"median {np.median(known):.2g}, 95 % {np.quantile(known, 0.95):.2g}" if known.size else "not known"
+    yield (
+        f"  response at {at.size} natural frequencies omega sqrt(b^2 + 2 h R)/u, {at[0]:g} to {at[-1]:g}; "
+        f"estimated error of the film compliance: {words}"
+    )
 
 
 def _provenance_lines(attributes: dict[str, Any]) -> Iterator[str]:

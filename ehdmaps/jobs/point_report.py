@@ -14,7 +14,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolution
-from ehdmaps.units import FILM, LENGTH, LOAD, PRESSURE, RPM, TEMPERATURE, Display
+from ehdmaps.units import FILM, LENGTH, LOAD, MASS_FLOW, PRESSURE, ROLLING_FORCE, RPM, TEMPERATURE, Display
 
 _SOLUTION_FIELDS = (
     "approach",
@@ -26,6 +26,8 @@ _SOLUTION_FIELDS = (
     "central_film",
     "minimum_film",
     "max_pressure",
+    "rolling_force",
+    "mass_flow",
     *ERRORS,
     "loss_compliance_error",
     "iterations",
@@ -175,6 +177,8 @@ def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple
     yield row("film offset", "film_offset", FILM)
     yield row("central film", "central_film", FILM)
     yield row("minimum film", "minimum_film", FILM)
+    yield row("rolling force", "rolling_force", ROLLING_FORCE)
+    yield row("mass flow", "mass_flow", MASS_FLOW)
     yield row("stiffness k", "stiffness", Display("N/m2"))
     yield row("damping c", "damping", Display("N s/m2"))
     if length is not None:

@@ -10,10 +10,11 @@ import xarray as xr
 
 from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
-from ehdmaps.jobs.tasks import LineTask
+from ehdmaps.jobs.tasks import SPECTRUM_FIELDS, LineTask, with_later_fields
 from ehdmaps.maps import schema
-from ehdmaps.maps.backbone import FILMS
+from ehdmaps.maps.backbone import ERROR, FILMS, IMAGINARY, REAL
 from ehdmaps.maps.backbone_plan import BackbonePlan, plan_backbone
+from ehdmaps.maps.rolling_film import NAMES as ROLLING
 from ehdmaps.physics.solution import ContactSolver, Status
 
 
@@ -45,6 +46,7 @@ def refinement(job: Job, solver: ContactSolver) -> Refinement | None:
             entrainment_speed=line.speed,
             temperature=line.temperature,
             solver=solver,
+            natural_frequencies=solver.natural_frequencies,
         )
         for line in plan.lines
     )
@@ -55,18 +57,25 @@ def backbone_group(refined: Refinement, results: Mapping[str, Arrays]) -> xr.Dat
     """Put the lines in their places: the group "backbone" of the map file."""
     plan = refined.plan
     shape = (len(plan.zeta), len(plan.speeds), len(plan.temperatures))
-    values = {name: np.full(shape, np.nan) for name in FILMS}
+    values = {name: np.full(shape, np.nan) for name in (*FILMS, *ROLLING)}
+    natural = refined.tasks[0].natural_frequencies if refined.tasks else ()
+    sources = {name: name for name in (*FILMS, *ROLLING)}
+    if natural:
+        sources |= dict(zip((REAL, IMAGINARY, ERROR), SPECTRUM_FIELDS, strict=True))
+        values |= {name: np.full((*shape, len(natural)), np.nan) for name in (REAL, IMAGINARY, ERROR)}
     status = np.full(shape, schema.NOT_NEEDED, dtype=np.int8)
     for line, task in zip(plan.lines, refined.tasks, strict=True):
         first, speed, temperature = line.place
         along = slice(first, first + task.points)
-        arrays = results[task.key]
+        arrays = with_later_fields(results[task.key])
         status[along, speed, temperature] = arrays["status"]
         usable = np.isin(arrays["status"], [int(known) for known in Status if known.usable])
         for name, array in values.items():
-            array[along, speed, temperature] = np.where(usable, arrays[name], np.nan)
+            found = arrays[sources[name]]
+            array[along, speed, temperature] = np.where(usable if found.ndim == 1 else usable[:, None], found, np.nan)
+    axes = {"zeta": plan.zeta, "reference_speed": plan.speeds, "temperature": plan.temperatures}
     return schema.backbone(
-        {"zeta": plan.zeta, "reference_speed": plan.speeds, "temperature": plan.temperatures},
+        axes | ({schema.NATURAL: natural} if natural else {}),
         {**values, "status": status},
         {
             "title": "films of a reference contact, from which the contact laws of the map are made",

@@ -11,7 +11,18 @@ import xarray as xr
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.physics.solution import Status
-from ehdmaps.units import DAMPING, FILM, LOAD, PRESSURE, SPEED, STIFFNESS, TEMPERATURE, Display
+from ehdmaps.units import (
+    DAMPING,
+    FILM,
+    LOAD,
+    MASS_FLOW,
+    PRESSURE,
+    ROLLING_FORCE,
+    SPEED,
+    STIFFNESS,
+    TEMPERATURE,
+    Display,
+)
 
 AXES = (("load", LOAD), ("entrainment_speed", SPEED), ("temperature", TEMPERATURE))
 """Numeric axes and how people read them."""
@@ -25,8 +36,10 @@ ERRORS = (
     "central_film_error",
     "minimum_film_error",
     "max_pressure_error",
+    "rolling_force_error",
+    "mass_flow_error",
 )
-"""Error estimates in the order in which they are listed; the last three are missing in maps made before they were."""
+"""Error estimates in the order in which they are listed; the last five are missing in maps made before they were."""
 
 _NUMBER = re.compile(r"[-+]?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]+)?")
 
@@ -107,9 +120,7 @@ def error_lines(dataset: xr.Dataset) -> Iterator[str]:
     """Yield median, 95 % quantile and maximum of the error estimates over the solved points."""
     yield "  estimated relative error       median       95 %    largest"
     for name in ERRORS:
-        if name not in dataset:
-            continue
-        values = dataset[name].values
+        values = dataset[name].values if name in dataset else np.empty(0)
         known = values[np.isfinite(values)]
         label = name.removesuffix("_error").replace("_", " ")
         if known.size:
@@ -129,12 +140,16 @@ def value_lines(dataset: xr.Dataset) -> Iterator[str]:
         ("central_film", FILM),
         ("minimum_film", FILM),
         ("max_pressure", PRESSURE),
+        ("rolling_force", ROLLING_FORCE),
+        ("mass_flow", MASS_FLOW),
     )
     yield "  variable                     smallest     median    largest  unit"
     for name, display in shown:
-        values = dataset[name].values
+        values = dataset[name].values if name in dataset else np.empty(0)
         known = values[np.isfinite(values)]
-        if known.size:
+        if not known.size:
+            yield f"  {name:25s}        none"
+        else:
             low, middle, high = (display.value(float(value)) for value in np.quantile(known, (0.0, 0.5, 1.0)))
             yield f"  {name:25s} {low:11.4g} {middle:10.4g} {high:10.4g}  {display.unit}"
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property, lru_cache
 from importlib import resources
@@ -15,7 +15,7 @@ from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.solution import ContactSolver, FilmSolution, Status
+from ehdmaps.physics.solution import ContactSolver, FilmSolution, FilmSpectrum, Status, no_spectrum
 
 LONGEST_LINE = 32
 """Loads of one task, which is lost as a whole when its process is killed: well under a second."""
@@ -29,7 +29,12 @@ _TYPES: Mapping[str, Any] = {
     "iterations": np.int32,
     "viscosity_extrapolated": np.int8,
 }
+SPECTRUM_FIELDS = ("response_real", "response_imaginary", "response_error")
+"""Complex film compliance over load and natural frequency [m2/N], and its error, relative to its magnitude."""
+
 FILM_FIELDS = tuple(field.name for field in fields(FilmSolution))
+LATER_FIELDS = ("rolling_force", "mass_flow", "rolling_force_error", "mass_flow_error")
+"""Fields that came after maps had been made: results that lack them, and took days, are taken over without them."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +55,8 @@ class LineTask:
         [m/s].
     temperature : float
         [K].
+    natural_frequencies : tuple of float
+        omega sqrt(b^2 + 2 h R)/u at which the film compliance is wanted besides; those of the solver, or none.
     place : tuple of int
         Start of the line in the map: indices of contact, load, entrainment speed, temperature. Not in
         the key.
@@ -61,6 +68,7 @@ class LineTask:
     entrainment_speed: float
     temperature: float
     solver: ContactSolver
+    natural_frequencies: tuple[float, ...] = ()
     place: tuple[int, int, int, int] = (0, 0, 0, 0)
 
     @cached_property
@@ -78,7 +86,8 @@ class LineTask:
             "solver": self.solver.name,
             "settings": self.solver.settings(),
             "version": solver_version(self.solver),
-            "fields": FILM_FIELDS,
+            "fields": [name for name in FILM_FIELDS if name not in LATER_FIELDS],
+            **({"natural_frequencies": self.natural_frequencies} if self.natural_frequencies else {}),
         }
         return hashlib.sha256(record_json(record).encode()).hexdigest()
 
@@ -93,26 +102,43 @@ class LineTask:
         return self.solver.slow
 
     def run(self) -> Arrays:
-        """Solve the line; arrays over the loads, by the names of `FilmSolution`."""
-        films = self.solver.solve_line(
-            self.contact, self.lubricant, self.loads, self.entrainment_speed, self.temperature
-        )
-        return film_arrays(films)
+        """Solve the line; arrays over the loads, by the names of `FilmSolution` and `SPECTRUM_FIELDS`."""
+        line = self.contact, self.lubricant, self.loads, self.entrainment_speed, self.temperature
+        if not self.natural_frequencies:
+            return film_arrays(self.solver.solve_line(*line))
+        return _spectrum_arrays(self.solver.line_spectra(*line))
 
     def failed(self, reason: str) -> Arrays:
         """Return the result of a line that gave none."""
-        return film_arrays([FilmSolution(Status.FAILED, reason)] * self.points)
+        film = FilmSolution(Status.FAILED, reason)
+        if not self.natural_frequencies:
+            return film_arrays([film] * self.points)
+        return _spectrum_arrays([no_spectrum(film, np.array(self.natural_frequencies))] * self.points)
 
     def is_final(self, arrays: Arrays) -> bool:
         """Whether no point failed: a crash, a kill or an end of time may not happen again."""
         return not (arrays["status"] == int(Status.FAILED)).any()
 
 
-def film_arrays(films: list[FilmSolution] | tuple[FilmSolution, ...]) -> Arrays:
+def film_arrays(films: Sequence[FilmSolution]) -> Arrays:
     """Turn films into arrays by field name."""
     return {
         name: np.array([getattr(film, name) for film in films], _TYPES.get(name, np.float64)) for name in FILM_FIELDS
     }
+
+
+def with_later_fields(arrays: Arrays) -> Arrays:
+    """A line as it was stored, with NaN for the fields that there were not yet when it was solved."""
+    missing = {name: np.full(arrays["status"].shape, np.nan) for name in LATER_FIELDS if name not in arrays}
+    return {**arrays, **missing}
+
+
+def _spectrum_arrays(spectra: Sequence[FilmSpectrum]) -> Arrays:
+    """Turn films over frequency into arrays by field name."""
+    response = np.array([spectrum.compliance for spectrum in spectra])
+    error = np.array([spectrum.largest_error for spectrum in spectra])
+    added = zip(SPECTRUM_FIELDS, (response.real, response.imag, error), strict=True)
+    return {**film_arrays([spectrum.film for spectrum in spectra]), **dict(added)}
 
 
 def line_tasks(job: Job, solver: ContactSolver) -> tuple[LineTask, ...]:

@@ -16,6 +16,7 @@ grid_field     the film field of the map's own grid
 backbone_plan  which lines are solved for a contact law besides the map
 backbone       the film field of those lines
 mixing         the compiled inner loop of the backbone
+rolling_film   rolling force and mass flow of each contact at any load, speed and temperature
 dry            stand-in for the film of a dry map
 tail           film below the lowest mapped load
 contact_curve  approach and damping of one contact over load

@@ -19,16 +19,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy.interpolate import CubicSpline, PPoly
+from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
-from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import MapError
+from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import NEIGHBOURS, VALLEY
 from ehdmaps.maps.film_field import lifted_loss
+from ehdmaps.maps.locked_film import film_of
+from ehdmaps.maps.locked_fit import MOST, fitted_factor, response_error
 from ehdmaps.maps.mixing import mix_lines
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
@@ -51,6 +56,9 @@ LATTICE_STEP = 0.02
 
 FILMS = ("film_offset", "film_compliance", "loss_compliance")
 """Variables of the group that a law is made from."""
+
+REAL, IMAGINARY, ERROR = "film_compliance_real", "film_compliance_imaginary", "film_compliance_error"
+"""Variables with the response of the films, where a map has them."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +102,27 @@ def _bends(zeta: FloatArray, order: int) -> FloatArray:
     return np.column_stack(columns)
 
 
+class _Responses(NamedTuple):
+    """Film compliances of the reference contact at natural frequencies.
+
+    `natural` are these, shape (k,); `compliance` is complex [m2/N] and `errors` relative to its magnitude, both of
+    shape (zeta, reference_speed, temperature, k).
+    """
+
+    natural: FloatArray
+    compliance: ComplexArray
+    errors: FloatArray
+
+    @classmethod
+    def of(cls, group: xr.Dataset) -> _Responses | None:
+        """Those of a group; None where it has none."""
+        if schema.NATURAL not in group.variables:
+            return None
+        names = (schema.NATURAL, REAL, IMAGINARY, ERROR)
+        natural, real, imaginary, errors = (np.asarray(group[name].values, dtype=float) for name in names)
+        return cls(natural, real + 1j * imaginary, errors)
+
+
 class BackboneField:
     """Films of any contact of the map from its backbone; a `FilmField`.
 
@@ -135,12 +164,15 @@ class BackboneField:
         self._contacts = {c.name: c for c in contacts}
         self._lubricant = lubricant
         self._reference = reference
+        self._solids = replace(contacts[0], radius=reference.radius)
         self._log_speeds = np.log(np.asarray(group["reference_speed"].values, dtype=float))
         self._temperatures = np.asarray(group["temperature"].values, dtype=float)
         zeta = np.asarray(group["zeta"].values, dtype=float)
         self._first = float(zeta[0])
         nodes = 2 + math.ceil((zeta[-1] - zeta[0]) / LATTICE_STEP)
         offset, compliance, loss = (np.asarray(group[name].values, dtype=float) for name in FILMS)
+        self._responses = _Responses.of(group)
+        self._zeta, self._films = zeta, (offset, compliance, loss)
         self._lattice = np.array(
             [
                 self._line(nodes, zeta, offset[:, j, k], compliance[:, j, k], loss[:, j, k], j, k)
@@ -206,8 +238,8 @@ class BackboneField:
         """
         chosen = self._contacts[contact]
         results = np.empty((3, *loads.shape))
-        by_speed = [_lagrange(self._log_speeds, math.log(u * self._reference.radius / chosen.radius)) for u in speeds]
-        by_temperature = [_lagrange(self._temperatures, float(T)) for T in temperatures]
+        by_speed = [lagrange(self._log_speeds, math.log(u * self._reference.radius / chosen.radius)) for u in speeds]
+        by_temperature = [lagrange(self._temperatures, float(T)) for T in temperatures]
         for n, T in enumerate(temperatures):
             columns, column_weights = by_temperature[n]
             for m, u in enumerate(speeds):
@@ -216,6 +248,61 @@ class BackboneField:
                 weights = np.outer(row_weights, column_weights).ravel()
                 results[:, :, m, n] = self._at(chosen, loads[:, m, n], float(u), float(T), lines, weights)
         return results[0], results[1], results[2]
+
+    def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> FloatArray | None:
+        """Factors of the closed formula of the locked film; see `FilmField.locked_factors`."""
+        if self._responses is None:
+            return None
+        chosen = self._contacts[contact]
+        rows, row_weights = lagrange(self._log_speeds, math.log(speed * self._reference.radius / chosen.radius))
+        columns, column_weights = lagrange(self._temperatures, temperature)
+        lines = (rows[:, None] * self._temperatures.size + columns).ravel()
+        unit, valley, _ = self._scales(chosen, speed, temperature)
+        last = self._log_factors.shape[1] - 1
+        place = np.clip((np.log(loads * unit / valley) - self._first) / LATTICE_STEP, 0.0, last)
+        cell = np.minimum(place.astype(np.int64), last - 1)
+        near = self._log_factors[lines]
+        logs = near[:, cell] + (place - cell) * (near[:, cell + 1] - near[:, cell])
+        mixed = np.outer(row_weights, column_weights).ravel() @ logs
+        return np.asarray(np.exp(np.clip(mixed, -math.log(MOST), math.log(MOST))))
+
+    @cached_property
+    def _log_factors(self) -> FloatArray:
+        """Logarithms of the factors of each line on the common lattice, (lines, nodes); held beyond the line's ends."""
+        places = self._first + LATTICE_STEP * np.arange(self._lattice.shape[1])
+        lines = []
+        for j, log_speed in enumerate(self._log_speeds):
+            for k, temperature in enumerate(self._temperatures):
+                zeta, logs = self._fitted(j, k, math.exp(log_speed), float(temperature))
+                inside = np.clip(places, zeta[0], zeta[-1])
+                lines.append(PchipInterpolator(zeta, logs)(inside) if zeta.size > 1 else np.full(places.size, logs[0]))
+        return np.array(lines)
+
+    def _fitted(self, j: int, k: int, speed: float, temperature: float) -> tuple[FloatArray, FloatArray]:
+        """Places zeta of a line whose response is known, and logarithms of the factors there; zero where none is."""
+        assert self._responses is not None
+        offset, compliance, loss = (values[:, j, k] for values in self._films)
+        response, errors = self._responses.compliance[:, j, k], self._responses.errors[:, j, k]
+        known = np.isfinite(offset + compliance + loss) & (offset > 0.0) & np.all(np.isfinite(response), axis=1)
+        if not np.any(known):
+            return np.zeros(1), np.zeros(1)
+        unit, valley, _ = self._scales(self._reference, speed, temperature)
+        loads = np.exp(self._zeta) * valley / unit
+        # the backbone reaches beyond the loads of the map, where a structural law need not hold
+        solids = self._solids.structural_compliance(np.clip(loads, *self.load_range))
+        width = half_width(loads, self._reference.radius, self._reference.reduced_modulus)
+        lifted = lifted_loss(loss, width, speed, solids + compliance)
+        error = response_error(solids, response, errors)
+        film, natural = film_of((self._reference,), speed), self._responses.natural
+        logs = [
+            math.log(
+                fitted_factor(
+                    film, loads[i], offset[i], solids[i], compliance[i], lifted[i], natural, response[i], error[i]
+                )
+            )
+            for i in np.flatnonzero(known)
+        ]
+        return self._zeta[known], np.array(logs)
 
     def _at(
         self,
@@ -239,7 +326,7 @@ class BackboneField:
         return np.stack([offset, compliance, lifted_loss(loss, width, speed, total)])
 
 
-def _lagrange(nodes: FloatArray, at: float) -> tuple[IntArray, FloatArray]:
+def lagrange(nodes: FloatArray, at: float) -> tuple[IntArray, FloatArray]:
     """Indices and Lagrange weights of the nodes around `at`; linear through the end nodes beyond them."""
     count = min(NEIGHBOURS, nodes.size)
     if not nodes[0] <= at <= nodes[-1]:

@@ -52,3 +52,6 @@ class DryField:
         """h = 1 um w1/w, its compliance and some loss; see `FilmField.films`."""
         film = _FILM * self.load_range[0] / loads
         return film, film / loads, np.asarray(1e-3 * film / loads)
+
+    def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> None:
+        """Nothing is known of films that oscillate; see `FilmField.locked_factors`."""

@@ -25,6 +25,7 @@ from ehdmaps.maps.records import (
     contacts_of,
     lubricant_from_json,
 )
+from ehdmaps.maps.rolling_film import RollingFilm, rolling_film
 from ehdmaps.maps.structure import completed, restructured
 from ehdmaps.maps.usable import check_backbone, check_grid
 from ehdmaps.maps.validation import check_tables, validate
@@ -147,7 +148,14 @@ class EHDMap:
         if kind not in allowed:
             raise InputError(f"contact law, kind: got {kind!r}; allowed in this map: {', '.join(allowed)}")
         names = ("inner", "outer") if kind == "series" else (kind,)
-        return ContactLaw(kind, tuple(by_name[name] for name in names), self.lubricant, self.film_field(names), outside)
+        return ContactLaw(
+            kind,
+            tuple(by_name[name] for name in names),
+            self.lubricant,
+            self.film_field(names),
+            outside,
+            rolling=self.rolling_film,
+        )
 
     def film_field(self, contacts: tuple[str, ...] | None = None) -> FilmField:
         """Film between the solved points, what a law is made from: of the backbone, or of the map's own grid.
@@ -183,6 +191,15 @@ class EHDMap:
             temperatures=data["temperature"].values.astype(np.float64),
             **{name: data[name].values.astype(np.float64) for name in FILMS},
         )
+
+    @cached_property
+    def rolling_film(self) -> RollingFilm | None:
+        """Rolling force and mass flow at any load, speed and temperature; None where the map does not hold them.
+
+        Maps of schema 1 and 2 and those of the solvers `formula` and `hertz` hold none, nor do those with holes.
+        """
+        reference = None if self.backbone is None else self._reference(self.backbone)
+        return rolling_film(self.dataset, self.backbone, reference, self.contacts, self.lubricant)
 
     def check_usable(self, contacts: tuple[str, ...] | None = None) -> None:
         """Refuse a map of whose films no law of these contacts can be made; only what the law reads is looked at.

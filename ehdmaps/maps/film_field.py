@@ -87,3 +87,22 @@ class FilmField(Protocol):
             [m], [m2/N], [m2 s/N].
         """
         ...
+
+    def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> FloatArray | None:
+        """Factors of the closed formula of the locked film, see `ehdmaps.maps.locked_fit`.
+
+        Parameters
+        ----------
+        contact : str
+            One of `contacts`.
+        loads : array (n,)
+            [N/m], > 0.
+        speed, temperature : float
+            [m/s], > 0, and [K].
+
+        Returns
+        -------
+        array (n,) or None
+            None where nothing is known of films that oscillate: the closed formula then stands as it is.
+        """
+        ...

@@ -106,6 +106,9 @@ class GridField:
         """Whether there is no film anywhere."""
         return not np.any(self.film_offset)
 
+    def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> None:
+        """Nothing is known of films that oscillate; see `FilmField.locked_factors`."""
+
     def films(
         self, contact: str, loads: FloatArray, speeds: FloatArray, temperatures: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.errors import InputError, MapError, OutsideMapError
 from ehdmaps.maps import bulk, kernel
 from ehdmaps.maps.compilation import (
     Resolution,
@@ -22,7 +23,9 @@ from ehdmaps.maps.compilation import (
 from ehdmaps.maps.dry import DryField
 from ehdmaps.maps.excursions import Axis, Excursion, Range
 from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.locked_film import FORMULA, LockedFactors, locked_compliances
 from ehdmaps.maps.memory import FilmMemory, FilmState
+from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE, ApproachTable, LawTable, Point
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
@@ -32,6 +35,9 @@ OutsidePolicy = Literal["error", "clamp", "asymptote"]
 
 LOAD_REACH, SPEED_REACH = 100.0, 10.0
 """How far the policy `asymptote` goes, as multiples of the highest load and speed; it holds the edge beyond."""
+
+_LOAD_STEP = 0.1
+"""Step of ln of the load between the factors of the locked film."""
 
 _CAUSES: Mapping[str, int] = {"load": LOAD, "entrainment_speed": SPEED, "temperature": TEMPERATURE}
 
@@ -64,6 +70,8 @@ class ContactLaw:
         highest load and `SPEED_REACH` times the highest speed, and as `clamp` beyond; temperature is held.
     resolution : Resolution, optional
         Spacing of the nodes of the table.
+    rolling : RollingFilm, optional
+        Rolling force of the contacts, where the map holds it.
 
     Raises
     ------
@@ -87,6 +95,7 @@ class ContactLaw:
         field: FilmField,
         outside: OutsidePolicy = "error",
         resolution: Resolution | None = None,
+        rolling: RollingFilm | None = None,
     ) -> None:
         if outside not in get_args(OutsidePolicy):
             raise InputError(f"contact law, outside: got {outside!r}; allowed: {', '.join(get_args(OutsidePolicy))}")
@@ -102,6 +111,7 @@ class ContactLaw:
         self._dry = field.dry
         self._field = DryField(field) if field.dry else field
         self._resolution = resolution
+        self.rolling = rolling
         self._plain = self._law_table()
         self._latest: LawAtPoint | None = None
 
@@ -280,6 +290,36 @@ class ContactLaw:
         memory = self._latest.memory
         return memory.advance(memory.settled(delta) if state is None else state, delta, dt)
 
+    def locked_factors(self, entrainment_speed: float, temperature: float) -> LockedFactors:
+        """What the map says of the locked film, as factors of its closed formula; ones where it says nothing.
+
+        Several contacts in series have the sum of their locked compliances. Speed and temperature are held at the edges
+        of the map.
+
+        Parameters
+        ----------
+        entrainment_speed, temperature : float
+            u [m/s], of either sign, and T [K].
+        """
+        field = self._field
+        (slow, fast), (cold, hot) = field.speed_range, field.temperature_range
+        u, T = min(max(abs(entrainment_speed), slow), fast), min(max(temperature, cold), hot)
+        lowest, highest = field.load_range
+        loads = np.geomspace(lowest, highest, 2 + math.ceil(math.log(highest / lowest) / _LOAD_STEP))
+        whole, offset, compliance = np.zeros((3, loads.size))
+        for contact in self.contacts:
+            known = field.locked_factors(contact.name, loads, u, T)
+            if known is None:
+                return FORMULA
+            films = field.films(contact.name, loads[:, None, None], np.array([u]), np.array([T]))
+            own_offset, own_compliance = films[0][:, 0, 0], films[1][:, 0, 0]
+            by_formula = locked_compliances((contact,), own_offset, loads, own_compliance)
+            whole += by_formula * known
+            offset += own_offset
+            compliance += own_compliance
+        factors = whole / locked_compliances(self.contacts, offset, loads, compliance)
+        return LockedFactors(math.log(lowest), (loads.size - 1) / math.log(highest / lowest), factors)
+
     def _law_table(self) -> LawTable:
         """Everything but the single contacts of a series."""
         highest = self.load_range[1]
@@ -401,7 +441,49 @@ class LawAtPoint:
     @cached_property
     def memory(self) -> FilmMemory:
         """The law with films that need time, for steps in time."""
-        return FilmMemory(self.point, self.law.contacts, self.entrainment_speed, self._check_loads)
+        factors = self.law.locked_factors(self.entrainment_speed, self.temperature)
+        return FilmMemory(self.point, self.law.contacts, self.entrainment_speed, factors, self._check_loads)
+
+    def rolling_force(self, load: npt.ArrayLike) -> FloatArray:
+        """Rolling force of each contact at a load on the inner one, both walls together [N/m].
+
+        The power that the films take is its sum over the contacts times |u|, per length. For loads outside the map see
+        `ehdmaps.maps.rolling_film`.
+
+        Parameters
+        ----------
+        load : float or array
+            w [N/m], >= 0; the outer contact of `series` carries the centrifugal load besides.
+
+        Returns
+        -------
+        array (contacts, ...)
+            In the order of `ContactLaw.contacts`, over the shape of the loads.
+
+        Raises
+        ------
+        InputError
+            For loads that are no finite numbers >= 0.
+        MapError
+            If the map holds no rolling force.
+        """
+        if self.law.rolling is None:
+            raise MapError(
+                "contact law, rolling force: the map holds none, or not at all its points; allowed: maps without holes "
+                "by the solvers reynolds and openfoam, of schema 3; generate it again"
+            )
+        loads = _floats(load=load)["load"]
+        _check_finite({"load": loads})
+        if np.any(loads < 0.0):
+            raise InputError(f"contact law, load: got {float(np.min(loads)):.6g} N/m; allowed: >= 0")
+        extra = {"outer": self.centrifugal_load}
+        u, T = self.entrainment_speed, self.temperature
+        return np.stack(
+            [
+                self.law.rolling.rolling_force(contact.name, loads + extra.get(contact.name, 0.0), u, T)
+                for contact in self.law.contacts
+            ]
+        )
 
     def _check_loads(self, loads: FloatArray) -> None:
         """Count loads above the map, and raise where the law does."""

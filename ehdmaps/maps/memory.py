@@ -24,7 +24,8 @@ from numba import njit
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps import memory_table
-from ehdmaps.maps.memory_table import Film, MemoryTable, advanced, equilibrium_at, fill_memory, step_of
+from ehdmaps.maps.locked_film import LockedFactors, film_of
+from ehdmaps.maps.memory_table import MemoryTable, advanced, equilibrium_at, fill_memory, step_of
 from ehdmaps.maps.tables import Point
 from ehdmaps.physics.contact import LineContact
 
@@ -41,12 +42,15 @@ class FilmState:
         Approach at which each film would be in equilibrium [m].
     change : array
         What the last step changed in its squeezing G [N s/m2], see `ehdmaps.maps.memory_table`.
+    load : array
+        Load at the end of the last step [N/m].
     step : float
         Length of the last step [s]; 0 after a rest.
     """
 
     approach: FloatArray
     change: FloatArray
+    load: FloatArray
     step: float = 0.0
 
 
@@ -61,6 +65,8 @@ class FilmMemory:
         What is in series.
     entrainment_speed : float
         u [m/s], of either sign.
+    factors : LockedFactors
+        Factors of the closed formula of the locked film.
     check : callable
         Is told the loads of each step [N/m]; it may raise for those above the map.
 
@@ -75,6 +81,7 @@ class FilmMemory:
         point: Point,
         contacts: Sequence[LineContact],
         entrainment_speed: float,
+        factors: LockedFactors,
         check: Callable[[FloatArray], None],
     ) -> None:
         if point.centrifugal_load != 0.0:
@@ -83,17 +90,12 @@ class FilmMemory:
                 "without memory for rollers with centrifugal load"
             )
         self._check = check
-        film = Film(
-            len(contacts),
-            sum(contact.radius for contact in contacts) / len(contacts),
-            contacts[0].reduced_modulus,
-            abs(entrainment_speed),
-        )
+        film = film_of(contacts, entrainment_speed)
         cells = np.zeros((2 * memory_table.ROWS, 12))
         load_cells = np.zeros((memory_table.LOAD_ROWS, 4))
-        self._table = fill_memory(
-            point, film, memory_table.NODES, memory_table.LOAD_NODES, cells, load_cells, np.zeros(4, dtype=np.int64)
-        )
+        nodes, load_nodes = memory_table.NODES, memory_table.LOAD_NODES
+        counts = np.zeros(4, dtype=np.int64)
+        self._table = fill_memory(point, film, factors, nodes, load_nodes, cells, load_cells, counts)
 
     @property
     def table(self) -> MemoryTable:
@@ -114,7 +116,9 @@ class FilmMemory:
             For approaches that are no finite numbers.
         """
         approach = np.maximum(_finite("delta", delta), self._table.lift_off)
-        return FilmState(approach, np.zeros_like(approach))
+        loads = np.empty(approach.size)
+        _loads_at_rest(self._table, np.ascontiguousarray(approach).reshape(-1), loads)
+        return FilmState(approach, np.zeros_like(approach), loads.reshape(approach.shape))
 
     def advance(self, state: FilmState, delta: npt.ArrayLike, dt: float) -> tuple[Any, Any, FilmState]:
         """A step in time. The state that goes in is left as it is: the step may be tried again.
@@ -156,7 +160,14 @@ class FilmMemory:
         _advance_many(self._table, float(dt), state.step, flat, before, change, found)
         w, tangent, approach, changed = (row.reshape(ends.shape) for row in found)
         self._check(w)
-        return w[()], tangent[()], FilmState(approach, changed, float(dt))
+        return w[()], tangent[()], FilmState(approach, changed, w, float(dt))
+
+
+@njit(cache=True, error_model="numpy")
+def _loads_at_rest(table: MemoryTable, approach: FloatArray, loads: FloatArray) -> None:
+    """Loads of films in equilibrium, flat."""
+    for i in range(approach.size):
+        loads[i] = equilibrium_at(table, approach[i])[0]
 
 
 @njit(cache=True, error_model="numpy")

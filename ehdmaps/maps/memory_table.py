@@ -19,8 +19,7 @@ The table has p, y and G over xi in cells which are the binary digits of 1 + |z|
 in cells which are those of 1 + w/`LIGHTEST`: no logarithm is needed to find one. All are cubics through values and
 slopes that rise.
 
-The stiffness k_s of the locked film and its bound are closed formulas, fitted to the linear response of the isothermal
-Newtonian line contact: see `LOCKED` and `LONGEST`.
+The stiffness k_s of the locked film and its bound: `ehdmaps.maps.locked_film`.
 """
 
 from __future__ import annotations
@@ -35,19 +34,8 @@ from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.maps.binary_cells import FIRST, SHIFT, last_of, nodes_of, rows_of
 from ehdmaps.maps.kernel import evaluate_at, structural_state
 from ehdmaps.maps.lines import FAST
+from ehdmaps.maps.locked_film import Film, LockedFactors, factor_at, locked_stiffness
 from ehdmaps.maps.tables import Point
-
-LOCKED, LOCKED_BY_LOAD = 0.02, 0.087
-"""Compliance that locked oil takes off a contact, in 4/E' for each ln(1 + 2 h R/b^2): the first number, and the second
-one times -d(ln h)/d(ln w), which is 1 for a rigid film of constant viscosity, and falls where its inlet is
-piezoviscous or it is elastic. Fitted with FVA 3: the complex stiffness is right within 7 % up to ten natural
-frequencies, and with other oils within 6 % up to L = 40 and 9 % above."""
-
-LONGEST = 1.4
-"""Longest relaxation time c/(k_s - k) in natural times sqrt(b^2 + 2 h R)/u. Fitted likewise."""
-
-MOST_LOCKED = 0.6
-"""Part of the structure's compliance that locked oil takes off at most."""
 
 LIGHTEST = 1.0
 """Load up to which the cells of a over w are even [N/m]."""
@@ -89,51 +77,6 @@ class MemoryTable(NamedTuple):
     lift_off: float
 
 
-class Film(NamedTuple):
-    """What the closed formula of the locked film needs besides the law.
-
-    Attributes
-    ----------
-    contacts : int
-        Number of contacts in series.
-    radius : float
-        Mean reduced radius R [m].
-    modulus : float
-        E' [Pa].
-    speed : float
-        u [m/s], >= 0.
-    """
-
-    contacts: int
-    radius: float
-    modulus: float
-    speed: float
-
-
-@njit(cache=True, error_model="numpy")
-def locked_stiffness(film: Film, xi: float, p: float, k: float, c: float, dry: float, compliance: float) -> float:
-    """Stiffness k_s of a contact whose film cannot give way [N/m2], by closed formula.
-
-    Parameters
-    ----------
-    film : Film
-        Geometry, moduli, speed.
-    xi, p, k, c : float
-        Approach [m], load [N/m], stiffness [N/m2] and damping [N s/m2] at rest, p > 0.
-    dry, compliance : float
-        Structural approach [m] and its derivative [m2/N] at p.
-    """
-    each = max(dry - xi, 0.0) / film.contacts
-    square = 8.0 * p * film.radius / (math.pi * film.modulus)
-    offset = film.contacts * each
-    exponent = min(max((1.0 / k - compliance) * p / offset, 0.0), 1.0) if offset > 0.0 else 0.0
-    part = (LOCKED + LOCKED_BY_LOAD * exponent) * 4.0 / film.modulus
-    locked = film.contacts * part * math.log1p(2.0 * each * film.radius / square)
-    stiff = 1.0 / (compliance - min(locked, MOST_LOCKED * compliance))
-    per_natural = film.speed / math.sqrt(square + 2.0 * each * film.radius)
-    return max(stiff, k, k + c * per_natural / LONGEST)
-
-
 @njit(cache=True, error_model="numpy")
 def _cubic(y0: float, y1: float, s0: float, s1: float, h: float, out: FloatArray) -> None:
     """Cubic through values and slopes at the ends of a cell; slopes are held so that it rises if the values do."""
@@ -146,8 +89,8 @@ def _cubic(y0: float, y1: float, s0: float, s1: float, h: float, out: FloatArray
 
 @njit(cache=True, error_model="numpy")
 def fill_memory(
-    point: Point, film: Film, nodes: FloatArray, load_nodes: FloatArray, cells: FloatArray, load_cells: FloatArray,
-    counts: IntArray,
+    point: Point, film: Film, factors: LockedFactors, nodes: FloatArray, load_nodes: FloatArray, cells: FloatArray,
+    load_cells: FloatArray, counts: IntArray,
 ) -> MemoryTable:  # fmt: skip
     """Fill a table with the law of a point.
 
@@ -157,6 +100,8 @@ def fill_memory(
         The law at one speed and temperature, without centrifugal load.
     film : Film
         Film for the stiffness of the locked film.
+    factors : LockedFactors
+        Factors of its closed formula.
     nodes, load_nodes : array (ROWS + 1,), (LOAD_ROWS + 1,)
         `NODES`, `LOAD_NODES`.
     cells, load_cells : array (2 ROWS, 12), (LOAD_ROWS, 4)
@@ -180,7 +125,8 @@ def fill_memory(
         if p[i] > 0.0:
             dry, compliance = structural_state(point.structure, 0.0, p[i])
             c[i] = max(c[i], _LEAST_DAMPING * k[i])
-            stiff = locked_stiffness(film, xi[i], p[i], k[i], c[i], dry, compliance)
+            factor = factor_at(factors, p[i])
+            stiff = locked_stiffness(film, dry - xi[i], p[i], k[i], c[i], compliance, factor)
             by_y[i] = 1.0 - k[i] / stiff
             # without film nothing is squeezed
             by_c[i] = c[i] / by_y[i] if by_y[i] > _LEAST_FILM else 0.0

@@ -19,7 +19,9 @@ the table of its own version:
   neither read nor checked, whatever it is called.
 
 Version 2 added film compliance, loss compliance and its error to the grid; version 1 had approach, stiffness and
-damping in their place.
+damping in their place. Version 3 added rolling force and mass flow, with their errors, and the film compliance at
+natural frequencies to the backbone, where the solver has it: complex, in units of the film alone, over
+omega sqrt(b^2 + 2 h R)/u with b and the film offset h of each point.
 
 To add a variable, write one row in `TABLE` with ``since=`` the new version, and raise `SCHEMA_VERSION`. With
 ``required=False`` a map may lack it. It is then written, where `dataset` or `backbone` is given values for it, read,
@@ -38,7 +40,7 @@ import xarray as xr
 
 from ehdmaps.physics.solution import Status
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 """Version of the table; files of this and of all lower versions are read."""
 
 DIMS = ("contact", "load", "entrainment_speed", "temperature")
@@ -54,7 +56,13 @@ BACKBONE = "backbone"
 """netCDF group with the refinement lines of the contact law, where a map has them."""
 
 BACKBONE_DIMS = ("zeta", "reference_speed", "temperature")
-"""Order of the dims of every variable of that group."""
+"""Order of the dims of the films of that group."""
+
+NATURAL = "natural_frequency"
+"""Axis of how these films answer."""
+
+RESPONSE_DIMS = (*BACKBONE_DIMS, NATURAL)
+"""Order of the dims of how these films answer."""
 
 NOT_NEEDED = -1
 """Status of a place of the backbone that no contact of the map comes to."""
@@ -155,14 +163,21 @@ def _derived(name: str, units: str, long_name: str) -> Variable:
     return Variable(name, units, long_name, derived_since=2)
 
 
-def _error(name: str, of: str, required: bool = True) -> Variable:
+def _error(name: str, of: str, required: bool = True, since: int = 1) -> Variable:
     """Row of an error estimate."""
-    return Variable(name, "1", f"estimated relative numerical error of {of}", required=required)
+    return Variable(name, "1", f"estimated relative numerical error of {of}", required=required, since=since)
 
 
-def _of_backbone(name: str, units: str, long_name: str) -> Variable:
+def _of_backbone(name: str, units: str, long_name: str, required: bool = True, since: int = 1) -> Variable:
     """Row of a film of the reference contact."""
-    return Variable(name, units, f"{long_name}, reference contact", dims=BACKBONE_DIMS, group=BACKBONE)
+    long_name = f"{long_name}, reference contact"
+    return Variable(name, units, long_name, required=required, dims=BACKBONE_DIMS, group=BACKBONE, since=since)
+
+
+def _of_response(name: str, units: str, long_name: str) -> Variable:
+    """Row of how a film of the reference contact answers at natural frequencies."""
+    words = f"{long_name} at a natural frequency, reference contact"
+    return Variable(name, units, words, required=False, dims=RESPONSE_DIMS, group=BACKBONE, since=3)
 
 
 _KELVINS = (1.0, 1e4)
@@ -181,7 +196,14 @@ TABLE = (
     Variable("central_film", "m", "film thickness at the contact centre"),
     Variable("minimum_film", "m", "smallest film thickness"),
     Variable("max_pressure", "Pa", "largest pressure"),
-    Variable("friction_force", "N m-1", "friction force per unit length", required=False),
+    Variable(
+        "rolling_force",
+        "N m-1",
+        "force of both walls together against pure rolling, integral of film by pressure gradient",
+        required=False,
+        since=3,
+    ),
+    Variable("mass_flow", "kg m-1 s-1", "mass flow of oil per unit length", required=False, since=3),
     Variable("status", "1", "how the point ended", "int8", flags=_STATUS),
     Variable("reason", "1", "cause of the status, in words", "str"),
     _error("film_offset_error", "film_offset"),
@@ -197,6 +219,8 @@ TABLE = (
     _error("central_film_error", "central_film", required=False),
     _error("minimum_film_error", "minimum_film", required=False),
     _error("max_pressure_error", "max_pressure", required=False),
+    _error("rolling_force_error", "rolling_force", required=False, since=3),
+    _error("mass_flow_error", "mass_flow", required=False, since=3),
     Variable("iterations", "1", "iterations of the solver, all grids together", "int32"),
     Variable("solve_seconds", "s", "time to solve the point"),
     Variable(
@@ -213,6 +237,10 @@ TABLE = (
     _of_backbone("film_offset", "m", "dry minus lubricated approach at equal load"),
     _of_backbone("film_compliance", "m2 N-1", "minus the derivative of the film offset by load"),
     _of_backbone("loss_compliance", "m2 s N-1", "damping over squared stiffness, low-frequency limit"),
+    _of_backbone(
+        "rolling_force", "N m-1", "force of both walls together against pure rolling", required=False, since=3
+    ),
+    _of_backbone("mass_flow", "kg m-1 s-1", "mass flow per unit length", required=False, since=3),
     Variable(
         "status",
         "1",
@@ -222,6 +250,19 @@ TABLE = (
         dims=BACKBONE_DIMS,
         group=BACKBONE,
     ),
+    Variable(
+        NATURAL,
+        "1",
+        "omega sqrt(b^2 + 2 h R)/u of a small oscillation, with the film offset h",
+        required=False,
+        dims=(NATURAL,),
+        group=BACKBONE,
+        since=3,
+        limits=(1e-6, 1e6),
+    ),
+    _of_response("film_compliance_real", "m2 N-1", "real part of the complex film compliance S"),
+    _of_response("film_compliance_imaginary", "m2 N-1", "imaginary part of S, minus omega times the loss compliance,"),
+    _of_response("film_compliance_error", "1", "estimated numerical error of S, relative to its magnitude,"),
 )
 """All rows, in the order in which they are written."""
 
@@ -256,6 +297,11 @@ def table(group: str = GRID, version: int | None = None) -> tuple[Variable, ...]
     """Return the rows of a group in files of a version, of the latest one if left out."""
     latest = SCHEMA_VERSION if version is None else version
     return tuple(entry for entry in TABLE if entry.group == group and entry.since <= latest)
+
+
+def response_rows(version: int) -> tuple[Variable, ...]:
+    """Return the rows of the backbone that say how its films answer: a file of that version has all of them or none."""
+    return tuple(entry for entry in table(BACKBONE, version) if NATURAL in entry.dims)
 
 
 def version_of(dataset: xr.Dataset) -> int:

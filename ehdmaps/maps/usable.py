@@ -12,7 +12,8 @@ import xarray as xr
 
 from ehdmaps.arrays import BoolArray
 from ehdmaps.errors import MapError
-from ehdmaps.maps.backbone import FILMS
+from ehdmaps.maps import schema
+from ehdmaps.maps.backbone import FILMS, IMAGINARY, REAL
 from ehdmaps.maps.backbone_plan import zeta_span
 from ehdmaps.maps.schema import BACKBONE_DIMS, DIMS, NOT_NEEDED
 from ehdmaps.physics.contact import LineContact
@@ -102,6 +103,9 @@ def check_backbone(
     solved = usable & (group["film_offset"].values > 0.0)
     for name in FILMS:
         solved &= np.isfinite(group[name].values)
+    if schema.NATURAL in group.variables:
+        for name in (REAL, IMAGINARY):
+            solved &= np.isfinite(group[name].values).all(axis=-1)
     problems = []
     if np.any(usable & ~solved):
         problems.append(

@@ -141,6 +141,11 @@ def _backbone_problems(group: xr.Dataset, version: int) -> Iterator[str]:
     if not isinstance(group.attrs.get(schema.REFERENCE_CONTACT), str):
         yield f"attribute {schema.REFERENCE_CONTACT} is missing or no text; {_AGAIN}"
     yield from _table_problems(group, schema.BACKBONE, version)
+    together = schema.response_rows(version)
+    lacking = [entry for entry in together if entry.name not in group.variables]
+    if lacking and len(lacking) < len(together):
+        held = ", ".join(entry.name for entry in together if entry not in lacking)
+        yield from (f"{_what(entry)} is missing; it belongs to {held}; {_AGAIN}" for entry in lacking)
 
 
 def _table_problems(dataset: xr.Dataset, group: str, version: int) -> Iterator[str]:

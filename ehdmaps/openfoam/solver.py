@@ -17,6 +17,7 @@ from ehdmaps.errors import InputError, SolverError
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
 from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
 from ehdmaps.openfoam.parameters import FLOWS, SHEARS, Flow, Mesh, Parameters, Shear, Start
+from ehdmaps.openfoam.results import FilmTable
 from ehdmaps.openfoam.run import RunError
 from ehdmaps.physics.closed_form import THIN_FILM_LIMIT, HertzSolver
 from ehdmaps.physics.contact import LineContact
@@ -26,6 +27,7 @@ from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import film_from_moes, moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.peak import peak_sampling_error
+from ehdmaps.physics.rolling import film_times_rise, rolling_force_of_inlet
 from ehdmaps.physics.solution import (
     ContactSolverDefaults,
     FilmSolution,
@@ -294,7 +296,8 @@ class OpenFoamSolver(ContactSolverDefaults):
         """One point with its responses at rest and at some frequencies [Hz]: film, coarse and fine grid."""
         if point.entrainment_speed == 0.0:
             (dry,) = HertzSolver().solve_line(contact, lubricant, (point.load,), 0.0, point.temperature)
-            return replace(dry, status=Status.ASYMPTOTE, reason="no entrainment: dry contact"), None, None
+            still = replace(dry, rolling_force=0.0, mass_flow=0.0, rolling_force_error=0.0, mass_flow_error=0.0)
+            return replace(still, status=Status.ASYMPTOTE, reason="no entrainment: dry contact"), None, None
         peak = float(max_pressure(point.load, contact.radius, contact.reduced_modulus))
         if not peak <= LARGEST_PRESSURE:
             reason = f"Hertz pressure {peak / 1e9:.3g} GPa above {LARGEST_PRESSURE / 1e9:g} GPa"
@@ -320,7 +323,9 @@ class OpenFoamSolver(ContactSolverDefaults):
             if isinstance(error, RunError):
                 status, iterations = error.status, done + error.iterations
             return FilmSolution(status, f"{stage}: {error}", iterations=iterations, solve_seconds=seconds), None, None
-        return _film(contact, state, coarse, grid, time.perf_counter() - began, self.shear == "newtonian"), coarse, grid
+        seconds = time.perf_counter() - began
+        newtonian = self.shear == "newtonian"
+        return _film(contact, state, point.entrainment_speed, coarse, grid, seconds, newtonian), coarse, grid
 
     def parameters(
         self,
@@ -403,6 +408,7 @@ def _expected_film(contact: LineContact, state: LubricantState, point: Operating
 def _film(
     contact: LineContact,
     state: LubricantState,
+    speed: float,
     coarse: GridSolution,
     fine: GridSolution,
     seconds: float,
@@ -413,6 +419,8 @@ def _film(
     To that of the largest pressure comes what a spike may rise above the columns beside it.
     """
     found, rough = fine.results, coarse.results
+    rolling, flow = _rolling_force_and_flow(contact, state, speed, fine.film)
+    rough_rolling, rough_flow = _rolling_force_and_flow(contact, state, speed, coarse.film)
 
     def error(value: float, of_coarse: float) -> float:
         """Relative, > 0 where refinement lowers the value."""
@@ -437,13 +445,32 @@ def _film(
         central_film=found.central_film,
         minimum_film=found.minimum_film,
         max_pressure=found.max_pressure,
+        rolling_force=rolling,
+        mass_flow=flow,
         film_offset_error=error(found.film_offset, rough.film_offset),
         film_compliance_error=error(found.film_compliance[0], rough.film_compliance[0]),
         loss_compliance_error=error(found.loss_compliance[0], rough.loss_compliance[0]),
         central_film_error=abs(error(found.central_film, rough.central_film)),
         minimum_film_error=abs(error(found.minimum_film, rough.minimum_film)),
         max_pressure_error=largest_error,
+        rolling_force_error=abs(error(rolling, rough_rolling)),
+        mass_flow_error=abs(error(flow, rough_flow)),
         iterations=rough.iterations + found.iterations,
         solve_seconds=seconds,
         viscosity_extrapolated=found.max_pressure * (1.0 + largest_error) > state.fitted_pressure,
     )
+
+
+def _rolling_force_and_flow(
+    contact: LineContact, state: LubricantState, speed: float, film: FilmTable
+) -> tuple[float, float]:
+    """Rolling force [N/m] and mass flow [kg/(m s)] of one grid; of the flows of all columns the one in the middle."""
+    flow = float(np.median(film.flux))
+    before = rolling_force_of_inlet(
+        -float(film.x[0]),
+        float(film.film[0]),
+        flow / (state.density * speed),
+        12.0 * state.viscosity * speed,
+        contact.radius,
+    )
+    return film_times_rise(film.film, film.pressure) + before, flow

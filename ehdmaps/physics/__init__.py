@@ -21,6 +21,8 @@ sensitivity         what an error of alpha makes of the film
 films               published film formulas: rigid, Dowson-Higginson, Pan-Hamrock, Moes
 unilateral          how damping acts in a contact that cannot pull; what kernels compile
 damping             published damping formulas: rolling film, squeeze film, Dietl
+rolling             rolling force: its integral, the rigid film, Matsuyama's fit
+traction            traction over the slide-to-roll ratio by laws of shear stress
 peak                what the largest of sampled pressures lacks to the peak
 wall_stress         shear stress at the walls over pressure: where no oil is Newtonian
 thermal             reduction of the film by inlet shear heating

@@ -39,6 +39,31 @@ def half_width(load: Values, radius: float, reduced_modulus: float) -> Values:
     return as_given(np.sqrt(8.0 * load * radius / (math.pi * reduced_modulus)), load)
 
 
+def natural_time(load: Values, film_offset: Values, speed: float, radius: float, reduced_modulus: float) -> Values:
+    """Time in which the surfaces pass through a lubricated contact, sqrt(b^2 + 2 h R)/u [s].
+
+    Parameters
+    ----------
+    load : float or array
+        w [N/m], >= 0.
+    film_offset : float or array
+        h, dry minus lubricated approach at equal load [m].
+    speed : float
+        u [m/s], > 0.
+    radius : float
+        R [m].
+    reduced_modulus : float
+        E' [Pa].
+
+    Examples
+    --------
+    >>> f"{natural_time(88571.4, 1e-6, speed=1.7, radius=5.5152e-3, reduced_modulus=230.769e9):.4g}"
+    '7.562e-05'
+    """
+    width = half_width(load, radius, reduced_modulus)
+    return as_given(np.sqrt(np.square(width) + 2.0 * film_offset * radius) / speed, load)
+
+
 def max_pressure(load: Values, radius: float, reduced_modulus: float) -> Values:
     """Largest pressure, p_H = 2 w/(pi b) = sqrt(w E' / (2 pi R)) [Pa].
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Protocol
 
@@ -16,6 +16,7 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.hertz import natural_time
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.structure import structured
@@ -60,10 +61,15 @@ class FilmSolution:
         h at the contact centre, smallest h [m].
     max_pressure : float
         [Pa].
+    rolling_force : float
+        Int h dp/dx dx, what both walls feel together against pure rolling [N/m]; the film takes the power
+        rolling_force u per length. See `ehdmaps.physics.rolling`.
+    mass_flow : float
+        Mass of oil that goes through the contact, per length and time [kg/(m s)].
     film_offset_error, film_compliance_error, loss_compliance_error : float
         Estimated numerical errors, relative to the value beside them; positive where the value is too large, so that
         errors of compliance and loss that come from one cause can cancel in the damping.
-    central_film_error, minimum_film_error, max_pressure_error : float
+    central_film_error, minimum_film_error, max_pressure_error, rolling_force_error, mass_flow_error : float
         The same without a sign.
     iterations : int
         Newton steps (or the solver's own count), all grids together.
@@ -81,12 +87,16 @@ class FilmSolution:
     central_film: float = math.nan
     minimum_film: float = math.nan
     max_pressure: float = math.nan
+    rolling_force: float = math.nan
+    mass_flow: float = math.nan
     film_offset_error: float = math.nan
     film_compliance_error: float = math.nan
     loss_compliance_error: float = math.nan
     central_film_error: float = math.nan
     minimum_film_error: float = math.nan
     max_pressure_error: float = math.nan
+    rolling_force_error: float = math.nan
+    mass_flow_error: float = math.nan
     iterations: int = 0
     solve_seconds: float = 0.0
     viscosity_extrapolated: bool = False
@@ -115,6 +125,13 @@ class FilmSpectrum:
     compliance: ComplexArray
     errors: ComplexArray
 
+    @property
+    def largest_error(self) -> FloatArray:
+        """Largest estimate of the error at each frequency, relative to the magnitude of S, shape (k,)."""
+        largest, size = np.max(np.abs(self.errors), axis=1), np.abs(self.compliance)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(largest == 0.0, 0.0, largest / size)
+
 
 @dataclass(frozen=True)
 class ContactSolution:
@@ -129,7 +146,7 @@ class ContactSolution:
     damping : float
         c [N s/m2].
     film_offset_error, film_compliance_error, stiffness_error, damping_error : float
-    central_film_error, minimum_film_error, max_pressure_error : float
+    central_film_error, minimum_film_error, max_pressure_error, rolling_force_error, mass_flow_error : float
         Estimated relative numerical errors.
     loss_compliance_error : float
         The same, positive where the error of the loss has the sign of that of the film compliance: the two can cancel
@@ -149,6 +166,8 @@ class ContactSolution:
     central_film: float
     minimum_film: float
     max_pressure: float
+    rolling_force: float
+    mass_flow: float
     film_offset_error: float
     film_compliance_error: float
     loss_compliance_error: float
@@ -157,6 +176,8 @@ class ContactSolution:
     central_film_error: float
     minimum_film_error: float
     max_pressure_error: float
+    rolling_force_error: float
+    mass_flow_error: float
     iterations: int
     solve_seconds: float
     viscosity_extrapolated: bool
@@ -190,6 +211,11 @@ class ContactSolver(Protocol):
     @property
     def wants_backbone(self) -> bool:
         """Whether its maps get the lines that a contact law needs besides."""
+        ...
+
+    @property
+    def natural_frequencies(self) -> tuple[float, ...]:
+        """omega sqrt(b^2 + 2 h R)/u at which the backbone of its maps holds the film compliance; none if empty."""
         ...
 
     @property
@@ -240,6 +266,23 @@ class ContactSolver(Protocol):
         """
         ...
 
+    def line_spectra(
+        self,
+        contact: LineContact,
+        lubricant: Lubricant,
+        loads: tuple[float, ...],
+        entrainment_speed: float,
+        temperature: float,
+    ) -> tuple[FilmSpectrum, ...]:
+        """Films of `solve_line`, each over `natural_frequencies`; arguments as of `solve_line`.
+
+        Parameters
+        ----------
+        contact, lubricant, loads, entrainment_speed, temperature
+            The arguments of `ContactSolver.solve_line`.
+        """
+        ...
+
     def settings(self) -> dict[str, float | int | str]:
         """Everything that changes the numbers, by name; goes into the map's attributes and the store's key."""
         ...
@@ -267,6 +310,11 @@ class ContactSolverDefaults:
         return False
 
     @property
+    def natural_frequencies(self) -> tuple[float, ...]:
+        """Its maps hold films of slow motion only."""
+        return ()
+
+    @property
     def provenance(self) -> Mapping[str, str]:
         """Its maps get no further attributes."""
         return {}
@@ -287,6 +335,50 @@ class ContactSolverDefaults:
         """
         (film,) = self.solve_line(contact, lubricant, (point.load,), point.entrainment_speed, point.temperature)
         return slow_spectrum(film, frequencies)
+
+    def line_spectra(
+        self: ContactSolver,
+        contact: LineContact,
+        lubricant: Lubricant,
+        loads: tuple[float, ...],
+        entrainment_speed: float,
+        temperature: float,
+    ) -> tuple[FilmSpectrum, ...]:
+        """Films of a line, and each once more over frequency; arguments as of `ContactSolver`.
+
+        Parameters
+        ----------
+        contact, lubricant, loads, entrainment_speed, temperature
+            The arguments of `ContactSolver.solve_line`.
+        """
+        spectra = []
+        for load, film in zip(
+            loads, self.solve_line(contact, lubricant, loads, entrainment_speed, temperature), strict=True
+        ):
+            point = OperatingPoint(load, entrainment_speed, temperature)
+            at = natural_to_hertz(self.natural_frequencies, film, contact, point)
+            found = self.film_spectrum(contact, lubricant, point, at) if film.status.usable else no_spectrum(film, at)
+            spectra.append(replace(found, film=film))
+        return tuple(spectra)
+
+
+def natural_to_hertz(
+    natural: tuple[float, ...], film: FilmSolution, contact: LineContact, point: OperatingPoint
+) -> FloatArray:
+    """Frequencies [Hz] of natural frequencies omega sqrt(b^2 + 2 h R)/u; NaN where the film has no solution.
+
+    Parameters
+    ----------
+    natural : tuple of float
+        Natural frequencies.
+    film : FilmSolution
+        The film at rest.
+    contact, point
+        What it belongs to.
+    """
+    modulus = contact.reduced_modulus
+    time = natural_time(point.load, film.film_offset, point.entrainment_speed, contact.radius, modulus)
+    return np.array(natural) / (2.0 * math.pi * time)
 
 
 def slow_spectrum(film: FilmSolution, frequencies: FloatArray) -> FilmSpectrum:
@@ -359,6 +451,8 @@ def contact_solution(film: FilmSolution, contact: LineContact, point: OperatingP
         central_film=film.central_film,
         minimum_film=film.minimum_film,
         max_pressure=film.max_pressure,
+        rolling_force=film.rolling_force,
+        mass_flow=film.mass_flow,
         film_offset_error=abs(film.film_offset_error),
         film_compliance_error=abs(film.film_compliance_error),
         loss_compliance_error=film.loss_compliance_error * math.copysign(1.0, film.film_compliance_error),
@@ -367,6 +461,8 @@ def contact_solution(film: FilmSolution, contact: LineContact, point: OperatingP
         central_film_error=film.central_film_error,
         minimum_film_error=film.minimum_film_error,
         max_pressure_error=film.max_pressure_error,
+        rolling_force_error=film.rolling_force_error,
+        mass_flow_error=film.mass_flow_error,
         iterations=film.iterations,
         solve_seconds=film.solve_seconds,
         viscosity_extrapolated=film.viscosity_extrapolated,

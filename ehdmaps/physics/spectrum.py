@@ -187,7 +187,7 @@ def contact_spectrum(spectrum: FilmSpectrum, contact: LineContact, point: Operat
             frequencies=spectrum.frequencies,
             film_compliance=film,
             dynamic_stiffness=stiffness,
-            film_compliance_error=_relative(largest, np.abs(film)),
+            film_compliance_error=spectrum.largest_error,
             dynamic_stiffness_error=_relative(largest * np.abs(stiffness) ** 2, np.abs(stiffness)),
             stiffness_error=_relative(real, np.abs(stiffness.real)),
             damping_error=_relative(imaginary, np.abs(stiffness.imag)),

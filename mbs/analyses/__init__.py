@@ -10,15 +10,18 @@ lsa            state space and frequency responses at the equilibrium
 sweep          modes, bearings and responses over speed, of one or more models
 runup          the nonlinear system in time over its speed profile
 campbell       run-ups with one or more laws as levels over speed, frequency and order
+variants       how a difference between two laws in a run-up depends on clearance, temperature and the like
 hammer         a simulated hammer test
 plan           which ranges a scene needs of a contact map, and the jobs that cover them
 planning       operating points of a scene and the loads and speeds seen there
 planned_job    such a job, from the bearings and the oil of the scene
 coverage       whether a map covers what is needed
 case           the models that an analysis compares, with their labels
+varied         what comparisons vary, one row a key
 progress       how an analysis tells how far it is
 reach          where the films of a law begin, and calls outside its map
-film_limits    up to which frequency the films follow
+losses         what contacts feel at an equilibrium, and what rolling costs there
+film_errors    how wrong the films are estimated to be over frequency
 =============  ====================================================================================
 
 Nothing is imported here: take the functions from `mbs`, or from their modules.

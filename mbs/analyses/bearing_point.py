@@ -30,6 +30,7 @@ from mbs.bearings.contact_report import (
 from mbs.bearings.films import FilmSource
 from mbs.bearings.laws import Law
 from mbs.bearings.roller_loads import RollerLoads
+from mbs.bearings.rolling_loss import RollingLoss, rolling_loss
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import equilibrium
@@ -65,6 +66,8 @@ class BearingPoint:
         Loads of rollers and slices.
     contacts : BearingContacts
         Pressures and films of all slices.
+    loss : RollingLoss
+        What rolling costs.
     problems : tuple of str
         Limits of the laws that the point exceeds, in words.
     notes : tuple of str
@@ -81,6 +84,7 @@ class BearingPoint:
     damping: FloatArray
     rollers: RollerLoads
     contacts: BearingContacts
+    loss: RollingLoss
     problems: tuple[str, ...]
     notes: tuple[str, ...]
 
@@ -196,6 +200,7 @@ def bearing_point(
         damping=balance.element_damping[0][1:3, 1:3],
         rollers=rollers,
         contacts=contacts,
+        loss=rolling_loss(contacts, rollers.load, force.bearing.slice_length, u, speed),
         problems=tuple(filter(None, problems)),
         notes=tuple(filter(None, notes)),
     )

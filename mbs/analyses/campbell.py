@@ -138,10 +138,10 @@ def campbell(
     settings = settings or scene.campbell
     problems: list[str] = []
     sensor = _sensor(settings.sensor, scene, problems)
-    course = _course(scene, settings.highest, problems)
+    course = run_course(scene, settings.highest, problems)
     if problems or sensor is None or course is None:
         raise InputError(tuple(dict.fromkeys(problems)))
-    orders = _orders(cases[0].model, settings, course)
+    orders = followed_orders(cases[0].model, settings, course)
     _rehearse(settings, course, orders)
     runs, failed = _runs(cases, settings, sensor, course, orders, progress or silent, with_modes, keep_partial)
     if not runs:
@@ -159,7 +159,7 @@ def campbell_problems(scene: Scene, settings: CampbellSettings) -> list[str]:
     """Everything about the run and the sensor of a scene that is not possible with some settings."""
     problems: list[str] = []
     _sensor(settings.sensor, scene, problems)
-    _course(scene, settings.highest, problems)
+    run_course(scene, settings.highest, problems)
     return problems
 
 
@@ -199,8 +199,23 @@ def _runs(
     return runs, failed
 
 
-def _course(scene: Scene, highest: float, problems: list[str]) -> RunUp | None:
-    """The run of the scene with a sample a step, so that nothing above the band is folded into it."""
+def run_course(scene: Scene, highest: float, problems: list[str]) -> RunUp | None:
+    """The run of the scene with a sample a step, so that nothing above the band is folded into it.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    highest : float
+        Highest frequency that is looked at [Hz].
+    problems : list of str
+        What is wrong about it is appended.
+
+    Returns
+    -------
+    RunUp or None
+        None where there is no run, or none of a possible length.
+    """
     course = scene.run_up
     if course is None:
         problems.append(f"{scene.name}: [runup] missing; a run-up needs from, to, duration and step")
@@ -245,8 +260,18 @@ def _sensor(name: str | None, scene: Scene, problems: list[str]) -> Sensor | Non
     return None
 
 
-def _orders(model: Model, settings: CampbellSettings, course: RunUp) -> list[tuple[float, str]]:
-    """Orders to follow, with their names: those of the settings, else what the elements excite."""
+def followed_orders(model: Model, settings: CampbellSettings, course: RunUp) -> list[tuple[float, str]]:
+    """Orders to follow, with their names: those of the settings, else what the elements excite.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with a law.
+    settings : CampbellSettings
+        Orders, if any are named, and the highest frequency.
+    course : RunUp
+        The run.
+    """
     if settings.orders:
         return [(order, f"{order:g}") for order in settings.orders]
     given = [one for entry in model.system.elements if (one := entry.element.excitation) is not None]
@@ -260,13 +285,28 @@ def _orders(model: Model, settings: CampbellSettings, course: RunUp) -> list[tup
     return sorted((order, name) for order, name in found.items() if order < highest)
 
 
-def _rehearse(settings: CampbellSettings, course: RunUp, orders: list[tuple[float, str]]) -> None:
-    """Look at a silent run of the same course: what does not fit it is said before minutes are spent, not after."""
+def silent_run(course: RunUp) -> RunSignal:
+    """A silent run of a course: what does not fit it is said before minutes are spent, not after.
+
+    Parameters
+    ----------
+    course : RunUp
+        The run.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
     samples = math.ceil(course.duration / course.settings.sample - 1e-9)
     times = np.asarray(np.arange(samples + 1) * course.settings.sample, dtype=np.float64)
     speed, angle = np.array([course.speed.at(at) for at in times.tolist()]).T
-    silence = RunSignal(times, speed, angle, np.zeros_like(times))
-    run_up_spectra(silence, 1.0, settings.highest, settings.window, [order for order, _ in orders])
+    return RunSignal(times, speed, angle, np.zeros_like(times))
+
+
+def _rehearse(settings: CampbellSettings, course: RunUp, orders: list[tuple[float, str]]) -> None:
+    """Look at a silent run of the same course."""
+    run_up_spectra(silent_run(course), 1.0, settings.highest, settings.window, [order for order, _ in orders])
 
 
 def _one(
@@ -280,17 +320,8 @@ def _one(
 ) -> LawRun:
     """Run up with one law."""
     model = case.model
-    start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
     begin = time.perf_counter()
-    record = run_system(
-        model.system,
-        course.speed,
-        course.duration,
-        course.settings,
-        sensors=(sensor,),
-        displacement=start.displacement,
-        progress=told,
-    )
+    record = recorded_run(model, course, (sensor,), told)
     seconds = time.perf_counter() - begin
     signal = RunSignal(record.time, record.speed, record.angle, record.signals[:, 0])
     spectra = run_up_spectra(
@@ -301,6 +332,39 @@ def _one(
         [order for order, _ in orders],
     )
     return LawRun(case, record, spectra, _modes(model, spectra) if with_modes else None, seconds)
+
+
+def recorded_run(
+    model: Model, course: RunUp, sensors: Sequence[Sensor], told: Callable[[int], None] | None = None
+) -> Recording:
+    """Run up from the equilibrium at the first speed, and record sensors.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with a law.
+    course : RunUp
+        The run.
+    sensors : sequence of Sensor
+        What is recorded.
+    told : callable, optional
+        Told the number of samples done.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no equilibrium, or a step finds no solution.
+    """
+    start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
+    return run_system(
+        model.system,
+        course.speed,
+        course.duration,
+        course.settings,
+        sensors=sensors,
+        displacement=start.displacement,
+        progress=told,
+    )
 
 
 def _modes(model: Model, spectra: RunUpSpectra) -> Sweep:

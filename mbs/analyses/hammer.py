@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ehdmaps.errors import InputError
-from mbs.analyses.film_limits import film_limits
+from mbs.analyses.film_errors import film_errors
 from mbs.analyses.progress import Progress, silent
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.steady import steady_system
-from mbs.linearised.validity import FilmLimit
+from mbs.linearised.validity import FilmError
 from mbs.modal.records import Hits
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.scene.assembly import Model
@@ -64,8 +64,8 @@ class HammerResult:
         How the test was made.
     hits : tuple of Hits
         Records of force and responses, one an input; `mbs.modal.fit` takes them.
-    limits : tuple of FilmLimit
-        Up to which frequency the films of each bearing follow; empty for laws without films.
+    errors : tuple of FilmError
+        How wrong the films of each bearing are estimated to be; empty for laws without films.
     outside_hits : mapping of str to int
         How often each element was evaluated outside its map during nonlinear hits, by name.
     """
@@ -75,7 +75,7 @@ class HammerResult:
     modes: Modes
     test: HammerTest
     hits: tuple[Hits, ...]
-    limits: tuple[FilmLimit, ...]
+    errors: tuple[FilmError, ...]
     outside_hits: Mapping[str, int]
 
 
@@ -130,7 +130,7 @@ def hammer(model: Model, settings: HammerSettings | None = None, progress: Progr
         modes=found,
         test=test,
         hits=hits,
-        limits=tuple(film_limits(model, balance.displacement, balance.operation)),
+        errors=tuple(film_errors(model, balance.displacement, balance.operation)),
         outside_hits=outside,
     )
 

@@ -9,11 +9,11 @@ import xarray as xr
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
-from mbs.analyses.film_limits import film_limits, slow_film_errors
+from mbs.analyses.film_errors import film_errors
 from mbs.linearised.linear import StateSpace, frequency_response, state_space, with_peaks
 from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
-from mbs.linearised.validity import DynamicLoad, FilmLimit, SlowFilmError, dynamic_loads
+from mbs.linearised.validity import DynamicLoad, FilmError, dynamic_loads
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import described, linear_dataset
@@ -55,10 +55,8 @@ class LsaResult:
         [Hz].
     responses : array of complex, shape (frequencies, sensors, inputs)
         Responses in the unit of the sensor's quantity, per N or N m.
-    limits : tuple of FilmLimit
-        Up to which frequency the films of each bearing follow; empty for films with memory and without films.
-    errors : tuple of SlowFilmError
-        How wrong films of slow motion are; empty for films with memory and without films.
+    errors : tuple of FilmError
+        How wrong the films of each bearing are estimated to be; empty for laws without films.
     lifting : tuple of DynamicLoad
         Loads that exceed the static ones, so that contacts lift off.
     dataset : xarray.Dataset
@@ -71,8 +69,7 @@ class LsaResult:
     asked: int
     frequencies: FloatArray
     responses: ComplexArray
-    limits: tuple[FilmLimit, ...]
-    errors: tuple[SlowFilmError, ...]
+    errors: tuple[FilmError, ...]
     lifting: tuple[DynamicLoad, ...]
     dataset: xr.Dataset
 
@@ -119,7 +116,6 @@ def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
     frequencies = with_peaks(np.array(asked), modes(balance).eigenvalues)
     responses = frequency_response(balance, scene.inputs, scene.sensors, frequencies)
     space = state_space(balance, scene.inputs, scene.sensors)
-    limits = tuple(film_limits(model, balance.displacement, balance.operation))
     lifting = tuple(load for load in dynamic_loads(balance, scene.inputs, frequencies) if load.exceeds)
     dataset = linear_dataset(balance, space, responses, frequencies, scene.inputs, scene.sensors)
     return LsaResult(
@@ -129,8 +125,7 @@ def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
         asked=len(asked),
         frequencies=frequencies,
         responses=responses,
-        limits=limits,
-        errors=tuple(slow_film_errors(model, balance.displacement, balance.operation)),
+        errors=tuple(film_errors(model, balance.displacement, balance.operation)),
         lifting=lifting,
         dataset=described(dataset, **law_attributes(model)),
     )

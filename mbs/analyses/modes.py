@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import xarray as xr
 
-from mbs.analyses.film_limits import film_limits, slow_film_errors
+from mbs.analyses.film_errors import film_errors
 from mbs.linearised.modes import Modes
 from mbs.linearised.modes import modes as modes_at
 from mbs.linearised.steady import steady_system
-from mbs.linearised.validity import FilmLimit, SlowFilmError
+from mbs.linearised.validity import FilmError
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import described, modes_dataset
@@ -29,10 +29,8 @@ class ModesResult:
         Equilibrium at which the system was linearised, gear meshes with their mean stiffness.
     modes : Modes
         Eigenvalues, shapes and strain-energy shares.
-    limits : tuple of FilmLimit
-        Up to which frequency the films of each bearing follow; empty for films with memory and without films.
-    errors : tuple of SlowFilmError
-        How wrong films of slow motion are; empty for films with memory and without films.
+    errors : tuple of FilmError
+        How wrong the films of each bearing are estimated to be; empty for laws without films.
     dataset : xarray.Dataset
         What `mbs modes -o` writes.
     """
@@ -40,8 +38,7 @@ class ModesResult:
     model: Model
     balance: Equilibrium
     modes: Modes
-    limits: tuple[FilmLimit, ...]
-    errors: tuple[SlowFilmError, ...]
+    errors: tuple[FilmError, ...]
     dataset: xr.Dataset
 
 
@@ -69,7 +66,6 @@ def modes(model: Model, operation: Operation | None = None) -> ModesResult:
     """
     balance = equilibrium(steady_system(model.system), operation or model.operation)
     found = modes_at(balance)
-    limits = tuple(film_limits(model, balance.displacement, balance.operation))
     dataset = described(modes_dataset(found, balance), **law_attributes(model))
-    errors = tuple(slow_film_errors(model, balance.displacement, balance.operation))
-    return ModesResult(model, balance, found, limits, errors, dataset)
+    errors = tuple(film_errors(model, balance.displacement, balance.operation))
+    return ModesResult(model, balance, found, errors, dataset)

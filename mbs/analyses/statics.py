@@ -6,11 +6,9 @@ from dataclasses import dataclass
 
 import xarray as xr
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics.solids import STEEL
-from mbs.analyses.film_limits import ring_motions
-from mbs.bearings.contact_report import BearingContacts, bearing_contacts, overload
-from mbs.bearings.films import DryContacts
+from mbs.analyses.losses import contacts_and_losses
+from mbs.bearings.contact_report import BearingContacts, overload
+from mbs.bearings.rolling_loss import RollingLoss
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.free_motion import free_lines, free_motions
@@ -30,6 +28,8 @@ class StaticsResult:
         Displacements, forces, stiffness and damping.
     contacts : tuple of BearingContacts
         Pressures and films, one a bearing.
+    losses : tuple of RollingLoss
+        What rolling costs, one a bearing.
     overloads : tuple of str
         Bearings whose pressures are above the static limit.
     free : tuple of str
@@ -41,6 +41,7 @@ class StaticsResult:
     model: Model
     balance: Equilibrium
     contacts: tuple[BearingContacts, ...]
+    losses: tuple[RollingLoss, ...]
     overloads: tuple[str, ...]
     free: tuple[str, ...]
     dataset: xr.Dataset
@@ -70,27 +71,12 @@ def statics(model: Model, operation: Operation | None = None) -> StaticsResult:
     """
     balance = equilibrium(model.system, operation or model.operation)
     free = tuple(free_lines(free_motions(balance)))
-    contacts = tuple(_contacts(model, balance, index) for index in range(len(model.bearings)))
+    found = contacts_and_losses(model, balance.displacement, balance.operation)
+    contacts, losses = tuple(state for state, _ in found), tuple(loss for _, loss in found)
     overloads = tuple(
         f"{bearing.name}: {sentence}"
         for bearing, state in zip(model.bearings, contacts, strict=True)
         if (sentence := overload(state))
     )
-    dataset = described(statics_dataset(balance, contacts, (*overloads, *free)), **law_attributes(model))
-    return StaticsResult(model, balance, contacts, overloads, free, dataset)
-
-
-def _contacts(model: Model, balance: Equilibrium, index: int) -> BearingContacts:
-    """Pressures and films of a bearing."""
-    bearing, motion = ring_motions(model, balance.displacement)[index]
-    operation = balance.operation
-    point = (
-        bearing.rollers(motion, operation),
-        bearing.entrainment_speed(operation),
-        bearing.temperature,
-        bearing.centrifugal_load(operation),
-    )
-    try:
-        return bearing_contacts(model.films[bearing.name], *point)
-    except InputError:  # the oil has no viscosity at this temperature, where a law is held at its edge
-        return bearing_contacts(DryContacts(bearing.bearing.geometry.contacts(STEEL, "iso16281")), *point)
+    dataset = described(statics_dataset(balance, contacts, losses, (*overloads, *free)), **law_attributes(model))
+    return StaticsResult(model, balance, contacts, losses, overloads, free, dataset)

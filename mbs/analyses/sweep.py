@@ -10,6 +10,7 @@ import xarray as xr
 
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.analyses.case import Case, as_cases
+from mbs.analyses.losses import losses_over_speed
 from mbs.analyses.progress import Progress, silent
 from mbs.linearised.sweep import sweep as sweep_system
 from mbs.linearised.sweep_result import Sweep
@@ -128,4 +129,15 @@ def _dataset(cases: Sequence[Case], found: Sequence[Sweep]) -> xr.Dataset:
         [case.load_factor for case in cases],
     )
     named = [f"{case.label}: {case.model.law}" for case in cases] if len(cases) > 1 else [cases[0].model.law]
+    losses = [
+        losses_over_speed(case.model, entry.speeds, entry.displacement)
+        for case, entry in zip(cases, found, strict=True)
+    ]
+    for name, unit, words, part in (
+        ("rolling_torque", "N m", "torque that rolling takes", 0),
+        ("rolling_power", "W", "power that the films of all rollers take", 1),
+    ):
+        values = np.stack([both[part] for both in losses])
+        attributes = {"units": unit, "long_name": f"{words}; none without a map with rolling forces"}
+        dataset[name] = (("case", "speed", "bearing"), values, attributes)
     return described(dataset, **{**law_attributes(cases[0].model), "law": "; ".join(named)})

@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.copies import put
 from ehdmaps.maps.lines import FAST
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_element import BearingElement
@@ -87,6 +88,7 @@ def _between(low: FloatArray, high: FloatArray, weight: float, out: FloatArray) 
         coefficient=mixed.coefficient,
         exponent=mixed.exponent,
         damping=mixed.damping,
+        damping_time=mixed.damping_time,
         centre=mixed.centre,
         inverse_scale=mixed.inverse_scale,
         highest=mixed.highest,
@@ -121,9 +123,9 @@ def blend(films: Films, film: int, node: int, weight: float) -> None:
     low, cells, current = films.numbers[film, node], films.cells[film], films.current[film]
     tabulated = law_numbers(low).kind == CELLS
     if weight == 0.0:
-        current[:] = low
+        put(low, current)
         if tabulated:
-            cells[:] = films.tables[film, node]
+            put(films.tables[film, node].reshape(-1), cells.reshape(-1))
         return
     other = (node + 1) % films.tables.shape[1]
     _between(low, films.numbers[film, other], weight, current)
@@ -193,11 +195,11 @@ class BearingBlock:
             (id(_force_of(element).law), element.temperature, *element.rates[1:]) for element in elements
         )
         tables = [
-            SpeedTables(_force_of(element), element.temperature, element.rates[1:])
+            SpeedTables(element.bearing, _force_of(element).flat_law, element.temperature, element.rates[1:])
             for element in (elements[first] for first in firsts)
         ]
         rings = gather_rings(members, films_of)
-        films = _room(len(tables), any(table.varies for table in tables))
+        films = room_of(len(tables), any(table.varies for table in tables))
         self._course = CourseOfFilms(
             [table.places for table in tables],
             lambda film, *places: tables[film].prepare(*places, films.tables[film], films.numbers[film]),
@@ -233,7 +235,7 @@ def _force_of(element: BearingElement) -> BearingForce:
     return element.force
 
 
-def _room(films: int, varies: bool) -> Films:
+def room_of(films: int, varies: bool) -> Films:
     """Room for tables."""
     nodes, cells = (NODES, 2 * table.ROWS) if varies else (1, 1)
     return Films(

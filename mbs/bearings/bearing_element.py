@@ -6,12 +6,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
+import numpy as np
+
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.film_relaxation import bearing_relaxation
+from mbs.bearings.film_relaxation import bearing_relaxation, natural_times
 from mbs.bearings.roller_loads import RollerLoads
 from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port
 from mbs.model.relaxation import Films, Relaxation
@@ -56,6 +58,16 @@ class RingElement(ElementDefaults):
             Speed, angle and time.
         """
         return None
+
+    def natural_times(self, displacement: FloatArray, operation: Operation) -> FloatArray:
+        """Natural times of the contacts of `film_relaxation`, in its order, shape (r,) [s]; none without films.
+
+        Parameters
+        ----------
+        displacement, operation
+            The same as for `film_relaxation`.
+        """
+        return np.zeros(0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,13 +172,18 @@ class BearingElement(RingElement):
         return self.film_relaxation(displacement, operation) if self.films == "memory" else None
 
     def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
-        """See `RingElement.film_relaxation`; None with centrifugal load too."""
+        """See `RingElement.film_relaxation`; with centrifugal load the times are those without it, as an estimate."""
         if not isinstance(self.force, BearingForce) or not isinstance(self.force.law, ContactLaw):
-            return None
-        if self.centrifugal_load(operation) != 0.0:
             return None
         law = self.force.law.at(self.entrainment_speed(operation), self.temperature)
         return bearing_relaxation(law, self.rollers(displacement, operation), self.bearing.slice_length)
+
+    def natural_times(self, displacement: FloatArray, operation: Operation) -> FloatArray:
+        """See `RingElement.natural_times`."""
+        if not isinstance(self.force, BearingForce) or not isinstance(self.force.law, ContactLaw):
+            return np.zeros(0)
+        law = self.force.law.at(self.entrainment_speed(operation), self.temperature)
+        return natural_times(law, self.rollers(displacement, operation).approach).reshape(-1)
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on the inner ring, stiffness and damping, see `Element.evaluate`."""

@@ -21,8 +21,10 @@ import numpy.typing as npt
 
 from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
+from ehdmaps.maps.memory import FilmState
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.force_at_point import Arrays, FlatLaw, ForceAtPoint, Triple
+from mbs.bearings.force_at_point import Arrays, FlatLaw, ForceAtPoint, Triple, check_conditions
+from mbs.bearings.force_in_time import ForceInTime
 from mbs.bearings.kinematics import RingState
 from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.ring_forces import RingForces, ring_forces
@@ -69,6 +71,7 @@ class BearingForce:
         self.flat_law = FlatLaw(law)
         self._work = Arrays(self.bearing)
         self._current: ForceAtPoint | None = None
+        self._in_time: ForceInTime | None = None
 
     def at(
         self, entrainment_speed: float = math.nan, temperature: float = math.nan, centrifugal_load: float = 0.0
@@ -152,6 +155,98 @@ class BearingForce:
             Load of a roller [N/m]; for a map's law only.
         """
         return self._prepared(entrainment_speed, temperature, centrifugal_load).evaluate(pose, velocity, cage_angle)
+
+    def advance(
+        self,
+        state: FilmState | None,
+        pose: npt.ArrayLike,
+        dt: float,
+        *,
+        cage_angle: float = 0.0,
+        entrainment_speed: float = math.nan,
+        temperature: float = math.nan,
+        centrifugal_load: float = 0.0,
+    ) -> tuple[Forces, FilmState]:
+        """A step in time with films that need time to follow: the law is that of `ContactLaw.advance`, slice by slice.
+
+        The force follows from the pose at the end of the step and from the states at its beginning; the velocity has no
+        part in it. The state that goes in stays as it is, so that a step may be tried again, at another pose or with
+        another length, as often as the solver of the equations of motion asks.
+
+        Parameters
+        ----------
+        state : FilmState or None
+            Films of all slices of all rollers at the beginning of the step; None for films in equilibrium at `pose`.
+        pose : array (6,)
+            Pose of the inner ring in O at the end of the step [m], [rad].
+        dt : float
+            Length of the step [s], > 0. The method is of second order while steps grow by no more than a fifth.
+        cage_angle : float
+            Angle of the first roller at the end of the step, from y towards z [rad].
+        entrainment_speed, temperature : float
+            u [m/s] and T [K] there; a change from call to call costs some tenths of a millisecond.
+        centrifugal_load : float
+            Centrifugal load of a roller there [N/m].
+
+        Returns
+        -------
+        forces : Forces
+            Force (6,) on the inner ring, its exact derivative K = -df/dpose (6, 6) at the end of the step, a damping of
+            zeros, and whether some slice lies outside the map.
+        state : FilmState
+            Films at the end of the step, arrays of shape (Z, n); `load` has the loads of the slices [N/m].
+
+        Raises
+        ------
+        InputError
+            For a dry law, for values that are no finite numbers, and as `FilmMemory.advance` does.
+        OutsideMapError
+            Outside the map, where the law has the policy "error".
+
+        Examples
+        --------
+        A mass of 20 kg on the bearing under a constant load, by the trapezoidal rule; Newton's method asks for the
+        force at several poses, and the last state is kept:
+
+        >>> import numpy as np
+        >>> from ehdmaps import Lubricant
+        >>> from mbs import Bearing, BearingForce
+        >>> from mbs.bearings.laws import formula
+        >>> bearing = Bearing.named("NU308")
+        >>> force = BearingForce(bearing, formula(bearing, Lubricant.named("FVA3")))
+        >>> at = {"entrainment_speed": 1.7, "temperature": 313.15}
+        >>> mass, load, h = 20.0, np.array([800.0, 0.0]), 1e-5
+        >>> pose, v, a, state = np.array([0.0, 1.2e-5, 0.0, 0.0, 0.0, 0.0]), np.zeros(2), np.zeros(2), None
+        >>> for _ in range(100):
+        ...     begin, known, unknown = pose[1:3].copy(), a, a
+        ...     for _ in range(4):
+        ...         pose[1:3] = begin + h * v + 0.25 * h * h * (known + unknown)
+        ...         forces, trial = force.advance(state, pose, h, **at)
+        ...         left = mass * unknown - load - forces.force[1:3]
+        ...         slope = mass * np.eye(2) + 0.25 * h * h * forces.stiffness[1:3, 1:3]
+        ...         unknown = unknown - np.linalg.solve(slope, left)
+        ...     v, a, state = v + 0.5 * h * (known + unknown), unknown, trial
+        >>> round(1e6 * float(pose[1]), 1)  # um
+        2.5
+        """
+        law = self.law
+        if not isinstance(law, ContactLaw):
+            raise InputError(
+                f"bearing force, advance: got the law {law.name!r}, which has no films; allowed: the law of a map, or "
+                "laws.formula; without films the force of a call holds in time"
+            )
+        conditions, current = (entrainment_speed, temperature, centrifugal_load), self._in_time
+        check_conditions(conditions)
+        made = current is not None and conditions == (
+            current.law.entrainment_speed,
+            current.law.temperature,
+            current.law.centrifugal_load,
+        )
+        if not made:
+            self._in_time = None
+            self._in_time = ForceInTime(law.at(*conditions), self._work)
+        assert self._in_time is not None
+        return self._in_time.advance(state, pose, dt, cage_angle)
 
     def rollers(
         self,

@@ -207,10 +207,32 @@ def _find_cells(motion: RingMotion, shape: Shape, numbers: LawNumbers, rows: Int
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray) -> None:
-    """States of w = a delta^b with a constant damping; rollers without load are left out."""
+def slice_approaches(motion: RingMotion, shape: Shape, out: FloatArray) -> None:
+    """Approach of all slices of all rollers.
+
+    Parameters
+    ----------
+    motion : RingMotion
+        Motion of the ring.
+    shape : Shape
+        The bearing.
+    out : array (Z n,)
+        Approaches, written [m].
+    """
     x, lost = shape.positions, shape.profile
-    a, b, damping = numbers.coefficient, numbers.exponent, numbers.damping
+    for j in range(shape.cos.size):
+        roller = roller_of(motion, shape, j)
+        row = out[j * x.size : (j + 1) * x.size]
+        for i in range(x.size):
+            row[i] = roller.gap + x[i] * roller.tilt - lost[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray) -> None:
+    """States of w = a delta^b with c = damping + damping_time dw; rollers without load are left out."""
+    x, lost = shape.positions, shape.profile
+    a, b, damping, time = numbers.coefficient, numbers.exponent, numbers.damping, numbers.damping_time
+    bend = time * (b - 1.0) / b
     for j in range(shape.cos.size):
         roller = roller_of(motion, shape, j)
         w, dw, c, dc = states[0, j], states[1, j], states[2, j], states[3, j]
@@ -225,8 +247,10 @@ def _power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states:
             dw[i] = slope if delta > 0.0 else 0.0
             w[i] = slope * safe / b if delta > 0.0 else 0.0
         for i in range(x.size):
-            c[i] = damping if w[i] > 0.0 else 0.0
-            dc[i] = 0.0
+            loaded = w[i] > 0.0
+            c[i] = damping + time * dw[i] if loaded else 0.0
+            # The second derivative of the power, from load and slope.
+            dc[i] = bend * dw[i] * dw[i] / (w[i] if loaded else 1.0)
 
 
 Motion = tuple[float, float]
@@ -363,6 +387,25 @@ def assemble(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: Floa
     _write(stiffness, length, out[1:7])
     _write(damping, length, out[7:13])
     return above
+
+
+@njit(cache=True, error_model="numpy")
+def assemble_slices(motion: RingMotion, shape: Shape, states: FloatArray, out: FloatArray) -> None:
+    """`assemble` for slices whose states are those of the motion itself, with whole slopes and loads of any size.
+
+    Parameters
+    ----------
+    motion : RingMotion
+        Motion of the ring.
+    shape : Shape
+        The bearing.
+    states : array (4, Z, n)
+        Loads and their slopes; zeros where the damping would be.
+    out : array (13, 6)
+        Force, six rows of stiffness, six rows of zeros.
+    """
+    numbers = LawNumbers(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, math.inf, math.inf, -math.inf, 1.0)
+    assemble(motion, shape, numbers, states, out)
 
 
 @njit(cache=True, error_model="numpy")
@@ -570,3 +613,44 @@ def rollers_of_arrays(state: FloatArray, sizes: FloatArray, slices: FloatArray, 
         roller = roller_of(motion, shape, j)
         found[0, j], found[1, j], found[2, j], found[3, j] = roller.gap, roller.tilt, roller.rate, roller.tilt_rate
     return found
+
+
+@njit(cache=True, error_model="numpy")
+def approaches_of_arrays(
+    state: FloatArray, sizes: FloatArray, slices: FloatArray, angles: FloatArray, out: FloatArray
+) -> int:
+    """Approaches of all slices into `out` (Z, n) [m], for callers in Python; zero, or what is wrong about the pose.
+
+    Parameters
+    ----------
+    state, sizes, slices, angles
+        The same arrays as for `force_of_arrays`.
+    out : array (Z, n)
+        Approaches, written [m].
+    """
+    if not _all_finite(state):
+        return NOT_FINITE
+    shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
+    motion = _ring_motion(state)
+    slice_approaches(motion, shape, out.reshape(-1))
+    wrong: int = check_motion(motion, shape.sizes)
+    return wrong
+
+
+@njit(cache=True, error_model="numpy")
+def assemble_arrays(
+    state: FloatArray, sizes: FloatArray, slices: FloatArray, angles: FloatArray, states: FloatArray, out: FloatArray
+) -> None:
+    """`assemble_slices` for callers in Python.
+
+    Parameters
+    ----------
+    state, sizes, slices, angles
+        The same arrays as for `force_of_arrays`.
+    states : array (4, Z, n)
+        Loads and their slopes; zeros where the damping would be.
+    out : array (13, 6)
+        Result, see `bearing_force`.
+    """
+    shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
+    assemble_slices(_ring_motion(state), shape, states, out)

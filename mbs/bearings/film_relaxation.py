@@ -13,6 +13,7 @@ from numba import njit
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.law import LawAtPoint
 from ehdmaps.maps.memory_table import MemoryTable, equilibrium_at
+from ehdmaps.physics.hertz import half_width
 from mbs.bearings.roller_loads import RollerLoads
 from mbs.model.relaxation import Relaxation
 
@@ -39,6 +40,36 @@ def relaxation_times(law: LawAtPoint, approach: FloatArray) -> FloatArray:
     times = np.zeros(approach.size)
     _fill_times(law.memory.table, np.ascontiguousarray(approach, dtype=np.float64).reshape(-1), times)
     return times.reshape(approach.shape)
+
+
+@njit(cache=True, error_model="numpy")
+def _fill_rest(table: MemoryTable, approaches: FloatArray, loads: FloatArray, films: FloatArray) -> None:
+    """Loads of contacts at rest, and their films: what the approach is less than that of the structure."""
+    for i in range(approaches.size):
+        loads[i], _, y, _, _, _ = equilibrium_at(table, approaches[i])
+        films[i] = max(-y, 0.0)
+
+
+def natural_times(law: LawAtPoint, approach: FloatArray) -> FloatArray:
+    """Natural times sqrt(b^2 + 2 h R)/u of contacts at rest [s], in the shape of their approaches; infinite at rest.
+
+    h is the film of each contact in series, from which the little is left out by which oil stiffens the structure.
+
+    Parameters
+    ----------
+    law : LawAtPoint
+        The law at a speed and temperature, without centrifugal load.
+    approach : array
+        Approaches [m].
+    """
+    loads, films = np.zeros(approach.size), np.zeros(approach.size)
+    _fill_rest(law.memory.table, np.ascontiguousarray(approach, dtype=np.float64).reshape(-1), loads, films)
+    contacts = law.law.contacts
+    radius = sum(contact.radius for contact in contacts) / len(contacts)
+    half = half_width(np.maximum(loads, 0.0), radius, contacts[0].reduced_modulus)
+    size = np.sqrt(half**2 + 2.0 * films / len(contacts) * radius)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(size / abs(law.entrainment_speed)).reshape(approach.shape)
 
 
 def relaxing(rows: FloatArray, damping: FloatArray, times: FloatArray) -> Relaxation:

@@ -1,4 +1,4 @@
-"""Largest pressure and films of the two contacts of a roller, at loads per length: dry, by formula, or from a map.
+"""Largest pressure, films and rolling force of the contacts of a roller, at loads per length: dry, by formula, by map.
 
 Three sources answer the same question, `state(side, load, entrainment_speed, temperature)`, for arrays of loads:
 
@@ -6,13 +6,14 @@ Three sources answer the same question, `state(side, load, entrainment_speed, te
 - `FormulaFilms`: Hertz' pressure, Moes' central film, and the larger of the minimum films of Dowson-Higginson and of
   Martin, as the solver `formula` has them;
 - `MapFilms`: pressures and films of a map, read between its points as ratios to Hertz and to Moes. The ratios are near
-  one and change little, so that straight lines between the points are enough for them.
+  one and change little, so that straight lines between the points are enough for them. Rolling forces only a map knows,
+  see `ehdmaps.maps.rolling_film`.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Protocol
 
@@ -45,16 +46,19 @@ class ContactState:
         Largest pressure of the film, its spike included, where a map knows it; else that of Hertz [Pa].
     central_film, minimum_film : array
         Film at the centre and smallest film [m]; NaN without load, and where no film is known.
+    rolling_force : array
+        Force of both walls together against pure rolling [N/m]; zero without load, NaN where none is known.
     """
 
     hertz_pressure: FloatArray
     max_pressure: FloatArray
     central_film: FloatArray
     minimum_film: FloatArray
+    rolling_force: FloatArray
 
 
 class FilmSource(Protocol):
-    """What knows pressures and films of both contacts of a roller."""
+    """What knows pressures, films and rolling forces of both contacts of a roller."""
 
     @property
     def words(self) -> str:
@@ -110,7 +114,7 @@ class DryContacts:
         contact = self.contacts[side]
         pressure = np.asarray(max_pressure(load, contact.radius, contact.reduced_modulus))
         unknown = np.full(load.shape, np.nan)
-        return ContactState(pressure, pressure, unknown, unknown)
+        return ContactState(pressure, pressure, unknown, unknown, unknown)
 
 
 @dataclass(frozen=True)
@@ -140,7 +144,7 @@ class FormulaFilms:
         loaded = load > 0.0
         central, minimum = np.full(load.shape, np.nan), np.full(load.shape, np.nan)
         central[loaded], minimum[loaded] = self._films(contact, load[loaded], abs(entrainment_speed), temperature)
-        return ContactState(pressure, pressure, central, minimum)
+        return ContactState(pressure, pressure, central, minimum, np.full(load.shape, np.nan))
 
     def _films(
         self, contact: LineContact, load: FloatArray, speed: float, temperature: float
@@ -210,13 +214,17 @@ class MapFilms:
         temperature = float(np.clip(temperature, kelvins[0], kelvins[-1]))
         plain = self._formula.state(side, load, entrainment_speed, temperature)
         loaded = load > 0.0
+        found = self.emap.rolling_film
+        rolling = plain.rolling_force
+        if found is not None:
+            rolling = found.rolling_force(SIDES[side], np.maximum(load, 0.0), entrainment_speed, temperature)
         if entrainment_speed == 0.0 or not np.any(loaded):
-            return plain
+            return replace(plain, rolling_force=rolling)
         ratios = np.full((*load.shape, len(_VARIABLES)), np.nan)
         ratios[loaded] = self._ratios(side, load[loaded], abs(entrainment_speed), temperature)
         pressure = np.where(loaded, ratios[..., 0] * plain.hertz_pressure, 0.0)
         central, minimum = (ratios[..., part] * plain.central_film for part in (1, 2))
-        return ContactState(plain.hertz_pressure, pressure, central, minimum)
+        return ContactState(plain.hertz_pressure, pressure, central, minimum, rolling)
 
     def _ratios(self, side: int, load: FloatArray, speed: float, temperature: float) -> FloatArray:
         """Ratios (n, 3) at positive loads, held at the edges of the map."""

@@ -32,8 +32,8 @@ Triple = tuple[FloatArray, FloatArray, FloatArray]
 _MOST_TILT = 0.5
 _SIX, _OUT = (6,), (13, 6)
 _POWER = table.LawNumbers(
-    kind=table.POWER, coefficient=0.0, exponent=0.0, damping=0.0, centre=0.0, inverse_scale=0.0, highest=0.0,
-    safe_approach=0.0, lift_off=0.0, slope=1.0,
+    kind=table.POWER, coefficient=0.0, exponent=0.0, damping=0.0, damping_time=0.0, centre=0.0, inverse_scale=0.0,
+    highest=0.0, safe_approach=0.0, lift_off=0.0, slope=1.0,
 )  # fmt: skip
 _BY_SLICES = _POWER._replace(lift_off=-math.inf, safe_approach=math.inf)
 """Where the law is called for each slice, slopes are whole and loads are counted there."""
@@ -135,7 +135,9 @@ class ForceAtPoint:
                     "allowed: 0; only a map's law brings rollers into equilibrium"
                 )
             length = bearing.geometry.roller_length
-            _set_power(numbers, law.coefficient / length, law.exponent, law.damping / length, math.inf)
+            _set_power(
+                numbers, law.coefficient / length, law.exponent, math.inf, law.damping / length, law.damping_time
+            )
         else:
             self._prepare(law)
         w = self._work
@@ -164,13 +166,13 @@ class ForceAtPoint:
     def _found(self, pose: npt.ArrayLike, velocity: npt.ArrayLike | None, cage_angle: float) -> tuple[FloatArray, bool]:
         """Force, stiffness and damping in rows (13, 6), and whether a slice was outside the map."""
         state, own_pose, own_velocity = self._state
-        own_pose[...] = pose if type(pose) is np.ndarray and pose.shape == _SIX else _vector("pose", pose)
+        own_pose[...] = pose if type(pose) is np.ndarray and pose.shape == _SIX else six_numbers("pose", pose)
         if velocity is None:
             own_velocity[...] = 0.0
         elif type(velocity) is np.ndarray and velocity.shape == _SIX:
             own_velocity[...] = velocity
         else:
-            own_velocity[...] = _vector("velocity", velocity)
+            own_velocity[...] = six_numbers("velocity", velocity)
         state[12] = cage_angle
         out: FloatArray = np.empty(_OUT)
         status = self._from_law(out) if self._by_slices else force_of_arrays(*self.arrays, out)
@@ -209,7 +211,7 @@ class ForceAtPoint:
     def _prepare(self, law: ContactLaw) -> None:
         """Make the law of this point ready for compiled code."""
         work = self._work
-        q = _check_conditions(self.conditions)
+        q = check_conditions(self.conditions)
         if q >= 0.0 and q < law.load_range[1]:
             conditions = np.array(self.conditions, dtype=np.float64)
             arrays, workspace = self._flat_law.arrays(law, q > 0.0)
@@ -227,7 +229,7 @@ class ForceAtPoint:
             b = float(point.structure[0, 2])
             a = float(np.sum(point.structure[:, 1]))
             highest = min(point.highest_load * (1.0 + LOAD_TOLERANCE), point.held_load)
-            _set_power(work.numbers, a ** (-1.0 / b), 1.0 / b, 0.0, highest)
+            _set_power(work.numbers, a ** (-1.0 / b), 1.0 / b, highest)
             return
         self._by_slices = True
         work.numbers[:] = _BY_SLICES
@@ -257,7 +259,7 @@ class ForceAtPoint:
         """Raise what a status asks for; above the load of the table ask the law itself. Whether outside the map."""
         work, law = self._work, self._flat_law.law
         if status < 0:
-            _raise_state(work.state, work.sizes, status == NOT_FINITE)
+            raise_state(work.state, work.sizes, status == NOT_FINITE)
         if not isinstance(law, ContactLaw):
             return False
         if status > 0 and not self._by_slices:
@@ -276,8 +278,19 @@ class ForceAtPoint:
         return True
 
 
-def _check_conditions(conditions: tuple[float, float, float]) -> float:
-    """Refuse conditions that are missing or not finite; the centrifugal load."""
+def check_conditions(conditions: tuple[float, float, float]) -> float:
+    """Refuse conditions that are missing or not finite; the centrifugal load.
+
+    Parameters
+    ----------
+    conditions : (float, float, float)
+        u [m/s], T [K], centrifugal load [N/m].
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
     problems = []
     for name, value in zip(("entrainment_speed", "temperature", "centrifugal_load"), conditions, strict=True):
         try:
@@ -292,12 +305,20 @@ def _check_conditions(conditions: tuple[float, float, float]) -> float:
     return float(conditions[2])
 
 
-def _set_power(numbers: FloatArray, coefficient: float, exponent: float, damping: float, highest: float) -> None:
-    """Write a law w = a delta^b."""
+def _set_power(
+    numbers: FloatArray,
+    coefficient: float,
+    exponent: float,
+    highest: float,
+    damping: float = 0.0,
+    damping_time: float = 0.0,
+) -> None:
+    """Write a law w = a delta^b, with its dampers."""
     numbers[:] = _POWER._replace(
         coefficient=coefficient,
         exponent=exponent,
         damping=damping,
+        damping_time=damping_time,
         highest=highest,
         safe_approach=(highest / coefficient) ** (1.0 / exponent),
     )
@@ -308,8 +329,21 @@ def _one_power(structure: FloatArray) -> bool:
     return bool(np.all(structure[:, 0] == POWER_LAW) and np.ptp(structure[:, 2]) < 1e-12)
 
 
-def _vector(name: str, given: Any) -> FloatArray:
-    """Six numbers."""
+def six_numbers(name: str, given: Any) -> FloatArray:
+    """Six numbers of a pose or a velocity, or an error.
+
+    Parameters
+    ----------
+    name : str
+        pose or velocity, for messages.
+    given : object
+        What was given.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
     try:
         values = np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError):
@@ -322,8 +356,23 @@ def _vector(name: str, given: Any) -> FloatArray:
     return values
 
 
-def _raise_state(state: FloatArray, sizes: Sizes, not_finite: bool) -> None:
-    """Say what is wrong about pose, velocity or cage angle."""
+def raise_state(state: FloatArray, sizes: Sizes, not_finite: bool) -> None:
+    """Say what is wrong about pose, velocity or cage angle.
+
+    Parameters
+    ----------
+    state : array (13,)
+        Pose (6), velocity (6), cage angle.
+    sizes : Sizes
+        Sizes of the bearing.
+    not_finite : bool
+        Whether some are no finite numbers; else they are too large.
+
+    Raises
+    ------
+    InputError
+        Always.
+    """
     named = {"pose": state[:6], "velocity": state[6:12], "cage_angle": state[12:]}
     if not_finite:
         raise InputError(

@@ -1,8 +1,8 @@
 """Bearings whose films have a memory, in compiled runs: each slice has a state, which goes on when a step is made.
 
-The first question at the end of a new step begins it: films in equilibrium at the first step of a run, else the states
-of the last step that was made. Questions at other motions, and steps that are tried again with another length, leave
-these alone. Tables over the speed are mixed every `KEPT` steps, as slices read them.
+The first question at the end of a new step begins it, with the states of the last step that was made, here or in
+Python. Questions at other motions, and steps that are tried again with another length, leave these alone. Tables over
+the speed are mixed every `KEPT` steps, as slices read them.
 """
 
 from __future__ import annotations
@@ -16,20 +16,12 @@ from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.lines import FAST
-from ehdmaps.maps.memory_table import MemoryTable, step_of
-from mbs.bearings.bearing_kernel import RingMotion, Shape, assemble, check_motion, roller_of
-from mbs.bearings.memory_element import MemoryBearing
-from mbs.bearings.memory_kernel import KEPT, MEMORY, begin, commit, loads, settle
-from mbs.bearings.memory_tables import (
-    CENTRE,
-    HIGHEST,
-    INVERSE_SCALE,
-    LIFT_OFF,
-    MemoryFilms,
-    MemoryTables,
-    room,
-)
+from ehdmaps.maps.memory import FilmState
+from ehdmaps.maps.memory_table import step_of
+from mbs.bearings.bearing_kernel import assemble_slices, check_motion, slice_approaches
+from mbs.bearings.memory_element import FilmStates, MemoryBearing
+from mbs.bearings.memory_kernel import CHANGE, KEPT, LATEST, LOAD, MEMORY, begin, commit, loads, resume
+from mbs.bearings.memory_tables import HIGHEST, MemoryFilms, MemoryTables, mix, room, table_in_use
 from mbs.bearings.rings import (
     Course,
     CourseOfFilms,
@@ -42,13 +34,12 @@ from mbs.bearings.rings import (
     shape_of,
     shared,
 )
-from mbs.bearings.slice_table import LawNumbers
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
 from mbs.model.elements import Element
 
 ACCEPTED, LAST, TRIAL, STEPS = range(4)
-"""Times of a run: end of the last step that was made [s], NaN before the first; its length [s], 0 if there was none;
-end of the step that is tried [s]; and how many were made."""
+"""Times of a run: end of the last step that was made [s]; its length [s], 0 if there was none; end of the step that is
+tried [s], NaN before that is known; and how many were made."""
 
 
 class MemoryBearings(NamedTuple):
@@ -84,57 +75,12 @@ class MemoryBearings(NamedTuple):
     course: Course
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def _mix(films: MemoryFilms, film: int, node: int, weight: float) -> None:
-    """Bring the table in use to a place between two nodes, straight in ln of the speed."""
-    if films.in_use[film, 0] == node and films.in_use[film, 1] == weight:
-        return
-    films.in_use[film, 0], films.in_use[film, 1] = node, weight
-    other = (node + 1) % films.numbers.shape[1] if weight > 0.0 else node
-    _straight(films.cells[film, node].reshape(-1), films.cells[film, other].reshape(-1), weight,
-              films.mixed_cells[film].reshape(-1))  # fmt: skip
-    _straight(films.load_cells[film, node].reshape(-1), films.load_cells[film, other].reshape(-1), weight,
-              films.mixed_load_cells[film].reshape(-1))  # fmt: skip
-    _straight(films.numbers[film, node], films.numbers[film, other], weight, films.mixed[film])
-
-
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def _straight(low: FloatArray, high: FloatArray, weight: float, out: FloatArray) -> None:
-    """Straight between two arrays."""
-    for i in range(out.size):
-        out[i] = low[i] + weight * (high[i] - low[i])
-
-
-@njit(cache=True, error_model="numpy")
-def _table(films: MemoryFilms, film: int) -> MemoryTable:
-    """The table in use."""
-    numbers = films.mixed[film]
-    return MemoryTable(
-        films.mixed_cells[film],
-        films.mixed_load_cells[film],
-        numbers[CENTRE],
-        numbers[INVERSE_SCALE],
-        numbers[LIFT_OFF],
-    )
-
-
 @njit(cache=True, error_model="numpy")
 def memory_of(bearings: MemoryBearings, b: int) -> FloatArray:
     """Memory of the slices of a bearing, shape (MEMORY, Z n), contiguous."""
     size = bearings.rings.rollers[b] * bearings.rings.slices[b]
     memory: FloatArray = bearings.memory[b][: MEMORY * size].reshape(MEMORY, size)
     return memory
-
-
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def _approaches(motion: RingMotion, shape: Shape, out: FloatArray) -> None:
-    """Approach of all slices, into `out` (Z n,)."""
-    x, lost = shape.positions, shape.profile
-    for j in range(shape.cos.size):
-        roller = roller_of(motion, shape, j)
-        row = out[j * x.size : (j + 1) * x.size]
-        for i in range(x.size):
-            row[i] = roller.gap + x[i] * roller.tilt - lost[i]
 
 
 @njit(cache=True, error_model="numpy")
@@ -145,12 +91,10 @@ def _begin(bearings: MemoryBearings, moment: Moment) -> None:
     steps = int(clock[STEPS])
     for film in range(films.in_use.shape[0]):
         if films.in_use[film, 0] < 0.0 or steps % KEPT == 0:
-            _mix(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
-    if math.isnan(clock[ACCEPTED]):
-        return
+            mix(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
     growth = (moment.time - clock[ACCEPTED]) / clock[LAST] if clock[LAST] > 0.0 else 0.0
     for b in range(bearings.rings.firsts.size):
-        begin(_table(films, bearings.rings.films_of[b]), growth, steps, memory_of(bearings, b))
+        begin(table_in_use(films, bearings.rings.films_of[b]), growth, steps, memory_of(bearings, b))
 
 
 @njit(cache=True, error_model="numpy")
@@ -163,17 +107,12 @@ def _answer(bearings: MemoryBearings, b: int, moment: Moment, motion: FloatArray
     if wrong != 0:
         return wrong
     size = z * n
-    table, memory, deltas = _table(bearings.films, film), memory_of(bearings, b), bearings.approaches[:size]
+    table, memory, deltas = table_in_use(bearings.films, film), memory_of(bearings, b), bearings.approaches[:size]
     states = bearings.states[b][: 4 * size].reshape(4, size)
-    _approaches(ring, shape, deltas)
-    clock = bearings.clock
-    if not math.isnan(clock[ACCEPTED]):
-        step = step_of(moment.time - clock[ACCEPTED], clock[LAST])
-        loads(table, step, memory, deltas, states[0], states[1])
-    else:
-        settle(table, deltas, memory, states[0], states[1])
-    numbers = LawNumbers(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, math.inf, math.inf, -math.inf, 1.0)
-    assemble(ring, shape, numbers, states.reshape(4, z, n), out)
+    slice_approaches(ring, shape, deltas)
+    step = step_of(moment.time - bearings.clock[ACCEPTED], bearings.clock[LAST])
+    loads(table, step, memory, deltas, states[0], states[1])
+    assemble_slices(ring, shape, states.reshape(4, z, n), out)
     return 1 if np.max(states[0]) > bearings.films.mixed[film, HIGHEST] else 0
 
 
@@ -220,13 +159,11 @@ def memory_accept(bearings: MemoryBearings, moment: Moment) -> None:
         The step that was answered last.
     """
     clock = bearings.clock
-    started = not math.isnan(clock[ACCEPTED])
-    if started:
-        for b in range(bearings.rings.firsts.size):
-            size = bearings.rings.rollers[b] * bearings.rings.slices[b]
-            table = _table(bearings.films, bearings.rings.films_of[b])
-            commit(table, memory_of(bearings, b), bearings.states[b][:size])
-    clock[LAST] = moment.time - clock[ACCEPTED] if started else 0.0
+    for b in range(bearings.rings.firsts.size):
+        size = bearings.rings.rollers[b] * bearings.rings.slices[b]
+        table = table_in_use(bearings.films, bearings.rings.films_of[b])
+        commit(table, memory_of(bearings, b), bearings.states[b][:size])
+    clock[LAST] = moment.time - clock[ACCEPTED]
     clock[ACCEPTED] = moment.time
     clock[STEPS] += 1.0
 
@@ -278,6 +215,39 @@ class MemoryBlock:
         course, sound = self._course.prepare(first, last)
         self._arrays.films.in_use[:] = -1.0
         return self._arrays._replace(course=course), sound
+
+    def states(self) -> list[FilmStates]:
+        """Films of each bearing after the last step that was made."""
+        last, time = float(self._arrays.clock[LAST]), float(self._arrays.clock[ACCEPTED])
+        found = []
+        for b in range(self._arrays.strict.size):
+            approach, change, load = (
+                self._rows(b)[row].reshape(self._shape(b)).copy() for row in (LATEST, CHANGE, LOAD)
+            )
+            found.append(FilmStates(FilmState(approach, change, load, last), time))
+        return found
+
+    def resume(self, states: Sequence[FilmStates]) -> None:
+        """Go on from the films that each bearing has in Python.
+
+        Parameters
+        ----------
+        states : sequence of FilmStates
+            One a bearing, all after the same step.
+        """
+        for b, (films, time) in enumerate(states):
+            resume(films.approach.reshape(-1), films.change.reshape(-1), films.load.reshape(-1), self._rows(b))
+            self._arrays.clock[: TRIAL + 1] = time, films.step, math.nan
+
+    def _shape(self, b: int) -> tuple[int, int]:
+        """Rollers and slices of a bearing."""
+        rings = self._arrays.rings
+        return int(rings.rollers[b]), int(rings.slices[b])
+
+    def _rows(self, b: int) -> FloatArray:
+        """Memory of the slices of a bearing."""
+        rows: FloatArray = memory_of.py_func(self._arrays, b)
+        return rows
 
 
 def _takes(element: Element) -> bool:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
-
-import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
@@ -14,8 +12,6 @@ from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.memory import FilmState
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.bearing_kernel import rollers_of_arrays
-from mbs.bearings.force_at_point import Arrays
 from mbs.model.elements import Forces, Operation
 from mbs.model.relaxation import Films
 
@@ -62,11 +58,6 @@ class MemoryBearing(BearingElement):
         assert isinstance(self.force, BearingForce) and isinstance(self.force.law, ContactLaw)
         return self.force.law
 
-    @cached_property
-    def _arrays(self) -> Arrays:
-        """Constants of the bearing."""
-        return Arrays(self.bearing)
-
     def advance(
         self, states: FilmStates | None, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> tuple[Forces, FilmStates]:
@@ -86,31 +77,18 @@ class MemoryBearing(BearingElement):
         InputError, OutsideMapError
             As the law does.
         """
-        work = self._arrays
-        state = np.concatenate((displacement, np.zeros(6), [self.cage_angle(operation)]))
-        gap, tilt, _, _ = rollers_of_arrays(state, np.array(work.sizes), work.slices, work.angles)
-        positions, profile = work.slices
-        deltas = gap[:, None] + tilt[:, None] * positions - profile
-        memory = self.law.at(self.entrainment_speed(operation), self.temperature).memory
-        films = memory.settled(deltas) if states is None else states.films
-        if states is None:
-            loads, tangents, _ = memory.advance(films, deltas, _AT_REST)
-        else:
-            loads, tangents, films = memory.advance(states.films, deltas, operation.time - states.time)
-        cos, sin = self._directions(operation)
-        zero = np.zeros_like(cos)
-        by = np.stack((zero, cos, sin, zero, zero, zero))[:, :, None] + np.stack(
-            (zero, zero, zero, zero, -sin, cos)
-        )[:, :, None] * positions  # fmt: skip
-        force = -work.sizes.slice_length * np.einsum("ajn,jn->a", by, loads)
-        stiffness = work.sizes.slice_length * np.einsum("ajn,jn,bjn->ab", by, tangents, by)
-        return Forces(force, stiffness, np.zeros((6, 6))), FilmStates(films, operation.time)
-
-    def _directions(self, operation: Operation) -> tuple[FloatArray, FloatArray]:
-        """Cosine and sine of the angles of all rollers."""
-        angle = self.cage_angle(operation)
-        cos, sin = self._arrays.angles
-        return np.cos(angle) * cos - np.sin(angle) * sin, np.sin(angle) * cos + np.cos(angle) * sin
+        assert isinstance(self.force, BearingForce)
+        forces, films = self.force.advance(
+            None if states is None else states.films,
+            displacement,
+            _AT_REST if states is None else operation.time - states.time,
+            cage_angle=self.cage_angle(operation),
+            entrainment_speed=self.entrainment_speed(operation),
+            temperature=self.temperature,
+            centrifugal_load=self.centrifugal_load(operation),
+        )
+        # A run begins with films that have not moved yet.
+        return forces, FilmStates(dataclasses.replace(films, step=0.0) if states is None else films, operation.time)
 
 
 _AT_REST = 1e6

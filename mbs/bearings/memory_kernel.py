@@ -15,6 +15,7 @@ import math
 from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.copies import put
 from ehdmaps.maps.lines import FAST
 from ehdmaps.maps.memory_table import (
     LIGHTEST,
@@ -51,29 +52,23 @@ _ROUNDS = 12
 _LEAST = 1e-30
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def settle(table: MemoryTable, delta: FloatArray, memory: FloatArray, load: FloatArray, tangent: FloatArray) -> None:
-    """Films in equilibrium, as at the start of a run.
+@njit(cache=True, error_model="numpy")
+def resume(approach: FloatArray, change: FloatArray, load: FloatArray, memory: FloatArray) -> None:
+    """Go on from states, as of `ehdmaps.maps.memory.FilmState`.
 
     Parameters
     ----------
-    table : MemoryTable
-        The law.
-    delta : array (n,)
-        Approaches [m].
+    approach, change, load : array (n,)
+        Approach at which each film would be in equilibrium [m], what the last step changed in G [N s/m2], and the load
+        after it [N/m].
     memory : array (MEMORY, n)
-        Memory of the slices; written.
-    load, tangent : array (n,)
-        Written: [N/m], [N/m2].
+        Memory of the slices; written. Parabolas are read at the next step.
     """
     memory[:] = 0.0
-    for i in range(delta.size):
-        xi = max(delta[i], table.lift_off)
-        memory[LATEST, i] = memory[BEFORE, i] = memory[TRIAL, i] = xi
-        load[i], tangent[i], _, _, _, _ = equilibrium_at(table, xi)
-        memory[LOAD, i] = load[i]
-        memory[FADE, i] = fading_of(0.0)
-        _read(table, memory, i)
+    for i in range(approach.size):
+        memory[LATEST, i] = memory[BEFORE, i] = memory[TRIAL, i] = approach[i]
+        memory[CHANGE, i], memory[FADE, i] = change[i], fading_of(change[i])
+        memory[LOAD, i], memory[AROUND, i] = load[i], math.inf
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -240,4 +235,4 @@ def commit(table: MemoryTable, memory: FloatArray, load: FloatArray) -> None:
                 around[i] = math.inf
     for i in range(load.size):
         before[i], latest[i] = latest[i], trial[i]
-    memory[LOAD] = load
+    put(load, memory[LOAD])

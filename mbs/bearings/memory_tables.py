@@ -5,12 +5,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.errors import EhdmapsError
 from ehdmaps.maps.kernel import LOAD_TOLERANCE
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.memory_table import LOAD_ROWS, ROWS
+from ehdmaps.maps.lines import FAST
+from ehdmaps.maps.memory_table import LOAD_ROWS, ROWS, MemoryTable
 from mbs.bearings.speed_window import Made, SpeedWindow
 
 STEP = 4e-3
@@ -55,6 +57,60 @@ def room(films: int) -> MemoryFilms:
         mixed_load_cells=np.zeros((films, LOAD_ROWS, 4)),
         mixed=np.zeros((films, 4)),
         in_use=np.full((films, 2), -1.0),
+    )
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def mix(films: MemoryFilms, film: int, node: int, weight: float) -> None:
+    """Bring the table in use to a place between two nodes, straight in ln of the speed.
+
+    Parameters
+    ----------
+    films : MemoryFilms
+        Tables over the speed; those in use are written.
+    film : int
+        Index of the law.
+    node : int
+        The lower node.
+    weight : float
+        Weight of the upper node, 0 to 1.
+    """
+    if films.in_use[film, 0] == node and films.in_use[film, 1] == weight:
+        return
+    films.in_use[film, 0], films.in_use[film, 1] = node, weight
+    other = (node + 1) % films.numbers.shape[1] if weight > 0.0 else node
+    _straight(films.cells[film, node].reshape(-1), films.cells[film, other].reshape(-1), weight,
+              films.mixed_cells[film].reshape(-1))  # fmt: skip
+    _straight(films.load_cells[film, node].reshape(-1), films.load_cells[film, other].reshape(-1), weight,
+              films.mixed_load_cells[film].reshape(-1))  # fmt: skip
+    _straight(films.numbers[film, node], films.numbers[film, other], weight, films.mixed[film])
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _straight(low: FloatArray, high: FloatArray, weight: float, out: FloatArray) -> None:
+    """Straight between two arrays."""
+    for i in range(out.size):
+        out[i] = low[i] + weight * (high[i] - low[i])
+
+
+@njit(cache=True, error_model="numpy")
+def table_in_use(films: MemoryFilms, film: int) -> MemoryTable:
+    """The table in use.
+
+    Parameters
+    ----------
+    films : MemoryFilms
+        Tables over the speed.
+    film : int
+        Index of the law.
+    """
+    numbers = films.mixed[film]
+    return MemoryTable(
+        films.mixed_cells[film],
+        films.mixed_load_cells[film],
+        numbers[CENTRE],
+        numbers[INVERSE_SCALE],
+        numbers[LIFT_OFF],
     )
 
 

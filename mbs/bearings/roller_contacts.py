@@ -18,13 +18,17 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.maps.law import ContactLaw, LawAtPoint
+from ehdmaps.maps.memory import FilmState
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.film_relaxation import relaxation_times, relaxing
+from mbs.bearings.film_relaxation import natural_times, relaxation_times, relaxing
 from mbs.bearings.laws import DryLaw, Law
 from mbs.model.elements import Forces
 from mbs.model.relaxation import Relaxation
 
 _STEPS = 100
+_AT_REST = 1e6
+"""A step so long that films are in equilibrium at its end [s]."""
+
 _ALIKE = 1e-6
 
 
@@ -112,7 +116,7 @@ class RollerContacts:
         outside = False
         for side in (0, 1):
             flat, tilted = self._rows(side, cage_angle)
-            delta = (flat @ q)[:, None] + self._x * (tilted @ q)[:, None] - self._lost
+            delta = self._approach(flat, tilted, q)
             rate = (flat @ v)[:, None] + self._x * (tilted @ v)[:, None]
             load, k, c, beyond = self._evaluate(side, delta, rate, entrainment_speed, temperature)
             outside |= beyond
@@ -120,6 +124,61 @@ class RollerContacts:
             K += self._matrix(flat, tilted, k)
             C += self._matrix(flat, tilted, c)
         return Forces(f, K, C, outside)
+
+    def advance(
+        self,
+        states: tuple[FilmState, FilmState] | None,
+        displacement: npt.ArrayLike,
+        dt: float,
+        *,
+        cage_angle: float,
+        entrainment_speed: float,
+        temperature: float,
+    ) -> tuple[Forces, tuple[FilmState, FilmState]]:
+        """A step in time with films that have a memory, each contact with its own.
+
+        Parameters
+        ----------
+        states : (FilmState, FilmState) or None
+            Films of the inner and of the outer contacts at the beginning of the step; None for films in equilibrium.
+        displacement : array (12 + Z,)
+            Displacements at its end [m], [rad].
+        dt : float
+            Length of the step [s], > 0; of no effect without states.
+        cage_angle, entrainment_speed, temperature : float
+            The same as for `BearingForce`, at its end.
+
+        Returns
+        -------
+        forces : Forces
+            Forces and tangents at the end of the step; the damping is zero, as the forces do not depend on rates.
+        states : (FilmState, FilmState)
+            Films there.
+
+        Raises
+        ------
+        InputError
+            For laws without films, and for values that are no finite numbers.
+        OutsideMapError
+            Outside the map, where a law has the policy "error".
+        """
+        q = self._vector("displacement", displacement)
+        f, K, C = np.zeros(self.size), np.zeros((self.size, self.size)), np.zeros((self.size, self.size))
+        length, found = self.bearing.slice_length, []
+        for side, law in enumerate(self.laws):
+            if not isinstance(law, ContactLaw):
+                raise InputError(
+                    f"roller contacts, films: got the law {law.name!r} without films; allowed: map, formula"
+                )
+            flat, tilted = self._rows(side, cage_angle)
+            delta = self._approach(flat, tilted, q)
+            memory = self._point(side, law, entrainment_speed, temperature).memory
+            begin = memory.settled(delta) if states is None else states[side]
+            load, tangent, end = memory.advance(begin, delta, _AT_REST if states is None else dt)
+            found.append(begin if states is None else end)
+            f -= length * (flat.T @ load.sum(axis=1) + tilted.T @ (load @ self._x))
+            K += self._matrix(flat, tilted, tangent * length)
+        return Forces(f, K, C), (found[0], found[1])
 
     def relaxation(
         self, displacement: npt.ArrayLike, *, cage_angle: float, entrainment_speed: float, temperature: float
@@ -139,12 +198,32 @@ class RollerContacts:
             if not isinstance(law, ContactLaw):
                 return None
             flat, tilted = self._rows(side, cage_angle)
-            delta = (flat @ q)[:, None] + self._x * (tilted @ q)[:, None] - self._lost
+            delta = self._approach(flat, tilted, q)
             _, _, c, _ = self._evaluate(side, delta, np.zeros_like(delta), entrainment_speed, temperature)
             rows.append((flat[:, None, :] + self._x[:, None] * tilted[:, None, :]).reshape(-1, self.size))
             damping.append(c.reshape(-1))
             times.append(relaxation_times(law.at(entrainment_speed, temperature), delta).reshape(-1))
         return relaxing(np.concatenate(rows), np.concatenate(damping), np.concatenate(times))
+
+    def natural_times(
+        self, displacement: npt.ArrayLike, *, cage_angle: float, entrainment_speed: float, temperature: float
+    ) -> FloatArray:
+        """Natural times of all contacts at rest, in the order of `relaxation` [s]; none for laws without films.
+
+        Parameters
+        ----------
+        displacement, cage_angle, entrainment_speed, temperature
+            The same as for `relaxation`.
+        """
+        q = self._vector("displacement", displacement)
+        times = []
+        for side, law in enumerate(self.laws):
+            if not isinstance(law, ContactLaw):
+                return np.zeros(0)
+            flat, tilted = self._rows(side, cage_angle)
+            delta = self._approach(flat, tilted, q)
+            times.append(natural_times(law.at(entrainment_speed, temperature), delta).reshape(-1))
+        return np.concatenate(times)
 
     def settled(
         self,
@@ -211,6 +290,11 @@ class RollerContacts:
         tilted[:, 10], tilted[:, 11] = 0.5 * s, -0.5 * c
         return flat, tilted
 
+    def _approach(self, flat: FloatArray, tilted: FloatArray, q: FloatArray) -> FloatArray:
+        """Approach of the slices of one side, shape (Z, n)."""
+        approach: FloatArray = (flat @ q)[:, None] + self._x * (tilted @ q)[:, None] - self._lost
+        return approach
+
     def _matrix(self, flat: FloatArray, tilted: FloatArray, values: FloatArray) -> FloatArray:
         """Sum of values B B^T over the slices."""
         first, second, third = values.sum(axis=1), values @ self._x, values @ self._x**2
@@ -226,6 +310,12 @@ class RollerContacts:
         if isinstance(law, DryLaw):
             w, k, c = law.evaluate(delta, rate)
             return w / self._x.size, k / self._x.size, c / self._x.size, False
+        length = self.bearing.slice_length
+        w, k, c, outside = self._point(side, law, speed, temperature).evaluate(delta, rate)
+        return w * length, k * length, c * length, outside
+
+    def _point(self, side: int, law: ContactLaw, speed: float, temperature: float) -> LawAtPoint:
+        """The law of one side at a speed and temperature: that of the last call, or a new one."""
         point = self._points.get(side)
         if point is None or (point.entrainment_speed, point.temperature) != (speed, temperature):
             if not (math.isfinite(speed) and math.isfinite(temperature)):
@@ -234,9 +324,7 @@ class RollerContacts:
                     "the law of a map needs finite numbers; give both"
                 )
             point = self._points[side] = law.at(speed, temperature)
-        length = self.bearing.slice_length
-        w, k, c, outside = point.evaluate(delta, rate)
-        return w * length, k * length, c * length, outside
+        return point
 
     def _vector(self, name: str, given: npt.ArrayLike) -> FloatArray:
         """Finite numbers, as many as there are displacements."""

@@ -84,6 +84,16 @@ class RollerElement(RingElement):
             temperature=plain.temperature,
         )
 
+    def natural_times(self, displacement: FloatArray, operation: Operation) -> FloatArray:
+        """See `RingElement.natural_times`."""
+        plain = self.plain
+        return self.contacts.natural_times(
+            displacement,
+            cage_angle=plain.cage_angle(operation),
+            entrainment_speed=plain.entrainment_speed(operation),
+            temperature=plain.temperature,
+        )
+
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Forces on rings and rollers, stiffness and damping, see `Element.evaluate`."""
         plain = self.plain
@@ -94,8 +104,12 @@ class RollerElement(RingElement):
             entrainment_speed=plain.entrainment_speed(operation),
             temperature=plain.temperature,
         )
-        found.force[12:] += plain.centrifugal_load(operation) * plain.bearing.geometry.roller_length
+        found.force[12:] += self.outward(operation)
         return found
+
+    def outward(self, operation: Operation) -> float:
+        """Centrifugal force of a roller [N]; zero where it is left out."""
+        return self.plain.centrifugal_load(operation) * self.plain.bearing.geometry.roller_length
 
 
 def ring_matrices(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:

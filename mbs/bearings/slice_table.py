@@ -16,6 +16,7 @@ from numba import njit
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.copies import put
 from ehdmaps.maps.binary_cells import last_of, nodes_of, rows_of
 from ehdmaps.maps.bulk import evaluate_many_at
 from ehdmaps.maps.kernel import LOAD_TOLERANCE, collapse
@@ -46,8 +47,10 @@ class LawNumbers(NamedTuple):
     ----------
     kind : float
         POWER or CELLS.
-    coefficient, exponent, damping : float
-        Constants of w = a delta^b [N/m], and c per unit length [N s/m2]; for POWER.
+    coefficient, exponent : float
+        Constants of w = a delta^b [N/m]; for POWER.
+    damping, damping_time : float
+        Constant part of c per unit length [N s/m2], and the ratio of its other part to dw/d approach [s]; for POWER.
     centre, inverse_scale : float
         Places of the table [m], [1/m]; for CELLS.
     highest : float
@@ -64,6 +67,7 @@ class LawNumbers(NamedTuple):
     coefficient: float
     exponent: float
     damping: float
+    damping_time: float
     centre: float
     inverse_scale: float
     highest: float
@@ -94,7 +98,7 @@ class PreparedLaw(NamedTuple):
 @njit(cache=True, error_model="numpy")
 def law_numbers(numbers: FloatArray) -> LawNumbers:
     """The numbers of a law from an array (NUMBERS,) in their order."""
-    return LawNumbers(*fixed_tuple(numbers, 10))
+    return LawNumbers(*fixed_tuple(numbers, 11))
 
 
 @njit(cache=True, error_model="numpy")
@@ -180,11 +184,14 @@ def tabulate(
     rate, forces = buffer[6, first:end], np.empty((3, end - first))
     rate[:] = 0.0
     evaluate_many_at(free, delta[first:end], rate, forces, counts)
-    w[first:end], dw[first:end], c[first:end] = forces[0], forces[1], forces[2]
+    put(forces[0], w[first:end])
+    put(forces[1], dw[first:end])
+    put(forces[2], c[first:end])
     # At a high rate the slope is nearly all damping.
     rate[:] = _PROBE
     evaluate_many_at(free, delta[first:end], rate, forces, counts)
-    dc[first:end] = (forces[1] - dw[first:end]) / _PROBE
+    for i in range(first, end):
+        dc[i] = (forces[1, i - first] - dw[i]) / _PROBE
     for i in range(first):
         w[i] = dw[i] = c[i] = dc[i] = 0.0
     for i in range(end, 2 * rows + 1):
@@ -195,8 +202,8 @@ def tabulate(
         if w[i] <= highest:
             safe = delta[i]
     found = LawNumbers(
-        kind=CELLS, coefficient=0.0, exponent=0.0, damping=0.0, centre=centre, inverse_scale=inverse, highest=highest,
-        safe_approach=safe, lift_off=delta[first - 1], slope=inverse,
+        kind=CELLS, coefficient=0.0, exponent=0.0, damping=0.0, damping_time=0.0, centre=centre,
+        inverse_scale=inverse, highest=highest, safe_approach=safe, lift_off=delta[first - 1], slope=inverse,
     )  # fmt: skip
     store_numbers(found, numbers)
     _fill(z, inverse, w, dw, c, dc, cells)

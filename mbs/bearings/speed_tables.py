@@ -14,8 +14,8 @@ from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.errors import EhdmapsError
 from ehdmaps.maps.law import ContactLaw
 from mbs.bearings import slice_table as table
-from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.force_at_point import ForceAtPoint
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.force_at_point import FlatLaw, ForceAtPoint
 from mbs.bearings.speed_window import Made, SpeedWindow
 
 STEP = 1e-3
@@ -32,8 +32,10 @@ class SpeedTables:
 
     Parameters
     ----------
-    force : BearingForce
-        Whose law; all bearings with the same law, temperature and rates may share the tables.
+    bearing : Bearing
+        A bearing with the law.
+    law : FlatLaw
+        The law; all bearings with the same one, the same temperature and rates may share the tables.
     temperature : float
         [K].
     rates : (float, float)
@@ -45,9 +47,9 @@ class SpeedTables:
         Whether the law changes with speed; a dry one has one table for all.
     """
 
-    def __init__(self, force: BearingForce, temperature: float, rates: tuple[float, float]) -> None:
-        self._force, self._temperature, self._rates = force, temperature, rates
-        self.varies = isinstance(force.law, ContactLaw)
+    def __init__(self, bearing: Bearing, law: FlatLaw, temperature: float, rates: tuple[float, float]) -> None:
+        self._bearing, self._law, self._temperature, self._rates = bearing, law, temperature, rates
+        self.varies = isinstance(law.law, ContactLaw)
         self._window = SpeedWindow(STEP, NODES, self.varies)
         self._buffer = np.empty((8, 2 * table.ROWS + 1))
 
@@ -80,7 +82,7 @@ class SpeedTables:
     def _force_at(self, conditions: tuple[float, float, float]) -> ForceAtPoint | None:
         """The force there, or none where it refuses: the step that asks for it will be told why."""
         try:
-            return self._force.at(*conditions)
+            return ForceAtPoint(self._bearing, self._law, conditions)
         except EhdmapsError:
             return None
 
@@ -95,13 +97,13 @@ class SpeedTables:
 
     def _made(self, speed: float, cells: FloatArray, numbers: FloatArray) -> Made:
         """Make the table of a speed."""
-        law = self._force.law
+        law = self._law.law
         assert isinstance(law, ContactLaw)
         conditions = np.array(self._conditions(speed))
         centrifugal = float(conditions[2])
         if not 0.0 <= centrifugal < law.load_range[1]:
             return Made(sound=False)
-        arrays, workspace = self._force.flat_law.arrays(law, centrifugal > 0.0)
+        arrays, workspace = self._law.arrays(law, centrifugal > 0.0)
         counts = np.zeros(4, dtype=np.int64)
         fits = table.tabulate_law(arrays, workspace, conditions, table.NODES, self._buffer, cells, numbers, counts)
         if not fits:

@@ -14,6 +14,7 @@ from mbs.output.bearing_data import bearing_dataset, write_csv
 from mbs.output.bearing_plot import bearing_figure
 from mbs.output.bearing_text import bearing_text
 from mbs.output.results import write_dataset
+from mbs.scene.contact_laws import Damper, hertz_damper
 
 RESOLUTION = 150
 FORMULA_LOADS = (100.0, 1e8)
@@ -56,4 +57,5 @@ def _law(request: BearingRequest) -> Law:
             temperature=(request.temperature, request.temperature + 2.0),
             outside="clamp",
         )
-    return laws.hertz(request.bearing)
+    damper = hertz_damper(request.law) or Damper()
+    return laws.hertz(request.bearing, damper.constant, damper.time)

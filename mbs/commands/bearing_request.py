@@ -27,9 +27,9 @@ from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import FilmSource, FormulaFilms, MapFilms
-from mbs.commands.cases import NO_MAP, WIDEST, read_clearance
+from mbs.commands.cases import NO_MAP, read_clearance
 from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, result_kind
-from mbs.scene.contact_laws import geometry_problems, structure_words
+from mbs.scene.contact_laws import HERTZ_FORMS, geometry_problems, hertz_damper, structure_words
 from mbs.scene.fields import FORCE, MICROMETRE
 
 LAWS = ("hertz", "formula", "map")
@@ -53,8 +53,8 @@ class BearingRequest:
     ----------
     bearing : Bearing
         Geometry with its clearance, profile, slices.
-    law : {"hertz", "formula", "map"}
-        Law of the contacts.
+    law : str
+        Law of the contacts: hertz, hertz:TIME, hertz:DAMPING, formula or map.
     emap : EHDMap or None
         The map.
     oil : Lubricant
@@ -251,7 +251,7 @@ def _sliced(
     if given is None:
         return None
     geometry = given.geometry
-    if clearance is not None and abs(clearance) <= WIDEST:
+    if clearance is not None:
         try:
             geometry = dataclasses.replace(geometry, diametral_clearance=clearance)
         except InputError as error:
@@ -280,8 +280,13 @@ def _law(name: str | None, with_map: bool, problems: list[str]) -> str:
     """The law that is meant."""
     if name is None:
         return "map" if with_map else "hertz"
-    if name not in LAWS:
-        problems.append(f"--law: got {short(name)}{closest(name, LAWS)}; allowed: {', '.join(LAWS)}")
+    try:
+        damper = hertz_damper(name)
+    except InputError as error:
+        problems += error.problems
+        return name
+    if name not in LAWS and damper is None:
+        problems.append(f"--law: got {short(name)}{closest(name, LAWS)}; allowed: {', '.join(LAWS)}; {HERTZ_FORMS}")
     elif name == "map" and not with_map:
         problems.append("--law: got 'map' without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`")
     elif name == "formula" and with_map:

@@ -9,18 +9,18 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from ehdmaps.arrays import BoolArray
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.figures import typeset
 from ehdmaps.units import RPM, TEMPERATURE
 from mbs.analyses.campbell import MODE_SPEEDS, CampbellResult, LawRun, campbell, campbell_problems
 from mbs.analyses.case import Case, clearance_text
-from mbs.analyses.film_limits import lowest_limits
+from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside, fade_of
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Told, film_course, heading, read_option, write
 from mbs.commands.reach import fade_lines, outside_lines
-from mbs.linearised.sweep_result import Sweep
+from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
 from mbs.output.campbell_plot import MOST_LAWS, Overlay, Reach, campbell_figure
 from mbs.scene.assembly import Model
@@ -33,6 +33,9 @@ from mbs.spectral.orders import OrderPeak
 
 _LEAST_SHARE = 0.05
 """Of the strain energy in bearings, of a mode that is drawn in."""
+
+_MOST_DAMPED = 0.5
+"""Damping ratio up to which a mode is drawn in: above, a response has no peak by it, or hardly one (1/sqrt 2)."""
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -94,18 +97,20 @@ def _figure(found: CampbellResult) -> Figure:
 
 
 def _overlay(entry: LawRun) -> Overlay | None:
-    """Natural frequencies to draw: of modes with strain energy in the bearings."""
+    """Natural frequencies to draw: of modes with strain energy in the bearings that are no mere decay."""
     if entry.modes is None:
         return None
-    shown = np.nanmax(entry.modes.undamped.bearing_share, axis=0) >= _LEAST_SHARE
-    return Overlay(entry.modes.speeds, entry.modes.undamped.frequency[:, shown])
+    found = entry.modes.damped
+    shown = (np.nan_to_num(found.bearing_share) >= _LEAST_SHARE).any(axis=0)
+    swinging = found.damping_ratio <= _MOST_DAMPED
+    return Overlay(entry.modes.speeds, np.where(swinging, found.frequency, np.nan)[:, shown])
 
 
 def _reach(entry: LawRun) -> Reach:
     """Where the films of a law are not valid, over the speeds of the run."""
     speeds = entry.spectra.campbell.speeds
     at = np.linspace(float(speeds.min()), float(speeds.max()), MODE_SPEEDS)
-    return Reach(at, lowest_limits(entry.case.model, at), float(speeds[_fading(entry)].max(initial=0.0)))
+    return Reach(at, notable_from(entry.case.model, at), float(speeds[_fading(entry)].max(initial=0.0)))
 
 
 def _fading(entry: LawRun) -> BoolArray:
@@ -191,8 +196,20 @@ def _peak(peak: OrderPeak, modes: Sweep | None) -> str:
     )
     if modes is None:
         return text
-    frequencies = np.array([np.interp(peak.speed, modes.speeds, mode) for mode in modes.undamped.frequency.T])
-    return f"{text}   nearest linear mode {frequencies[np.argmin(np.abs(frequencies - peak.frequency))]:.5g} Hz"
+    near = _nearest(modes.damped, modes.speeds, peak)
+    return text if near is None else f"{text}   nearest linear mode {near[0]:.5g} Hz, damping ratio {near[1]:.2g}"
+
+
+def _nearest(found: ComplexSweep, speeds: FloatArray, peak: OrderPeak) -> tuple[float, float] | None:
+    """Frequency and damping ratio of the mode nearest to a peak at its speed; None where none oscillates."""
+    values = [np.interp(peak.speed, speeds, column) for column in (*found.frequency.T, *found.damping_ratio.T)]
+    frequency, ratio = np.reshape(values, (2, -1))
+    # A mode that begins or ends between two of the speeds has no number there.
+    there = np.isfinite(frequency) & (ratio <= _MOST_DAMPED)
+    if not there.any():
+        return None
+    best = int(np.argmin(np.where(there, np.abs(frequency - peak.frequency), np.inf)))
+    return float(frequency[best]), float(ratio[best])
 
 
 def _title(model: Model, sensor: Sensor) -> str:

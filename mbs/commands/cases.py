@@ -9,27 +9,23 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import itertools
-import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 
 from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.jobs.opening import open_given
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
-from ehdmaps.units import closest, quantity
+from ehdmaps.units import closest
 from mbs.analyses.case import Case, common_clearance
-from mbs.model.relaxation import Films
+from mbs.analyses.varied import VARIED, LawChoice, Subject, Value
+from mbs.model.relaxation import DEFAULT_FILMS, Films
 from mbs.output.results import RESULT
-from mbs.scene.assembly import Model, assemble
-from mbs.scene.contact_laws import MEMORY_WORDS, law_label
+from mbs.scene.assembly import Model
+from mbs.scene.contact_laws import FILM_WORDS, law_label
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
-
-WIDEST = 1e-2
-"""Largest clearance of --clearance, either way [m]."""
 
 NO_MAP = "--structure: got {!r:.60} without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`"
 """What is said where a structural law is given for no map."""
@@ -37,18 +33,7 @@ NO_MAP = "--structure: got {!r:.60} without a map; allowed: with --map MAP.nc, m
 FILMS = ("memory", "slow", "dry")
 """What --films takes: films that relax, those of slow motion, and none."""
 
-MOST_FACTOR = 1e3
 MOST_CASES = 24
-
-
-@dataclass(frozen=True)
-class _Law:
-    """A law as it was given."""
-
-    label: str
-    name: str | None
-    emap: EHDMap | None = None
-    films: Films | None = None
 
 
 def load_model(arguments: argparse.Namespace, kind: Kind = RESULT) -> Model:
@@ -62,7 +47,9 @@ def load_model(arguments: argparse.Namespace, kind: Kind = RESULT) -> Model:
     return load_cases(arguments, several=False, kind=kind)[0].model
 
 
-def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind = RESULT) -> list[Case]:
+def load_cases(
+    arguments: argparse.Namespace, several: bool = True, kind: Kind = RESULT, *, several_films: bool = False
+) -> list[Case]:
     """Read scene, laws, maps, clearances and load factors into models; all problems at once.
 
     Parameters
@@ -74,6 +61,8 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
         Whether laws and maps stand side by side; else a law goes before a map.
     kind : Kind
         Kind of file that -o writes.
+    several_films : bool
+        Whether kinds of films stand side by side where laws and maps do not.
 
     Raises
     ------
@@ -81,18 +70,12 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
         With every problem.
     """
     problems: list[str] = []
-    scene: Scene | None = None
-    try:
-        scene = read_scene(arguments.scene)
-    except InputError as error:
-        problems += error.problems
-    structure = getattr(arguments, "structure", None)
-    laws = _laws(_given(arguments, "law"), _given(arguments, "map"), structure, problems)
+    scene, laws = _read_scene(arguments, problems), _named_laws(arguments, problems)
     if not several:
         problems += [
             f"--{option}: got {len(given)} of them; allowed: one; `mbs sweep` and `mbs campbell` compare more"
             for option in ("law", "map", "clearance", "films")
-            if len(given := _given(arguments, option)) > 1
+            if len(given := _given(arguments, option)) > 1 and not (option == "films" and several_films)
         ]
         laws = laws[:1] if _given(arguments, "law") else laws
     if hasattr(arguments, "films"):
@@ -101,15 +84,9 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
         # A command that does not ask for films has those of slow motion, whatever the default.
         laws = [dataclasses.replace(law, films="slow") for law in laws]
     clearances = [read_clearance(text, problems) for text in _given(arguments, "clearance")] or [None]
-    factors = [_factor(text, problems) for text in _given(arguments, "load_factor")] or [1.0]
-    angles = [_angle(text, problems) for text in _given(arguments, "start_angle")] or [None]
-    problems += scene_output_problems(
-        arguments.scene,
-        [*_given(arguments, "map"), *(scene.files if scene else ())],
-        arguments.output,
-        arguments.plot,
-        kind,
-    )
+    factors = [_read("load-factor", text, problems) for text in _given(arguments, "load_factor")] or [None]
+    angles = [_read("start-angle", text, problems) for text in _given(arguments, "start_angle")] or [None]
+    problems += _output_problems(arguments, scene, kind)
     count = len(laws) * len(clearances) * len(factors) * len(angles)
     if count > MOST_CASES:
         problems.append(
@@ -121,7 +98,10 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
     cases = []
     for law, clearance, factor, angle in itertools.product(laws, clearances, factors, angles):
         try:
-            model = assemble(_turned(_loaded(scene, factor), angle), law.name, law.emap, clearance, law.films)
+            subject = Subject(scene, law, clearance)
+            for key, value in (("load-factor", factor), ("start-angle", angle)):
+                subject = subject if value is None else VARIED[key].change(subject, value)
+            model = subject.model()
         except InputError as error:
             problems += scene_problems(scene, error)
             continue
@@ -129,12 +109,57 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
             *([law.label] if len(laws) > 1 or count == 1 else []),
             *([MICROMETRE.text(clearance)] if len(clearances) > 1 and clearance is not None else []),
             *([f"{factor:g} x load"] if len(factors) > 1 else []),
-            *([f"cage at {DEGREE.text(angle)}"] if len(angles) > 1 and angle is not None else []),
+            *([f"cage at {DEGREE.text(float(angle))}"] if len(angles) > 1 and angle is not None else []),
         ]
-        cases.append(Case(", ".join(words), model, common_clearance(model), factor, angle))
+        turned = None if angle is None else float(angle)
+        cases.append(Case(", ".join(words), model, common_clearance(model), float(factor or 1.0), turned))
     if problems:
         raise InputError(tuple(dict.fromkeys(problems)))
     return cases
+
+
+def read_compared(
+    arguments: argparse.Namespace, problems: list[str], kind: Kind = RESULT
+) -> tuple[Scene | None, list[LawChoice], float | None]:
+    """Read scene, laws with their films, and one clearance of a command that builds its models itself.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        The same as for `load_cases`.
+    problems : list of str
+        What is wrong is appended.
+    kind : Kind
+        Kind of file that -o writes.
+    """
+    scene = _read_scene(arguments, problems)
+    laws = _with_films(_named_laws(arguments, problems), _given(arguments, "films"), problems)
+    clearances = [read_clearance(text, problems) for text in _given(arguments, "clearance")]
+    if len(clearances) > 1:
+        problems.append(f"--clearance: got {len(clearances)} of them; allowed: one, and others by --vary clearance")
+    problems += _output_problems(arguments, scene, kind)
+    return scene, laws, clearances[0] if clearances else None
+
+
+def _read_scene(arguments: argparse.Namespace, problems: list[str]) -> Scene | None:
+    """Read the scene; None where problems were noted."""
+    try:
+        return read_scene(arguments.scene)
+    except InputError as error:
+        problems += error.problems
+        return None
+
+
+def _named_laws(arguments: argparse.Namespace, problems: list[str]) -> list[LawChoice]:
+    """The laws of --law and --map."""
+    structure = getattr(arguments, "structure", None)
+    return _laws(_given(arguments, "law"), _given(arguments, "map"), structure, problems)
+
+
+def _output_problems(arguments: argparse.Namespace, scene: Scene | None, kind: Kind) -> list[str]:
+    """What is wrong about the files that are written."""
+    read: list[str | Path] = [*_given(arguments, "map"), *(scene.files if scene else ())]
+    return scene_output_problems(arguments.scene, read, arguments.output, arguments.plot, kind)
 
 
 def scene_problems(scene: Scene, error: InputError) -> list[str]:
@@ -171,7 +196,7 @@ def _given(arguments: argparse.Namespace, name: str) -> list[str]:
     return [] if value is None else [value] if isinstance(value, str) else list(value)
 
 
-def _laws(names: list[str], paths: list[str], structure: str | None, problems: list[str]) -> list[_Law]:
+def _laws(names: list[str], paths: list[str], structure: str | None, problems: list[str]) -> list[LawChoice]:
     """The laws that are meant: those named, and each map; dry Hertz without either."""
     if structure is not None and not paths:
         problems.append(NO_MAP.format(structure))
@@ -181,7 +206,7 @@ def _laws(names: list[str], paths: list[str], structure: str | None, problems: l
             for text in sorted(set(texts))
             if texts.count(text) > 1
         ]
-    laws = [_Law(law_label(name), name) for name in names if name != "map" or not paths]
+    laws = [LawChoice(law_label(name), name) for name in names if name != "map" or not paths]
     maps: list[tuple[str, EHDMap]] = []
     for path in paths:
         try:
@@ -193,11 +218,11 @@ def _laws(names: list[str], paths: list[str], structure: str | None, problems: l
     solvers = [str(emap.dataset.attrs.get("solver", "")) for _, emap in maps]
     for (path, emap), solver in zip(maps, solvers, strict=True):
         name = law_label("map", emap)
-        laws.append(_Law(name if solvers.count(solver) == 1 else f"{name} {Path(path).stem}", "map", emap))
-    return laws if names or paths else [_Law(law_label("hertz"), None)]
+        laws.append(LawChoice(name if solvers.count(solver) == 1 else f"{name} {Path(path).stem}", "map", emap))
+    return laws if names or paths else [LawChoice(law_label("hertz"), None)]
 
 
-def _with_films(laws: list[_Law], given: list[str], problems: list[str]) -> list[_Law]:
+def _with_films(laws: list[LawChoice], given: list[str], problems: list[str]) -> list[LawChoice]:
     """Each law that has films with the films that are meant, or dry; laws without films as they are."""
     wrong = [text for text in given if text not in FILMS]
     problems += [f"--films: got {text!r:.60}{closest(text, FILMS)}; allowed: {', '.join(FILMS)}" for text in wrong]
@@ -210,66 +235,32 @@ def _with_films(laws: list[_Law], given: list[str], problems: list[str]) -> list
         problems.append(
             f"--films: got {', '.join(given)} without a law that has films; allowed: with --map or --law formula"
         )
-    found: list[_Law] = []
+    found: list[LawChoice] = []
     for law in laws:
         found += [_filmed(law, text, len(given) > 1) for text in given] if law in having else [law]
     # One dry law stands for all maps, and for --law hertz.
     return [law for index, law in enumerate(found) if law.label not in {other.label for other in found[:index]}]
 
 
-def _filmed(law: _Law, films: str, compared: bool) -> _Law:
+def _filmed(law: LawChoice, films: str, compared: bool) -> LawChoice:
     """A law with its films."""
     if films == "dry":
-        return _Law(law_label("hertz"), "hertz")
-    words = MEMORY_WORDS if films == "memory" else "slow films"
-    label = f"{law.label}, {words}" if compared or films == "memory" else law.label
-    return dataclasses.replace(law, label=label, films="memory" if films == "memory" else "slow")
+        return LawChoice(law_label("hertz"), "hertz")
+    kind: Films = "memory" if films == "memory" else "slow"
+    label = f"{law.label}, {FILM_WORDS[kind]}" if compared or kind != DEFAULT_FILMS else law.label
+    return dataclasses.replace(law, label=label, films=kind)
 
 
 def read_clearance(text: str, problems: list[str]) -> float | None:
     """Read what was given for --clearance [m]; None where a problem was noted."""
+    value = _read("clearance", text, problems)
+    return None if value is None else float(value)
+
+
+def _read(key: str, text: str, problems: list[str]) -> Value | None:
+    """Read what was given for the option of a key that is varied; None where a problem was noted."""
     try:
-        value = quantity(text, "m")
+        return VARIED[key].read(text)
     except InputError as error:
-        problems.append(f"--clearance: {error.problems[0]}")
+        problems.append(f"--{key}: {error.problems[0]}")
         return None
-    if not abs(value) <= WIDEST:
-        problems.append(f"--clearance: got {text!r:.60}; allowed: within {MICROMETRE.text(WIDEST)} either way")
-    return value
-
-
-def _factor(text: str, problems: list[str]) -> float:
-    """Read a load factor."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0.0 < value <= MOST_FACTOR:
-        problems.append(f"--load-factor: got {text!r:.40}; allowed: above 0 up to {MOST_FACTOR:g}, such as 1.5")
-        return 1.0
-    return value
-
-
-def _angle(text: str, problems: list[str]) -> float | None:
-    """Read a start angle [rad]; None where a problem was noted."""
-    try:
-        value = quantity(text, "rad")
-    except InputError as error:
-        problems.append(f"--start-angle: {error.problems[0]}")
-        return None
-    if not abs(value) <= 2.0 * math.pi:
-        problems.append(f"--start-angle: got {text!r:.60}; allowed: a turn either way, such as '7.5 deg'")
-    return value
-
-
-def _turned(scene: Scene, angle: float | None) -> Scene:
-    """The scene with all cages at another angle."""
-    if angle is None:
-        return scene
-    return scene.with_bearings(dataclasses.replace(entry, start_angle=angle) for entry in scene.bearings)
-
-
-def _loaded(scene: Scene, factor: float) -> Scene:
-    """The scene with all its loads multiplied."""
-    loads = tuple(dataclasses.replace(load, force=factor * load.force) for load in scene.loads)
-    return dataclasses.replace(scene, loads=loads) if factor != 1.0 else scene

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -16,22 +17,17 @@ from ehdmaps.jobs.progress import Bar, Lines, progress
 from ehdmaps.outputs import write_figure
 from ehdmaps.units import RPM, TEMPERATURE, Display, quantity
 from mbs.analyses.case import clearance_text
-from mbs.analyses.film_limits import film_limits, ring_motions
+from mbs.analyses.film_errors import notable_from, ring_motions
 from mbs.analyses.reach import axes_outside
 from mbs.bearings.bearing_force import BearingForce
 from mbs.commands.reach import outside_lines
-from mbs.linearised.validity import HIGHEST_RATIO, NOTABLE, FilmLimit, SlowFilmError
-from mbs.model.elements import Operation
-from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.linearised.validity import NOTABLE, FilmError
+from mbs.model.equilibrium import Equilibrium
 from mbs.output.results import write_dataset
 from mbs.scene.assembly import Model
+from mbs.scene.contact_laws import FILM_WORDS
 
 RESOLUTION = 150
-
-MORE_DAMPING = "films as a rule are stiffer and damp less than computed here"
-"""What is known of motion above the low-frequency limit."""
-
-NO_LONGER_VALID = f"above it stiffness and damping of slow motion are no longer valid, {MORE_DAMPING}"
 
 
 class Told:
@@ -68,82 +64,58 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
     ]
 
 
-def film_warnings(limits: Sequence[FilmLimit], frequencies: Iterable[float]) -> list[str]:
-    """Lines on frequencies above the low-frequency limit of the films."""
-    lines = []
-    highest = max(frequencies, default=0.0)
-    for limit in limits:
-        ratio = limit.ratio(highest)
-        if limit.entrainment_speed == 0.0:
-            lines.append(
-                f"warning: {limit.bearing}: at rest no film: the stiffness is that of dry contacts, no damping"
-            )
-        elif ratio > HIGHEST_RATIO:
-            lines.append(
-                f"warning: {limit.bearing}: omega b/u is {ratio:.2g} at {highest:.5g} Hz and passes {HIGHEST_RATIO} at "
-                f"{limit.frequency:.4g} Hz (b = {limit.half_width * 1e6:.3g} um, "
-                f"u = {limit.entrainment_speed:.3g} m/s): {NO_LONGER_VALID}"
-            )
-    return lines
-
-
-def slow_film_warnings(
-    limits: Sequence[FilmLimit], errors: Sequence[SlowFilmError], frequencies: Iterable[float]
-) -> list[str]:
-    """Lines on frequencies at which films of slow motion are notably wrong, and on bearings at rest.
+def film_lines(errors: Sequence[FilmError], frequencies: Iterable[float], words: str = "") -> list[str]:
+    """Lines on the estimated error of the films of each bearing at the highest frequency; none where there is none.
 
     Parameters
     ----------
-    limits : sequence of FilmLimit
-        Limits of the films.
-    errors : sequence of SlowFilmError
-        How wrong films of slow motion are.
+    errors : sequence of FilmError
+        Errors of the bearings.
     frequencies : iterable of float
         Frequencies of the result [Hz].
+    words : str
+        What follows the frequency, such as a speed.
     """
     highest = max(frequencies, default=0.0)
-    lines = film_warnings([limit for limit in limits if limit.entrainment_speed == 0.0], [highest])
-    ratios = {limit.bearing: limit.ratio(highest) for limit in limits}
+    lines = []
     for entry in errors:
-        error = entry.at(highest)
-        if error > NOTABLE:
-            ratio = f"omega b/u is {ratios[entry.bearing]:.2g} at {highest:.5g} Hz"
-            lines.append(slow_film_line(entry, ratio, error))
+        if entry.at_rest:
+            lines.append(
+                f"warning: {entry.bearing}: at rest no film: the stiffness is that of dry contacts, no damping"
+            )
+        elif highest > 0.0:
+            lines.append(_film_line(entry, highest, words))
     return lines
 
 
-def slow_film_line(entry: SlowFilmError, ratio: str, error: float) -> str:
-    """A line on the error that films of slow motion make.
-
-    Parameters
-    ----------
-    entry : SlowFilmError
-        The bearing.
-    ratio : str
-        How quick the motion is, in words.
-    error : float
-        Error there.
-    """
-    return (
-        f"warning: {entry.bearing}: films are those of slow motion; {ratio}: there the dynamic stiffness along the "
-        f"load is {100.0 * error:.2g} % wrong, from {entry.frequency:.4g} Hz on by more than {100.0 * NOTABLE:g} %; "
-        "--films memory has films that follow at their own frequency"
+def _film_line(entry: FilmError, frequency: float, words: str) -> str:
+    """A line on one bearing; a warning where the error is notable."""
+    error = entry.at(frequency)
+    line = (
+        f"{entry.bearing}: {FILM_WORDS[entry.films]}; estimated error of the dynamic stiffness along the load at "
+        f"{frequency:.5g} Hz{words}: {100.0 * error:.2g} %"
     )
+    if error <= NOTABLE:
+        return line
+    more = f"warning: {line}, from {entry.frequency:.4g} Hz on more than {100.0 * NOTABLE:g} %"
+    return more + ("; with --films memory films follow at their own frequency" if entry.films == "slow" else "")
 
 
 def film_course(model: Model, speeds: Iterable[float]) -> list[str]:
-    """A line on the frequencies up to which all films follow at some speeds [rad/s]; none for laws without films."""
+    """A line on the frequencies up to which the films are nowhere notably wrong, at some speeds [rad/s]."""
     shown = []
     for speed in speeds:
-        operation = Operation(speed)
-        limits = film_limits(model, equilibrium(model.system, operation).displacement, operation)
-        if limits and speed != 0.0:
-            shown.append(f"{min(limit.frequency for limit in limits):.4g} Hz at {RPM.text(abs(speed))}")
+        if speed == 0.0:
+            continue
+        (frequency,) = notable_from(model, np.array([speed]))
+        if not np.isnan(frequency):
+            words = f"{frequency:.4g} Hz" if np.isfinite(frequency) else "1 MHz and more"
+            shown.append(f"{words} at {RPM.text(abs(speed))}")
     if not shown:
         return []
     return [
-        f"warning: films are those of slow motion; this is valid (omega b/u up to {HIGHEST_RATIO}) up to "
-        f"{', '.join(shown)}; above, {MORE_DAMPING}"
+        f"{FILM_WORDS[model.memory]}: dynamic stiffness along the load with an estimated error of up to "
+        f"{100.0 * NOTABLE:g} % up to {', '.join(shown)}"
     ]
 
 

@@ -13,10 +13,11 @@ from ehdmaps.outputs import Output, output_problems
 from ehdmaps.units import quantity
 from mbs.analyses.hammer import HammerSettings, hammer
 from mbs.commands.cases import load_model
-from mbs.commands.common import Told, film_warnings, heading, outside_at
+from mbs.commands.common import Told, film_lines, heading, outside_at
 from mbs.linearised.modes import Modes
 from mbs.modal.uff import UFF, Measurement
 from mbs.modal.uff_writing import write_uff
+from mbs.scene.contact_laws import FILM_WORDS
 from mbs.scene.fields import MILLISECOND
 from mbs.transient.hammer import HammerTest
 
@@ -33,8 +34,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *(f"warning: {name}: {n} calls outside the map" for name, n in found.outside_hits.items() if n),
     ]
     path = Path(arguments.output)
-    law = (arguments.law or ["map" if arguments.map else "hertz"])[0]
-    title = f"{scene.name}, law {law}: {test.hits} hits a place, simulated"
+    films = FILM_WORDS[model.memory]
+    # The file stands alone: it says its films also where they are the default.
+    label = f"{model.label}, {films}" if found.errors and films not in model.label else model.label
+    title = f"{scene.name}, {label}: {test.hits} hits a place, simulated"
     write_uff(path, Measurement(title, hits))
     lines = [
         *heading(model, scene.speed),
@@ -44,7 +47,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"half-sines of {MILLISECOND.text(test.pulse)}, up to {test.highest:.6g} Hz; seed {test.seed}",
         f"  noise: standard deviation {100.0 * test.noise:.3g} % of the peak of each channel",
         *_expected(found.modes, test),
-        *film_warnings(found.limits, [test.highest]),
+        *film_lines(found.errors, [test.highest]),
         *outside,
         f"{path}: written",
     ]

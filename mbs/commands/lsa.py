@@ -10,35 +10,77 @@ import numpy as np
 from scipy.signal import find_peaks
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from mbs.analyses.lsa import lsa
-from mbs.commands.cases import load_model
-from mbs.commands.common import heading, outside_at, slow_film_warnings, write
+from ehdmaps.errors import InputError
+from mbs.analyses.case import Case
+from mbs.analyses.lsa import LsaResult, lsa
+from mbs.commands.cases import load_cases
+from mbs.commands.common import film_lines, heading, outside_at, write
 from mbs.commands.reach import fade_lines
 from mbs.linearised.linear import response_unit
 from mbs.linearised.validity import DynamicLoad
-from mbs.output.response_plot import response_figure
+from mbs.output.response_plot import Curves, comparison_figure, response_figure
 from mbs.scene.assembly import Model
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Linearise, and compute the responses over the frequencies of the scene."""
-    found = lsa(load_model(arguments))
-    model, scene, frequencies = found.model, found.model.scene, found.frequencies
+    """Linearise, and compute the responses over the frequencies of the scene, with each kind of films."""
+    cases = _asked(arguments)
+    found = [(case.label, lsa(case.model)) for case in cases]
     figure = None
     if arguments.plot:
-        limit = min((entry.frequency for entry in found.limits), default=math.inf)
-        figure = response_figure(model, frequencies, found.responses, limit, _lifting_notes(found.lifting))
-    outside = outside_at(model, found.balance)
+        curves = [
+            Curves(
+                label,
+                entry.frequencies,
+                entry.responses,
+                min((error.frequency for error in entry.errors), default=math.inf),
+            )
+            for label, entry in found
+        ]
+        notes = [note for label, entry in found for note in _lifting_notes(entry.lifting, label if found[1:] else "")]
+        first = found[0][1].model
+        figure = comparison_figure(first, curves, notes) if found[1:] else response_figure(first, curves[0], notes)
+    lines: list[str] = []
+    outside: list[str] = []
+    for label, entry in found:
+        outside += [line for line in outside_at(entry.model, entry.balance) if line not in outside]
+        lines += _report(entry, label if found[1:] else "")
+    lines += [*outside, *write(arguments, found[0][1].dataset, figure)]
+    return "\n".join(lines), 1 if outside else 0
+
+
+def _asked(arguments: argparse.Namespace) -> list[Case]:
+    """A case for each kind of films; all problems at once."""
+    problems: tuple[str, ...] = ()
+    cases: list[Case] = []
+    try:
+        cases = load_cases(arguments, several=False, several_films=True)
+    except InputError as error:
+        problems = error.problems
+    if arguments.output and len(arguments.films or ()) > 1:
+        problems += (
+            f"-o: got {len(arguments.films)} kinds of films; allowed: one, as each has a state space of its own; write "
+            "a file for each, or leave -o out",
+        )
+    if problems:
+        raise InputError(problems)
+    return cases
+
+
+def _report(found: LsaResult, label: str) -> list[str]:
+    """Lines of one case; its label is empty if it is the only one."""
+    model, scene, frequencies = found.model, found.model.scene, found.frequencies
     amplitudes = {
         entry.name: f"{entry.amplitude:.4g} {'N m' if np.any(entry.direction[3:]) else 'N'}" for entry in scene.inputs
     }
-    lines = [
+    return [
         *heading(model, scene.speed),
+        *([f"  case: {label}"] if label else []),
         f"state space: {found.space.A.shape[0]} states, {len(scene.inputs)} inputs, {len(scene.sensors)} outputs; "
         f"{found.asked} frequencies, and {frequencies.size - found.asked} more around lightly "
         "damped modes",
         *_peaks(model, frequencies, found.responses),
-        *slow_film_warnings(found.limits, found.errors, frequencies),
+        *film_lines(found.errors, frequencies),
         *(
             f"warning: {load.element}: {load.dynamic:.3g} N of dynamic load at {load.frequency:.4g} Hz exceed the "
             f"static {load.static:.4g} N (input {load.input} at its amplitude of {amplitudes[load.input]}): contacts "
@@ -46,19 +88,17 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             for load in found.lifting
         ),
         *(fade_lines(model, np.array([scene.speed])) if scene.speed else []),
-        *outside,
-        *write(arguments, found.dataset, figure),
     ]
-    return "\n".join(lines), 1 if outside else 0
 
 
-def _lifting_notes(loads: Sequence[DynamicLoad]) -> list[str]:
+def _lifting_notes(loads: Sequence[DynamicLoad], label: str) -> list[str]:
     """Notes below the figure on loads that lift off, a line for each frequency and input."""
     names: dict[tuple[str, str], list[str]] = {}
     for load in loads:
         names.setdefault((f"{load.frequency:.4g} Hz", load.input), []).append(load.element)
+    begin = f"{label}: " if label else ""
     return [
-        f"contacts lift off near {at} with the amplitude of {entry}, a linear analysis is not valid there: "
+        f"{begin}contacts lift off near {at} with the amplitude of {entry}, a linear analysis is not valid there: "
         + ", ".join(elements)
         for (at, entry), elements in names.items()
     ]

@@ -11,7 +11,7 @@ from ehdmaps.arrays import IntArray
 from ehdmaps.errors import InputError
 from mbs.analyses.modes import modes
 from mbs.commands.cases import load_model
-from mbs.commands.common import heading, outside_at, read_option, slow_film_warnings, write
+from mbs.commands.common import film_lines, heading, outside_at, read_option, write
 from mbs.commands.reach import fade_lines
 from mbs.linearised.modes import Modes
 from mbs.output.modes_plot import modes_figure
@@ -33,14 +33,14 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Find the modes."""
     model, highest = _asked(arguments)
     result = modes(model)
-    found, limits = result.modes, result.limits
+    found = result.modes
     free, overdamped, swinging = _kinds(found)
     shown = swinging[found.frequency[swinging] <= highest]
     above = swinging[found.frequency[swinging] > highest]
     notes = [*_free(free), *_above(found, above, highest)]
     figure = None
     if arguments.plot:
-        limit = min((entry.frequency for entry in limits), default=math.inf)
+        limit = min((entry.frequency for entry in result.errors), default=math.inf)
         figure = modes_figure(model, found, shown, limit, "; ".join([*notes, *_overdamped_count(overdamped)]))
     outside = outside_at(model, result.balance)
     lines = [
@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *_overdamped(found, overdamped),
         *(f"  {note}" for note in notes),
         *_lost(found),
-        *slow_film_warnings(limits, result.errors, found.frequency[shown]),
+        *film_lines(result.errors, found.frequency[shown]),
         *(fade_lines(model, np.array([model.scene.speed])) if model.scene.speed else []),
         *outside,
         *write(arguments, result.dataset, figure),

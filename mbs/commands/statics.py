@@ -10,15 +10,16 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import FILM, PRESSURE
-from mbs.analyses.film_limits import film_limits, ring_motions
+from mbs.analyses.film_errors import film_errors, ring_motions
 from mbs.analyses.statics import statics
 from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.roller_element import ring_matrices
 from mbs.commands.cases import load_model
 from mbs.commands.common import heading, outside_at, write
 from mbs.commands.reach import fade_lines
-from mbs.linearised.validity import HIGHEST_RATIO
+from mbs.linearised.validity import NOTABLE
 from mbs.model.equilibrium import Equilibrium
+from mbs.output.bearing_text import loss_words
 from mbs.output.plot import statics_figure
 from mbs.scene.assembly import Model
 
@@ -53,14 +54,15 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             f"{np.count_nonzero(rollers.load > 0.0)} of {rollers.load.size} rollers loaded, the most with "
             f"{float(rollers.load.max()):.5g} N",
             f"  {_contact_words(contacts[index])}",
+            f"  {loss_words(found.losses[index])}",
             *_matrix("K [N/m, N/rad; N m/m, N m/rad]", stiffness),
             *_matrix("C [the same times s]", damping),
         ]
     lines += [
-        f"{limit.bearing}: films follow as in the low-frequency limit up to {limit.frequency:.4g} Hz "
-        f"(omega b/u = {HIGHEST_RATIO})"
-        for limit in film_limits(model, balance.displacement, balance.operation)
-        if 0.0 < limit.frequency < math.inf
+        f"{entry.bearing}: K and C are those of slow motion; the estimated error of the dynamic stiffness along the "
+        f"load passes {100.0 * NOTABLE:g} % at {entry.frequency:.4g} Hz"
+        for entry in film_errors(model, balance.displacement, balance.operation, "slow")
+        if math.isfinite(entry.frequency)
     ]
     lines += fade_lines(model, np.array([model.scene.speed]))
     outside = outside_at(model, balance)

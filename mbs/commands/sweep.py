@@ -8,19 +8,19 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM, TEMPERATURE, quantity
 from mbs.analyses.case import Case
-from mbs.analyses.film_limits import film_limits, lowest_limits, slow_film_errors
+from mbs.analyses.film_errors import film_errors, notable_from
 from mbs.analyses.reach import axes_outside, fade_of
 from mbs.analyses.sweep import SweepSettings, sweep
 from mbs.commands.cases import load_cases
-from mbs.commands.common import heading, slow_film_line, write
+from mbs.commands.common import film_lines, heading, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.crossings import exchanged
 from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.sweep_result import Sweep
-from mbs.linearised.validity import NOTABLE
 from mbs.model.elements import Operation
 from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import Model
@@ -39,19 +39,21 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     found = result.sweeps
     lines: list[str] = []
     outside: list[str] = []
-    for case, entry, calls in zip(cases, found, result.outside, strict=True):
+    torques = result.dataset["rolling_torque"].values
+    for case, entry, calls, torque in zip(cases, found, result.outside, torques, strict=True):
         outside += _outside(case, entry, calls)
         lines += [
             *heading(case.model),
             *([f"  case: {case.label}"] if len(cases) > 1 else []),
             *_course(entry),
-            *_bearings(entry),
+            *_films(case.model),
+            *_bearings(entry, torque),
             *_undamped(entry),
             *_complex(entry),
             *_exchanged(entry),
             *_unsure(entry),
             *_lost(entry),
-            *_too_quick(case.model, entry),
+            *_film_errors(case.model, entry),
             *fade_lines(case.model, entry.speeds),
         ]
     figure = _figure(cases, found) if arguments.plot else None
@@ -77,8 +79,9 @@ def _figure(cases: Sequence[Case], found: Sequence[Sweep]) -> Figure:
         "; ".join(words),
         found,
         [case.label for case in cases],
-        [lowest_limits(case.model, entry.speeds, entry.displacement) for case, entry in zip(cases, found, strict=True)],
+        [notable_from(case.model, entry.speeds, entry.displacement) for case, entry in zip(cases, found, strict=True)],
         max((fade.speed for fade in fades), default=0.0),
+        [case.model.memory == "memory" for case in cases],
     )
 
 
@@ -137,8 +140,18 @@ def _course(result: Sweep) -> list[str]:
     return [f"  {result.speeds.size} speeds from {_first(result)} to {_last(result)}{between}{shown}"]
 
 
-def _bearings(result: Sweep) -> list[str]:
-    """Lines of stiffness and damping of the bearings at the first and the last speed."""
+def _films(model: Model) -> list[str]:
+    """A line on which numbers have films of which frequency, where films have memory."""
+    if model.memory != "memory":
+        return []
+    return [
+        "  k and c of bearings and undamped modes are those of slow motion; complex modes and responses have films of "
+        "their own frequency"
+    ]
+
+
+def _bearings(result: Sweep, torque: FloatArray) -> list[str]:
+    """Lines of stiffness, damping and rolling torque (speeds, bearings) of the bearings at the first and last speed."""
     lines = []
     entry = result.bearings
     for index, name in enumerate(entry.names):
@@ -152,6 +165,11 @@ def _bearings(result: Sweep) -> list[str]:
             f"  {name}: {changed}; along the load k {k[0] * 1e-6:.4g} to {k[1] * 1e-6:.4g} N/um ({_change(*k)}), "
             f"c {c[0]:.4g} to {c[1]:.4g} N s/m ({_change(*c)}){spread}"
         )
+        if np.all(np.isfinite(torque[:, index])):
+            lines.append(
+                f"  {name}: rolling torque {1e3 * torque[0, index]:.4g} to {1e3 * torque[-1, index]:.4g} N mm "
+                "(flooded films only)"
+            )
     return lines
 
 
@@ -242,21 +260,18 @@ def _outside(case: Case, result: Sweep, calls: Mapping[str, int]) -> list[str]:
     return outside_lines(calls, words, axes_outside(case.model, float(np.abs(result.speeds).max())), case.label)
 
 
-def _too_quick(model: Model, result: Sweep) -> list[str]:
-    """A line for each bearing whose films are too slow for the highest mode in it, with the worst speed."""
-    worst: dict[str, tuple[float, str]] = {}
+def _film_errors(model: Model, result: Sweep) -> list[str]:
+    """A line for each bearing: estimated error of its films at the highest mode in it, at the worst speed."""
+    worst: dict[str, tuple[float, list[str]]] = {}
     found = result.undamped
     for index, speed in enumerate(result.speeds.tolist()):
         inside = found.frequency[index][found.bearing_share[index] >= _LEAST_SHARE]
         highest = float(inside.max(initial=0.0))
-        at = result.displacement[index], Operation(speed)
-        ratios = {limit.bearing: limit.ratio(highest) for limit in film_limits(model, *at)}
-        for entry in slow_film_errors(model, *at):
+        for entry in film_errors(model, result.displacement[index], Operation(speed)):
             error = entry.at(highest)
-            if speed > 0.0 and error > max(NOTABLE, worst.get(entry.bearing, (0.0,))[0]):
-                words = f"omega b/u is up to {ratios[entry.bearing]:.2g} ({highest:.5g} Hz at {RPM.text(speed)})"
-                worst[entry.bearing] = error, slow_film_line(entry, words, error)
-    return [line for _, line in worst.values()]
+            if not entry.at_rest and error > worst.get(entry.bearing, (-1.0,))[0]:
+                worst[entry.bearing] = error, film_lines([entry], [highest], f" and {RPM.text(speed)}")
+    return [line for _, lines in worst.values() for line in lines]
 
 
 def _lost(result: Sweep) -> list[str]:

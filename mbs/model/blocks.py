@@ -71,11 +71,14 @@ class Member(NamedTuple):
         Place among all elements of the system: where `Answers.outside` counts.
     first : int
         First of what it feels.
+    alone : int
+        First of what it feels of coordinates that are its alone, see `Kind.alone`.
     """
 
     element: Any
     place: int
     first: int
+    alone: int = 0
 
 
 class Block(Protocol):
@@ -95,6 +98,18 @@ class Block(Protocol):
         sound : array of bool, shape (prepared steps,)
             Whether compiled code has an answer at the speed of each; the others are made in Python.
         """
+        ...
+
+
+class StatefulBlock(Block, Protocol):
+    """All elements of a kind with states of their own, which follow a run from Python to compiled code and back."""
+
+    def states(self) -> Sequence[Any]:
+        """States of each member after the last step that was made, as its `Element.advance` has them."""
+        ...
+
+    def resume(self, states: Sequence[Any]) -> None:
+        """Go on from states that `Element.advance` of each member gave: at the beginning, and after steps in Python."""
         ...
 
 
@@ -141,9 +156,12 @@ class Kind:
         Makes the block of some members; there may be none.
     takes : callable
         Whether compiled code has this element of the class.
+    alone : callable or None
+        Rows (felt, ports) of coordinates that the element feels and nothing else touches, such as its rollers. They
+        come before what all elements feel of others, so that elimination, which begins with them, costs little.
     accept : callable or None
         Compiled function (arrays, Moment) that is called when a step is made, for elements with states of their own;
-        the last answer was then that of the step.
+        the last answer was then that of the step. Their block is a `StatefulBlock`.
     """
 
     arrays: type
@@ -151,4 +169,5 @@ class Kind:
     feels: Callable[[Any], FloatArray]
     gather: Callable[[Sequence[Member]], Block]
     takes: Callable[[Element], bool] = _always
+    alone: Callable[[Any], FloatArray] | None = None
     accept: Callable[..., None] | None = None

@@ -21,7 +21,7 @@ from ehdmaps.arrays import ComplexArray, FloatArray
 Films = Literal["slow", "memory"]
 """Whether films have stiffness and damping of slow motion at any frequency, or relax."""
 
-DEFAULT_FILMS: Films = "slow"
+DEFAULT_FILMS: Films = "memory"
 """Which films linear analyses have where none are asked for."""
 
 

@@ -70,6 +70,8 @@ _ROW = (
     ("highest_roller_load", "N", "load of the most loaded roller"),
     ("loaded_rollers", "1", "rollers that carry more than 1 % of the highest roller load"),
     ("film_parameter", "1", "Lambda, smallest film over the combined rms roughness"),
+    ("rolling_torque", "N m", "torque that rolling takes; none without a map that has rolling forces"),
+    ("rolling_power", "W", "power that the films of all rollers take"),
 )
 _SIDE = (
     ("hertz_pressure", "Pa", "largest Hertz pressure"),
@@ -91,6 +93,8 @@ def bearing_row(point: BearingPoint, roughness: float) -> dict[str, float]:
         float(point.rollers.load.max()),
         point.loaded,
         point.film_parameter(roughness),
+        point.loss.torque,
+        point.loss.total,
     )
     return {name: float(value) for (name, _, _), value in zip(_ROW, values, strict=True)}
 

@@ -10,6 +10,7 @@ import numpy as np
 from ehdmaps.units import FILM, PRESSURE, RPM, TEMPERATURE
 from mbs.analyses.bearing_point import BearingPoint
 from mbs.bearings.films import SIDES
+from mbs.bearings.rolling_loss import RollingLoss
 from mbs.output.bearing_data import BearingDescription, Points, bearing_row
 from mbs.scene.fields import FORCE, MICROMETRE
 
@@ -74,7 +75,18 @@ def _page(point: BearingPoint, roughness: float) -> list[str]:
         _sides("smallest film", FILM.unit, 1e6 * contacts.minimum_film),
         f"  Lambda {row['film_parameter']:.3g} (smallest film over {MICROMETRE.text(roughness)} of roughness; "
         f"{regime(row['film_parameter'])})",
+        f"  {loss_words(point.loss)}",
     ]
+
+
+def loss_words(loss: RollingLoss) -> str:
+    """What rolling costs in a bearing."""
+    if math.isnan(loss.total):
+        return "rolling torque: none, no map with rolling forces"
+    words = f"rolling torque {1e3 * loss.torque:.4g} N mm, power {loss.total:.4g} W"
+    if not loss.total:
+        return words
+    return f"{words}, {loss.idle:.0%} of it in idle rollers (flooded films only: no flanges, cage, seals, churning)"
 
 
 def regime(film_parameter: float) -> str:
@@ -121,9 +133,9 @@ def _table(points: list[BearingPoint], roughness: float) -> list[str]:
     """A line for each point."""
     lines = [
         f"{'load':>10s} {'speed':>8s} {'K along':>9s} {'across':>9s} {'c along':>9s} {'rollers':>7s} {'highest':>9s} "
-        f"{'Hertz':>7s} {'smallest':>9s} {'Lambda':>7s}",
+        f"{'Hertz':>7s} {'smallest':>9s} {'Lambda':>7s} {'rolling':>8s}",
         f"{'N':>10s} {'rpm':>8s} {'N/um':>9s} {'N/um':>9s} {'N s/mm':>9s} {'loaded':>7s} {'N':>9s} "
-        f"{'GPa':>7s} {'film, um':>9s} {'':>7s}",
+        f"{'GPa':>7s} {'film, um':>9s} {'':>7s} {'N mm':>8s}",
     ]
     for point in points:
         row = bearing_row(point, roughness)
@@ -131,8 +143,8 @@ def _table(points: list[BearingPoint], roughness: float) -> list[str]:
             f"{point.size:10.5g} {RPM.value(point.speed):8.5g} {1e-6 * row['stiffness_along']:9.4g} "
             f"{1e-6 * row['stiffness_across']:9.4g} {1e-3 * row['damping_along']:9.4g} {point.loaded:7d} "
             f"{row['highest_roller_load']:9.5g} {1e-9 * float(point.contacts.hertz_pressure.max()):7.4g} "
-            f"{_shown(1e6 * float(np.min(point.contacts.minimum_film)), 4):>9s} {_shown(row['film_parameter'], 3):>7s}"
-            f"{' !' if point.problems else ''}"
+            f"{_shown(1e6 * float(np.min(point.contacts.minimum_film)), 4):>9s} {_shown(row['film_parameter'], 3):>7s} "
+            f"{_shown(1e3 * row['rolling_torque'], 4):>8s}{' !' if point.problems else ''}"
         )
     return lines
 

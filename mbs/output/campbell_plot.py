@@ -16,8 +16,7 @@ from matplotlib.patheffects import withStroke
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import COLOURS, SHADE
-from mbs.linearised.validity import HIGHEST_RATIO
-from mbs.output.page import shade_handle
+from mbs.output.page import ESTIMATED, shade_handle
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, level
 from mbs.spectral.run_signal import RPM
@@ -42,7 +41,7 @@ _SPARSE = (0.0, (1.0, 4.0))
 
 _LIMIT = (0.0, (5.0, 1.5, 1.0, 1.5))
 _LIMIT_COLOUR = "#ff7f0e"
-"""Of the limit omega b/u = 0.3: seen on the colours of the levels and on paper."""
+"""Of the frequency from which on the films are notably wrong: seen on the colours of the levels and on paper."""
 
 _LEAST_HEIGHT, _LEAST_WIDTH = 0.05, 0.12
 """Between two names of orders, as parts of a diagram."""
@@ -76,7 +75,7 @@ class Reach:
     speeds : array, shape (speeds,)
         [rad/s].
     limit : array, shape (speeds,)
-        Frequency at which omega b/u is 0.3 [Hz]; NaN for laws without films.
+        Frequency from which on the films are notably wrong [Hz]; NaN for laws without films.
     below : float
         Speed up to which windows reach below the map, where the film fades to the dry contact [rad/s]; 0 for none.
     """
@@ -164,7 +163,7 @@ def campbell_figure(
 
 
 def _reach(panel: Axes, reach: Reach, factor: float) -> None:
-    """The limit of slow films as a line, and what lies below the map shaded; the axes stay as they are."""
+    """Where the films are notably wrong as a line, and what lies below the map shaded; the axes stay as they are."""
     limits = panel.get_xlim(), panel.get_ylim()
     panel.plot(reach.speeds * RPM, reach.limit * factor, color=_LIMIT_COLOUR, lw=0.9, ls=_LIMIT)
     if reach.below * RPM >= limits[0][0]:
@@ -182,9 +181,9 @@ def _handles(
     if orders:
         found.append(Line2D([], [], color="0.5", lw=0.8, ls=_SPARSE, label="orders"))
     if any(overlay is not None for overlay in overlays):
-        found.append(Line2D([], [], color="0.5", lw=0.8, ls="--", label="undamped modes"))
+        found.append(Line2D([], [], color="0.5", lw=0.8, ls="--", label="linear modes (|eigenvalue|/2π)"))
     if any(np.isfinite(reach.limit).any() for reach in reaches):
-        words = f"omega b/u = {HIGHEST_RATIO}: films not valid above"
+        words = f"above the line: {ESTIMATED}"
         found.append(Line2D([], [], color=_LIMIT_COLOUR, lw=0.9, ls=_LIMIT, label=words))
     slow = max((reach.below for reach in reaches), default=0.0)
     if slow >= begin:

@@ -10,8 +10,7 @@ from matplotlib.figure import Figure
 
 from ehdmaps.arrays import IntArray
 from mbs.linearised.modes import Modes
-from mbs.linearised.validity import HIGHEST_RATIO
-from mbs.output.page import headed, shade, shade_handle
+from mbs.output.page import ESTIMATED, headed, shade, shade_handle
 from mbs.scene.assembly import Model
 
 _RPM = 30.0 / np.pi
@@ -39,7 +38,7 @@ def modes_figure(model: Model, found: Modes, shown: IntArray, limit: float = mat
     shown : array of int, shape (k,)
         Those to draw, in this order.
     limit : float
-        Frequency above which omega b/u exceeds 0.3 [Hz]: modes from there on are shaded.
+        Frequency from which on the films are notably wrong [Hz]: modes from there on are shaded.
     words : str
         What is not drawn, below the axis.
     """
@@ -78,4 +77,4 @@ def _label(found: Modes, mode: int, level: bool) -> str:
 
 def _quick(limit: float) -> str:
     """What the shade says."""
-    return f"omega b/u above {HIGHEST_RATIO}\n(from {limit:.4g} Hz on):\nlow-frequency films\nno longer valid"
+    return f"{ESTIMATED.replace(' of the films ', chr(10) + 'of the films ')}\n(from {limit:.4g} Hz on)"

@@ -12,9 +12,13 @@ from matplotlib.ticker import ScalarFormatter
 from ehdmaps.figures import SHADE, SHADE_ALPHA, typeset
 from ehdmaps.units import TEMPERATURE
 from mbs.analyses.case import clearance_text
+from mbs.linearised.validity import NOTABLE
 from mbs.scene.assembly import Model
 
 _SIZE = (9.0, 5.5)
+
+ESTIMATED = f"estimated error of the films above {100.0 * NOTABLE:g} %"
+"""How figures call the range in which the films that an analysis has are notably wrong."""
 
 
 def page(model: Model, words: str, panels: int, stacked: bool = False) -> tuple[Figure, list[Axes]]:
@@ -37,7 +41,7 @@ def page(model: Model, words: str, panels: int, stacked: bool = False) -> tuple[
     return figure, list(axes.ravel())
 
 
-def headed(model: Model, words: str, size: tuple[float, float] = _SIZE) -> Figure:
+def headed(model: Model, words: str, size: tuple[float, float] = _SIZE, law: str | None = None) -> Figure:
     """A figure with its heading: title, law, `words`, temperature, clearance.
 
     Parameters
@@ -48,6 +52,8 @@ def headed(model: Model, words: str, size: tuple[float, float] = _SIZE) -> Figur
         What the heading says after the law.
     size : tuple[float, float]
         Width and height [inches].
+    law : str, optional
+        What the heading calls the law; that of the model if left out.
     """
     clearance = clearance_text(model)
     at = [
@@ -56,7 +62,7 @@ def headed(model: Model, words: str, size: tuple[float, float] = _SIZE) -> Figur
         *([f"clearance {typeset(clearance)}"] if clearance else []),
     ]
     figure = Figure(figsize=size, layout="constrained")
-    figure.suptitle(f"{model.scene.title}\n{model.law}; {', '.join(at)}", fontsize=10)
+    figure.suptitle(f"{model.scene.title}\n{law or model.law}; {', '.join(at)}", fontsize=10)
     return figure
 
 

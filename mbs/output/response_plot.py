@@ -4,42 +4,59 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.figures import COLOURS, typeset
 from ehdmaps.units import RPM
 from mbs.linearised.linear import response_unit
-from mbs.linearised.validity import HIGHEST_RATIO
-from mbs.output.page import grid, page, shade
+from mbs.output.page import ESTIMATED, grid, headed, page, shade
 from mbs.scene.assembly import Model
 
+MOST_COMPARED = 8
+"""Responses that are drawn for several cases."""
+
+_DASHES = ("-", "--", "-.", ":")
 _ROUND_OFF = 1e-6
 """Of a phase [degrees]: -180 degrees less than this beside is +180 degrees."""
 
 
-def response_figure(
-    model: Model,
-    frequencies: FloatArray,
-    responses: ComplexArray,
-    limit: float = math.inf,
-    notes: Sequence[str] = (),
-) -> Figure:
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """Responses of one case.
+
+    Attributes
+    ----------
+    label : str
+        What the case is.
+    frequencies : array, shape (frequencies,)
+        [Hz].
+    responses : array, shape (frequencies, sensors, inputs)
+        Sensor unit per N or N m.
+    limit : float
+        Frequency from which on the films are notably wrong [Hz].
+    """
+
+    label: str
+    frequencies: FloatArray
+    responses: ComplexArray
+    limit: float = math.inf
+
+
+def response_figure(model: Model, case: Curves, notes: Sequence[str] = ()) -> Figure:
     """Magnitude of each response, a panel a unit, and phase.
 
     Parameters
     ----------
     model : Model
         Model with its sensors and inputs.
-    frequencies : array, shape (frequencies,)
-        [Hz].
-    responses : array, shape (frequencies, sensors, inputs)
-        Sensor unit per N or N m.
-    limit : float
-        Frequency above which omega b/u exceeds 0.3 [Hz]: shaded from there on.
+    case : Curves
+        Responses of the case; the range in which its films are notably wrong is shaded.
     notes : sequence of str
         Lines below the panels, such as warnings.
     """
@@ -53,20 +70,73 @@ def response_figure(
     for s, sensor in enumerate(model.scene.sensors):
         for i, entry in enumerate(model.scene.inputs):
             colour, panel = next(colours), panels[typeset(response_unit(sensor, entry))]
-            size = np.abs(responses[:, s, i])
-            values = np.where(size > 0.0, size, np.nan)
-            panel.loglog(frequencies, values, color=colour, lw=1.0, label=f"{sensor.name} by {entry.name}")
-            phase.semilogx(*_phase(frequencies, responses[:, s, i]), color=colour, lw=0.9)
+            _magnitude(panel, case, (s, i), color=colour, label=f"{sensor.name} by {entry.name}")
+            phase.semilogx(*_phase(case.frequencies, case.responses[:, s, i]), color=colour, lw=0.9)
     for unit, panel in panels.items():
         panel.set_ylabel(f"{kinds[unit]}, {unit}")
         panel.legend(fontsize=8, frameon=False)
     phase.set(xlabel="frequency, Hz", ylabel="phase, degrees", yticks=[-180, -90, 0, 90, 180])
     for panel in axes:
         grid(panel)
-    _limit(axes, limit)
+    _limit(axes, case.limit)
     if notes:
         figure.supxlabel("\n".join(notes), fontsize=7)
     return figure
+
+
+def comparison_figure(model: Model, cases: Sequence[Curves], notes: Sequence[str] = ()) -> Figure:
+    """Magnitude and phase of each response, a row each, up to `MOST_COMPARED`; a colour a case.
+
+    Parameters
+    ----------
+    model : Model
+        Model of the first case, with its sensors and inputs.
+    cases : sequence of Curves
+        Responses of each case. A line of its colour begins the range in which its films are notably wrong.
+    notes : sequence of str
+        Lines below the panels, such as warnings.
+    """
+    pairs = [(s, i) for s in range(len(model.scene.sensors)) for i in range(len(model.scene.inputs))]
+    left_out = len(pairs) - MOST_COMPARED
+    pairs = pairs[:MOST_COMPARED]
+    size = (9.0, 1.7 + 1.8 * len(pairs) + 0.2 * (len(cases) + len(notes)))
+    figure = headed(model, f"{RPM.value(model.scene.speed):.4g} rpm", size, "laws side by side")
+    rows = figure.subplots(len(pairs), 2, sharex=True, squeeze=False)
+    styles = list(zip(cases, COLOURS * 6, _DASHES * 6, strict=False))
+    for (s, i), (panel, phase) in zip(pairs, rows, strict=True):
+        sensor, entry = model.scene.sensors[s], model.scene.inputs[i]
+        for case, colour, dashes in styles:
+            _magnitude(panel, case, (s, i), color=colour, ls=dashes)
+            phase.semilogx(*_phase(case.frequencies, case.responses[:, s, i]), color=colour, ls=dashes, lw=0.9)
+        panel.set_title(f"{sensor.name} by {entry.name}", fontsize=8.5)
+        panel.set_ylabel(typeset(f"{sensor.quantity}, {response_unit(sensor, entry)}"), fontsize=8)
+        phase.set(yticks=[-180, -90, 0, 90, 180])
+        phase.set_ylabel("phase, degrees", fontsize=8)
+    handles = []
+    low, high = rows[0, 0].get_xlim()
+    for case, colour, dashes in styles:
+        label = typeset(case.label)
+        if case.limit < high:
+            label += f" (from the upright line at {case.limit:.4g} Hz on: {ESTIMATED})"
+            for panel in rows.flat:
+                panel.axvline(max(case.limit, low), color=colour, lw=0.7, ls=":")
+        handles.append(Line2D([], [], color=colour, ls=dashes, lw=1.2, label=label))
+    for panel in rows.flat:
+        grid(panel)
+        panel.set_xlim(low, high)
+    for panel in rows[-1]:
+        panel.set_xlabel("frequency, Hz")
+    below = [*notes, *([f"{left_out} more responses not drawn"] if left_out > 0 else [])]
+    figure.legend(
+        handles=handles, title="\n".join(below), title_fontsize=7, fontsize=8, frameon=False, loc="outside lower center"
+    )
+    return figure
+
+
+def _magnitude(panel: Axes, case: Curves, pair: tuple[int, int], **style: str) -> None:
+    """The size of a response; nothing where it is zero."""
+    size = np.abs(case.responses[:, pair[0], pair[1]])
+    panel.loglog(case.frequencies, np.where(size > 0.0, size, np.nan), lw=1.0, **style)
 
 
 def _phase(frequencies: FloatArray, response: ComplexArray) -> tuple[FloatArray, FloatArray]:
@@ -78,7 +148,7 @@ def _phase(frequencies: FloatArray, response: ComplexArray) -> tuple[FloatArray,
 
 
 def _limit(axes: Sequence[Axes], limit: float) -> None:
-    """Shade frequencies above the low-frequency limit of the films, and say so in the first panel."""
+    """Shade frequencies at which the films are notably wrong, and say so in the first panel."""
     low, high = axes[0].get_xlim()
     if not limit < high:
         return
@@ -86,7 +156,7 @@ def _limit(axes: Sequence[Axes], limit: float) -> None:
         shade(panel, max(limit, low), high)
         panel.set_xlim(low, high)
     axes[0].annotate(
-        f"omega b/u above {HIGHEST_RATIO}: low-frequency films no longer valid",
+        ESTIMATED,
         (0.99, 0.03),
         xycoords="axes fraction",
         ha="right",

@@ -17,6 +17,7 @@ from mbs.bearings.bearing_element import RingElement
 from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.films import SIDES
 from mbs.bearings.roller_element import ring_matrices
+from mbs.bearings.rolling_loss import RollingLoss
 from mbs.linearised.linear import StateSpace
 from mbs.linearised.modes import Modes
 from mbs.model.body import FREEDOMS
@@ -44,9 +45,12 @@ _CONTACTS = (
 
 
 def statics_dataset(
-    balance: Equilibrium, contacts: Sequence[BearingContacts] = (), warnings: Sequence[str] = ()
+    balance: Equilibrium,
+    contacts: Sequence[BearingContacts] = (),
+    losses: Sequence[RollingLoss] = (),
+    warnings: Sequence[str] = (),
 ) -> xr.Dataset:
-    """Equilibrium: displacements, bearing forces, K and C of the bearings, pressures and films of their contacts.
+    """Equilibrium: displacements, bearing forces, K and C of the bearings, what their contacts feel and rolling costs.
 
     Parameters
     ----------
@@ -54,6 +58,8 @@ def statics_dataset(
         What is described.
     contacts : sequence of BearingContacts
         Pressures and films, one a bearing; left out if there are none.
+    losses : sequence of RollingLoss
+        What rolling costs, one a bearing; left out if there are none.
     warnings : sequence of str
         Why the result may not hold; becomes the attribute `warnings`.
     """
@@ -83,6 +89,18 @@ def statics_dataset(
         for name, unit, words in _CONTACTS:
             values = np.stack([getattr(state, name) for state in contacts])
             variables[name] = (("bearing", "contact"), values, {"units": unit, "long_name": words})
+    if losses:
+        known = "none without a map with rolling forces"
+        variables["rolling_torque"] = (
+            "bearing",
+            np.array([loss.torque for loss in losses]),
+            {"units": "N m", "long_name": f"torque that rolling takes; {known}"},
+        )
+        variables["rolling_power"] = (
+            "bearing",
+            np.array([loss.total for loss in losses]),
+            {"units": "W", "long_name": f"power that the films of all rollers take; {known}"},
+        )
     attributes = {**_operation(balance), "warnings": "\n".join(warnings)}
     return xr.Dataset(variables, coords={**_coordinates(balance.system), **coordinates}, attrs=attributes)
 

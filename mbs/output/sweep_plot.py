@@ -16,8 +16,7 @@ from ehdmaps.figures import COLOURS, typeset
 from ehdmaps.units import RPM
 from mbs.linearised.linear import response_unit
 from mbs.linearised.sweep_result import Sweep, UndampedSweep
-from mbs.linearised.validity import HIGHEST_RATIO
-from mbs.output.page import shade, shade_handle, whole_numbers
+from mbs.output.page import ESTIMATED, shade, shade_handle, whole_numbers
 
 _LEAST_SHARE = 0.05
 _MOST_MAPS = 4
@@ -26,9 +25,9 @@ _LEVELS_SHOWN = 50.0
 _NOTHING = 1e-4
 _DASHES = ("-", "--", "-.", ":")
 _LIMIT = (0.0, (5.0, 1.5, 1.0, 1.5))
-"""Dashes of the limit omega b/u = 0.3."""
+"""Dashes of the frequency from which on the films are notably wrong."""
 
-_ABOVE = f"omega b/u = {HIGHEST_RATIO}: films not valid above"
+_ABOVE = f"above the line: {ESTIMATED}"
 _BELOW = "below the map, film fades to dry"
 _LEAST_ROOM = 0.028
 """Between two numbers of modes, as a part of the axis."""
@@ -47,6 +46,7 @@ def sweep_figure(
     labels: Sequence[str],
     limits: Sequence[FloatArray] = (),
     below: float = 0.0,
+    relaxing: Sequence[bool] = (),
 ) -> Figure:
     """Modes, bearings and the response of the first sensor to the first input over speed, a colour a case.
 
@@ -59,10 +59,14 @@ def sweep_figure(
     labels : sequence of str
         What each is.
     limits : sequence of array, shape (speeds,)
-        Frequency of each sweep at which omega b/u is 0.3 [Hz]; NaN for laws without films.
+        Frequency of each sweep from which on the films are notably wrong [Hz]; NaN for laws without films.
     below : float
         Speed below which the film fades to the dry contact: shaded [rad/s].
+    relaxing : sequence of bool
+        Which sweeps have films that relax; changes and damping ratios of these are shown of complex modes, because
+        undamped ones see films of slow motion.
     """
+    relaxing = relaxing or [False] * len(sweeps)
     limits = limits or [np.full(entry.speeds.size, np.nan) for entry in sweeps]
     maps = [entry for entry in sweeps if entry.responses.values.size][:_MOST_MAPS]
     rows = 3 if maps else 2
@@ -72,12 +76,12 @@ def sweep_figure(
     top, middle = parts[0].subplots(1, 2), parts[1].subplots(1, 3)
     handles = []
     for index, (entry, label, colour) in enumerate(zip(sweeps, labels, COLOURS * 6, strict=False)):
-        _modes((*top, middle[0]), entry, colour)
+        _modes((*top, middle[0]), entry, colour, relaxing[index])
         _bearings(middle[1:], entry, colour)
         top[0].plot(entry.speeds * RPM.factor, limits[index], color=colour, lw=1.2, ls=_LIMIT)
         handles.append(Line2D([], [], color=colour, lw=1.6, label=typeset(label)))
     _axes(top[0], "frequency, Hz", "log")
-    _axes(top[1], "change of undamped frequency, %")
+    _axes(top[1], "change of frequency, %" if any(relaxing) else "change of undamped frequency, %")
     _axes(middle[0], "damping ratio, %", "log")
     _axes(middle[1], "bearing k along its load, N/µm")
     _axes(middle[2], "bearing c along its load, N s/m")
@@ -100,6 +104,19 @@ def sweep_figure(
         Line2D([], [], color="0.3", lw=0, marker="o", ms=3.2, mfc="white", label="complex, with gyroscopic terms"),
         Line2D([], [], color="0.75", lw=0.7, label="undamped, less than 5 % there"),
     ]
+    if any(relaxing):
+        styles.append(
+            Line2D(
+                [],
+                [],
+                color="0.3",
+                lw=1.2,
+                marker="o",
+                ms=3.2,
+                mfc="white",
+                label="films with memory: complex modes alone",
+            )
+        )
     if any(np.isfinite(limit).any() for limit in limits):
         styles.append(Line2D([], [], color="0.3", lw=1.2, ls=_LIMIT, label=_ABOVE))
     if below > sweeps[0].speeds[0]:
@@ -116,7 +133,7 @@ def sweep_figure(
     return figure
 
 
-def _modes(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
+def _modes(axes: Sequence[Axes], entry: Sweep, colour: str, relaxing: bool) -> None:
     """Modes over speed: thick where the strain energy is in the bearings, grey where hardly any is."""
     rpm = entry.speeds * RPM.factor
     plain, damped = entry.undamped, entry.damped
@@ -126,7 +143,7 @@ def _modes(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
         shown = share >= _least(entry)
         shade, width = (colour, 0.6 + 1.2 * share) if shown else ("0.75", 0.7)
         axes[0].plot(rpm, _positive(plain.frequency[:, k]), color=shade, lw=width, zorder=2 if shown else 1)
-        if shown and plain.frequency[:, k].min() <= highest:
+        if shown and not relaxing and plain.frequency[:, k].min() <= highest:
             axes[1].plot(rpm, 100.0 * plain.shift[:, k], color=shade, lw=width)
             axes[2].plot(rpm, _positive(100.0 * plain.damping_ratio[:, k]), color=shade, lw=width)
     every = max(rpm.size // _MARKS, 1)
@@ -136,6 +153,12 @@ def _modes(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
                 panel.plot(
                     rpm[::every], _positive(values[::every, k]), "o", ms=3.2, mfc="white", mec=colour, mew=0.8, zorder=3
                 )
+            if relaxing:
+                width = 0.6 + 1.2 * float(np.nanmax(damped.bearing_share[:, k]))
+                there = np.isfinite(damped.frequency[:, k])
+                first = damped.frequency[there, k][0]
+                axes[1].plot(rpm, 100.0 * (damped.frequency[:, k] / first - 1.0), color=colour, lw=width)
+                axes[2].plot(rpm, _positive(100.0 * damped.damping_ratio[:, k]), color=colour, lw=width)
 
 
 def _bearings(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:

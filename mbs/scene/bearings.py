@@ -80,14 +80,15 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
     from mbs.bearings.bearing_element import BearingElement
     from mbs.bearings.bearing_force import BearingForce
     from mbs.bearings.memory_element import MemoryBearing
+    from mbs.bearings.memory_rollers import MemoryRollers
     from mbs.bearings.roller_contacts import RollerContacts
     from mbs.bearings.roller_element import RollerElement, roller_body
     from mbs.scene.surroundings import Built
 
     bearing = Bearing(spec.geometry, spec.profile, spec.slices)
     laws = surroundings.laws.of(bearing)
-    memory = surroundings.laws.memory == "memory" and not spec.rollers_as_bodies
-    plain = (MemoryBearing if memory else BearingElement)(
+    memory = surroundings.laws.memory == "memory"
+    plain = (MemoryBearing if memory and not spec.rollers_as_bodies else BearingElement)(
         name=spec.name,
         inner=spec.inner,
         outer=spec.outer,
@@ -103,4 +104,4 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
         return Built(plain, plain)
     body = roller_body(f"{spec.name}_rollers", bearing)
     contacts = RollerContacts(bearing, *laws.single)
-    return Built(RollerElement(plain, contacts, body.name, surroundings.laws.memory), plain, (body,))
+    return Built((MemoryRollers if memory else RollerElement)(plain, contacts, body.name), plain, (body,))

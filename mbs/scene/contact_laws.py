@@ -7,11 +7,12 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import get_args
 
+from ehdmaps.errors import InputError
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import LawKind
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.units import closest
+from ehdmaps.units import closest, quantity
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import NO_CENTRIFUGAL
@@ -20,12 +21,18 @@ from mbs.bearings.laws import DryLaw, Law
 from mbs.model.relaxation import DEFAULT_FILMS, Films
 from mbs.scene.scene import Scene
 
-MEMORY_WORDS = "films with memory"
-"""How people are told that films relax in linear analyses."""
+FILM_WORDS: dict[Films, str] = {"memory": "films with memory", "slow": "slow films"}
+"""How people are told that films relax, or that they have stiffness and damping of slow motion at any frequency."""
 
 _SAME = 1e-9
 _COMPARED = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
-_CONSTANT = "constant:"
+_HERTZ, _CONSTANT = "hertz:", "constant:"
+_LONGEST_TIME, _STRONGEST = 1e-2, 1e9
+"""Largest damper of a dry contact: by its ratio to the stiffness [s], and as a constant [N s/m], as in [laws.NAME]."""
+
+HERTZ_FORMS = "hertz:TIME such as 'hertz:1.25e-5 s', hertz:DAMPING such as 'hertz:100 N s/m'"
+"""The forms of the dry law with a damper, for messages."""
+
 _LABELS = {"hertz": "dry Hertz", "formula": "film formula"}
 _MAP_LABELS = {"reynolds": "Reynolds map", "openfoam": "OpenFOAM map", "formula": "formula map", "hertz": "Hertz map"}
 
@@ -39,12 +46,77 @@ def law_label(law: str, emap: EHDMap | None = None) -> str:
     """A law in two words, such as "dry Hertz"; a map by the solver that made it."""
     if law == "map" and emap is not None:
         return _MAP_LABELS.get(str(emap.dataset.attrs.get("solver", "")), "map")
+    try:
+        damper = hertz_damper(law)
+    except InputError:
+        damper = None  # whoever reads the law says what is wrong about it
+    if damper is not None:
+        return ", ".join(part for part in (_LABELS["hertz"], damper.words) if part)
     return _LABELS.get(law, law.replace(":", " "))
 
 
 def structure_words(emap: EHDMap) -> str:
     """The structural law of a map as the end of a sentence; nothing where it is that of the dry law, ISO 16281."""
     return "" if emap.structural_law == "iso16281" else f", structural law {emap.structural_law}"
+
+
+@dataclass(frozen=True)
+class Damper:
+    """Damper of a dry Hertzian contact.
+
+    Attributes
+    ----------
+    constant : float
+        c of each contact of a roller [N s/m].
+    time : float
+        Ratio of damping and stiffness of each contact [s].
+    """
+
+    constant: float = 0.0
+    time: float = 0.0
+
+    @property
+    def words(self) -> str:
+        """The damper of each contact of a roller, for people; empty without one."""
+        if self.time:
+            return f"c = {1e6 * self.time:.4g} us times k"
+        return f"c = {self.constant:.4g} N s/m" if self.constant else ""
+
+
+def hertz_damper(law: str) -> Damper | None:
+    """The damper of the law hertz, hertz:TIME or hertz:DAMPING; None for other laws.
+
+    Parameters
+    ----------
+    law : str
+        The law as it was given.
+
+    Raises
+    ------
+    InputError
+        For a damper that is none, or out of range.
+
+    Examples
+    --------
+    >>> hertz_damper("hertz:1.25e-5 s")
+    Damper(constant=0.0, time=1.25e-05)
+    >>> hertz_damper("hertz:100 N s/m").words
+    'c = 100 N s/m'
+    """
+    if law == "hertz":
+        return Damper()
+    if not law.startswith(_HERTZ):
+        return None
+    text = law.removeprefix(_HERTZ)
+    for unit, largest in (("s", _LONGEST_TIME), ("N s/m", _STRONGEST)):
+        try:
+            value = quantity(text, unit)
+        except InputError:
+            continue
+        if 0.0 <= value <= largest:
+            return Damper(time=value) if unit == "s" else Damper(constant=value)
+        raise InputError(f"--law: got {law!r:.60}; allowed: dampers from 0 to {largest:g} {unit}")
+    raise InputError(f"--law: got {law!r:.60}; allowed: {HERTZ_FORMS}")
 
 
 def constant_name(law: str) -> str | None:
@@ -59,7 +131,7 @@ class ContactLaws:
     Attributes
     ----------
     chosen : str
-        hertz, formula, constant:NAME or map.
+        hertz, hertz:TIME, hertz:DAMPING, formula, constant:NAME or map.
     scene : Scene
         Scene with its oil and its constant laws.
     emap : EHDMap or None
@@ -79,9 +151,13 @@ class ContactLaws:
         scene = self.scene
         names = tuple(f"{_CONSTANT}{name}" for name in scene.laws)
         allowed = ("hertz", "formula", *names, "map")
-        if self.chosen not in allowed:
+        try:
+            damper = hertz_damper(self.chosen)
+        except InputError as error:
+            return list(error.problems)
+        if self.chosen not in allowed and damper is None:
             got = f"--law: got {self.chosen!r:.60}{closest(self.chosen, allowed)}"
-            return [f"{got}; allowed here: {', '.join(allowed)}"]
+            return [f"{got}; allowed here: {', '.join(allowed)}; {HERTZ_FORMS}"]
         if self.chosen == "map" and self.emap is None:
             return ["--law: got 'map' without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`"]
         if self.chosen == "formula" and scene.lubricant is None:
@@ -103,7 +179,7 @@ class ContactLaws:
 
     def _memory_problems(self) -> list[str]:
         """Why films cannot relax."""
-        if self.chosen not in ("map", "formula"):
+        if not self._has_films:
             got = f"--films: got 'memory' with the law {self.chosen!r:.60}"
             return [f"{got}; allowed: the laws map and formula, which have films"]
         bearings = self.scene.bearings
@@ -138,18 +214,23 @@ class ContactLaws:
 
     @property
     def label(self) -> str:
-        """The law in two words, as the legend of a figure has it."""
-        return law_label(self.chosen, self.emap) + self._memory_words
+        """The law in a few words, as the legend of a figure has it; of its films only what is not the default."""
+        return law_label(self.chosen, self.emap) + (self._film_words if self.memory != DEFAULT_FILMS else "")
 
     @property
     def words(self) -> str:
         """The law, for people."""
-        return self._law_words + self._memory_words
+        return self._law_words + self._film_words
 
     @property
-    def _memory_words(self) -> str:
-        """What of the films is to be told."""
-        return f", {MEMORY_WORDS}" if self.memory == "memory" else ""
+    def _film_words(self) -> str:
+        """Which films the law has, where it has films."""
+        return f", {FILM_WORDS[self.memory]}" if self._has_films else ""
+
+    @property
+    def _has_films(self) -> bool:
+        """Whether the law has films."""
+        return self.chosen in ("map", "formula")
 
     @property
     def _law_words(self) -> str:
@@ -160,9 +241,11 @@ class ContactLaws:
             return f"map of {made_for}, {self.emap.lubricant.title}, solver {solver}{structure_words(self.emap)}"
         if self.chosen == "formula":
             return f"film formula moes, {self.lubricant.title}"
-        name = constant_name(self.chosen)
-        if name is None:
-            return "dry Hertz, ISO 16281"
+        damper = hertz_damper(self.chosen)
+        if damper is not None:
+            words = f"{damper.words} of each contact of a roller" if damper.words else ""
+            return ", ".join(part for part in ("dry Hertz, ISO 16281", words) if part)
+        name = self.chosen.removeprefix(_CONSTANT)
         stiffness, damping = self.scene.laws[name]
         return f"constant {name}: {stiffness:.4g} N/m and {damping:.4g} N s/m for each contact of a roller"
 
@@ -187,8 +270,10 @@ class BearingLaws:
         """Law of a roller between both raceways."""
         if self.given.chosen in ("map", "formula"):
             return self._of_kind("series")
-        name = constant_name(self.given.chosen)
-        return laws.hertz(self.bearing) if name is None else laws.constant(*self.given.scene.laws[name])
+        damper = hertz_damper(self.given.chosen)
+        if damper is not None:
+            return laws.hertz(self.bearing, damper.constant, damper.time)
+        return laws.constant(*self.given.scene.laws[self.given.chosen.removeprefix(_CONSTANT)])
 
     @cached_property
     def single(self) -> tuple[Law, Law]:

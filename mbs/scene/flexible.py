@@ -27,7 +27,7 @@ from mbs.model.body import FREEDOMS
 from mbs.scene import fields
 from mbs.scene.attached import read_attached
 from mbs.scene.fields import HERTZ
-from mbs.scene.specs import ORIGIN, FlexibleSpec
+from mbs.scene.specs import HIGHEST_DAMPING_RATIO, ORIGIN, FlexibleSpec
 
 _SURFACES = ("nodes", "cylinder", "plane")
 _AXES: dict[str, Triple] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -54,7 +54,7 @@ def read_flexible(section: Table, name: str, folder: Path | None) -> FlexibleSpe
     """
     before = len(section.problems)
     position = fields.lengths(section, "position", section.get("position")) if "position" in section else ORIGIN
-    ratio = section.number("damping_ratio", 0.0, 0.99) if "damping_ratio" in section else 0.0
+    ratio = section.number("damping_ratio", 0.0, HIGHEST_DAMPING_RATIO) if "damping_ratio" in section else 0.0
     source: Path | ReductionPlan | None
     if "reduced" in section:
         source = _path(section, "reduced", folder)

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 Triple = tuple[float, float, float]
 ORIGIN: Triple = (0.0, 0.0, 0.0)
 
+HIGHEST_DAMPING_RATIO = 0.99
+"""Of the modes of a body of finite elements."""
+
 
 @dataclass(frozen=True)
 class RigidSpec:

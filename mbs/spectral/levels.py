@@ -78,6 +78,46 @@ def level(mean_square: FloatArray, reference: float) -> FloatArray:
     return np.asarray(10.0 * np.log10(np.maximum(mean_square / reference**2, lowest)), dtype=np.float64)
 
 
+@dataclass(frozen=True)
+class LevelDifference:
+    """How two courses of a level differ: other minus first.
+
+    Attributes
+    ----------
+    low, median, high : float
+        Differences at the same speed, at the quantiles `SPREAD` of the windows [dB].
+    energy : float
+        Difference of the mean energies: of the levels of the mean square over all windows [dB].
+    highest : float
+        Difference of the highest of each, at any speed [dB].
+    """
+
+    low: float
+    median: float
+    high: float
+    energy: float
+    highest: float
+
+    @classmethod
+    def of(cls, first: FloatArray, other: FloatArray) -> LevelDifference:
+        """Compare two courses.
+
+        Parameters
+        ----------
+        first, other : array, shape (windows,)
+            Levels at the same speeds, in windows of one length [dB].
+
+        Examples
+        --------
+        >>> found = LevelDifference.of(np.array([80.0, 90.0, 100.0]), np.array([80.0, 85.0, 90.0]))
+        >>> round(found.median, 1), round(found.energy, 1), found.highest
+        (-5.0, -8.9, -10.0)
+        """
+        low, median, high = (float(value) for value in np.quantile(other - first, SPREAD))
+        energies = [float(10.0 * np.log10(np.mean(10.0 ** (values / 10.0)))) for values in (first, other)]
+        return cls(low, median, high, energies[1] - energies[0], float(np.max(other) - np.max(first)))
+
+
 def difference_text(first: FloatArray, other: FloatArray) -> str:
     """Say how two courses of a level differ, window by window and not only where each is highest.
 
@@ -91,8 +131,8 @@ def difference_text(first: FloatArray, other: FloatArray) -> str:
     >>> difference_text(np.array([80.0, 90.0, 100.0]), np.array([80.0, 85.0, 90.0]))
     'median -5.0 dB, 5 to 95 % of the windows -9.5 to -0.5 dB; highest of each, at any speed, -10.0 dB'
     """
-    low, middle, high = np.quantile(other - first, SPREAD)
+    found = LevelDifference.of(first, other)
     return (
-        f"median {middle:.1f} dB, 5 to 95 % of the windows {low:.1f} to {high:.1f} dB; highest of each, at any speed, "
-        f"{np.max(other) - np.max(first):.1f} dB"
+        f"median {found.median:.1f} dB, 5 to 95 % of the windows {found.low:.1f} to {found.high:.1f} dB; highest of "
+        f"each, at any speed, {found.highest:.1f} dB"
     )

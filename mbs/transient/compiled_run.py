@@ -1,7 +1,7 @@
 """A run in compiled code: what `run_kernel` needs, prepared for a batch of steps, and the steps between.
 
 Steps that an element has no compiled answer for (speeds below the map, where films fade; loads above it) are made by
-`mbs.transient.stepping`, from the same state.
+`mbs.transient.stepping`, from the same state: motion, and what elements have of their own.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ import numpy as np
 import scipy.linalg
 
 from ehdmaps.arrays import FloatArray, IntArray
-from mbs.model.blocks import IN_PYTHON, Moment
+from mbs.model.blocks import IN_PYTHON
 from mbs.model.profiles import LoadProfile, SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
 from mbs.transient.linear_part import LinearPart
 from mbs.transient.run_arrays import Course, Numbers, Records, State
 from mbs.transient.run_elements import RunElements
-from mbs.transient.run_kernel import advance, advance_anew, observe, start, start_anew
+from mbs.transient.run_kernel import advance, advance_anew, observe
 from mbs.transient.stepping import ITERATIONS, Method, Stepper
 
 
@@ -73,6 +73,7 @@ class CompiledRun:
             np.ascontiguousarray(expand @ ports @ modes),
             self._modes if settings.tolerance < math.inf else self._modes[:0],
             self._method,
+            self._elements.alone,
         )
         self._steady, self._varying, self._profiles = _loads(system, modes)
         self._state = State(np.zeros((4, system.size)), np.zeros((3, expand.shape[0])))
@@ -84,8 +85,7 @@ class CompiledRun:
             motions=np.zeros((samples if states else 0, 3, system.size)),
         )
         self._counters = np.zeros(1, dtype=np.int64)
-        self._advance, self._start = (advance, start) if self._elements.ours else (advance_anew, start_anew)
-        self._started = not self._elements.has_states
+        self._advance = advance if self._elements.ours else advance_anew
         self.compiled = 0
         self._take_over()
         observe(self._state, self._records, 0)
@@ -140,11 +140,6 @@ class CompiledRun:
                     factors=factors[here],
                     rows=rows[here],
                 )
-                if not self._started:
-                    begin = float(times[0]) - h
-                    moment = Moment(0, begin, *self._speed.at(begin), 1.0, 1.0)
-                    self._start(linear, blocks, moment, self._state, np.zeros_like(self._elements.outside))
-                    self._started = True
                 made, status, error = self._advance(
                     linear, numbers, blocks, course, self._state, self._records, self._elements.outside,
                     self._counters,
@@ -173,6 +168,7 @@ class CompiledRun:
         stepper.q, stepper.v, stepper.acceleration, stepper.carried = (
             self._modes @ part for part in self._state.motion
         )
+        stepper.states = self._elements.states(stepper.states)
         error = 0.0
         for done, (time, row) in enumerate(zip(times.tolist(), rows.tolist(), strict=True)):
             error = stepper.step(time, h)
@@ -190,6 +186,7 @@ class CompiledRun:
         for part, values in zip(self._state.motion, given, strict=True):
             part[:] = self._by_mass @ values
         self._state.forces[:] = stepper.forces @ self._back
+        self._elements.resume(stepper.states)
 
     def _numbers(self, h: float) -> Numbers:
         """Numbers of the method."""

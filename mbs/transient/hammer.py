@@ -19,7 +19,7 @@ from scipy.signal import firwin, upfirdn
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.linearised.linear import input_matrix, sensor_matrix, state_space
+from mbs.linearised.linear import StateSpace, input_matrix, sensor_matrix, state_space
 from mbs.linearised.modes import Modes
 from mbs.modal.records import LONGEST, Channel, Hits, Measured
 from mbs.model.elements import Input, Sensor
@@ -163,7 +163,7 @@ def linear_hits(
     space = state_space(balance, inputs, sensors)
     answers = []
     for column in range(len(inputs)):
-        response = _free_response(space.A, space.B[:, column], space.C, space.D[:, column], test)
+        response = _free_response(space, column, balance.system.size, test)
         if not np.all(np.isfinite(response)):
             raise AnalysisError(
                 "hammer test: the motion after a hit grows beyond all bounds; the linearised system is not stable: "
@@ -187,8 +187,9 @@ def nonlinear_hits(
     """Hits at every input, answered by the nonlinear system.
 
     The cage stands at its start angle while the films feel the speed, as in the linear analyses: the rollers that
-    pass would excite the system besides the hammer. Integrated by the trapezoidal rule, which damps nothing; its
-    frequencies are low by (omega h)^2/12, 0.2 % at the highest frequency of interest and 0.05 % at half of it.
+    pass would excite the system besides the hammer. Films with memory begin in equilibrium. Integrated by the
+    trapezoidal rule, which damps nothing; its frequencies are low by (omega h)^2/12, 0.2 % at the highest frequency of
+    interest and 0.05 % at half of it.
 
     Parameters
     ----------
@@ -246,11 +247,15 @@ class _CageAtRest(SpeedProfile):
         return self.course(time), 0.0
 
 
-def _free_response(A: FloatArray, b: FloatArray, C: FloatArray, d: FloatArray, test: HammerTest) -> FloatArray:
-    """Response (1 + sensors, computed samples) to a half-sine of height 1, the force itself first."""
+def _free_response(space: StateSpace, column: int, size: int, test: HammerTest) -> FloatArray:
+    """Response (1 + sensors, computed samples) to a half-sine of height 1 at an input, the force itself first."""
+    A, b, C, d = space.A, space.B[:, column], space.C, space.D[:, column]
     n, fine = A.shape[0], test.step / OVERSAMPLING
-    # Velocities in units of the highest frequency: a matrix of one size is kinder to the exponential.
-    scale = np.repeat([1.0, 1.0 / (2.0 * np.pi * test.highest)], n // 2)
+    # A matrix of one size is kinder to the exponential: velocities in units of the highest frequency, and films, which
+    # follow velocities, by the roots of their springs.
+    springs = np.linalg.norm(A[2 * size :, size : 2 * size], axis=1)
+    slow = 1.0 / (2.0 * np.pi * test.highest)
+    scale = np.concatenate([np.ones(size), np.full(size, slow), 1.0 / np.maximum(springs, 1e-30)])
     rate = np.pi / test.pulse
     turning = np.zeros((n + 2, n + 2))
     turning[:n, :n] = scale[:, None] * A / scale

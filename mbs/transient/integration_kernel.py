@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
-import numpy as np
-import numpy.typing as npt
 from numba import njit
 
 from ehdmaps.arrays import FloatArray
@@ -71,6 +68,48 @@ def unbalanced(
 
 
 @njit(cache=True, error_model="numpy")
+def eliminate(matrix: FloatArray, right: FloatArray) -> bool:
+    """Gaussian elimination with partial pivoting, in place: no allocation; False if singular or not finite.
+
+    numpy's `solve` takes seconds to compile.
+
+    Parameters
+    ----------
+    matrix : ndarray
+        Shape (n, n), overwritten.
+    right : ndarray
+        Right-hand side, shape (n,); the solution afterwards.
+    """
+    n = right.size
+    for k in range(n):
+        pivot = k
+        for i in range(k + 1, n):
+            if abs(matrix[i, k]) > abs(matrix[pivot, k]):
+                pivot = i
+        if not 0.0 < abs(matrix[pivot, k]) < math.inf:
+            return False
+        if pivot != k:
+            for j in range(k, n):
+                matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
+            right[k], right[pivot] = right[pivot], right[k]
+        inverse = 1.0 / matrix[k, k]
+        upper = matrix[k]
+        for i in range(k + 1, n):
+            factor = matrix[i, k] * inverse
+            if factor != 0.0:
+                row = matrix[i]
+                for j in range(k + 1, n):
+                    row[j] -= factor * upper[j]
+                right[i] -= factor * right[k]
+    for k in range(n - 1, -1, -1):
+        total = right[k]
+        for j in range(k + 1, n):
+            total -= matrix[k, j] * right[j]
+        right[k] = total / matrix[k, k]
+    return True
+
+
+@njit(cache=True, error_model="numpy")
 def correction(
     linear: FloatArray,
     transform: FloatArray,
@@ -79,7 +118,23 @@ def correction(
     by_q: float,
     by_v: float,
     force: FloatArray,
-) -> npt.NDArray[np.floating[Any]]:
-    """Newton's change of the acceleration, (n,): the Jacobian is `linear` and what the elements add to it."""
-    ports = by_q * port_stiffness + by_v * port_damping
-    return np.linalg.solve(linear + transform.T @ (ports @ transform), force)
+    change: FloatArray,
+) -> bool:
+    """Newton's change of the acceleration, into `change` (n,); False if there is none.
+
+    The Jacobian is `linear` and what the elements add to it: T^T (by_q K + by_v C) T, K and C those of the ports.
+    """
+    matrix = linear.copy()
+    m, n = transform.shape
+    for i in range(m):
+        for k in range(m):
+            slope = by_q * port_stiffness[i, k] + by_v * port_damping[i, k]
+            if slope != 0.0:
+                for a in range(n):
+                    part = slope * transform[i, a]
+                    for b in range(n):
+                        matrix[a, b] += part * transform[k, b]
+    for a in range(n):
+        change[a] = force[a]
+    found: bool = eliminate(matrix, change)
+    return found

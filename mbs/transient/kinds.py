@@ -13,12 +13,22 @@ from mbs.bearings.bearing_block import BEARINGS
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.memory_block import MEMORY_BEARINGS
 from mbs.bearings.memory_element import MemoryBearing
+from mbs.bearings.memory_roller_block import MEMORY_ROLLERS
+from mbs.bearings.memory_rollers import MemoryRollers
+from mbs.bearings.roller_block import ROLLERS
+from mbs.bearings.roller_element import RollerElement
 from mbs.gears.gear import GearMesh
 from mbs.gears.gear_block import GEAR_MESHES
 from mbs.model.blocks import Kind
 from mbs.model.elements import Element
 
-KINDS: dict[type, Kind] = {BearingElement: BEARINGS, MemoryBearing: MEMORY_BEARINGS, GearMesh: GEAR_MESHES}
+KINDS: dict[type, Kind] = {
+    BearingElement: BEARINGS,
+    MemoryBearing: MEMORY_BEARINGS,
+    RollerElement: ROLLERS,
+    MemoryRollers: MEMORY_ROLLERS,
+    GearMesh: GEAR_MESHES,
+}
 """Kind by the class of its elements. ``KINDS[Coupling] = COUPLINGS`` adds one."""
 
 

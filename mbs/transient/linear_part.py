@@ -29,6 +29,8 @@ class LinearPart:
         Coordinates by the modes, where errors of steps are asked for.
     method : Method
         Method of the steps.
+    alone : int
+        How many ports at the beginning move only by their own forces.
     """
 
     def __init__(
@@ -39,9 +41,10 @@ class LinearPart:
         ports: FloatArray,
         physical: FloatArray,
         method: Method,
+        alone: int = 0,
     ) -> None:
         self._eigenvalues, self._damping, self._gyroscopic = eigenvalues, damping, gyroscopic
-        self._ports, self._physical, self._method = ports, physical, method
+        self._ports, self._physical, self._method, self._alone = ports, physical, method, alone
         self._turning = bool(np.any(gyroscopic))
         self._made: dict[float, tuple[Linear, float]] = {}
 
@@ -86,6 +89,7 @@ class LinearPart:
             size=self._ports @ self._ports.T,
             physical=self._physical,
             reference=reference,
+            alone=self._alone,
             turning=self._turning,
         )
         return linear, math.inf if size == 0.0 else THIRD_ORDER ** (1.0 / 3.0) / size

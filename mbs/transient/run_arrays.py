@@ -30,6 +30,8 @@ class Linear(NamedTuple):
         Coordinates of the system by the modes; shape (0, n) if errors are not controlled.
     reference : float
         Speed [rad/s].
+    alone : int
+        How many ports at the beginning move only by their own forces: the receptance couples them with nothing.
     turning : bool
         Whether there are gyroscopic terms.
     """
@@ -44,6 +46,7 @@ class Linear(NamedTuple):
     size: FloatArray
     physical: FloatArray
     reference: float
+    alone: int
     turning: bool
 
 

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import scipy.linalg
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
-from mbs.model.blocks import Block, Kind, Member
+from mbs.model.blocks import Block, Kind, Member, StatefulBlock
 from mbs.model.system import Connected
 from mbs.transient.kinds import KINDS, is_ours, kind_of
+
+
+def _is_common(kind: Kind) -> bool:
+    """Whether compiled code has a kind even where there are none: neither states nor coordinates of their own."""
+    return kind.accept is None and kind.alone is None
 
 
 def in_python(connected: Sequence[Connected]) -> list[str]:
@@ -31,44 +36,59 @@ class RunElements:
     Attributes
     ----------
     blocks : tuple of Block
-        All kinds of this package without states, so that compiled code is the same for most systems, and others that
-        are needed.
+        The kinds that are needed; where all of them are of this package, also its other common ones, so that compiled
+        code is the same for most systems.
     expand : array, shape (felt, ports)
         What elements feel of their ports, and, on the other side, forces in the ports by those that the elements make.
+    alone : int
+        How many rows at the beginning of `expand` are of coordinates that nothing else touches.
     outside : array of int, shape (elements,)
         How often each was evaluated outside its map so far.
     ours : bool
-        Whether all kinds are of this package.
-    has_states : bool
-        Whether some elements have states of their own.
+        Whether all kinds that are needed are of this package.
+    stateful : tuple of (StatefulBlock, tuple of int)
+        Blocks of elements with states of their own, each with the places of its members among all elements.
     """
 
     blocks: tuple[Block, ...]
     expand: FloatArray
+    alone: int
     outside: IntArray
     ours: bool
-    has_states: bool
+    stateful: tuple[tuple[StatefulBlock, tuple[int, ...]], ...]
 
     @classmethod
     def of(cls, connected: Sequence[Connected]) -> RunElements:
         """Elements that all have a kind."""
         members: dict[Kind, list[Member]] = {kind: [] for kind in KINDS.values()}
-        felt: list[FloatArray] = []
-        first = 0
-        for place, entry in enumerate(connected):
-            kind = kind_of(entry.element)
+        of_connected = [kind_of(entry.element) for entry in connected]
+        alone, felt = [], []
+        for kind, entry in zip(of_connected, connected, strict=True):
             assert kind is not None
-            members[kind].append(Member(entry.element, place, first))
+            none = np.zeros((0, entry.transform.shape[0]))
+            alone.append(none if kind.alone is None else kind.alone(entry.element))
             felt.append(kind.feels(entry.element))
-            first += felt[-1].shape[0]
-        used = [kind for kind, found in members.items() if found or (is_ours(kind) and kind.accept is None)]
-        expand = scipy.linalg.block_diag(*felt) if felt else np.zeros((0, 0))
+        own, first = 0, sum(rows.shape[0] for rows in alone)
+        count = first
+        for place, (kind, entry) in enumerate(zip(of_connected, connected, strict=True)):
+            assert kind is not None
+            members[kind].append(Member(entry.element, place, first, own))
+            own, first = own + alone[place].shape[0], first + felt[place].shape[0]
+        ours = all(is_ours(kind) for kind, found in members.items() if found)
+        used = [kind for kind, found in members.items() if found or (ours and is_ours(kind) and _is_common(kind))]
+        parts = [scipy.linalg.block_diag(*rows) if rows else np.zeros((0, 0)) for rows in (alone, felt)]
+        blocks = tuple(kind.gather(members[kind]) for kind in used)
         return cls(
-            blocks=tuple(kind.gather(members[kind]) for kind in used),
-            expand=np.asarray(expand, dtype=np.float64),
+            blocks=blocks,
+            expand=np.asarray(np.concatenate(parts), dtype=np.float64),
+            alone=count,
             outside=np.zeros(len(connected), dtype=np.int64),
-            ours=all(map(is_ours, used)),
-            has_states=any(found and kind.accept is not None for kind, found in members.items()),
+            ours=ours,
+            stateful=tuple(
+                (cast(StatefulBlock, block), tuple(member.place for member in members[kind]))
+                for kind, block in zip(used, blocks, strict=True)
+                if kind.accept is not None
+            ),
         )
 
     def begin(self, speeds: FloatArray) -> None:
@@ -90,3 +110,28 @@ class RunElements:
         for _, marks in found:
             sound &= marks[:count]
         return tuple(arrays for arrays, _ in found), sound
+
+    def states(self, given: Sequence[Any]) -> list[Any]:
+        """States of all elements as Python has them: those given, but for elements whose states are in compiled code.
+
+        Parameters
+        ----------
+        given : sequence
+            One for each element.
+        """
+        found = list(given)
+        for block, places in self.stateful:
+            for place, states in zip(places, block.states(), strict=True):
+                found[place] = states
+        return found
+
+    def resume(self, states: Sequence[Any]) -> None:
+        """Go on from states of all elements that Python has.
+
+        Parameters
+        ----------
+        states : sequence
+            One for each element.
+        """
+        for block, places in self.stateful:
+            block.resume([states[place] for place in places])

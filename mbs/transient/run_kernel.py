@@ -28,8 +28,10 @@ from numba import njit
 from numba.extending import overload
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.copies import put
 from ehdmaps.maps.lines import FAST
 from mbs.model.blocks import FOUND, NO_SOLUTION, Answers, Moment
+from mbs.transient.integration_kernel import eliminate
 from mbs.transient.kinds import KINDS
 from mbs.transient.run_arrays import Course, Linear, Numbers, Records, State
 
@@ -90,38 +92,6 @@ def _norm(x: FloatArray) -> float:
     for i in range(x.size):
         total += x[i] * x[i]
     return math.sqrt(total)
-
-
-@njit(cache=True, error_model="numpy")
-def _solve(matrix: FloatArray, right: FloatArray) -> bool:
-    """Gaussian elimination with partial pivoting, in place: no allocation; False if singular or not finite."""
-    n = right.size
-    for k in range(n):
-        pivot = k
-        for i in range(k + 1, n):
-            if abs(matrix[i, k]) > abs(matrix[pivot, k]):
-                pivot = i
-        if not 0.0 < abs(matrix[pivot, k]) < math.inf:
-            return False
-        if pivot != k:
-            for j in range(k, n):
-                matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
-            right[k], right[pivot] = right[pivot], right[k]
-        inverse = 1.0 / matrix[k, k]
-        upper = matrix[k]
-        for i in range(k + 1, n):
-            factor = matrix[i, k] * inverse
-            if factor != 0.0:
-                row = matrix[i]
-                for j in range(k + 1, n):
-                    row[j] -= factor * upper[j]
-                right[i] -= factor * right[k]
-    for k in range(n - 1, -1, -1):
-        total = right[k]
-        for j in range(k + 1, n):
-            total -= matrix[k, j] * right[j]
-        right[k] = total / matrix[k, k]
-    return True
 
 
 def all_answer(blocks: tuple[Any, ...], moment: Moment, motion: FloatArray, answers: Answers) -> int:
@@ -199,18 +169,20 @@ def _all_accept(blocks: Any, moment: Any) -> Callable[..., None]:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _jacobian(slopes: FloatArray, receptance: FloatArray, out: FloatArray) -> None:
-    """1 + (by_q K + by_v C) R; the slopes are zero but for blocks on the diagonal."""
+def _jacobian(slopes: FloatArray, receptance: FloatArray, alone: int, out: FloatArray) -> None:
+    """1 + (by_q K + by_v C) R; slopes are zero but for the elements' own, R is diagonal for what is alone."""
     m = out.shape[0]
     for i in range(m):
         row = out[i]
         row[:] = 0.0
         row[i] = 1.0
-        for k in range(m):
+        for k in range(alone):
+            row[k] += slopes[i, k] * receptance[k, k]
+        for k in range(alone, m):
             slope = slopes[i, k]
             if slope != 0.0:
                 by = receptance[k]
-                for j in range(m):
+                for j in range(alone, m):
                     row[j] += slope * by[j]
 
 
@@ -233,9 +205,10 @@ def observe(state: State, records: Records, row: int) -> None:
         for j in range(motion.size):
             total += seen[j] * motion[j]
         records.outputs[row, i] = total
-    records.forces[row] = state.forces[0]
+    put(state.forces[0], records.forces[row])
     if records.motions.shape[0] > 0:
-        records.motions[row] = state.motion[:3]
+        for order in range(3):
+            put(state.motion[order], records.motions[row, order])
 
 
 @njit(cache=True, error_model="numpy")
@@ -283,7 +256,7 @@ def advance(
     for step in range(course.speeds.size):
         speed, angle = course.speeds[step], course.angles[step]
         by = speed - linear.reference
-        load[:] = course.steady
+        put(course.steady, load)
         for i in range(course.varying.shape[0]):
             factor = course.factors[step, i]
             for j in range(n):
@@ -300,12 +273,11 @@ def advance(
             for i in range(n):
                 right[i] -= by * free[i]
             _expanded_times(linear.inverse, by, right, free)
-            _expanded(linear.reach, by, reach)
-            _expanded(linear.receptance, by, receptance)
         else:
             _times(linear.inverse[0], right, free)
-            if linear.turning:
-                reach[:], receptance[:] = linear.reach[0], linear.receptance[0]
+        if linear.turning:
+            _expanded(linear.reach, by, reach)
+            _expanded(linear.receptance, by, receptance)
         for i in range(n):
             right[i] = p0[i] + by_q * free[i]
         _times(linear.ports, right, unmoved[0])
@@ -339,8 +311,8 @@ def advance(
             if _size(linear.size, short) <= numbers.residual * largest:
                 status = DONE
                 break
-            _jacobian(answers.slopes, receptance, jacobian)
-            if not _solve(jacobian, short):
+            _jacobian(answers.slopes, receptance, linear.alone, jacobian)
+            if not eliminate(jacobian, short):
                 break
             for i in range(m):
                 u[i] -= short[i]
@@ -365,37 +337,5 @@ def advance(
     return course.speeds.size, DONE, error
 
 
-@njit(cache=True, error_model="numpy")
-def start(linear: Linear, blocks: tuple[Any, ...], moment: Moment, state: State, outside: IntArray) -> int:
-    """Tell elements with states of their own where a run begins: as a step that ends there.
-
-    Parameters
-    ----------
-    linear, blocks
-        What moves, as of `advance`, for the first steps.
-    moment : Moment
-        The beginning of the run.
-    state : State
-        State there.
-    outside : array (elements,), of int
-        Evaluations outside the map; scratch.
-
-    Returns
-    -------
-    int
-        `FOUND`, or what keeps elements from an answer.
-    """
-    m = linear.ports.shape[0]
-    motion, answers = np.empty((2, m)), Answers(np.zeros(m), np.zeros((m, m)), outside)
-    _times(linear.ports, state.motion[0], motion[0])
-    _times(linear.ports, state.motion[1], motion[1])
-    status: int = all_answer(blocks, moment, motion, answers)
-    if status == FOUND:
-        all_accept(blocks, moment)
-    return status
-
-
 advance_anew = njit(error_model="numpy")(advance.py_func)
-start_anew = njit(error_model="numpy")(start.py_func)
-"""`advance` and `start`, compiled anew in each process: for kinds of elements from elsewhere, see
-`mbs.transient.kinds`."""
+"""`advance`, compiled anew in each process: for kinds of elements from elsewhere, see `mbs.transient.kinds`."""

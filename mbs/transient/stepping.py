@@ -83,6 +83,8 @@ class Stepper:
         Newton iterations so far.
     outside : array of int, shape (elements,)
         How often each element was evaluated outside its map so far.
+    states : list
+        What each element with states of its own returned at the end of the last step, see `Element.advance`.
     """
 
     def __init__(
@@ -99,8 +101,8 @@ class Stepper:
             (connected.element, slice(begin, end))
             for connected, begin, end in zip(system.elements, ends[:-1], ends[1:], strict=True)
         ]
-        self._states: list[Any] = [None] * len(self._elements)
-        self._trial = list(self._states)
+        self.states: list[Any] = [None] * len(self._elements)
+        self._trial = list(self.states)
         self._transform = np.concatenate([np.zeros((0, system.size)), *(c.transform for c in system.elements)])
         ports = ends[-1]
         self._motion, self._port_force, self._unbalanced = np.zeros((2, ports)), np.zeros(ports), np.zeros(system.size)
@@ -113,7 +115,7 @@ class Stepper:
         self.iterations = 0
         self.outside = np.zeros(len(self._elements), dtype=np.int64)
         self._residual(self.q, self.v, np.zeros(system.size), 0.0)
-        self._states = list(self._trial)
+        self.states = list(self._trial)
         self.acceleration = np.asarray(np.linalg.solve(system.mass, -self._unbalanced), dtype=np.float64)
         self.carried = self.acceleration.copy()
 
@@ -142,10 +144,10 @@ class Stepper:
             largest = max(largest, scale)
             if size <= self._settings.residual * largest:
                 break
-            try:
-                unknown = unknown - self._correction(by_q, by_v)
-            except np.linalg.LinAlgError:
+            change = self._correction(by_q, by_v)
+            if change is None:
                 return math.inf
+            unknown = unknown - change
         else:
             return math.inf
         error = method.error_weight(h) * float(np.max(np.abs(unknown - self.acceleration)))
@@ -153,7 +155,7 @@ class Stepper:
             self.q, self.v = q, v
             self.carried = known + method.ratio * unknown
             self.acceleration = unknown
-            self._states = list(self._trial)
+            self.states = list(self._trial)
         return error
 
     def _residual(self, q: FloatArray, v: FloatArray, acceleration: FloatArray, time: float) -> tuple[float, float]:
@@ -167,7 +169,7 @@ class Stepper:
         port_motion(self._transform, q, v, self._motion)
         x, rate = self._motion
         for index, (element, rows) in enumerate(self._elements):
-            answer, self._trial[index] = element.advance(self._states[index], x[rows], rate[rows], operation)
+            answer, self._trial[index] = element.advance(self.states[index], x[rows], rate[rows], operation)
             f, k, c, outside = answer
             self._port_force[rows] = f
             self._port_stiffness[rows, rows] = k
@@ -181,15 +183,16 @@ class Stepper:
         )
         return sizes
 
-    def _correction(self, by_q: float, by_v: float) -> FloatArray:
-        """Newton's change of the acceleration at the end of the step, for the last residual."""
+    def _correction(self, by_q: float, by_v: float) -> FloatArray | None:
+        """Newton's change of the acceleration at the end of the step, for the last residual; None if there is none."""
         if self._linear_steps != (by_q, by_v):
             system = self._system
             self._linear = system.mass + by_v * self._damping + by_q * system.stiffness
             self._linear_steps = (by_q, by_v)
         ports = (self._transform, self._port_stiffness, self._port_damping)
-        change = np.asarray(correction(self._linear, *ports, by_q, by_v, self._unbalanced), dtype=np.float64)
-        return change
+        change = np.empty_like(self._unbalanced)
+        found: bool = correction(self._linear, *ports, by_q, by_v, self._unbalanced, change)
+        return change if found else None
 
     @property
     def forces(self) -> FloatArray:

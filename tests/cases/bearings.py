@@ -36,6 +36,7 @@ def bearing(**keywords):
 LAWS = {
     "hertz": lambda: laws.hertz(bearing()),
     "damped hertz": lambda: laws.hertz(bearing(), damping=100.0),
+    "hertz with a damping time": lambda: laws.hertz(bearing(), damping_time=1.25e-5),
     "constant": lambda: laws.constant(2e8, 50.0),
     "map": map_law,
 }

@@ -25,9 +25,10 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import lifted_loss
 from ehdmaps.maps.law import LawAtPoint
-from ehdmaps.maps.memory_table import Film, locked_stiffness
+from ehdmaps.maps.locked_film import film_of, locked_stiffness
+from ehdmaps.maps.locked_fit import fitted_factor, response_error
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.hertz import half_width
+from ehdmaps.physics.hertz import half_width, natural_time
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, valley_load_number
 from ehdmaps.physics.operating_point import OperatingPoint
@@ -54,6 +55,9 @@ FINER = 4
 
 NATURAL = np.geomspace(0.01, 10.0, 25)
 """omega T at which complex stiffnesses are compared."""
+
+PLACES = np.array([0.1, 0.3, 1.0, 3.0, 10.0, 30.0])
+"""omega T at which errors are told one by one."""
 
 REST = (0.4, 0.7, 1.5, 2.0)
 """Loads at which the curves at rest are compared, over that of the start."""
@@ -330,10 +334,13 @@ class Response:
     ----------
     M, L : float
         Moes' numbers.
-    memory, slow, dry : float
-        Largest relative error of the complex stiffness by each law.
+    memory, formula, slow, dry : float
+        Largest relative error of the complex stiffness by each law: with memory as the response at the solver's natural
+        frequencies makes it, and with the closed formula of the locked film.
     worst : float
         omega T at which the law with memory is worst.
+    at_places : tuple of float
+        Errors of the law with memory at `PLACES`.
     stated : float
         Largest error that the solver states.
     """
@@ -341,9 +348,11 @@ class Response:
     M: float
     L: float
     memory: float
+    formula: float
     slow: float
     dry: float
     worst: float
+    at_places: tuple[float, ...]
     stated: float
 
 
@@ -364,17 +373,24 @@ def response(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> Res
     solver, load, speed = ReynoldsSolver(), point.load, point.entrainment_speed
     (film,) = solver.solve_line(contact, oil, (load,), speed, point.temperature)
     half = float(half_width(load, contact.radius, contact.reduced_modulus))
-    omega = NATURAL * speed / math.sqrt(half**2 + 2.0 * film.film_offset * contact.radius)
-    spectrum = contact_spectrum(solver.film_spectrum(contact, oil, point, omega / (2.0 * math.pi)), contact, point)
-    if not spectrum.solution.status.usable:
+    if not film.status.usable:
         raise NoSolutionError(f"none at {load:.6g} N/m, {speed:.6g} m/s, {point.temperature:.6g} K")
-    exact, k = spectrum.dynamic_stiffness, spectrum.solution.stiffness
+    natural = natural_time(load, film.film_offset, speed, contact.radius, contact.reduced_modulus)
+    omega, held = NATURAL / natural, np.array(solver.natural_frequencies)
+    asked = np.concatenate([NATURAL, PLACES, held]) / (2.0 * math.pi * natural)
+    found = solver.film_spectrum(contact, oil, point, asked)
+    spectrum = contact_spectrum(found, contact, point)
+    exact, k = spectrum.dynamic_stiffness[: omega.size], spectrum.solution.stiffness
+    beyond = spectrum.dynamic_stiffness[omega.size : -held.size]
     loss = lifted_loss(np.array(spectrum.solution.damping / k**2), np.array(half), speed, np.array(1.0 / k))
     c = float(loss) * k**2
-    dry, compliance = float(contact.structural_approach(load)), float(contact.structural_compliance(load))
-    stiff = locked_stiffness(
-        Film(1, contact.radius, contact.reduced_modulus, speed), dry - film.film_offset, load, k, c, dry, compliance
+    solids = float(contact.structural_compliance(load))
+    kept, locked = found.compliance[-held.size :], film_of((contact,), speed)
+    error = response_error(np.array([solids]), kept[None], found.largest_error[None, -held.size :])
+    factor = fitted_factor(
+        locked, load, film.film_offset, solids, film.film_compliance, float(loss), held, kept, float(error[0])
     )
+    stiff, by_formula = (locked_stiffness(locked, film.film_offset, load, k, c, solids, each) for each in (factor, 1.0))
     wrong = np.abs(relaxing(k, c, stiff, omega) / exact - 1.0)
     state = oil.at(point.temperature)
     alpha = state.pressure_viscosity.pressure_viscosity
@@ -383,10 +399,12 @@ def response(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> Res
         float(M),
         float(L),
         float(np.max(wrong)),
+        float(np.max(np.abs(relaxing(k, c, by_formula, omega) / exact - 1.0))),
         float(np.max(np.abs((k + 1j * omega * c) / exact - 1.0))),
-        float(np.max(np.abs(1.0 / (compliance * exact) - 1.0))),
+        float(np.max(np.abs(1.0 / (solids * exact) - 1.0))),
         float(NATURAL[np.argmax(wrong)]),
-        float(np.max(spectrum.dynamic_stiffness_error)),
+        tuple(np.abs(relaxing(k, c, stiff, PLACES / natural) / beyond - 1.0).tolist()),
+        float(np.max(spectrum.dynamic_stiffness_error[: omega.size])),
     )
 
 

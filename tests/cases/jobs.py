@@ -34,9 +34,9 @@ SMALL = map_job(spaced("1 N/mm", "1000 N/mm", 7), '["0.5 m/s", "1 m/s", "2 m/s"]
 DRY = map_job(spaced("1 N/mm", "1000 N/mm", 4), spaced("0.1 m/s", "10 m/s", 4), '["40 degC"]', solver="hertz")
 """The smallest map: one temperature, dry contacts."""
 
-WIDE_AXES = (spaced("0.1 N/mm", "1000 N/mm", 13), spaced("0.05 m/s", "10 m/s", 6), '["20 degC", "40 degC", "60 degC"]')
+WIDE_AXES = (spaced("0.1 N/mm", "1000 N/mm", 13), spaced("0.05 m/s", "10 m/s", 6), '["30 degC", "40 degC", "50 degC"]')
 WIDE = map_job(*WIDE_AXES)
-"""All loads and speeds of the shipped scenes, by the film formula."""
+"""All loads, speeds and temperatures of the shipped scenes, by the film formula."""
 
 FINE = (
     map_job(spaced("0.1 N/mm", "1000 N/mm", 25), spaced("0.1 m/s", "5 m/s", 6), '["40 degC"]', solver="reynolds")

@@ -46,6 +46,9 @@ class ValleyField:
     def contacts(self):
         return tuple(contact.name for contact in self.line_contacts)
 
+    def locked_factors(self, contact, loads, speed, temperature):
+        """Nothing is known of films that oscillate; see `FilmField.locked_factors`."""
+
     def films(self, contact, loads, speeds, temperatures):
         solids = self.line_contacts[self.contacts.index(contact)]
         out = np.empty((3, *loads.shape))

@@ -55,7 +55,7 @@ def test_closed_cycles_create_no_energy(law, clearance, speed, temperature, angl
     assert taken >= -2e-4 * np.sum(np.abs(power)) * phase[1]
 
 
-@pytest.mark.parametrize("law", ["damped hertz", "constant"])
+@pytest.mark.parametrize("law", ["damped hertz", "hertz with a damping time", "constant"])
 @settings(max_examples=40, deadline=None)
 @given(
     clearance=clearances,
@@ -71,7 +71,7 @@ def test_damping_of_dry_laws_takes_power(law, clearance, angle, pose, velocity):
     assert (damped - at_rest) @ v <= 1e-12 * np.max(np.abs(damped)) * np.max(np.abs(v))
 
 
-@pytest.mark.parametrize("law", ["hertz", "damped hertz", "constant", "map"])
+@pytest.mark.parametrize("law", ["hertz", "damped hertz", "hertz with a damping time", "constant", "map"])
 @settings(max_examples=60, deadline=None)
 @given(
     clearance=clearances,

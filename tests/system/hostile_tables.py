@@ -416,6 +416,36 @@ EHDMAPS_OPTIONS: dict[str, tuple[str, int, str]] = {
             ("the job as plot", "10Hz 20kHz 9 --plot job.toml", 2, "--plot"),
         )
     },
+    **{
+        f"slide to roll, {name}": (
+            f"solve job.toml --load 4N/mm --speed 1m/s --temperature 40degC {line}",
+            2,
+            said,
+        )
+        for name, line, said in (
+            ("by another solver", "--slide-to-roll 0.001 1 3", "--slide-to-roll: the solver 'hertz' keeps no film"),
+            (
+                "not a number",
+                "--slide-to-roll x 1 3",
+                "--slide-to-roll: got 'x'; allowed: a bare number from 1e-06 to 2",
+            ),
+            ("with nan", "--slide-to-roll nan 1 3", "--slide-to-roll: got 'nan'"),
+            ("zero", "--slide-to-roll 0 1 3", "--slide-to-roll: got '0'"),
+            ("above all", "--slide-to-roll 0.1 3 3", "--slide-to-roll: got '3'"),
+            ("upside down", "--slide-to-roll 1 0.1 3", "--slide-to-roll: got 1 to 0.1; allowed: TO above FROM"),
+            ("one point", "--slide-to-roll 0.1 1 1", "POINTS: got '1'; allowed: a whole number from 2 to 1000"),
+            (
+                "with a frequency",
+                "--slide-to-roll 0.1 1 3 --frequency 1kHz",
+                "--slide-to-roll: stands beside --frequency",
+            ),
+            ("a stress alone", "--eyring-stress 6MPa", "--eyring-stress: stands without --slide-to-roll"),
+            ("a ratio alone", "--limiting-ratio 0.05", "--limiting-ratio: stands without --slide-to-roll"),
+            ("a stress of text", "--slide-to-roll 0.1 1 3 --eyring-stress much", "--eyring-stress: got 'much'"),
+            ("no stress", "--slide-to-roll 0.1 1 3 --eyring-stress 0Pa", "allowed: 0.1 MPa to 1000 MPa"),
+            ("a wrong ratio", "--slide-to-roll 0.1 1 3 --limiting-ratio 2", "--limiting-ratio: got '2'"),
+        )
+    },
     "a tiny frequency": (
         "solve job.toml --load 4N/mm --speed 1m/s --temperature 40degC --frequency 1e-9Hz",
         2,
@@ -474,6 +504,9 @@ MBS_OPTIONS: dict[str, tuple[str, int, str]] = {
         2,
         "got 36 combinations; allowed: at most 24",
     ),
+    "a key to vary": ("variants nu308_rigid --law hertz --law formula --vary none 1", 2, "--vary"),
+    "one law to compare": ("variants nu308_rigid --law hertz --vary slices 5", 2, "two"),
+    "a damper": ("statics nu308_rigid --law hertz:-1us", 2, "--law"),
     "a sensor": ("campbell nu308_rigid --sensor none", 2, "sensor"),
     "a highest frequency": ("campbell nu308_rigid --highest 1", 2, "--highest"),
     "a window": ("campbell nu308_rigid --window 1year", 2, "--window"),

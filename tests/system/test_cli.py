@@ -254,6 +254,22 @@ def test_solve_over_frequency(capsys, here):
     assert "oscillating at 20000 Hz" in out
 
 
+def test_solve_over_the_slide_to_roll_ratio(capsys):
+    asked = ["solve", "nu308", "--load", "50 N/mm", "--temperature", "60 degC", "--speed", "2 m/s"]
+    asked += ["--slide-to-roll", "0.001", "1", "4"]
+    status, out, _ = run(capsys, *asked)
+    assert status == 0 and "eyring: 6 MPa; limiting: 0.05 p" in out
+    assert "  rolling force          N/m " in out and "  mass flow              g/(m s) " in out
+    status, out, _ = run(capsys, *asked, "--eyring-stress", "4 MPa", "--limiting-ratio", "0.04", "--json")
+    inner, _ = json.loads(out)
+    assert (inner["eyring_stress"], inner["limiting_ratio"]) == (4e6, 0.04)
+    assert inner["slide_to_roll"] == pytest.approx([1e-3, 1e-2, 1e-1, 1.0])
+    # bounded by the limiting stress everywhere, and by nothing
+    assert inner["traction_limiting"][-1] < 0.04 < inner["traction_newtonian"][-1]
+    status, out, _ = run(capsys, *asked, "--speed", "0 m/s")
+    assert status == 0 and out.splitlines()[-1].split() == ["1", *"------"]
+
+
 def test_solve_over_frequency_without_a_solution(capsys):
     point = ["--load", "10000 N/mm", "--speed", "1e-8 m/s", "--temperature", "40 degC"]
     status, out, _ = run(capsys, "solve", "nu308", *point, "--frequencies", "10 Hz", "20 kHz", "5")

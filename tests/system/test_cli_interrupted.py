@@ -1,5 +1,6 @@
 """A night's run that is killed, interrupted or started twice."""
 
+import importlib.util
 import os
 import signal
 import subprocess
@@ -12,7 +13,7 @@ import pytest
 import xarray as xr
 
 from ehdmaps import errors
-from ehdmaps.jobs import cli
+from ehdmaps.jobs import cli, solvers
 from ehdmaps.maps.emap import open_map
 from tests.cases.interruptible import start
 from tests.cases.jobs import map_job, spaced
@@ -72,6 +73,21 @@ def undisturbed(tmp_path_factory):
     return open_map(path).dataset
 
 
+@pytest.fixture
+def go_on(folder, monkeypatch, capsys):
+    """Give the same command again, in this process; what is found of its points."""
+    spec = importlib.util.spec_from_file_location("driver", folder / "driver.py")
+    driver = importlib.util.module_from_spec(spec)
+
+    def again():
+        spec.loader.exec_module(driver)
+        monkeypatch.setattr(solvers, "build", lambda name, options: driver.Patient())
+        assert cli.main(["generate", "job.toml", "--workers", "1"]) == 0
+        return counts(capsys.readouterr().out)
+
+    return again
+
+
 def command(*arguments):
     return [sys.executable, "driver.py", "generate", "job.toml", *arguments]
 
@@ -104,7 +120,7 @@ def alive(pid):
         return file.read().rsplit(")", 1)[1].split()[0] != "Z"
 
 
-def test_kill_9_loses_at_most_what_ran(folder, undisturbed):
+def test_kill_9_loses_at_most_what_ran(folder, undisturbed, go_on):
     first = subprocess.Popen(command("--workers", "2"), cwd=folder, stderr=subprocess.DEVNULL)
     wait_for(lambda: len(begun(folder)) >= 45)
     first.kill()
@@ -116,8 +132,7 @@ def test_kill_9_loses_at_most_what_ran(folder, undisturbed):
     killed_after = begun(folder)
     (folder / "log").unlink()
 
-    again = subprocess.run(command("--workers", "1"), cwd=folder, capture_output=True, text=True, check=True)
-    taken_over, solved = counts(again.stdout)
+    taken_over, solved = go_on()
     assert taken_over + solved == POINTS
     # Every line that the second run did not begin was taken over: none was solved again.
     assert len(begun(folder)) * 5 == solved
@@ -133,7 +148,7 @@ def test_kill_9_loses_at_most_what_ran(folder, undisturbed):
 
 
 @pytest.mark.parametrize("workers", ["1", "2"])
-def test_ctrl_c_stops_cleanly_and_says_how_to_go_on(folder, workers):
+def test_ctrl_c_stops_cleanly_and_says_how_to_go_on(folder, workers, go_on):
     run = start(command("--workers", workers), cwd=folder, stderr=subprocess.PIPE, text=True, start_new_session=True)
     wait_for(lambda: len(begun(folder)) >= 20)
     os.killpg(run.pid, signal.SIGINT)  # as a terminal does: to the workers too
@@ -143,8 +158,7 @@ def test_ctrl_c_stops_cleanly_and_says_how_to_go_on(folder, workers):
     assert "Traceback" not in err
     lines = len(begun(folder))
     wait_for(lambda: not any(alive(int(pid)) for pid, *_ in begun(folder)))
-    again = subprocess.run(command("--workers", "1"), cwd=folder, capture_output=True, text=True, check=True)
-    taken_over, solved = counts(again.stdout)
+    taken_over, solved = go_on()
     assert taken_over + solved == POINTS
     assert taken_over >= 5 * (lines - 3 * int(workers) - 1)  # all but the lines that were out
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import re
 import subprocess
 import sys
 import tomllib
 from importlib import metadata
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
@@ -18,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 RUN = """
-import importlib, sys
+import contextlib, importlib, io, json, sys
 
 class Absent:
     def __init__(self, names):
@@ -29,9 +31,13 @@ class Absent:
             raise ModuleNotFoundError(f"No module named {name!r}", name=name)
 
 sys.meta_path.insert(0, Absent(set(sys.argv[1].split(","))))
-sys.exit(importlib.import_module(sys.argv[2]).main(sys.argv[3:]))
+for program, *arguments in json.loads(sys.argv[2]):
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        status = importlib.import_module(program).main(arguments)
+    print(json.dumps([status, out.getvalue(), err.getvalue()]))
 """
-"""Runs a program with packages that cannot be imported."""
+"""Runs programs one after the other in a process where some packages cannot be imported."""
 
 JOB = """
 schema = 1
@@ -83,10 +89,22 @@ def foreign_modules() -> set[str]:
     }
 
 
-def run(folder: Path, program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run a program in a folder, with the base installation alone."""
-    command = [sys.executable, "-c", RUN, ",".join(sorted(foreign_modules())), program, *arguments]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=300)
+class Ended(NamedTuple):
+    """How a program ended."""
+
+    status: int
+    out: str
+    err: str
+
+
+def run(folder: Path, *commands: tuple[str, ...]) -> list[Ended]:
+    """Run programs in a folder, with the base installation alone; one process for all, which need not load it anew."""
+    command = [sys.executable, "-c", RUN, ",".join(sorted(foreign_modules())), json.dumps(commands)]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=300)
+    assert (done.returncode, done.stderr) == (0, "")
+    ended = [Ended(*json.loads(line)) for line in done.stdout.splitlines()]
+    assert len(ended) == len(commands)
+    return ended
 
 
 def test_what_is_blocked():
@@ -99,41 +117,43 @@ def test_what_is_blocked():
 def test_from_a_job_to_the_modes_of_a_machine(tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
     (tmp_path / "job.toml").write_text(JOB)
-    for program, *arguments in (
+    found = run(
+        tmp_path,
         ("ehdmaps.jobs.cli", "generate", "job.toml", "-o", "map.nc", "--workers", "1"),
         ("ehdmaps.jobs.cli", "plot", "map.nc", "-o", "map.png"),
         ("mbs.cli", "modes", "nu308_rigid", "--map", "map.nc", "-o", "modes.nc", "--plot", "modes.png"),
-    ):
-        done = run(tmp_path, program, *arguments)
-        assert done.returncode == 0, done.stderr
-    # a shipped housing is read without what has reduced it
-    assert run(tmp_path, "mbs.cli", "modes", "gearbox", "--law", "hertz").returncode == 0
+        # a shipped housing is read without what has reduced it
+        ("mbs.cli", "modes", "gearbox", "--law", "hertz"),
+    )
+    assert [ended.status for ended in found] == [0, 0, 0, 0], found
 
 
-@pytest.mark.parametrize(
-    ("extra", "package", "program", "arguments"),
-    [
-        ("openfoam", "PyFoam", "ehdmaps.jobs.cli", ["generate", "nu308_openfoam"]),
-        ("openfoam", "PyFoam", "ehdmaps.jobs.cli", ["check", "nu308_openfoam"]),
-        ("modal", "pyuff", "mbs.cli", ["modal-fit", "hits.uff"]),
-        ("modal", "pyuff", "mbs.cli", ["hammer", "n1014_testrig", "--law", "hertz", "-o", "new.uff"]),
-    ],
+NEEDY = (
+    ("openfoam", "PyFoam", ("ehdmaps.jobs.cli", "generate", "nu308_openfoam")),
+    ("openfoam", "PyFoam", ("ehdmaps.jobs.cli", "check", "nu308_openfoam")),
+    ("modal", "pyuff", ("mbs.cli", "modal-fit", "hits.uff")),
+    ("modal", "pyuff", ("mbs.cli", "hammer", "n1014_testrig", "--law", "hertz", "-o", "new.uff")),
 )
-def test_what_needs_an_extra_names_it(tmp_path, monkeypatch, extra, package, program, arguments):
+"""Commands that need an extra, and its package."""
+
+
+def test_what_needs_an_extra_names_it(tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
     (tmp_path / "hits.uff").write_text("any")
-    done = run(tmp_path, program, *arguments)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert f"the package {package} cannot be loaded (No module named '{package}'); install it: " in done.stderr
-    assert f'pip install "ehdmaps[{extra}]", or pip install {package}' in done.stderr
-    assert "Traceback" not in done.stderr
+    found = run(tmp_path, *(command for _, _, command in NEEDY))
+    for (extra, package, command), ended in zip(NEEDY, found, strict=True):
+        assert (ended.status, ended.out) == (2, ""), command
+        assert f"the package {package} cannot be loaded (No module named '{package}'); install it: " in ended.err
+        assert f'pip install "ehdmaps[{extra}]", or pip install {package}' in ended.err
+        assert "Traceback" not in ended.err
     assert [path.name for path in tmp_path.iterdir()] == ["hits.uff"]
 
 
 def test_all_that_openfoam_misses_is_named_at_once(tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
     monkeypatch.setenv("EHDMAPS_OPENFOAM", str(tmp_path / "none"))
-    told = run(tmp_path, "ehdmaps.jobs.cli", "generate", "nu308_openfoam").stderr
+    (ended,) = run(tmp_path, ("ehdmaps.jobs.cli", "generate", "nu308_openfoam"))
+    told = ended.err
     assert "needs more than is here: the solver 'openfoam': the package PyFoam cannot be loaded" in told
     assert "needs more than is here: ehlFoam: there is no program" in told
 

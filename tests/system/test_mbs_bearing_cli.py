@@ -144,7 +144,7 @@ def test_overload_and_what_is_outside_the_map_make_status_1(here, capsys, formul
     for words in (
         "is above 4 GPa, the static limit of ISO 76: permanent deformation",
         "warning: load per length of",
-        "warning: temperature of 70 degC is outside the map (20 to 60 degC)",
+        "warning: temperature of 70 degC is outside the map (30 to 50 degC)",
     ):
         assert words in out
     with xr.open_dataset("a.nc") as data:

@@ -18,6 +18,7 @@ ROOT = Path(__file__).parents[2]
 
 ALLOWED = {
     "ehdmaps.arrays": set(),
+    "ehdmaps.copies": {"ehdmaps.arrays"},
     "ehdmaps.errors": set(),
     "ehdmaps.extras": {"ehdmaps.errors"},
     "ehdmaps.units": {"ehdmaps.errors"},
@@ -29,7 +30,7 @@ ALLOWED = {
     "ehdmaps.interrupts": set(),
     "ehdmaps.program": {"ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.version"},
     "ehdmaps.physics": {"ehdmaps.arrays", "ehdmaps.errors"},
-    "ehdmaps.ehl": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.physics"},
+    "ehdmaps.ehl": {"ehdmaps.arrays", "ehdmaps.copies", "ehdmaps.errors", "ehdmaps.physics"},
     "ehdmaps.maps": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.inputs", "ehdmaps.units", "ehdmaps.physics"},
     "ehdmaps.openfoam": {
         "ehdmaps.arrays",
@@ -58,6 +59,7 @@ ALLOWED = {
     },
     "mbs": {
         "ehdmaps.arrays",
+        "ehdmaps.copies",
         "ehdmaps.errors",
         "ehdmaps.extras",
         "ehdmaps.figures",
@@ -71,6 +73,7 @@ ALLOWED = {
     },
     "mbs.scene.scene": {
         "ehdmaps.arrays",
+        "ehdmaps.copies",
         "ehdmaps.errors",
         "ehdmaps.extras",
         "ehdmaps.figures",

@@ -18,7 +18,7 @@ from ehdmaps.jobs.plot import plot_map
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.report import holes
 from ehdmaps.jobs.summary import summary
-from ehdmaps.jobs.tasks import LONGEST_LINE, LineTask, line_tasks, solver_version
+from ehdmaps.jobs.tasks import LATER_FIELDS, LONGEST_LINE, LineTask, line_tasks, solver_version
 from ehdmaps.jobs.tradeoff import Contestant, contestants, measure, table
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
@@ -126,6 +126,19 @@ def test_keys_of_a_solver_with_a_version_of_its_own_stay_what_they_are():
     assert task.key == "6b51b7f5cb74e33a3cf90e49454553e8cdc732b968e6395327c87cdac130eea8"
 
 
+def test_results_from_before_there_was_a_rolling_force_are_taken_over_without_it():
+    """Their points have none, the others theirs: what is stored is never left out nor made up."""
+    job = job_of()
+    tasks = line_tasks(job, HertzSolver())
+    results = {task.key: task.run() | {"rolling_force": np.full(task.points, 2.0)} for task in tasks}
+    old = results[tasks[0].key]
+    for name in LATER_FIELDS:
+        del old[name]
+    values = assemble(job, HertzSolver(), tasks, results)["rolling_force"].values
+    assert np.count_nonzero(np.isnan(values)) == tasks[0].points
+    assert set(values[np.isfinite(values)]) == {2.0}
+
+
 def test_a_solver_s_own_version_counts_instead_of_the_sources():
     assert solver_version(Holey(version="7")) == "7"
     assert len(solver_version(FormulaSolver())) == 64
@@ -200,8 +213,11 @@ def with_backbone(tmp_path_factory):
 
 def test_a_group_is_written_with_the_map(with_backbone):
     emap = open_map(with_backbone[1])
-    assert set(emap.backbone.variables) == {entry.name for entry in schema.table(schema.BACKBONE)}
-    assert "refinement lines of the contact law (group backbone)" in describe(emap, "a.nc")
+    response = {entry.name for entry in schema.response_rows(schema.SCHEMA_VERSION)}
+    assert set(emap.backbone.variables) == {entry.name for entry in schema.table(schema.BACKBONE)} - response
+    told = describe(emap, "a.nc")
+    assert "refinement lines of the contact law (group backbone)" in told
+    assert "response over frequency: none; films in time lock by a closed formula" in told
 
 
 def test_extrapolated_viscosity_is_said_everywhere(with_backbone, tmp_path, monkeypatch):
@@ -283,7 +299,7 @@ def test_error_estimates_of_films_and_pressure_are_in_the_map():
     assert all(int(np.isnan(holey[name]).sum()) == 4 for name in names)
     assert "\n  max pressure                        0" in describe(EHDMap(dry), "a.nc")
     older = EHDMap(dry.drop_vars(list(names)))
-    assert "\n  max pressure " not in describe(older, "a.nc").split("accuracy")[1]
+    assert "\n  max pressure                     none\n" in describe(older, "a.nc").split("accuracy")[1]
 
 
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), RuntimeError("NetCDF: HDF error")])
@@ -334,7 +350,7 @@ def test_validate_lists_every_problem():
     ):
         assert part in text
     dataset.attrs["schema_version"] = 99
-    with pytest.raises(MapError, match=r"schema_version is 99; this ehdmaps reads 1 to 2; .*newer one: update"):
+    with pytest.raises(MapError, match=r"schema_version is 99; this ehdmaps reads 1 to 3; .*newer one: update"):
         validate(dataset)
 
 
@@ -418,8 +434,17 @@ def test_compare_refuses_maps_without_common_points():
         compare(first, other, ("a", "b"))
 
 
-@pytest.mark.parametrize("text", [SMALL, LINE, SMALL.replace("points = 7", "points = 2")])
-@pytest.mark.parametrize("solver", [None, HertzSolver(), Holey((1e3, 1e4, 31622.776601683792), version="1")])
+@pytest.mark.parametrize(
+    ("text", "solver"),
+    [
+        (SMALL, None),
+        (LINE, None),
+        (SMALL.replace("points = 7", "points = 2"), None),
+        (LINE, HertzSolver()),
+        (SMALL, Holey((1e3, 1e4, 31622.776601683792), version="1")),
+    ],
+    ids=["bearing", "one contact", "two loads", "dry", "holes"],
+)
 def test_every_kind_of_map_can_be_drawn(tmp_path, text, solver):
     plot_map(EHDMap(made(job_of(text), solver)), tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")

@@ -130,7 +130,7 @@ def test_what_is_not_valid_is_drawn_and_named(spectra):
     assert not without.patches
     words = [text.get_text() for part in figure.subfigs for legend in part.legends for text in legend.get_texts()]
     assert words == [
-        "omega b/u = 0.3: films not valid above",
+        "above the line: estimated error of the films above 5 %",
         "up to 400 rpm: below the map, film fades to dry",
     ]
 

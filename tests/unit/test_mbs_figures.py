@@ -12,22 +12,22 @@ import pytest
 from matplotlib.colors import to_hex
 
 from ehdmaps.errors import InputError
-from mbs.analyses.film_limits import lowest_limits
+from mbs.analyses.film_errors import film_errors, notable_from
 from mbs.analyses.reach import Fade, axes_outside, fade_of, share_below
 from mbs.bearings.bearing_force import BearingForce
 from mbs.commands import modes as modes_command
-from mbs.commands.common import film_course, film_warnings
+from mbs.commands.common import film_course, film_lines
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.commands.runup import _changes
 from mbs.linearised.linear import frequency_response
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.sweep import sweep
 from mbs.linearised.tracking import numbers
-from mbs.linearised.validity import FilmLimit
+from mbs.linearised.validity import FilmError, memory_error
 from mbs.model.equilibrium import equilibrium
 from mbs.output.modes_plot import modes_figure
 from mbs.output.page import SHADE
-from mbs.output.response_plot import response_figure
+from mbs.output.response_plot import Curves, comparison_figure, response_figure
 from mbs.output.run_plot import run_figure
 from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import assemble
@@ -86,7 +86,7 @@ class TestReach:
         assert fade_of(dry) is None
         assert share_below(dry, np.array([0.0, 1.0])) == 0.0
         assert fade_lines(dry, np.array([0.0, 1.0])) == []
-        assert np.all(np.isnan(lowest_limits(dry, np.array([10.0]))))
+        assert np.all(np.isnan(notable_from(dry, np.array([10.0]))))
 
     def test_films_begin_where_the_fastest_rings_reach_the_lowest_speed(self, films):
         fade = fade_of(films)
@@ -151,18 +151,56 @@ class TestReach:
 
 
 class TestWords:
-    def test_quicker_motion_is_said_to_be_beyond_the_limit(self):
-        (line,) = film_warnings([FilmLimit("a", 50e-6, 1.0)], [2000.0])
-        # omega b/u = 2 pi 2000 50e-6
-        assert "a: omega b/u is 0.63 at 2000 Hz and passes 0.3 at 954.9 Hz" in line
-        assert "above it stiffness and damping of slow motion are no longer valid" in line
+    def test_films_of_slow_motion_are_said_to_be_wrong(self):
+        """One slice of k = c = spring = 1 and theta = 1 ms: Z = k + s c - s^2 theta^2/(1 + s theta)."""
+        entry = FilmError("a", "slow", False, 1.0, 1e-3, np.array([1.0]), *[np.array([1e-3])] * 2)
+        s = 2j * math.pi * 100.0
+        more = -((s * 1e-3) ** 2) / (1.0 + s * 1e-3)
+        assert entry.at(100.0) == pytest.approx(abs(more) / abs(1.0 + s * 1e-3 + more))
+        (line,) = film_lines([entry], [50.0, 100.0])
+        assert line.startswith("warning: a: slow films; estimated error of the dynamic stiffness along the ")
+        assert (
+            f"load at 100 Hz: {100.0 * entry.at(100.0):.2g} %, from {entry.frequency:.4g} Hz on more than 5 %" in line
+        )
+        assert line.endswith("; with --films memory films follow at their own frequency")
+        (line,) = film_lines([entry], [1.0], " and 500 rpm")
+        assert line.startswith("a: slow films; ") and "load at 1 Hz and 500 rpm: " in line
+
+    def test_films_with_memory_have_an_error_too(self):
+        entry = FilmError("a", "memory", False, 1.0, 1e-3, np.array([1.0, 0.0]), *[np.array([1e-3, 1.0])] * 2)
+        # omega T = 1 of the only slice that relaxes
+        (line,) = film_lines([entry], [1e3 / (2.0 * math.pi)])
+        assert line.startswith("a: films with memory; estimated error") and line.endswith(": 1.5 %")
+        (line,) = film_lines([entry], [30e3 / (2.0 * math.pi)])
+        assert line.startswith("warning: a: films with memory; ") and ": 7.9 %, from " in line
+        assert line.endswith(" Hz on more than 5 %")
+
+    def test_errors_of_films_with_memory_rise_with_the_frequency(self):
+        found = memory_error(np.geomspace(1e-3, 1e3, 100))
+        assert np.all(np.diff(found) > 0.0)
+        # between two points that were measured
+        assert 0.015 < memory_error(np.array([2.0]))[0] < 0.031
+
+    def test_at_rest_there_is_no_film(self):
+        entry = FilmError("a", "slow", True, 1.0, 0.0, np.array([0.0]), *[np.array([1.0])] * 2)
+        assert entry.at(1e4) == 0.0 and entry.frequency == math.inf
+        (line,) = film_lines([entry], [1e4])
+        assert line == "warning: a: at rest no film: the stiffness is that of dry contacts, no damping"
 
     def test_a_course_names_both_ends(self, films):
         (line,) = film_course(films, (500.0 * RPM, 1000.0 * RPM))
-        assert "valid (omega b/u up to 0.3) up to" in line and "Hz at 500 rpm" in line and "Hz at 1000 rpm" in line
+        assert line.startswith("slow films: dynamic stiffness along the load with an estimated error of up ")
+        assert "Hz at 500 rpm" in line and "Hz at 1000 rpm" in line
+        assert film_course(films, (0.0,)) == []
+
+    def test_the_films_that_are_asked_for(self, films):
+        place = equilibrium(films.system, films.operation).displacement
+        slow, memory = (film_errors(films, place, films.operation, kind) for kind in ("slow", "memory"))
+        assert [entry.films for entry in slow + memory] == ["slow"] * 2 + ["memory"] * 2
+        assert memory[0].frequency > slow[0].frequency > 0.0
 
     def test_limits_rise_with_the_speed(self, films):
-        limits = lowest_limits(films, np.array([500.0, 1000.0]) * RPM)
+        limits = notable_from(films, np.array([500.0, 1000.0]) * RPM)
         assert 0.0 < limits[0] < limits[1]
 
 
@@ -260,7 +298,7 @@ class TestModes:
         limit = 0.5 * (found.frequency[3] + found.frequency[4])
         figure = modes_figure(dry, found, np.arange(8), limit)
         assert bands(figure.axes[0]) == [(3.5, 7.5)]
-        assert any("omega b/u above 0.3" in text for text in texts(figure))
+        assert any("estimated error" in text for text in texts(figure))
 
     def test_many_labels_stand_apart(self, dry, found):
         many = Modes(np.tile(found.eigenvalues, 20), np.tile(found.shapes, 20), found.parts, np.tile(found.shares, 20))
@@ -319,7 +357,7 @@ def responses(dry):
 
 class TestResponseFigure:
     def test_phase_of_an_undamped_system_does_not_flicker(self, dry, responses):
-        figure = response_figure(dry, *responses)
+        figure = response_figure(dry, Curves("a", *responses))
         phase = np.concatenate([line.get_ydata() for line in figure.axes[-1].lines])
         # Only 0 and 180 degrees: -180 is the same as 180, and is drawn as that.
         assert np.nanmin(phase) > -1.0
@@ -327,19 +365,30 @@ class TestResponseFigure:
     def test_lines_break_where_the_phase_passes_180_degrees(self, dry):
         frequencies = np.linspace(1.0, 2.0, 50)
         turning = np.exp(-1j * 6.0 * np.pi * frequencies)[:, None, None] * np.ones((1, 2, 1))
-        figure = response_figure(dry, frequencies, turning)
+        figure = response_figure(dry, Curves("a", frequencies, turning))
         line = figure.axes[-1].lines[0].get_ydata()
         assert np.count_nonzero(np.isnan(line)) == 3
         assert np.nanmax(np.abs(np.diff(line))) < 270.0
 
     def test_frequencies_above_the_limit_are_shaded(self, dry, responses):
-        figure = response_figure(dry, *responses, 500.0, ["contacts lift off"])
+        figure = response_figure(dry, Curves("a", *responses, 500.0), ["contacts lift off"])
         for panel in figure.axes:
             ((begin, end),) = bands(panel)
             assert (begin, end) == (500.0, panel.get_xlim()[1])
-        assert any("omega b/u above 0.3" in text for text in texts(figure))
+        assert any("estimated error" in text for text in texts(figure))
         assert "contacts lift off" in texts(figure)
-        assert not any(bands(panel) for panel in response_figure(dry, *responses, math.inf).axes)
+        assert not any(bands(panel) for panel in response_figure(dry, Curves("a", *responses, math.inf)).axes)
+
+    def test_cases_side_by_side_have_a_legend_and_lines_where_their_films_end(self, dry, responses):
+        figure = comparison_figure(dry, [Curves("a", *responses, 500.0), Curves("b", *responses)], ["lifts"])
+        words = texts(figure)
+        assert (
+            "a (from the upright line at 500 Hz on: estimated error of the films above 5 %)" in words and "b" in words
+        )
+        assert any("laws side by side" in word for word in words)
+        assert not any(bands(panel) for panel in figure.axes)
+        upright = [line for line in figure.axes[0].lines if list(line.get_xdata()) == [500.0, 500.0]]
+        assert len(upright) == 1
 
 
 @pytest.fixture(scope="module")
@@ -361,7 +410,7 @@ class TestSweepFigure:
             ((begin, end),) = bands(panel)
             assert end == pytest.approx(100.0) and begin == panel.get_xlim()[0]
         words = texts(figure)
-        assert "omega b/u = 0.3: films not valid above" in words
+        assert "above the line: estimated error of the films above 5 %" in words
         assert "below 100 rpm: below the map, film fades to dry" in words
         assert "bearing_left" in words and "bearing_right" in words
         numbered = {int(text.get_text()) for text in frequency.texts}
@@ -370,7 +419,7 @@ class TestSweepFigure:
 
     def test_nothing_is_marked_for_dry_bearings(self, result):
         figure = sweep_figure("title", "law", [result], ["a"])
-        assert not any("omega b/u" in word or "below" in word for word in texts(figure) if word)
+        assert not any("estimated error" in word or "below" in word for word in texts(figure) if word)
         assert not any(bands(panel) for panel in figure.axes)
 
     def test_round_off_is_no_change_and_no_offset(self, result):

@@ -191,3 +191,10 @@ def test_a_file_that_cannot_be_read_is_named(plan):
     assert any("m.mtx: cannot be read" in problem for problem in plan.file_problems())
     with pytest.raises(InputError, match=r"needs a file of its degrees of freedom"):
         carry_out(dataclasses.replace(plan, dofs=None))
+
+
+def test_damping_makes_no_reduction(plan, counted):
+    """The damping of a body is no part of its reduction; that of a doubled ratio is twice as large, to round-off."""
+    once, twice = (build_body(FlexibleSpec("block", plan, damping_ratio=ratio)) for ratio in (0.01, 0.02))
+    assert len(counted) == 1
+    np.testing.assert_allclose(twice.damping, 2.0 * once.damping, rtol=1e-12, atol=1e-12 * once.damping.max())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import math
+import re
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -17,12 +18,14 @@ from ehdmaps.jobs.reader import parse_job
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from mbs.analyses.plan import plan
+from mbs.bearings.laws import hertz
 from mbs.commands.cases import load_cases
 from mbs.flexible.attached import Attached
 from mbs.flexible.shaft_parts import Disc, Section
 from mbs.gears.pair import GearPair
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import ElementDefaults, Forces, Load, Port, Spring
+from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Course, Harmonic
 from mbs.model.system import System
 from mbs.scene import kinds
@@ -248,9 +251,34 @@ def test_places_and_laws_that_do_not_exist_are_said_together():
         InputError, match=r"--law: got 'constant:sfot' .*allowed here: hertz, formula, constant:soft, map"
     ):
         assemble(parse_scene(SCENE, "test", "test.toml"), "constant:sfot")
+    for law, words in (
+        ("hertz:1 kg", "--law: got 'hertz:1 kg'; allowed: hertz:TIME such as 'hertz:1.25e-5 s', hertz:DAMPING such as"),
+        ("hertz:", "--law: got 'hertz:'; allowed: hertz:TIME"),
+        ("hertz:-1 us", "--law: got 'hertz:-1 us'; allowed: dampers from 0 to 0.01 s"),
+        ("hertz:1e30 N s/m", "--law: got 'hertz:1e30 N s/m'; allowed: dampers from 0 to 1e+09 N s/m"),
+    ):
+        with pytest.raises(InputError, match=re.escape(words)):
+            assemble(parse_scene(SCENE, "test", "test.toml"), law)
     felt = SCENE.replace("slices = 21", "slices = 21\ncentrifugal = true")
     with pytest.raises(InputError, match="centrifugal = true in main; allowed: the laws map and formula"):
         assemble(parse_scene(felt, "test", "test.toml"))
+
+
+def test_dry_contacts_with_a_damper():
+    """Both forms against the law of the same numbers; the equilibrium is that without a damper."""
+    scene = parse_scene(SCENE, "test", "test.toml")
+    plain = assemble(scene, "hertz")
+    for law, words, damping, time in (
+        ("hertz:12.5 us", "c = 12.5 us times k", 0.0, 1.25e-5),
+        ("hertz:100 N s/m", "c = 100 N s/m", 100.0, 0.0),
+    ):
+        model = assemble(scene, law)
+        assert model.label == f"dry Hertz, {words}"
+        assert model.law == f"dry Hertz, ISO 16281, {words} of each contact of a roller"
+        assert model.bearings[0].force.law == hertz(model.bearings[0].bearing, damping, time)
+        found, wanted = (equilibrium(one.system) for one in (model, plain))
+        np.testing.assert_array_equal(found.displacement, wanted.displacement)
+        assert np.any(found.damping) and not np.any(wanted.damping - plain.system.damping)
 
 
 def own_scene(**changes):

@@ -14,7 +14,7 @@ from ehdmaps.errors import MapError
 from ehdmaps.maps.backbone import (
     FILMS,
     BackboneField,
-    _lagrange,
+    lagrange,
 )
 from ehdmaps.maps.backbone_plan import BackbonePlan, plan_backbone
 from ehdmaps.physics.bearing import BearingGeometry
@@ -89,8 +89,8 @@ def test_lines_cover_what_is_read() -> None:
         temperature = float(rng.uniform(*TEMPERATURES))
         M, L = _groups(contact, load, speed, temperature)
         zeta = math.log(M / float(valley_load_number(L)))
-        rows, _ = _lagrange(np.log(plan.speeds), math.log(speed * plan.contact.radius / contact.radius))
-        columns, _ = _lagrange(np.array(plan.temperatures), temperature)
+        rows, _ = lagrange(np.log(plan.speeds), math.log(speed * plan.contact.radius / contact.radius))
+        columns, _ = lagrange(np.array(plan.temperatures), temperature)
         for j in rows:
             for k in columns:
                 low, high = ends[(int(j), int(k))]

@@ -11,7 +11,7 @@ from ehdmaps.ehl.line import LOAD, GroupSolution, at_load
 from ehdmaps.ehl.linearisation import Linearisation, linearised
 from ehdmaps.ehl.newton import CONVERGED, newton
 from ehdmaps.ehl.profile import Profile
-from ehdmaps.ehl.reynolds import residual, stored_mass, stored_mass_rate
+from ehdmaps.ehl.reynolds import residual, stored_mass, stored_mass_rate, stored_oil
 from ehdmaps.ehl.spectrum import film_compliances
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from tests.cases.ehl import roelands_problem, solved
@@ -131,7 +131,8 @@ def test_stored_mass_rate_is_the_derivative_of_the_stored_mass() -> None:
     step = 1e-6
     plus, _ = stored_mass(profile.problem, grid.x, grid.step, profile.kernel, u + step * direction)
     minus, _ = stored_mass(profile.problem, grid.x, grid.step, profile.kernel, u - step * direction)
-    rate = stored_mass_rate(profile.problem, grid.x, grid.step, profile.kernel, u, direction)
+    stored = stored_oil(profile.problem, grid.x, grid.step, profile.kernel, u)
+    rate = stored_mass_rate(stored, grid.x, profile.kernel, u[-2], direction)
     assert rate == pytest.approx((plus - minus) / (2.0 * step), rel=1e-6, abs=1e-6 * np.max(np.abs(rate)))  # truncation
 
 
@@ -150,11 +151,12 @@ def test_impedance_against_a_small_oscillation_in_time(M: float, L: float, omega
     out, jacobian = np.empty(size), np.empty((size, size))
     residual(problem, grid.x, grid.step, grid.face_step, kernel, steady, LOAD, out, jacobian)
     _, carried = stored_mass(problem, grid.x, grid.step, kernel, steady)
+    stored = stored_oil(problem, grid.x, grid.step, kernel, steady)
     rates = np.zeros((size, size))
     for j in range(size):
         unit = np.zeros(size)
         unit[j] = 1.0
-        rate = stored_mass_rate(problem, grid.x, grid.step, kernel, steady, unit) - carried * unit[n]
+        rate = stored_mass_rate(stored, grid.x, kernel, steady[n], unit) - carried * unit[n]
         rates[:n, j], rates[n, j] = -rate[:n], rate[n]
     steps, periods = 240, 4
     dt = 2.0 * math.pi / omega / steps

@@ -15,7 +15,7 @@ from ehdmaps.ehl.frequency import group_spectrum
 from ehdmaps.ehl.grid import GridShape
 from ehdmaps.ehl.line import LOAD, GroupSolution, Resolution, linearised_profile, solve_groups
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.ehl.spectrum import film_compliances
+from ehdmaps.ehl.spectrum import film_compliances, film_space
 from ehdmaps.ehl.transient import follow
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
@@ -24,7 +24,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import load_and_speed, moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
-from ehdmaps.physics.solution import contact_solution
+from ehdmaps.physics.solution import ContactSolverDefaults, contact_solution
 from ehdmaps.physics.spectrum import contact_spectrum
 from tests.cases.ehl import isoviscous_problem, roelands_problem, solved
 from tests.cases.laws import CONTACTS, OIL
@@ -84,14 +84,17 @@ def test_krylov_space_against_a_direct_solve_at_each_frequency(M: float, L: floa
     assert solution.profile is not None
     linear = linearised_profile(solution.profile, Resolution())
     assert (linear.grid_mass is not None) == (solution.profile.spike is not None)
-    frequencies = np.geomspace(0.01, 30.0, 12) / _natural(solution)
+    real = np.geomspace(0.01, 30.0, 12) / _natural(solution)
+    # complex ones are of modes: e^(lambda t), Omega = -i lambda b/u
+    frequencies = np.concatenate([real, (1.0 + 0.25j) * real[:-1]])
     rates = np.column_stack([linear.storage(column) for column in np.eye(linear.size)])
     direct = [
         -np.linalg.solve(linear.matrix + 1j * frequency * rates, linear.unit.astype(complex))[linear.height]
         - DRY_COMPLIANCE
         for frequency in frequencies
     ]
-    found = film_compliances(linear, frequencies)
+    found = film_space(linear, float(real[-1])).compliances(frequencies)
+    np.testing.assert_array_equal(found[: real.size], film_compliances(linear, real))
     # round-off of both: condition 1e4 to 1e6 of the matrix
     assert np.max(np.abs(found - direct) / np.abs(SOLIDS + np.array(direct))) < 1e-9
 
@@ -286,7 +289,9 @@ def test_errors_at_a_frequency_and_their_estimates() -> None:
             found.damping_error,
         )
         table.append([float(s[0]) / float(w[0]) for s, w in zip(stated, wrong, strict=True)])
-    ratios = np.array(table)[:60]
+        if len(table) == 60:
+            break
+    ratios = np.array(table)
     assert len(ratios) == 60
     # an estimate that bounds 90 % of all points bounds at least 49 of 60 drawn ones with 98 % probability
     assert np.all(np.count_nonzero(ratios >= 1.0, axis=0) >= 49), np.mean(ratios >= 1.0, axis=0)
@@ -298,7 +303,7 @@ def test_estimate_says_where_a_wave_is_not_resolved() -> None:
     M, L = 20.0, 15.0
     solution = solved(M, L)
     omega = np.array([1.0, 20.0, 30.0])
-    found = group_spectrum(M, L, solution, Resolution(), omega)
+    found = group_spectrum(M, L, solution, omega)
     fine = Resolution(density=40.0)
     exact = _responses(solve_groups(roelands_problem(M, L), M, L, fine), omega, fine)
     wrong = np.abs(found.compliance - exact) / np.abs(exact)
@@ -341,3 +346,19 @@ def test_film_in_time_says_where_it_ends() -> None:
     motion = follow(solution.profile, LOAD * np.array([1.0, 0.05, 0.05]), 0.01)
     assert np.isfinite(motion.height[1])
     assert np.isnan(motion.height[-1])
+
+
+def test_line_over_natural_frequencies_is_the_spectrum_of_each_of_its_points() -> None:
+    """One solution for all of it, beside a solve of each point anew, which has the same grids but another start."""
+    solver = ReynoldsSolver()
+    line = (CONTACTS[0], OIL, (3e4, 1e5, 3e5), 1.7, 313.15)
+    found = solver.line_spectra(*line)
+    assert [spectrum.film.film_offset for spectrum in found] == [film.film_offset for film in solver.solve_line(*line)]
+    again = ContactSolverDefaults.line_spectra(solver, *line)
+    for load, spectrum, anew in zip(line[2], found, again, strict=True):
+        half = float(half_width(load, CONTACTS[0].radius, CONTACTS[0].reduced_modulus))
+        time = math.sqrt(half**2 + 2.0 * spectrum.film.film_offset * CONTACTS[0].radius) / 1.7
+        assert 2.0 * math.pi * spectrum.frequencies * time == pytest.approx(solver.natural_frequencies, rel=1e-12)
+        # Another start lays another grid about the spike: the difference is within the error that is stated.
+        bound = np.maximum(spectrum.largest_error, 1e-4) * np.abs(spectrum.compliance)
+        assert np.all(np.abs(spectrum.compliance - anew.compliance) < bound)

@@ -210,11 +210,10 @@ class TestRig:
         assert undamped > 2.0 * film > 4.0 * damped
 
     @pytest.mark.slow
-    @pytest.mark.parametrize("seed", [0, 1])
-    def test_hammer_test_finds_the_modes(self, seed):
+    def test_hammer_test_finds_the_modes(self):
         model = assemble(self.scene, "formula")
         balance = equilibrium(model.system, model.operation)
-        test = HammerTest(highest=5000.0, duration=0.6, hits=8, noise=0.01, seed=seed, spread=0.5)
+        test = HammerTest(highest=5000.0, duration=0.6, hits=8, noise=0.01, seed=0, spread=0.5)
         records = linear_hits(balance, self.scene.inputs, self.scene.sensors, test)
         fit = identify(estimate(records).responses, "rfp", (1000.0, 2900.0))
         true = modes(balance)

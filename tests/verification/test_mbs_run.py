@@ -144,6 +144,14 @@ class TestAgainstTheReference:
         found = both(gearbox(loads=[load, course]), SpeedProfile.ramp(0.0, 2000.0 * RPM, 0.02), 0.01, self.SETTINGS)
         compare(found, 1e-9)
 
+    def test_dry_gearbox_with_a_damper(self):
+        """In proportion to the stiffness, and without a step taken back at lift-off, where the tangent is steep."""
+        system = gearbox(hertz(Bearing.named("NU308"), damping_time=1.25e-5))
+        found = both(system, SpeedProfile.ramp(0.0, 2000.0 * RPM, 0.02), 0.01, self.SETTINGS)
+        assert found[0].compiled == found[0].steps
+        assert found[0].halved == found[1].halved == 0
+        compare(found, 1e-9)
+
     def test_films_at_one_speed(self):
         found = both(gearbox(map_law()), SpeedProfile.constant(1000.0 * RPM), 0.01, self.SETTINGS)
         assert found[0].compiled == found[0].steps
@@ -220,7 +228,7 @@ class TestFilmsOverSpeed:
     @staticmethod
     def blended(force, speeds):
         """Numbers and cells at the first of some speeds, and whether there are tables."""
-        tables = SpeedTables(force, TEMPERATURE, (1.0, 0.0))
+        tables = SpeedTables(force.bearing, force.flat_law, TEMPERATURE, (1.0, 0.0))
         rows = 2 * slice_table.ROWS
         films = Films(
             np.zeros((1, NODES, rows, 8)), np.zeros((1, NODES, 10)), np.zeros((1, rows, 8)), np.zeros((1, 10)),

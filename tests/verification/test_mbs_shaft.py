@@ -17,6 +17,7 @@ import pytest
 from scipy.linalg import eig, eigh, expm
 from scipy.optimize import brentq
 
+from mbs.bearings.film_relaxation import relaxing
 from mbs.flexible.beam import (
     CrossSection,
     element_gyroscopic,
@@ -30,7 +31,7 @@ from mbs.flexible.shaft_layout import WAVE_ERROR
 from mbs.flexible.shaft_parts import Disc, Section
 from mbs.linearised.modes import modes
 from mbs.model.body import Inertia, lever_arm
-from mbs.model.elements import Operation, Spring
+from mbs.model.elements import ElementDefaults, Forces, Operation, Port, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.system import System
 
@@ -496,6 +497,56 @@ def test_rotors_of_friswell_penny_garvey_lees(case):
         hertz = values / (2.0 * math.pi)
         np.testing.assert_allclose(np.sort(np.abs(hertz)), case["magnitude_hertz"], rtol=0.0, atol=0.011)
         np.testing.assert_allclose(np.sort(hertz.imag), case["damped_hertz"], rtol=0.0, atol=0.011)
+
+
+class RelaxingFilm(ElementDefaults):
+    """Two films that relax, along and across, between a place and the ground."""
+
+    def __init__(self, name, on, stiffness, damping, springs):
+        self.name, self.ports = name, (Port(on),)
+        self.k, self.c = (np.diag([0.0, *values, 0.0, 0.0, 0.0]) for values in (stiffness, damping))
+        self.films = relaxing(np.eye(6)[1:3], np.array(damping), np.array(damping) / np.array(springs))
+
+    def evaluate(self, displacement, velocity, operation):
+        return Forces(-self.k @ displacement - self.c @ velocity, self.k, self.c)
+
+    def relaxation(self, displacement, operation):
+        return self.films
+
+
+def rotor_on_films():
+    width, density, films = FRISWELL["disc_width"], FRISWELL["density"], ROTORS["films"]
+    modulus, diameter = FRISWELL["youngs_modulus"], FRISWELL["diameter"]
+    nu = modulus / (2.0 * FRISWELL["shear_modulus"]) - 1.0
+    body = flexible_shaft(
+        "rotor",
+        [Section(0.0, FRISWELL["length"], diameter, 0.0, modulus, nu, density)],
+        [Disc(x, Inertia.cylinder(-0.5 * width, 0.5 * width, outer, diameter, density)) for x, outer in films["discs"]],
+        BENDING,
+        ORIGIN,
+        {f"bearing {index}": place for index, place in enumerate(films["bearings"])},
+        spin=1.0,
+        largest_element=FRISWELL["element"],
+    )
+    data = films["stiffness"], films["damping"], films["springs"]
+    elements = [RelaxingFilm(f"film {index}", f"rotor:bearing {index}", *data) for index in (0, 1)]
+    return equilibrium(System([body], elements=elements), Operation(films["speed"] * math.pi / 30.0))
+
+
+def test_films_that_relax_beside_ross():
+    """Each mode at its own complex frequency; ROSS has the films as springs and dampers with nodes between them."""
+    films = ROTORS["films"]
+    expected = np.array(films["real"]) + 1j * np.array(films["imaginary"])
+    found = modes(rotor_on_films()).eigenvalues
+    found = found[found.imag > 1.0][: expected.size]
+    # The masses of the nodes in ROSS, and its round-off at the lowest modes.
+    np.testing.assert_allclose(np.abs(found), np.abs(expected), rtol=1e-7)
+    np.testing.assert_allclose(found.real / np.abs(found), expected.real / np.abs(expected), rtol=1e-6)
+    # Films of the frequency that is seen, not of the complex one: what that leaves out grows with the damping.
+    matched = np.array(films["matched_real"]) + 1j * np.array(films["matched_imaginary"])
+    apart, ratio = np.abs(matched - found) / np.abs(found), -found.real / np.abs(found)
+    assert np.all(apart < 0.1 * ratio)
+    assert apart.max() > 3e-3
 
 
 def nelson_sections():

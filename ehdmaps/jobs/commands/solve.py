@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.axes import RING_SPEED_AXIS, SPEED_AXIS
@@ -21,11 +23,21 @@ from ehdmaps.jobs.point_report import point_place, point_record, point_table
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.spectrum import spectrum_dataset
 from ehdmaps.jobs.spectrum_report import spectrum_record, spectrum_table
+from ehdmaps.jobs.traction import (
+    LEAST_SLIP,
+    MOST_SLIP,
+    MOST_SLIPS,
+    TractionRequest,
+    solve_traction,
+    traction_record,
+    traction_table,
+)
 from ehdmaps.outputs import FIGURE, Output, check_outputs
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES, OperatingPoint
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, Status, contact_solution
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES, contact_spectrum
+from ehdmaps.physics.traction import EYRING_STRESS, LIMITING_RATIO
 from ehdmaps.program import tell
 from ehdmaps.units import LENGTH, LOAD, RPM, SPEED, TEMPERATURE, Display, quantity, short
 
@@ -37,12 +49,13 @@ _Reader = Callable[[str, str, str, float, float, Display], "float | None"]
 
 @dataclass(frozen=True)
 class _Request:
-    """What is asked for; length [m] and frequencies [Hz] are None where they are not given."""
+    """What is asked for; length [m], frequencies [Hz] and slips are None where they are not given."""
 
     job: Job
     point: OperatingPoint
     length: float | None
     frequencies: FloatArray | None
+    traction: TractionRequest | None
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -58,6 +71,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         for line in written:
             tell(line)
         found = [contact_solution(film, contact, point) for film, contact in zip(films, job.contacts, strict=True)]
+    elif request.traction is not None:
+        return _with_traction(arguments, solver, request, request.traction)
     else:
         found = [_solved(solver, contact, request) for contact in job.contacts]
     frequency = 0.0 if request.frequencies is None else float(request.frequencies[0])
@@ -90,6 +105,26 @@ def _over_frequency(arguments: argparse.Namespace, request: _Request) -> tuple[s
         for contact in job.contacts
     ]
     text = _json(records) if arguments.json else spectrum_table(job, dataset, request.length)
+    return text, _exit_status(records)
+
+
+def _with_traction(
+    arguments: argparse.Namespace, solver: ContactSolver, request: _Request, asked: TractionRequest
+) -> tuple[str, int]:
+    """Solve each contact once, and tell its traction too."""
+    job, point = request.job, request.point
+    assert isinstance(solver, ReynoldsSolver)
+    solved = [solve_traction(solver, contact, job.lubricant, point, asked) for contact in job.contacts]
+    records = [
+        point_record(contact_solution(film, contact, point), contact, job.lubricant, point, 0.0)
+        for (film, _), contact in zip(solved, job.contacts, strict=True)
+    ]
+    if arguments.json:
+        both = zip(records, solved, strict=True)
+        text = _json([{**record, **traction_record(asked, found)} for record, (_, found) in both])
+    else:
+        found = {contact.name: found for contact, (_, found) in zip(job.contacts, solved, strict=True)}
+        text = point_table(job, records, point, request.length) + "\n" + traction_table(asked, found)
     return text, _exit_status(records)
 
 
@@ -170,6 +205,7 @@ def _read(arguments: argparse.Namespace) -> _Request:
         frequencies = _frequencies(arguments, read, problems)
     elif arguments.frequency is not None:
         frequencies = _one_frequency(arguments, read, problems)
+    traction = _traction(arguments, job, problems)
     if job is not None and temperature is not None:
         try:
             job.lubricant.at(temperature)
@@ -177,7 +213,7 @@ def _read(arguments: argparse.Namespace) -> _Request:
             problems.extend(f"--temperature: {problem}" for problem in error.problems)
     if problems or job is None or load is None or speed is None or temperature is None:
         raise InputError(problems)
-    return _Request(job, OperatingPoint(load, speed, temperature), length, frequencies)
+    return _Request(job, OperatingPoint(load, speed, temperature), length, frequencies, traction)
 
 
 def _one_frequency(arguments: argparse.Namespace, read: _Reader, problems: list[str]) -> FloatArray | None:
@@ -209,6 +245,59 @@ def _frequencies(arguments: argparse.Namespace, read: _Reader, problems: list[st
         problems.append(f"{option}, POINTS: got {short(count)}; allowed: a whole number from 2 to {MOST_FREQUENCIES}")
     elif low is not None and high is not None and low < high:
         return np.geomspace(low, high, points)
+    return None
+
+
+def _traction(arguments: argparse.Namespace, job: Job | None, problems: list[str]) -> TractionRequest | None:
+    """Slips and stresses of --slide-to-roll FROM TO POINTS; None where there are none, or a problem was noted."""
+    if arguments.slide_to_roll is None:
+        problems += [
+            f"{option}: stands without --slide-to-roll, whose law it belongs to; add that, or delete it"
+            for option, given in (
+                ("--eyring-stress", arguments.eyring_stress),
+                ("--limiting-ratio", arguments.limiting_ratio),
+            )
+            if given is not None
+        ]
+        return None
+    option, before = "--slide-to-roll", len(problems)
+    if job is not None and job.solver != "reynolds":
+        problems.append(f"{option}: the solver {job.solver!r} keeps no film for it; allowed: with --solver reynolds")
+    for other in ("frequency", "frequencies", "fields", "plot"):
+        if getattr(arguments, other) is not None:
+            problems.append(f"{option}: stands beside --{other}; allowed: one of the two; delete one")
+    first, last = (_plain_number(option, text, LEAST_SLIP, MOST_SLIP, problems) for text in arguments.slide_to_roll[:2])
+    count = arguments.slide_to_roll[2]
+    points = int(count) if count.isascii() and count.isdigit() and len(count) <= 9 else -1
+    if not 2 <= points <= MOST_SLIPS:
+        problems.append(f"{option}, POINTS: got {short(count)}; allowed: a whole number from 2 to {MOST_SLIPS}")
+    if first is not None and last is not None and first >= last:
+        problems.append(f"{option}: got {first:g} to {last:g}; allowed: TO above FROM")
+    eyring = EYRING_STRESS
+    if arguments.eyring_stress is not None:
+        try:
+            eyring = quantity(arguments.eyring_stress, "Pa")
+            if not 1e5 <= eyring <= 1e9:
+                problems.append(f"--eyring-stress: got {arguments.eyring_stress!r}; allowed: 0.1 MPa to 1000 MPa")
+        except InputError as error:
+            problems.append(f"--eyring-stress: {error.problems[0]}")
+    ratio: float | None = LIMITING_RATIO
+    if arguments.limiting_ratio is not None:
+        ratio = _plain_number("--limiting-ratio", arguments.limiting_ratio, 1e-3, 1.0, problems)
+    if len(problems) > before or first is None or last is None or ratio is None:
+        return None
+    return TractionRequest(np.geomspace(first, last, points), eyring, ratio)
+
+
+def _plain_number(option: str, text: str, low: float, high: float, problems: list[str]) -> float | None:
+    """A bare number within its limits; None where a problem was noted."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if low <= value <= high:
+        return value
+    problems.append(f"{option}: got {short(text)}; allowed: a bare number from {low:g} to {high:g}")
     return None
 
 

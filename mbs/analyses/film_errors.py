@@ -1,24 +1,23 @@
-"""Up to which frequency films of slow motion hold, and how wrong they are above."""
+"""How wrong the films of a machine are estimated to be, over frequency: those of slow motion, and those with memory."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.maps.law import ContactLaw
 from mbs.bearings.bearing_element import BearingElement, RingElement
-from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.roller_element import ring_following
-from mbs.linearised.validity import FilmLimit, SlowFilmError, film_limit
+from mbs.linearised.validity import FilmError
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
+from mbs.model.relaxation import Films
 from mbs.scene.assembly import Model
 
 
-def film_limits(model: Model, displacement: FloatArray, operation: Operation) -> list[FilmLimit]:
-    """Up to which frequency the films of each bearing follow as in slow motion.
-
-    Empty for dry laws and constant ones, and for films with memory, except at rest, where there is no film.
+def film_errors(
+    model: Model, displacement: FloatArray, operation: Operation, films: Films | None = None
+) -> list[FilmError]:
+    """Estimated errors of the films of all bearings; empty for laws without films, and without a load.
 
     Parameters
     ----------
@@ -28,43 +27,38 @@ def film_limits(model: Model, displacement: FloatArray, operation: Operation) ->
         Displacement of all coordinates at the equilibrium.
     operation : Operation
         Speed and angle of the system.
-    """
-    limits = []
-    for bearing, motion in ring_motions(model, displacement):
-        if not isinstance(bearing.force, BearingForce) or not isinstance(bearing.force.law, ContactLaw):
-            continue
-        load = float(bearing.rollers(motion, operation).load_per_length.max())
-        speed = bearing.entrainment_speed(operation)
-        if model.memory == "memory" and speed != 0.0:
-            continue
-        limits.append(film_limit(bearing.name, bearing.bearing, load, speed))
-    return limits
-
-
-def slow_film_errors(model: Model, displacement: FloatArray, operation: Operation) -> list[SlowFilmError]:
-    """How wrong films of slow motion are; empty where films relax, where there are none, and without a load.
-
-    Parameters
-    ----------
-    model, displacement, operation
-        The same as for `film_limits`.
+    films : {"slow", "memory"}, optional
+        Films whose error is estimated; those of the model if left out.
     """
     found = []
     system = model.system
-    for index in system.select(RingElement) if model.memory == "slow" else ():
+    speeds = {bearing.name: bearing.entrainment_speed(operation) for bearing in model.bearings}
+    for index in system.select(RingElement):
         connected = system.elements[index]
         element, ports = connected.element, connected.transform @ displacement
         assert isinstance(element, RingElement)
         relaxation = element.film_relaxation(ports, operation)
+        if relaxation is None:
+            continue
         forces = element.evaluate(ports, np.zeros_like(ports), operation)
         load = float(np.linalg.norm(forces.force[1:3]))
-        if relaxation is None or load == 0.0:
+        if load == 0.0:
             continue
         along = np.array([0.0, *(forces.force[1:3] / load), 0.0, 0.0, 0.0])
         motion = ring_following(forces.stiffness) @ along
         stiffness, damping = (float(motion @ matrix @ motion) for matrix in (forces.stiffness, forces.damping))
-        springs = (relaxation.rows @ motion) ** 2
-        found.append(SlowFilmError(element.name, stiffness, damping, springs, relaxation.times))
+        found.append(
+            FilmError(
+                bearing=element.name,
+                films=films or model.memory,
+                at_rest=speeds[element.name] == 0.0,
+                stiffness=stiffness,
+                damping=damping,
+                springs=(relaxation.rows @ motion) ** 2,
+                times=relaxation.times,
+                natural=element.natural_times(ports, operation),
+            )
+        )
     return found
 
 
@@ -73,13 +67,13 @@ def ring_motions(model: Model, displacement: FloatArray) -> list[tuple[BearingEl
     return [(bearing, model.system.relative(bearing.inner, bearing.outer) @ displacement) for bearing in model.bearings]
 
 
-def lowest_limits(model: Model, speeds: FloatArray, displacements: FloatArray | None = None) -> FloatArray:
-    """Frequency [Hz] above which omega b/u exceeds 0.3 in one of the bearings, at each speed, shape (speeds,).
+def notable_from(model: Model, speeds: FloatArray, displacements: FloatArray | None = None) -> FloatArray:
+    """Frequency [Hz] from which on the films of one of the bearings are more than 5 % wrong, shape (speeds,).
 
     Parameters
     ----------
     model : Model
-        Model with its law.
+        Model with its law and its films.
     speeds : array, shape (speeds,)
         [rad/s].
     displacements : array, shape (speeds, n), optional
@@ -88,14 +82,14 @@ def lowest_limits(model: Model, speeds: FloatArray, displacements: FloatArray | 
     Returns
     -------
     array, shape (speeds,)
-        NaN for laws without films; 0 at rest.
+        NaN for laws without films; infinite where no error is so large, as at rest.
     """
     found = np.full(speeds.size, np.nan)
     for index, speed in enumerate(speeds.tolist()):
         operation = Operation(speed)
         place = equilibrium(model.system, operation).displacement if displacements is None else displacements[index]
-        limits = film_limits(model, place, operation)
-        if not limits:
+        errors = film_errors(model, place, operation)
+        if not errors:
             break
-        found[index] = min(limit.frequency for limit in limits)
+        found[index] = min(entry.frequency for entry in errors)
     return found

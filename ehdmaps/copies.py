@@ -1,0 +1,26 @@
+"""Copies within compiled code.
+
+For ``out[:] = values`` numba compiles the text of an error about shapes too: some seconds for each process and each
+kind of slice, a tenth of all that is compiled.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from ehdmaps.arrays import FloatArray
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def put(values: FloatArray, out: FloatArray) -> None:
+    """Copy one row into another, as long as the latter.
+
+    Parameters
+    ----------
+    values : array, shape (n,)
+        What is copied; its length is not looked at.
+    out : array, shape (n,)
+        Row that is overwritten.
+    """
+    for i in range(out.size):
+        out[i] = values[i]

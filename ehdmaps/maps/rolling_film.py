@@ -1,0 +1,244 @@
+"""Rolling force and mass flow of the contacts of a map, at any load, speed and temperature.
+
+In Moes' groups both depend on M and L alone, as the film does: with the speed number Us = 2 eta0 u/(E'R)
+
+    rolling force = E' R Us^(3/4) f(M, L),        mass flow = rho0 u R Us^(1/2) g(M, L).
+
+What a map holds of them is read as ln f and ln g: of its backbone at constant zeta = ln(M/M_valley(L)), as the films of
+a contact law are, or of its own grid at constant load where it has no backbone.
+
+- Below the lowest mapped load both go over into the film between rigid surfaces, f = 2.941 M^(1/2) and g = 3/M, which
+  the piezoviscous effect leaves as the pressure does, like M^(3/2). Where the lowest load is far from that regime the
+  way there is a guess.
+- Above the highest load they go on with their last exponent.
+- Beyond the speeds of the map too they go on with their last exponents. Temperatures are held at the edge.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from scipy.interpolate import CubicSpline
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.maps.backbone import FEWEST_NODES, LATTICE_STEP, lagrange
+from ehdmaps.maps.mixing import mix_lines
+from ehdmaps.maps.schema import BACKBONE_DIMS, DIMS
+from ehdmaps.maps.splines import spline_weights
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_number
+from ehdmaps.physics.rolling import RIGID_ROLLING_CONSTANT
+
+NAMES = ("rolling_force", "mass_flow")
+"""Variables of the map and of its backbone."""
+
+RIGID_FLOW_NUMBER = 3.0
+"""M times the flow number of the rigid film: 6.000 eta u R/w is the film at its highest pressure."""
+
+_PRESSURE_EXPONENT = 1.5
+_STEP = 1e-3
+
+_Reader = Callable[[LineContact, FloatArray, float, float], FloatArray]
+"""From contact, loads (n,) within the map, speed and temperature to ln f and ln g, shape (2, n)."""
+
+
+class RollingFilm:
+    """Rolling force and mass flow over load, speed and temperature; see `rolling_film`.
+
+    Parameters
+    ----------
+    contacts : sequence of LineContact
+        Contacts of the map.
+    lubricant : Lubricant
+        The oil.
+    reader : callable
+        What reads ln f and ln g within the map.
+    load_range, temperature_range : tuple of float
+        Range of the map's axes [N/m], [K].
+    """
+
+    def __init__(
+        self,
+        contacts: Sequence[LineContact],
+        lubricant: Lubricant,
+        reader: _Reader,
+        load_range: tuple[float, float],
+        temperature_range: tuple[float, float],
+    ) -> None:
+        self._contacts = {contact.name: contact for contact in contacts}
+        self._lubricant = lubricant
+        self._reader = reader
+        self._loads, self._temperatures = load_range, temperature_range
+
+    def rolling_force(
+        self, contact: str, load: npt.ArrayLike, entrainment_speed: float, temperature: float
+    ) -> FloatArray:
+        """Rolling force of both walls together [N/m], in the shape of the loads; zero without load or speed.
+
+        Parameters
+        ----------
+        contact : str
+            Name of a contact of the map.
+        load : float or array
+            w [N/m], >= 0.
+        entrainment_speed, temperature : float
+            u [m/s], of either sign, and T [K].
+        """
+        return self._found(0, contact, load, entrainment_speed, temperature)
+
+    def mass_flow(self, contact: str, load: npt.ArrayLike, entrainment_speed: float, temperature: float) -> FloatArray:
+        """Mass flow through the contact [kg/(m s)], inf without load, zero without speed; arguments as before.
+
+        Parameters
+        ----------
+        contact, load, entrainment_speed, temperature
+            Arguments of `rolling_force`.
+        """
+        return self._found(1, contact, load, entrainment_speed, temperature)
+
+    def _found(self, which: int, name: str, load: npt.ArrayLike, speed: float, temperature: float) -> FloatArray:
+        """One of both, in SI."""
+        contact, speed = self._contacts[name], abs(speed)
+        loads = np.asarray(load, dtype=np.float64)
+        empty = 0.0 if which == 0 or speed == 0.0 else math.inf
+        found = np.full(loads.shape, empty)
+        loaded = loads > 0.0
+        if speed == 0.0 or not np.any(loaded):
+            return found
+        T = float(np.clip(temperature, *self._temperatures))
+        groups = np.exp(self._logarithms(contact, loads[loaded], speed, T)[which])
+        found[loaded] = _units(contact, self._lubricant, speed, T)[which] * groups
+        return found
+
+    def _logarithms(self, contact: LineContact, loads: FloatArray, speed: float, T: float) -> FloatArray:
+        """Logarithms of f and g at loads (n,) > 0, shape (2, n), at a temperature within the map."""
+        low, high = self._loads
+        found = self._reader(contact, np.clip(loads, low, high), speed, T)
+        below, above = loads < low, loads > high
+        if np.any(below):
+            (end,) = self._reader(contact, np.array([low]), speed, T).T
+            fading = (loads[below] / low) ** _PRESSURE_EXPONENT
+            left = end - self._rigid(contact, np.array([low]), speed, T)[:, 0]
+            found[:, below] = self._rigid(contact, loads[below], speed, T) + left[:, None] * fading
+        if np.any(above):
+            last = self._reader(contact, high * np.exp([-_STEP, 0.0]), speed, T)
+            exponent = (last[:, 1] - last[:, 0]) / _STEP
+            found[:, above] += exponent[:, None] * np.log(loads[above] / high)
+        return found
+
+    def _rigid(self, contact: LineContact, loads: FloatArray, speed: float, T: float) -> FloatArray:
+        """Logarithms of f and g between rigid surfaces, shape (2, n)."""
+        viscosity = self._lubricant.at(T).viscosity
+        M, _ = moes_groups(loads, speed, viscosity, 0.0, contact.radius, contact.reduced_modulus)
+        force = RIGID_ROLLING_CONSTANT * np.sqrt(0.5 * M)
+        return np.log(np.stack([force, RIGID_FLOW_NUMBER / M]))
+
+
+def rolling_film(
+    dataset: xr.Dataset,
+    backbone: xr.Dataset | None,
+    reference: LineContact | None,
+    contacts: Sequence[LineContact],
+    lubricant: Lubricant,
+) -> RollingFilm | None:
+    """Rolling force and mass flow of a map; None where it does not hold them at all its points.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map.
+    backbone : xarray.Dataset or None
+        Group of its refinement lines.
+    reference : LineContact or None
+        Contact of that group.
+    contacts : sequence of LineContact
+        Contacts of the map.
+    lubricant : Lubricant
+        The oil.
+    """
+    moving = dataset.sel(entrainment_speed=dataset["entrainment_speed"] > 0.0)
+    if any(name not in moving for name in NAMES) or not moving.sizes["entrainment_speed"]:
+        return None
+    values = np.stack([moving[name].transpose(*DIMS).values for name in NAMES])
+    if not np.all(np.isfinite(values) & (values > 0.0)):
+        return None
+    axes = [moving[name].values.astype(np.float64) for name in DIMS[1:]]
+    reader: _Reader | None = None
+    if backbone is not None and reference is not None and all(name in backbone for name in NAMES):
+        reader = _backbone_reader(backbone.transpose(*BACKBONE_DIMS, ...), reference, lubricant)
+    if reader is None:
+        reader = _grid_reader(values, axes, contacts, lubricant)
+    load_range, _, temperature_range = ((float(axis[0]), float(axis[-1])) for axis in axes)
+    return RollingFilm(contacts, lubricant, reader, load_range, temperature_range)
+
+
+def _backbone_reader(group: xr.Dataset, reference: LineContact, lubricant: Lubricant) -> _Reader | None:
+    """Reader of the backbone; None where a line has too few solved points."""
+    zeta, speeds, kelvins = (group[name].values.astype(np.float64) for name in BACKBONE_DIMS)
+    first, log_speeds = float(zeta[0]), np.log(speeds)
+    nodes = 2 + math.ceil((zeta[-1] - first) / LATTICE_STEP)
+    places = first + LATTICE_STEP * np.arange(nodes)
+    lattices = np.zeros((2, speeds.size * kelvins.size, nodes, 5))
+    for j, speed in enumerate(speeds):
+        for k, kelvin in enumerate(kelvins):
+            units = _units(reference, lubricant, float(speed), float(kelvin))
+            for i, name in enumerate(NAMES):
+                line = group[name].values[:, j, k].astype(np.float64)
+                solved = np.isfinite(line) & (line > 0.0)
+                if np.count_nonzero(solved) < FEWEST_NODES:
+                    return None
+                spline = CubicSpline(zeta[solved], np.log(line[solved] / units[i]))
+                inside = np.clip(places, zeta[solved][0], zeta[solved][-1])
+                slope = spline(inside, 1)
+                values = spline(inside) + slope * (places - inside)
+                bend = np.where(inside == places, spline(inside, 2), 0.0)
+                lattices[i, j * kelvins.size + k, :, :3] = np.column_stack([values, slope, bend])
+
+    def read(contact: LineContact, loads: FloatArray, speed: float, T: float) -> FloatArray:
+        state = lubricant.at(T)
+        alpha = state.pressure_viscosity.pressure_viscosity
+        unit, L = moes_groups(1.0, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
+        zetas = np.log(loads * unit / valley_load_number(L))
+        rows, by_speed = lagrange(log_speeds, math.log(speed * reference.radius / contact.radius))
+        columns, by_temperature = lagrange(kelvins, T)
+        lines = (rows[:, None] * kelvins.size + columns).ravel()
+        weights = np.outer(by_speed, by_temperature).ravel()
+        found = np.empty((2, 3, loads.size))
+        for lattice, out in zip(lattices, found, strict=True):
+            mix_lines(lattice, first, LATTICE_STEP, lines, weights, zetas, out)
+        return found[:, 0]
+
+    return read
+
+
+def _grid_reader(
+    values: FloatArray, axes: Sequence[FloatArray], contacts: Sequence[LineContact], lubricant: Lubricant
+) -> _Reader:
+    """Reader of the map's own grid: splines over ln(load), ln(speed) and temperature."""
+    loads, speeds, kelvins = axes
+    units = np.array(
+        [[[_units(contact, lubricant, u, T) for T in kelvins] for u in speeds.tolist()] for contact in contacts]
+    )
+    logs = np.log(values / np.moveaxis(units, -1, 0)[:, :, None])
+    names = [contact.name for contact in contacts]
+
+    def read(contact: LineContact, wanted: FloatArray, speed: float, T: float) -> FloatArray:
+        along_w = spline_weights(np.log(loads), np.log(wanted))
+        (along_u,) = spline_weights(np.log(speeds), np.array([math.log(speed)]))
+        (along_t,) = spline_weights(kelvins, np.array([T]))
+        return np.asarray(np.einsum("vwut,nw,u,t->vn", logs[:, names.index(contact.name)], along_w, along_u, along_t))
+
+    return read
+
+
+def _units(contact: LineContact, lubricant: Lubricant, speed: float, T: float) -> tuple[float, float]:
+    """Rolling force [N/m] and mass flow [kg/(m s)] whose numbers f and g are one."""
+    state = lubricant.at(float(T))
+    number = moes_speed_number(speed, state.viscosity, contact.radius, contact.reduced_modulus)
+    force = contact.reduced_modulus * contact.radius * number**0.75
+    return force, state.density * speed * contact.radius * math.sqrt(number)

@@ -1,0 +1,73 @@
+"""What the contacts of the bearings of a scene feel at an equilibrium, and what rolling costs there."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
+from ehdmaps.physics.solids import STEEL
+from mbs.analyses.film_errors import ring_motions
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.contact_report import BearingContacts, bearing_contacts
+from mbs.bearings.films import DryContacts, FilmSource
+from mbs.bearings.rolling_loss import RollingLoss, rolling_loss
+from mbs.model.elements import Operation
+from mbs.scene.assembly import Model
+
+
+def contacts_and_losses(
+    model: Model, displacement: FloatArray, operation: Operation
+) -> list[tuple[BearingContacts, RollingLoss]]:
+    """Pressures and films of each bearing at an equilibrium, and what rolling costs in it.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    displacement : array, shape (n,)
+        Displacement of the system.
+    operation : Operation
+        Speed and angle.
+    """
+    return [
+        _of_bearing(model.films[bearing.name], bearing, motion, operation)
+        for bearing, motion in ring_motions(model, displacement)
+    ]
+
+
+def losses_over_speed(model: Model, speeds: FloatArray, displacements: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Rolling torque [N m] and power [W] of each bearing over speed, each of shape (speeds, bearings).
+
+    NaN for films without rolling forces.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    speeds : array, shape (speeds,)
+        [rad/s].
+    displacements : array, shape (speeds, n)
+        Displacements of the system at the equilibria.
+    """
+    found = np.full((2, speeds.size, len(model.bearings)), np.nan)
+    for index, speed in enumerate(speeds.tolist()):
+        losses = [loss for _, loss in contacts_and_losses(model, displacements[index], Operation(speed))]
+        found[:, index] = [[loss.torque for loss in losses], [loss.total for loss in losses]]
+        if np.all(np.isnan(found[:, index])):  # no film of this model knows any, at whatever speed
+            break
+    return found[0], found[1]
+
+
+def _of_bearing(
+    films: FilmSource, bearing: BearingElement, motion: FloatArray, operation: Operation
+) -> tuple[BearingContacts, RollingLoss]:
+    """Contacts and loss of one bearing at the motion (6,) of its inner ring."""
+    rollers, u = bearing.rollers(motion, operation), bearing.entrainment_speed(operation)
+    at = rollers, u, bearing.temperature, bearing.centrifugal_load(operation)
+    try:
+        contacts = bearing_contacts(films, *at)
+    except InputError:  # the oil has no viscosity at this temperature, where a law is held at its edge
+        contacts = bearing_contacts(DryContacts(bearing.bearing.geometry.contacts(STEEL, "iso16281")), *at)
+    ring_speed = (bearing.inner_spin - bearing.outer_spin) * operation.speed
+    return contacts, rolling_loss(contacts, rollers.load, bearing.bearing.slice_length, u, ring_speed)

@@ -1,0 +1,267 @@
+"""What comparisons vary, one row a key: how its values are read and told, and what each changes.
+
+A key more is a row more of `VARIED`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from ehdmaps.errors import InputError
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.physics.operating_point import OIL_TEMPERATURES
+from ehdmaps.units import TEMPERATURE, Display, closest, quantity
+from mbs.model.relaxation import Films
+from mbs.scene import changes
+from mbs.scene.assembly import Model, assemble
+from mbs.scene.contact_laws import law_label
+from mbs.scene.fields import DEGREE, MICROMETRE
+from mbs.scene.scene import Scene
+
+Value = float | int | str
+
+WIDEST = 1e-2
+"""Largest clearance, either way [m]."""
+
+MOST_FACTOR = 1e3
+MOST_SLICES = 10_000
+
+_SECOND, _MICROSECOND = Display("s"), Display("us", 1e6)
+
+
+@dataclass(frozen=True)
+class LawChoice:
+    """A contact law as it was chosen.
+
+    Attributes
+    ----------
+    label : str
+        The law in two words.
+    name : str or None
+        Name of the law, as `mbs.scene.assembly.assemble` takes it.
+    emap : EHDMap or None
+        The map of the law `map`.
+    films : {"slow", "memory"} or None
+        Which films it is to have.
+    """
+
+    label: str
+    name: str | None
+    emap: EHDMap | None = None
+    films: Films | None = None
+
+    @property
+    def has_films(self) -> bool:
+        """Whether it knows an oil."""
+        return self.name in ("map", "formula") or (self.name is None and self.emap is not None)
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """What is run: a scene with a law.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene.
+    law : LawChoice
+        The law.
+    clearance : float or None
+        Diametral clearance of all bearings [m]; None for those of the scene.
+    """
+
+    scene: Scene
+    law: LawChoice
+    clearance: float | None = None
+
+    def model(self) -> Model:
+        """The model; see `mbs.scene.assembly.assemble`."""
+        return assemble(self.scene, self.law.name, self.law.emap, self.clearance, self.law.films)
+
+
+@dataclass(frozen=True)
+class VariedKey:
+    """Something that a comparison varies.
+
+    Attributes
+    ----------
+    name : str
+        Name of the key, as --vary takes it.
+    example : str
+        A value, for people.
+    of : {"both", "first", "films"}
+        Which of the compared laws it concerns: both, the reference, or those with films.
+    read : callable
+        Reader of a text, which gives a value; raises `InputError` with what was got and what is allowed.
+    text : callable
+        A value for people.
+    change : callable
+        A subject with that value; raises `InputError` where it does not fit.
+    """
+
+    name: str
+    example: str
+    of: Literal["both", "first", "films"]
+    read: Callable[[str], Value]
+    text: Callable[[Value], str]
+    change: Callable[[Subject, Value], Subject]
+
+    def changed(self, subject: Subject, value: Value, first: bool) -> Subject:
+        """A subject with a value of this key; the same where the key does not concern it.
+
+        Parameters
+        ----------
+        subject : Subject
+            Scene and law.
+        value : float, int or str
+            What `read` gives.
+        first : bool
+            Whether it is the reference.
+
+        Raises
+        ------
+        InputError
+            Where the value does not fit the scene.
+        """
+        concerned = self.of == "both" or (first if self.of == "first" else subject.law.has_films)
+        return self.change(subject, value) if concerned else subject
+
+
+def _between(unit: str, low: float, high: float, display: Display) -> Callable[[str], Value]:
+    """A reader of a quantity."""
+
+    def read(text: str) -> Value:
+        value = quantity(text, unit)
+        if not low <= value <= high:
+            raise InputError(f"got {text!r:.60}; allowed: {display.text(low)} to {display.text(high)}")
+        return value
+
+    return read
+
+
+def _either_way(unit: str, most: float, words: str) -> Callable[[str], Value]:
+    """A reader of a quantity of either sign."""
+
+    def read(text: str) -> Value:
+        value = quantity(text, unit)
+        if not abs(value) <= most:
+            raise InputError(f"got {text!r:.60}; allowed: {words}")
+        return value
+
+    return read
+
+
+def _factor(text: str) -> Value:
+    """Read a factor."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value <= MOST_FACTOR:
+        raise InputError(f"got {text!r:.40}; allowed: above 0 up to {MOST_FACTOR:g}, such as 1.5")
+    return value
+
+
+def _slices(text: str) -> Value:
+    """Read a number of slices."""
+    if not (text.isdecimal() and len(text) < 10 and 1 <= int(text) <= MOST_SLICES):
+        raise InputError(f"got {text!r:.40}; allowed: a whole number from 1 to {MOST_SLICES}")
+    return int(text)
+
+
+def _films(text: str) -> Value:
+    """Read the kind of the films."""
+    if text not in get_args(Films):
+        raise InputError(f"got {text!r:.60}{closest(text, get_args(Films))}; allowed: {', '.join(get_args(Films))}")
+    return text
+
+
+def _with_films(subject: Subject, value: Value) -> Subject:
+    """A subject with other films."""
+    films: Films = "memory" if value == "memory" else "slow"
+    return dataclasses.replace(subject, law=dataclasses.replace(subject.law, films=films))
+
+
+def _with_law(subject: Subject, value: Value) -> Subject:
+    """A subject with another law, without a map."""
+    return dataclasses.replace(subject, law=LawChoice(law_label(str(value)), str(value)))
+
+
+def _of_scene(change: Callable[[Scene, float], Scene]) -> Callable[[Subject, Value], Subject]:
+    """A change of the scene by a number."""
+    return lambda subject, value: dataclasses.replace(subject, scene=change(subject.scene, float(value)))
+
+
+def _shown(display: Display) -> Callable[[Value], str]:
+    """Tell a value by its display."""
+    return lambda value: display.text(float(value))
+
+
+def _times(value: Value) -> str:
+    """Tell a factor."""
+    return f"{value:g} x"
+
+
+VARIED = {
+    key.name: key
+    for key in (
+        VariedKey(
+            "clearance",
+            "15 um",
+            "both",
+            _either_way("m", WIDEST, f"within {MICROMETRE.text(WIDEST)} either way"),
+            _shown(MICROMETRE),
+            lambda subject, value: dataclasses.replace(subject, clearance=float(value)),
+        ),
+        # Laws without films know no oil, so that their run is the same.
+        VariedKey(
+            "temperature",
+            "100 degC",
+            "films",
+            _between("K", *OIL_TEMPERATURES, TEMPERATURE),
+            _shown(TEMPERATURE),
+            _of_scene(changes.with_temperature),
+        ),
+        VariedKey("films", "slow", "films", _films, str, _with_films),
+        VariedKey("housing-damping", "0.5", "both", _factor, _times, _of_scene(changes.with_housing_damping)),
+        VariedKey(
+            "ramp",
+            "10 s",
+            "both",
+            _between("s", 1e-9, 1e6, _SECOND),
+            _shown(_SECOND),
+            _of_scene(changes.with_duration),
+        ),
+        VariedKey(
+            "start-angle",
+            "7.5 deg",
+            "both",
+            _either_way("rad", 2.0 * math.pi, "a turn either way, such as '7.5 deg'"),
+            _shown(DEGREE),
+            _of_scene(changes.with_start_angle),
+        ),
+        VariedKey("load-factor", "1.5", "both", _factor, _times, _of_scene(changes.with_loads)),
+        VariedKey(
+            "step",
+            "5 us",
+            "both",
+            _between("s", 1e-9, 1.0, _MICROSECOND),
+            _shown(_MICROSECOND),
+            _of_scene(changes.with_step),
+        ),
+        VariedKey(
+            "slices",
+            "41",
+            "both",
+            _slices,
+            str,
+            lambda subject, value: dataclasses.replace(subject, scene=changes.with_slices(subject.scene, int(value))),
+        ),
+        VariedKey("law", "hertz:1.25e-5 s", "first", str, lambda value: law_label(str(value)), _with_law),
+    )
+}
+"""What can be varied, by its key."""

@@ -1,0 +1,285 @@
+"""Rollers that are bodies, in compiled runs, with films that have a memory: each contact of a roller has its own.
+
+Steps begin and go on as in `mbs.bearings.memory_block`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.maps.memory import FilmState
+from ehdmaps.maps.memory_table import step_of
+from mbs.bearings.bearing_kernel import Sizes, sizes_of
+from mbs.bearings.memory_block import ACCEPTED, LAST, STEPS, TRIAL
+from mbs.bearings.memory_kernel import CHANGE, KEPT, LATEST, LOAD, MEMORY, begin, commit, loads, resume
+from mbs.bearings.memory_rollers import ContactStates, MemoryRollers
+from mbs.bearings.memory_tables import HIGHEST, MemoryFilms, MemoryTables, mix, room, table_in_use
+from mbs.bearings.rings import Course, CourseOfFilms, course_of, shared
+from mbs.bearings.roller_places import (
+    Contact,
+    Place,
+    Rollers,
+    add_contact,
+    alone,
+    begin_answer,
+    feels,
+    gather_rollers,
+    place_of,
+)
+from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
+
+
+class MemoryRollerBearings(NamedTuple):
+    """Bearings with rollers that are bodies, and films with memory, as arrays.
+
+    Attributes
+    ----------
+    rollers : Rollers
+        What does not change.
+    strict : array (bearings,), of bool
+        Whether the laws refuse loads above their map.
+    memory : array (bearings, 2, MEMORY Z n)
+        Memory of the slices of the inner and outer contacts, see `mbs.bearings.memory_kernel`.
+    approaches : array (Z n,)
+        Work space for one row of contacts after the other [m].
+    answered : array (bearings, 2, 2 Z n)
+        Loads and tangents of the last answer.
+    clock : array (4,)
+        Times of the run, see `mbs.bearings.memory_block`.
+    films : MemoryFilms
+        Tables of the laws of single contacts.
+    course : Course
+        Places of the steps on them.
+    """
+
+    rollers: Rollers
+    strict: BoolArray
+    memory: FloatArray
+    approaches: FloatArray
+    answered: FloatArray
+    clock: FloatArray
+    films: MemoryFilms
+    course: Course
+
+
+@njit(cache=True, error_model="numpy")
+def _memory_of(bearings: MemoryRollerBearings, b: int, side: int) -> FloatArray:
+    """Memory of the slices of one side of a bearing, shape (MEMORY, Z n), contiguous."""
+    size = bearings.rollers.rings.rollers[b] * bearings.rollers.rings.slices[b]
+    memory: FloatArray = bearings.memory[b, side][: MEMORY * size].reshape(MEMORY, size)
+    return memory
+
+
+@njit(cache=True, error_model="numpy")
+def _begin(bearings: MemoryRollerBearings, moment: Moment) -> None:
+    """Begin a step: tables, and what slices start from."""
+    clock, course, films, rollers = bearings.clock, bearings.course, bearings.films, bearings.rollers
+    clock[TRIAL] = moment.time
+    steps = int(clock[STEPS])
+    for film in range(films.in_use.shape[0]):
+        if films.in_use[film, 0] < 0.0 or steps % KEPT == 0:
+            mix(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
+    growth = (moment.time - clock[ACCEPTED]) / clock[LAST] if clock[LAST] > 0.0 else 0.0
+    for b in range(bearings.strict.size):
+        for side in range(2):
+            begin(table_in_use(films, rollers.films_of[b, side]), growth, steps, _memory_of(bearings, b, side))
+
+
+@njit(cache=True, error_model="numpy")
+def _moves_within(place: Place, sizes: Sizes) -> bool:
+    """Whether approaches are finite and within reason."""
+    far, tilt = sizes.most_travel, sizes.most_tilt
+    return abs(place.approach[0]) <= far and abs(place.approach[1]) <= far and abs(place.tilt) <= tilt
+
+
+@njit(cache=True, error_model="numpy")
+def _answer(
+    bearings: MemoryRollerBearings, b: int, moment: Moment, motion: FloatArray, answers: Answers
+) -> tuple[bool, bool]:
+    """Forces and tangents of a bearing among the answers; whether it has any, and a load is above the map."""
+    rollers, films, clock = bearings.rollers, bearings.films, bearings.clock
+    rings = rollers.rings
+    z, n = rings.rollers[b], rings.slices[b]
+    x, profile, sizes = rings.positions[b][:n], rings.profiles[b][:n], sizes_of(rings.sizes[b])
+    angle = rings.start_angles[b] + rings.cage_rates[b] * moment.angle
+    cage = math.cos(angle), math.sin(angle)
+    deltas, above = bearings.approaches[: z * n], False
+    begin_answer(rollers, b, moment, answers)
+    for side in range(2):
+        for j in range(z):
+            place = place_of(rollers, b, j, cage, motion)
+            if not _moves_within(place, sizes):
+                return False, above
+            row = deltas[j * n : (j + 1) * n]
+            for i in range(n):
+                row[i] = place.approach[side] + x[i] * place.tilt - 0.5 * profile[i]
+        table = table_in_use(films, rollers.films_of[b, side])
+        memory = _memory_of(bearings, b, side)
+        answered = bearings.answered[b, side][: 2 * z * n].reshape(2, z * n)
+        step = step_of(moment.time - clock[ACCEPTED], clock[LAST])
+        loads(table, step, memory, deltas, answered[0], answered[1])
+        highest = 0.0
+        for j in range(z):
+            w, dw = answered[0, j * n : (j + 1) * n], answered[1, j * n : (j + 1) * n]
+            w0 = w1 = k0 = k1 = k2 = 0.0
+            for i in range(n):
+                w0 += w[i]
+                w1 += w[i] * x[i]
+                k0 += dw[i]
+                k1 += dw[i] * x[i]
+                k2 += dw[i] * x[i] * x[i]
+                highest = max(highest, w[i])
+            length = sizes.slice_length
+            slope = moment.by_q * length
+            contact = Contact(w0 * length, w1 * length, k0 * slope, k1 * slope, k2 * slope)
+            add_contact(rollers, b, j, side, place_of(rollers, b, j, cage, motion), contact, answers)
+        above = above or highest > films.mixed[rollers.films_of[b, side], HIGHEST]
+    return True, above
+
+
+@njit(cache=True, error_model="numpy")
+def memory_rollers_answer(bearings: MemoryRollerBearings, moment: Moment, motion: FloatArray, answers: Answers) -> int:
+    """Forces and tangents of all bearings at the end of a step; see `mbs.model.blocks.Kind`.
+
+    Parameters
+    ----------
+    bearings : MemoryRollerBearings
+        The bearings, with their states and the tables of their laws.
+    moment : Moment
+        Step, its end, angle, speed, weights of the slopes.
+    motion : array (2, m)
+        Displacements and their rates, among what all elements feel.
+    answers : Answers
+        Answers of all elements, filled.
+    """
+    if bearings.clock[TRIAL] != moment.time:
+        _begin(bearings, moment)
+    rollers, course = bearings.rollers, bearings.course
+    for b in range(bearings.strict.size):
+        found, above = _answer(bearings, b, moment, motion, answers)
+        if not found:
+            return NO_SOLUTION
+        if above and bearings.strict[b]:
+            return IN_PYTHON
+        outside = 1 if above else 0
+        for side in range(2):
+            outside = max(outside, course.outside[moment.step, rollers.films_of[b, side]])
+        answers.outside[rollers.rings.places[b]] += outside
+    return FOUND
+
+
+@njit(cache=True, error_model="numpy")
+def memory_rollers_accept(bearings: MemoryRollerBearings, moment: Moment) -> None:
+    """Make the step: states go on; see `mbs.model.blocks.Kind`.
+
+    Parameters
+    ----------
+    bearings : MemoryRollerBearings
+        The bearings.
+    moment : Moment
+        The step that was answered last.
+    """
+    clock, rollers = bearings.clock, bearings.rollers
+    for b in range(bearings.strict.size):
+        size = rollers.rings.rollers[b] * rollers.rings.slices[b]
+        for side in range(2):
+            table = table_in_use(bearings.films, rollers.films_of[b, side])
+            commit(table, _memory_of(bearings, b, side), bearings.answered[b, side][:size])
+    clock[LAST] = moment.time - clock[ACCEPTED]
+    clock[ACCEPTED] = moment.time
+    clock[STEPS] += 1.0
+
+
+class MemoryRollerBlock:
+    """The bearings of a run; contacts with the same law at the same speed and temperature share their tables.
+
+    Parameters
+    ----------
+    members : sequence of Member
+        Elements of the class `MemoryRollers`.
+    """
+
+    def __init__(self, members: Sequence[Member]) -> None:
+        elements: list[MemoryRollers] = [member.element for member in members]
+        pairs = [(element.plain, law) for element in elements for law in element.laws]
+        films_of, firsts = shared((id(law), plain.temperature, plain.rates[1]) for plain, law in pairs)
+        tables = [MemoryTables(law, plain.temperature, plain.rates[1]) for plain, law in map(pairs.__getitem__, firsts)]
+        rollers, films = gather_rollers(members, films_of), room(len(tables))
+        self._course = CourseOfFilms(
+            [table.places for table in tables],
+            lambda film, *places: tables[film].prepare(*places, films, film),
+        )
+        count, most = len(elements), rollers.rings.most_slices
+        self._arrays = MemoryRollerBearings(
+            rollers=rollers,
+            strict=np.array([any(law.outside == "error" for law in each.laws) for each in elements], dtype=np.bool_),
+            memory=np.zeros((count, 2, MEMORY * most)),
+            approaches=np.zeros(most),
+            answered=np.zeros((count, 2, 2 * most)),
+            clock=np.array([math.nan, 0.0, math.nan, 0.0]),
+            films=films,
+            course=course_of(0, len(tables)),
+        )
+
+    def begin(self, speeds: FloatArray) -> None:
+        """Find the places of the speeds [rad/s] on the tables."""
+        self._course.begin(speeds)
+
+    def prepare(self, first: int, last: int) -> tuple[MemoryRollerBearings, BoolArray]:
+        """Make the tables of the next steps, as many as are held at once.
+
+        Parameters
+        ----------
+        first, last : int
+            Steps of those that `begin` was told.
+        """
+        course, sound = self._course.prepare(first, last)
+        self._arrays.films.in_use[:] = -1.0
+        return self._arrays._replace(course=course), sound
+
+    def states(self) -> list[ContactStates]:
+        """Films of both contacts of each bearing after the last step that was made."""
+        last, time = float(self._arrays.clock[LAST]), float(self._arrays.clock[ACCEPTED])
+        found = []
+        for b in range(self._arrays.strict.size):
+            inner, outer = (self._films(b, side, last) for side in range(2))
+            found.append(ContactStates((inner, outer), time))
+        return found
+
+    def resume(self, states: Sequence[ContactStates]) -> None:
+        """Go on from the films that each bearing has in Python.
+
+        Parameters
+        ----------
+        states : sequence of ContactStates
+            One a bearing, all after the same step.
+        """
+        for b, (both, time) in enumerate(states):
+            for side, films in enumerate(both):
+                rows = _memory_of.py_func(self._arrays, b, side)
+                resume(films.approach.reshape(-1), films.change.reshape(-1), films.load.reshape(-1), rows)
+                self._arrays.clock[: TRIAL + 1] = time, films.step, math.nan
+
+    def _films(self, b: int, side: int, last: float) -> FilmState:
+        """Films of one side of a bearing, which have made a step of a length last."""
+        rings, rows = self._arrays.rollers.rings, _memory_of.py_func(self._arrays, b, side)
+        shape = int(rings.rollers[b]), int(rings.slices[b])
+        approach, change, load = (rows[row].reshape(shape).copy() for row in (LATEST, CHANGE, LOAD))
+        return FilmState(approach, change, load, last)
+
+
+MEMORY_ROLLERS = Kind(
+    arrays=MemoryRollerBearings,
+    answer=memory_rollers_answer,
+    feels=feels,
+    gather=MemoryRollerBlock,
+    accept=memory_rollers_accept,
+    alone=alone,
+)
+"""For `mbs.transient.kinds`."""

@@ -1,0 +1,88 @@
+"""A bearing in a system whose rollers are bodies and whose films need time: a state for each slice of each contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
+from ehdmaps.maps.law import ContactLaw
+from ehdmaps.maps.memory import FilmState
+from mbs.bearings.roller_element import RollerElement
+from mbs.model.elements import Forces, Operation
+from mbs.model.relaxation import Films
+
+
+class ContactStates(NamedTuple):
+    """States of the films of both contacts after a step.
+
+    Attributes
+    ----------
+    films : (FilmState, FilmState)
+        Films of all slices of the inner and of the outer contacts, shape (Z, n) each.
+    time : float
+        End of the step [s].
+    """
+
+    films: tuple[FilmState, FilmState]
+    time: float
+
+
+@dataclass(frozen=True, eq=False)
+class MemoryRollers(RollerElement):
+    """A bearing whose rollers are bodies, and whose films have a memory in time.
+
+    At rest it is the `RollerElement` with the same contacts; small oscillations see films that relax.
+
+    Raises
+    ------
+    InputError
+        With contact laws that have no films.
+    """
+
+    films: Films = "memory"
+
+    def __post_init__(self) -> None:
+        if not all(isinstance(law, ContactLaw) for law in self.contacts.laws):
+            raise InputError(
+                f"bearing {self.name!r}, films: got 'memory' with a law without films; allowed: laws map and formula"
+            )
+
+    @property
+    def laws(self) -> tuple[ContactLaw, ContactLaw]:
+        """Laws of the inner and of the outer contact."""
+        inner, outer = self.contacts.laws
+        assert isinstance(inner, ContactLaw) and isinstance(outer, ContactLaw)
+        return inner, outer
+
+    def advance(
+        self, states: ContactStates | None, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> tuple[Forces, ContactStates]:
+        """A step in time up to the time of `operation`, as `ContactLaw.advance` for all slices.
+
+        Parameters
+        ----------
+        states : ContactStates or None
+            States after the last step; None for films in equilibrium.
+        displacement, velocity : array, shape (12 + Z,)
+            Motion of rings and rollers at the end of the step; the rates have no effect.
+        operation : Operation
+            Speed, angle and time there.
+
+        Raises
+        ------
+        InputError, OutsideMapError
+            As the laws do.
+        """
+        plain = self.plain
+        found, films = self.contacts.advance(
+            None if states is None else states.films,
+            displacement,
+            0.0 if states is None else operation.time - states.time,
+            cage_angle=plain.cage_angle(operation),
+            entrainment_speed=plain.entrainment_speed(operation),
+            temperature=plain.temperature,
+        )
+        found.force[12:] += self.outward(operation)
+        return found, ContactStates(films, operation.time)
