@@ -18,7 +18,7 @@ RESOLVED = 1.0 / 3.0
 
 SPIKED = 1.0 / 3.0
 """Least share of the difference between both grids that is left where there is a pressure spike, whose front lets the
-order of the response fall to two: 1/(2^p - 1)."""
+order of the response at a frequency fall to two: 1/(2^p - 1)."""
 
 CARRIED_ABOVE = 2.0
 """Load M above which the surfaces carry the film through a Hertz zone, as a wave of omega b/u a half-width."""
@@ -72,8 +72,8 @@ def group_spectrum(M: float, L: float, solution: GroupSolution, frequencies: Flo
     difference = film_compliances(rough, where) - found
     index = index.reshape(beside.shape)
     nearby = read_beside(difference, where, index, frequencies)
-    spiked = fine.spike is not None
-    share = max(response_share(M, L, spiked), SPIKED if spiked else 0.0)
+    share = response_share(M, L, fine.spike is not None)
+    share = max(share, SPIKED) if fine.spike is not None else share
     share_at = share + (1.0 - share) * np.minimum(1.0, (frequencies * cell) ** 2)
     return GroupSpectrum(found[index[:, 0]], share_at[:, None] * nearby)
 

@@ -15,9 +15,10 @@ from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid, GridShape, Layout, Spike, lay_out, thick_film_exit, zone_width
 from ehdmaps.ehl.linearisation import Linearisation, Neighbour, Response, linearised
 from ehdmaps.ehl.newton import CONVERGED, hertz_start, newton
-from ehdmaps.ehl.profile import Profile, films_of, front, front_node, moved, refined
+from ehdmaps.ehl.profile import Profile, films_of, front, front_cell, front_node, moved, refined
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.physics.films import moes_central
+from ehdmaps.physics.isotherm import log_viscosity
 from ehdmaps.physics.moes import valley_load_number
 from ehdmaps.physics.peak import peak_sampling_error
 
@@ -45,8 +46,21 @@ VALLEY_REFINEMENT = 1.2
 THIN_FILM = 20.0
 """Load M above which a negative loss can only be a numerical one."""
 
+SEARCH_DENSITY = 6.5
+"""Density of cells up to which a spike is looked for from afar; finer grids start from the solution there. Newton moves
+a front by one cell a step, and a narrower cell lets it move less far."""
+
+REFINEMENT = 1.5
+"""Ratio of the densities of such grids, one after another."""
+
+NARROWING = 2.0
+"""Ratio of two spikes' widths up to which both grids have the spike at about the same share of their nodes."""
+
 LADDER_RATIO, STEEP_LADDER_RATIO = 1.5, 1.2
 """Steps in M from a light load up to a point that does not converge by itself, up to L = 30 and above."""
+
+LADDER_FEET = 1.0, 0.2
+"""Starts of such a ladder, over the load `COLD_START_BELOW`/2 or a lighter one: the second where the first fails."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +77,8 @@ class Resolution:
     tolerance : float
         Newton tolerance on the last step; convergence is quadratic, so what remains is about its square.
     spike_width : float
-        Width of the finest cells around the pressure spike [b]; less where inlet and exit zones are narrower.
+        Width of the finest cells around the pressure spike [b], see `finest_spike`; less where inlet and exit zones are
+        narrower.
     spike_steepness : float
         Fall of pressure behind the spike, in p_H per width of the exit zone, above which the spike gets cells of its
         own and the linearised grid follows it; M/100 times as much above M = 100, where the edge of the Hertz
@@ -78,6 +93,25 @@ class Resolution:
     spike_width: float = 0.1
     spike_steepness: float = 0.6
     shape: GridShape = field(default_factory=GridShape)
+
+    @property
+    def finest_spike(self) -> float:
+        """Width of the finest cells around the pressure spike [b] for this density.
+
+        Where the spike stands between two nodes is an error of the order of its cell. On finer grids the width falls
+        with the square of the density, so that this error falls with the third power.
+        """
+        return self.spike_width * self._narrowing
+
+    @property
+    def _narrowing(self) -> float:
+        """How much narrower the finest cells around the spike are than on a coarse grid."""
+        return min(1.0, SEARCH_DENSITY / self.density) ** 2
+
+    @property
+    def with_wide_spike(self) -> Resolution:
+        """The same but for a spike whose finest cells are as wide as on a coarse grid."""
+        return replace(self, spike_width=self.spike_width / self._narrowing)
 
 
 @dataclass(frozen=True)
@@ -142,13 +176,18 @@ def solve_groups(
     if _at_valley_bottom(M, L):
         resolution = replace(resolution, density=VALLEY_REFINEMENT * resolution.density)
     solution = _solve_once(problem, M, L, resolution, previous)
-    if solution.outcome == CONVERGED and (solution.loss > 0.0 or M < THIN_FILM):
-        return solution
-    # a grid too coarse for the inlet of a heavily loaded contact does not converge, or shows a negative loss
-    finer = replace(resolution, density=2.0 * resolution.density)
-    again = _solve_once(problem, M, L, finer, solution.profile)
-    steps = solution.steps + again.steps
-    return replace(again if again.outcome == CONVERGED else solution, steps=steps)
+    steps = solution.steps
+    for again in (resolution.with_wide_spike, replace(resolution, density=2.0 * resolution.density)):
+        if solution.outcome == CONVERGED and (solution.loss > 0.0 or M < THIN_FILM):
+            break
+        if again == resolution:
+            continue
+        # a front that is narrower than Newton finds its way to; a grid too coarse for the inlet of a heavily loaded
+        # contact, which does not converge either, or shows a negative loss
+        trial = _solve_once(problem, M, L, again, solution.profile)
+        steps += trial.steps
+        solution = trial if trial.outcome == CONVERGED else solution
+    return replace(solution, steps=steps)
 
 
 def _at_valley_bottom(M: float, L: float) -> bool:
@@ -167,16 +206,29 @@ def _solve_once(
     coarse, steps, outcome = _coarse(problem, M, L, resolution, previous)
     if coarse is None:
         return GroupSolution(outcome=outcome, profile=None, steps=steps)
-    grid = coarse.layout.grid(2 * coarse.cells)
-    fine, more, outcome = _converged(
-        problem, coarse.layout, grid, refined(coarse, grid), coarse.spike, resolution.tolerance
-    )
+    fine, more, outcome = _finer(coarse, resolution.tolerance)
     steps += more
     if fine is None:
         return GroupSolution(outcome=outcome, profile=None, steps=steps)
     linear, rough = linearised_profile(fine, resolution), linearised_profile(coarse, resolution)
     solution = _assembled(M, L, fine, coarse, linear.slow_response(), rough.slow_response(), resolution, steps)
     return replace(solution, linear=linear, rough_linear=rough)
+
+
+def _finer(coarse: Profile, tolerance: float) -> tuple[Profile | None, int, int]:
+    """Newton on the grid with twice the cells, by way of one with half as many more if need be."""
+    problem, layout, spike = coarse.problem, coarse.layout, coarse.spike
+    grid = layout.grid(2 * coarse.cells)
+    fine, total, outcome = _converged(problem, layout, grid, refined(coarse, grid), spike, tolerance)
+    if fine is None:
+        halfway = layout.grid(3 * coarse.cells // 2)
+        start = moved(coarse, halfway, by_index=False)
+        between, steps, _ = _converged(problem, layout, halfway, start, spike, tolerance)
+        total += steps
+        if between is not None:
+            fine, steps, outcome = _converged(problem, layout, grid, moved(between, grid, False), spike, tolerance)
+            total += steps
+    return fine, total, outcome
 
 
 def _converged(
@@ -201,6 +253,26 @@ def _converged(
 def _coarse(
     problem: LineProblem, M: float, L: float, resolution: Resolution, previous: Profile | None
 ) -> tuple[Profile | None, int, int]:
+    """Coarse solution with the spike in its place, on finer and finer grids up to the density that is asked for."""
+    density = min(resolution.density, SEARCH_DENSITY)
+    found, total, outcome = _first(problem, M, L, replace(resolution, density=density), previous)
+    finer = resolution
+    while found is not None and density < resolution.density:
+        growth = min(REFINEMENT, resolution.density / density)
+        density *= growth
+        for widening in (1.0, growth * growth):
+            finer = replace(finer, density=density, spike_width=widening * finer.spike_width)
+            trial, steps, outcome = _with_spike(problem, expected_film(M, L), finer, found)
+            total += steps
+            if trial is not None:
+                break
+        found = trial
+    return found, total, outcome
+
+
+def _first(
+    problem: LineProblem, M: float, L: float, resolution: Resolution, previous: Profile | None
+) -> tuple[Profile | None, int, int]:
     """Coarse solution with the spike in its place: from the previous point, from Hertz, or up a ladder of loads."""
     guess = expected_film(M, L)
     total, outcome = 0, CONVERGED
@@ -219,13 +291,26 @@ def _coarse(
 
 
 def _climb(problem: LineProblem, M: float, L: float, resolution: Resolution) -> tuple[Profile | None, int, int]:
-    """Start at a light load, where every start converges, and raise M step by step at the same L."""
+    """Start at a light load, and raise M step by step at the same L."""
+    total, outcome = 0, CONVERGED
+    for foot in LADDER_FEET:
+        rung, steps, outcome = _climb_from(foot * min(M, 0.5 * COLD_START_BELOW), problem, M, L, resolution)
+        total += steps
+        if rung is not None:
+            return rung, total, outcome
+    return None, total, outcome
+
+
+def _climb_from(
+    foot: float, problem: LineProblem, M: float, L: float, resolution: Resolution
+) -> tuple[Profile | None, int, int]:
+    """Up the ladder from the load `foot`."""
     ratio = LADDER_RATIO if L < 30.0 else STEEP_LADDER_RATIO
-    rungs = max(1, math.ceil(math.log(M / min(M, 0.5 * COLD_START_BELOW)) / math.log(ratio)))
+    rungs = max(1, math.ceil(math.log(M / foot) / math.log(ratio)))
     rung: Profile | None = None
     total, outcome = 0, CONVERGED
     for k in range(rungs + 1):
-        factor = (min(M, 0.5 * COLD_START_BELOW) / M) ** (1.0 - k / rungs)
+        factor = (foot / M) ** (1.0 - k / rungs)
         rung_film = expected_film(M * factor, L)
         rung, steps, outcome = _with_spike(at_load(problem, factor), rung_film, resolution, rung)
         total += steps
@@ -256,16 +341,18 @@ def _with_spike(
     """
     total = 0
     zone = zone_width(guess)
-    finest = resolution.spike_width * min(1.0, zone / 0.3)
-    spike = None
+    finest = resolution.finest_spike * min(1.0, zone / 0.3)
+    spike, same_share = None, False
     if previous is not None and previous.spike is not None:
         ratio = problem_load(problem) / problem_load(previous.problem)
-        spike = Spike(previous.spike.position * ratio**-0.7, finest)
+        same_share = previous.spike.width < NARROWING * finest and finest < NARROWING * previous.spike.width
+        place = previous.spike.position if same_share else front(previous)[0]
+        spike = Spike(place * ratio**-0.7, finest)
     solution = previous
     for attempt in range(MOST_MOVES):
         layout = lay_out(guess, resolution.inlet_length, resolution.shape, spike)
         grid = layout.grid(math.ceil(0.5 * resolution.density * layout.span))
-        unknowns = None if solution is None else moved(solution, grid, by_index=attempt == 0 and spike is not None)
+        unknowns = None if solution is None else moved(solution, grid, by_index=attempt == 0 and same_share)
         for tolerance in (LOOSE_TOLERANCE, resolution.tolerance):
             solution, steps, outcome = _converged(problem, layout, grid, unknowns, spike, tolerance)
             total += steps
@@ -322,11 +409,16 @@ def _assembled(
     central, minimum = films_of(fine)
     central_error, minimum_error = _film_errors(fine, coarse, by_offset)
 
-    def error(value: float, rough_value: float, share: float, lost: float) -> float:
-        """Relative, > 0 where refinement lowers the value; what the inlet's end loses is added in magnitude."""
-        grid = (rough_value - value) * share / value
-        return math.copysign(abs(grid) + lost * inlet, grid)
+    def error(value: float, rough_value: float, share: float, lost: float, least: float = 0.0) -> float:
+        """Relative, > 0 where refinement lowers the value; what the inlet's end loses is added in magnitude.
 
+        `least` is a difference of grids that this value shares at least.
+        """
+        grid = (rough_value - value) * share / value
+        return math.copysign(max(abs(grid), abs(least * share / value)) + lost * inlet, grid)
+
+    # parts of one complex number: where a spike between two nodes hides the error of the loss, the compliance shows it
+    hidden = rough.compliance - response.compliance if fine.spike is not None else 0.0
     return GroupSolution(
         outcome=CONVERGED,
         profile=fine,
@@ -341,7 +433,7 @@ def _assembled(
         mass_flow=fine.mass_flow,
         film_offset_error=error(fine.film_offset, coarse.film_offset, by_offset, 3.0),
         film_compliance_error=error(response.compliance, rough.compliance, by_response, 6.0),
-        loss_error=error(response.loss, rough.loss, by_response, 6.0),
+        loss_error=error(response.loss, rough.loss, by_response, 6.0, hidden),
         central_film_error=central_error + 3.0 * inlet,
         minimum_film_error=minimum_error + 3.0 * inlet,
         max_pressure_error=_peak_error(fine, coarse),
@@ -371,15 +463,44 @@ def _film_errors(fine: Profile, coarse: Profile, share: float) -> tuple[float, f
 def _peak_error(fine: Profile, coarse: Profile) -> float:
     """Relative error of the largest pressure, which is that of a node.
 
-    What stands between two nodes; and the difference between both grids: of the nodes where there is a spike, whose
-    tip is resolved to first order at best, else of the peaks by parabolas, whose order is four.
+    What stands between two nodes; the difference between both grids: of the nodes where there is a spike, whose tip is
+    resolved to first order at best, else of the peaks by parabolas, whose order is four; and what the tip of a spike
+    may rise above its cell.
     """
     highest, spiked = float(np.max(fine.pressure)), fine.spike is not None
     between = peak_sampling_error(fine.position, fine.pressure, spiked)
     if spiked:
-        return between + FIRST_ORDER * abs(float(np.max(coarse.pressure)) / highest - 1.0)
+        apart = abs(float(np.max(coarse.pressure)) / highest - 1.0)
+        return between + FIRST_ORDER * apart + max(tip_pressure(fine) / highest - 1.0, 0.0)
     rough = float(np.max(coarse.pressure)) * (1.0 + peak_sampling_error(coarse.position, coarse.pressure, False))
     return 1.5 * between + 1.5 / 15.0 * abs(rough / highest - 1.0 - between)
+
+
+def tip_pressure(profile: Profile) -> float:
+    """Pressure that the tip of a spike may have above the cell that holds it [p_H].
+
+    Before a spike the oil is a plug, behind it Q = Int dP/eta falls with the square of the distance x, so that there
+    ln eta ~ -2 ln x, and upstream about -ln x. This goes on down to x = 1/sqrt(pi lambda eta/H^3), where the flow by
+    pressure in the plug is what the film behind takes: with -ln x from the cell to the tip, ln eta rises from that of
+    the highest node of the front by twice the logarithm of the cell over that width. An estimate of size, not a bound.
+
+    Parameters
+    ----------
+    profile : Profile
+        A solution with a spike.
+    """
+    pressure, x = profile.pressure, profile.grid.x
+    cell = front_cell(profile)
+    top = max(cell - 2, 1) + int(np.argmax(pressure[max(cell - 2, 1) : cell + 2]))
+    law = profile.problem.isotherm
+    log_eta = float(log_viscosity(law, float(pressure[top]))[0])
+    squared = math.pi * profile.problem.wedge / float(profile.film[top]) ** 3 * float(x[top + 1] - x[top]) ** 2
+    above = float(pressure[top]) * np.linspace(1.0, MOST_TIP, 200)
+    return float(np.interp(2.0 * log_eta + math.log(squared), log_viscosity(law, above)[0], above))
+
+
+MOST_TIP = 5.0
+"""Pressure of a tip over that of its cell to which an estimate goes: an oil with a largest viscosity has no limit."""
 
 
 def _rolling_error(fine: Profile, coarse: Profile) -> float:
@@ -407,8 +528,8 @@ def _offset_share(M: float, spike: bool) -> float:
 def response_share(M: float, L: float, spike: bool) -> float:
     """Share of the difference between both grids that is left as error of the response on the finer one.
 
-    p = 4; p = 2 at the valley, where the response is a small difference of large parts whose errors have either sign. A
-    sharp front (L > 12) leaves it between the two.
+    p = 4; p = 2 at a front narrower than a cell (L > 12), and at the valley, where the response is a small difference
+    of large parts whose errors have either sign.
 
     Parameters
     ----------
@@ -417,8 +538,8 @@ def response_share(M: float, L: float, spike: bool) -> float:
     spike : bool
         Whether the grid has a spike term.
     """
-    if 0.6 < M < 2.0 or L > 30.0:
+    if 0.6 < M < 2.0 or L > 30.0 or (spike and L > 12.0):
         return 1.0 / 3.0
-    if (spike and L > 12.0) or 0.2 < M < 0.6:
+    if 0.2 < M < 0.6:
         return 1.5 * FOURTH
     return FOURTH

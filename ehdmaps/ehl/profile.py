@@ -70,20 +70,23 @@ class Profile:
         return abs(plain - film_times_rise(film, self.pressure)) / self.rolling_force
 
 
+def front_cell(profile: Profile) -> int:
+    """The cell in which the pressure falls fastest behind its maximum."""
+    pressure = profile.pressure
+    top = int(np.argmax(pressure))
+    return top + int(np.argmax(-np.diff(pressure[top:]) / np.diff(profile.grid.x[top:])))
+
+
 def front(profile: Profile) -> tuple[float, float]:
     """Where the pressure falls fastest behind its maximum, relative to the exit [b], and how fast [p_H/b]."""
-    pressure = profile.pressure
-    fall = -np.diff(pressure) / np.diff(profile.grid.x)
-    top = int(np.argmax(pressure))
-    cell = top + int(np.argmax(fall[top:]))
-    return float(profile.grid.face[cell]), float(fall[cell])
+    pressure, x, cell = profile.pressure, profile.grid.x, front_cell(profile)
+    fall = (pressure[cell] - pressure[cell + 1]) / (x[cell + 1] - x[cell])
+    return float(profile.grid.face[cell]), float(fall)
 
 
 def front_node(profile: Profile) -> int:
     """The node half-way down the front."""
-    place, _ = front(profile)
-    pressure = profile.pressure
-    cell = int(np.searchsorted(profile.grid.face, place - 1e-12))
+    pressure, cell = profile.pressure, front_cell(profile)
     around = 0.5 * (pressure[max(cell - 1, 0)] + pressure[min(cell + 2, pressure.size - 1)])
     node = cell if abs(pressure[cell] - around) < abs(pressure[cell + 1] - around) else cell + 1
     return min(max(node, 1), pressure.size - 2)

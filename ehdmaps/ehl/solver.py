@@ -35,6 +35,7 @@ from ehdmaps.physics.solution import (
     slow_spectrum,
 )
 from ehdmaps.physics.traction import FilmProfile
+from ehdmaps.physics.wall_stress import wall_stress_note
 
 HEAVIEST_LOAD_NUMBER = 2e6
 """Moes' M above which the film is too thin for double precision to see it beside the elastic deflection."""
@@ -305,16 +306,19 @@ def _in_si(
     """Scale films by b^2/R, the compliance by b/(p_H R), the loss by b^2/(p_H R u), the rolling force by p_H b^2/R."""
     film = half * half / contact.radius
     compliance = half / (peak * contact.radius)
-    status, reason = Status.CONVERGED, ""
+    status, notes = Status.CONVERGED, []
     thickness = groups.film_offset * film / contact.radius
     if thickness > THIN_FILM_LIMIT:
         status = Status.ASYMPTOTE
-        reason = "film thicker than 1 % of the radius: limit of thin-film theory, Reynolds with a parabolic gap"
+        notes.append("film thicker than 1 % of the radius: limit of thin-film theory, Reynolds with a parabolic gap")
     elif groups.loss < 0.0:
-        reason = "negative damping at the valley of an isothermal, Newtonian film; a contact law takes zero"
+        notes.append("negative damping at the valley of an isothermal, Newtonian film; a contact law takes zero")
+    profile = groups.profile
+    assert profile is not None
+    notes.append(wall_stress_note(profile.position * half, profile.pressure, profile.film * film))
     return FilmSolution(
         status=status,
-        reason=reason,
+        reason="; ".join(filter(None, notes)),
         film_offset=groups.film_offset * film,
         film_compliance=groups.film_compliance * compliance,
         loss_compliance=groups.loss * compliance * half / speed,
@@ -333,5 +337,5 @@ def _in_si(
         mass_flow_error=groups.mass_flow_error,
         iterations=groups.steps,
         solve_seconds=seconds,
-        viscosity_extrapolated=groups.max_pressure * peak > state.fitted_pressure,
+        viscosity_extrapolated=groups.max_pressure * peak * (1.0 + groups.max_pressure_error) > state.fitted_pressure,
     )

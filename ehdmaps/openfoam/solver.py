@@ -37,6 +37,7 @@ from ehdmaps.physics.solution import (
     slow_spectrum,
 )
 from ehdmaps.physics.spectrum import neighbours, read_beside
+from ehdmaps.physics.wall_stress import wall_stress_note
 
 CAVITATION_RANGE = 1e-6
 """Pressure over which liquid turns into the cavitated mixture, over the largest of the film (about)."""
@@ -323,7 +324,8 @@ class OpenFoamSolver(ContactSolverDefaults):
                 status, iterations = error.status, done + error.iterations
             return FilmSolution(status, f"{stage}: {error}", iterations=iterations, solve_seconds=seconds), None, None
         seconds = time.perf_counter() - began
-        return _film(contact, state, point.entrainment_speed, coarse, grid, seconds), coarse, grid
+        newtonian = self.shear == "newtonian"
+        return _film(contact, state, point.entrainment_speed, coarse, grid, seconds, newtonian), coarse, grid
 
     def parameters(
         self,
@@ -410,6 +412,7 @@ def _film(
     coarse: GridSolution,
     fine: GridSolution,
     seconds: float,
+    newtonian: bool,
 ) -> FilmSolution:
     """The fine solution with its errors, estimated as a third of the difference between both.
 
@@ -429,6 +432,10 @@ def _film(
         notes.append("film thicker than 1 % of the radius: the gap is that of a parabola")
     elif found.loss_compliance[0] < 0.0:
         notes.append("negative damping at the valley of an isothermal film; a contact law takes zero")
+    if newtonian:
+        notes.append(wall_stress_note(fine.film.x, fine.film.pressure, fine.film.film))
+    largest_error = abs(error(found.max_pressure, rough.max_pressure))
+    largest_error += peak_sampling_error(fine.film.x, fine.film.pressure, cusp=True)
     return FilmSolution(
         status=status,
         reason="; ".join(filter(None, notes)),
@@ -445,13 +452,12 @@ def _film(
         loss_compliance_error=error(found.loss_compliance[0], rough.loss_compliance[0]),
         central_film_error=abs(error(found.central_film, rough.central_film)),
         minimum_film_error=abs(error(found.minimum_film, rough.minimum_film)),
-        max_pressure_error=abs(error(found.max_pressure, rough.max_pressure))
-        + peak_sampling_error(fine.film.x, fine.film.pressure, cusp=True),
+        max_pressure_error=largest_error,
         rolling_force_error=abs(error(rolling, rough_rolling)),
         mass_flow_error=abs(error(flow, rough_flow)),
         iterations=rough.iterations + found.iterations,
         solve_seconds=seconds,
-        viscosity_extrapolated=found.max_pressure > state.fitted_pressure,
+        viscosity_extrapolated=found.max_pressure * (1.0 + largest_error) > state.fitted_pressure,
     )
 
 

@@ -44,21 +44,33 @@ def numpy_residual(problem: LineProblem, profile: Profile, unknowns: np.ndarray)
     p = np.maximum(pressure, 0.0)
     log_eta, slope = log_viscosity(problem.isotherm, p)
     slope = np.where(pressure >= 0.0, slope, 0.0)
-    rho, rho_slope = density_over_pressure(problem.isotherm, p)
     gap = unknowns[n + 1] + 0.5 * (unknowns[n] + grid.x) ** 2 - kernel @ pressure
     by_unknowns = np.column_stack([-kernel[:, 1:n], np.zeros(n + 1), unknowns[n] + grid.x, np.ones(n + 1)])
     rows, inner = np.arange(n), np.zeros((n + 1, n + 2))
     inner[np.arange(1, n), np.arange(n - 1)] = 1.0  # d pressure / d unknowns
-    # cell flow
-    d = np.clip(np.diff(log_eta), -300.0, 300.0)
+    # cell flow: ln(eta/rho) is a parabola through both ends and the middle of a cell
+    rho, rho_slope = density_over_pressure(problem.isotherm, p)
+    halfway = np.maximum(0.5 * (pressure[1:] + pressure[:-1]), 0.0)
+    middle_eta, middle_eta_slope = log_viscosity(problem.isotherm, halfway)
+    middle_rho, middle_rho_slope = density_over_pressure(problem.isotherm, halfway)
+    middle_slope = middle_eta_slope - middle_rho_slope / middle_rho
+    rho_slope = np.where(pressure >= 0.0, rho_slope, 0.0)
+    kinematic, slope = log_eta - np.log(rho), slope - rho_slope / rho
+    d = np.clip(np.diff(kinematic), -300.0, 300.0)
     small = np.abs(d) < 1e-2
     safe = np.where(small, 1.0, d)
     phi = np.where(small, 1.0 - d / 2 + d * d / 6 - d**3 / 24, -np.expm1(-safe) / safe)
     dphi = np.where(small, -0.5 + d / 3 - d * d / 8, (np.exp(-safe) * (safe + 1.0) - 1.0) / safe**2)
-    fluidity, rise = np.exp(-log_eta[:-1]), np.diff(pressure)
-    flow = fluidity * phi * rise
-    left = -fluidity * (phi + dphi) * slope[:-1] * rise - fluidity * phi
-    right = fluidity * dphi * slope[1:] * rise + fluidity * phi
+    bend = 4.0 * (kinematic[1:] + kinematic[:-1]) - 8.0 * (middle_eta - np.log(middle_rho))
+    even = np.abs(d) < 0.1
+    size = np.where(even, 1.0, d)
+    coth = 1.0 / np.tanh(0.5 * size)
+    weight = np.where(even, 1.0 / 6.0 - d * d / 360.0 + d**4 / 15120.0, coth / size - 2.0 / size**2)
+    by_d = np.where(even, -d / 180.0 + d**3 / 3780.0, 0.5 * (1.0 - coth**2) / size - coth / size**2 + 4.0 / size**3)
+    mean, rise = np.exp(0.5 * bend * weight - kinematic[:-1]) * phi, np.diff(pressure)
+    flow, by_step = mean * rise, dphi / phi + 0.5 * bend * by_d
+    left = mean * ((2.0 * weight * (slope[:-1] - middle_slope) - slope[:-1] * (1.0 + by_step)) * rise - 1.0)
+    right = mean * ((2.0 * weight * (slope[1:] - middle_slope) + slope[1:] * by_step) * rise + 1.0)
     by_flow = left[:, None] * inner[:-1] + right[:, None] * inner[1:]
     by_jump = slope[1:, None] * inner[1:] - slope[:-1, None] * inner[:-1]
     # fourth-order correction
@@ -86,16 +98,14 @@ def numpy_residual(problem: LineProblem, profile: Profile, unknowns: np.ndarray)
         else:
             central[f, f - 1 : f + 3] = np.array([-1, 9, 9, -1]) / 16.0
     face = central @ gap
-    rho_face = 0.5 * (rho[1:] + rho[:-1])
-    conductance = rho_face * face**3 / (problem.wedge * grid.face_step)
+    conductance = face**3 / (problem.wedge * grid.face_step)
     flux = conductance * gradient
     mass = rho * gap
     by_mass = rho[:, None] * by_unknowns + (rho_slope * gap)[:, None] * inner
-    by_rho = 0.5 * (rho_slope[:-1, None] * inner[:-1] + rho_slope[1:, None] * inner[1:])
     out, jacobian = np.empty(n + 2), np.zeros((n + 2, n + 2))
     out[:n] = flux - upwind @ mass + unknowns[n - 1]
     jacobian[:n] = conductance[:, None] * by_gradient + (3.0 * flux / face)[:, None] * (central @ by_unknowns)
-    jacobian[:n] += (flux / rho_face)[:, None] * by_rho - upwind @ by_mass
+    jacobian[:n] -= upwind @ by_mass
     jacobian[:n, n - 1] += 1.0
     out[n], jacobian[n] = mass[n] - unknowns[n - 1], by_mass[n]
     jacobian[n, n - 1] -= 1.0

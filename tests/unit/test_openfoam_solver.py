@@ -227,6 +227,7 @@ def test_a_program_that_cannot_be_started(fake, tmp_path):
     [
         ("thick", Status.ASYMPTOTE, "film thicker than 1 % of the radius"),
         ("negative", Status.CONVERGED, "negative damping at the valley"),
+        ("steep", Status.CONVERGED, "wall stress 2.1 of the pressure, above 0.1: no oil is Newtonian there"),
     ],
 )
 def test_solutions_with_a_remark(fake, mode, status, reason):

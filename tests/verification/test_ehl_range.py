@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
+from ehdmaps.ehl.line import Resolution, solve_groups
+from ehdmaps.ehl.newton import CONVERGED
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
@@ -18,6 +21,7 @@ from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.solution import FilmSolution, Status, contact_solution
+from tests.benchmarks import bench_spikes as spikes
 
 OIL = Lubricant.named("FVA3")
 SOLVER = ReynoldsSolver()
@@ -47,7 +51,13 @@ def test_whole_range_has_a_solution_or_a_typed_status(contact: LineContact) -> N
                     continue
                 thick = film.film_offset > 0.01 * contact.radius
                 assert (film.status is Status.ASYMPTOTE) == (thick or speed == 0.0)
-                assert bool(film.reason) == (film.status is Status.ASYMPTOTE or film.loss_compliance < 0.0)
+                assert (
+                    not film.reason
+                    or film.status is Status.ASYMPTOTE
+                    or film.loss_compliance < 0.0
+                    or (film.reason.startswith("wall stress"))
+                )
+                assert film.reason or (film.status is Status.CONVERGED and film.loss_compliance >= 0.0)
                 assert film.minimum_film <= film.central_film * 1.0001
                 if speed > 0.0:
                     assert film.minimum_film > 0.0
@@ -140,6 +150,41 @@ def test_errors_of_films_and_pressure_and_their_estimates() -> None:
     # an estimate that bounds 95 % of all points bounds at least 54 of 60 drawn ones with 98 % probability
     assert np.all(np.count_nonzero(table >= 1.0, axis=0) >= 54), np.mean(table >= 1.0, axis=0)
     assert np.all(np.median(table, axis=0) <= 5.0), np.median(table, axis=0)
+
+
+def test_errors_at_steep_spikes() -> None:
+    """Cold, loaded contacts of four oils: what is stated bounds what is wrong, and finer grids have a solution."""
+    points = spikes.random_points(7, 24)
+    fine = Resolution(density=18.0, inlet_length=600.0)
+    ratios = []
+    for point in points:
+        found, exact = (solve_groups(point.problem, point.M, point.L, each) for each in (Resolution(), fine))
+        assert exact.outcome == CONVERGED
+        wrong = np.abs(spikes.values(point, found) / spikes.values(point, exact) - 1.0)
+        assert wrong[-2] < 0.01  # c, which a grid of second order misses by several per cent
+        ratios.append(spikes.stated(point, found)[:-1] / np.maximum(wrong, 1e-300))
+    table = np.array(ratios)
+    # an estimate that bounds 95 % of all points bounds at least 20 of 24 drawn ones with 99 % probability
+    assert np.all(np.count_nonzero(table >= 1.0, axis=0) >= 20), np.mean(table >= 1.0, axis=0)
+    assert np.all(np.median(table, axis=0) <= 15.0), np.median(table, axis=0)
+
+
+def test_pressure_at_the_tip_of_a_spike() -> None:
+    """The largest pressure of a default grid lies below that of cells of 1e-6 b, by less than it states."""
+    for point in spikes.random_points(8, 3):
+        found = solve_groups(point.problem, point.M, point.L, Resolution())
+        tip = float(np.median(spikes.tip_pressures(point, 14.0)))
+        assert abs(tip / found.max_pressure - 1.0) < found.max_pressure_error
+
+
+def test_wall_stress_of_a_spike_is_flagged() -> None:
+    """The thesis' loaded contact, cold, has a front that no Newtonian oil bears; a hot, thin film has none."""
+    contact = CONTACTS[2]
+    load = 40.0 / 0.45e-3
+    (cold,), (hot,) = (SOLVER.solve_line(contact, OIL, (load,), 3.297, celsius + 273.15) for celsius in (40.0, 120.0))
+    assert cold.status is Status.CONVERGED
+    assert re.fullmatch("wall stress 0[.][0-9]+ of the pressure, above 0.1: no oil is Newtonian there", cold.reason)
+    assert hot.reason == ""
 
 
 def test_border_of_thin_film_theory_is_continuous() -> None:
