@@ -39,10 +39,10 @@ parabolas. G counts from the last state."""
 KEPT = 8
 """Steps for which parabolas are kept at most: the law follows the speed."""
 
-_PART = 2.0**-7
-"""How far a parabola reaches, as a part of the distance from the centre of the table: half a cell or less."""
+_PART = 2.0**-6
+"""How far a parabola reaches, as a part of the distance from the centre of the table: a cell or less."""
 
-_LOAD_PART = 2.0**-5
+_LOAD_PART = 2.0**-4
 _TOLERANCE = 3e-5
 _SMALL = 30.0
 """A slice has its state when the last move changed its load by less than `_TOLERANCE` of the load and this [N/m]: what
