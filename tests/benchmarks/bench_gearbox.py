@@ -1,6 +1,6 @@
 """Run-ups of the shipped gearbox: their cost beside their error, over step, slices, damping of the method and modes.
 
-Run: python -m tests.benchmarks.bench_gearbox MAP.nc [--duration 0.5 | --whole] [--housing FILE.nc]
+Run: python -m tests.benchmarks.bench_gearbox MAP.nc [--duration 0.5 | --whole] [--housing FILE.nc] [--films KIND]
 
 The ramp is that of the scene, 400 rpm each second: a piece of it around 1500 rpm, or with --whole all of its 5 s with
 fewer rows. Each row is one run beside another that differs by what the table is about. Its columns:
@@ -29,6 +29,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import scipy.linalg
@@ -41,6 +42,7 @@ from mbs.model.body import Body, Frame
 from mbs.model.elements import Operation, Sensor
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Course, SpeedProfile
+from mbs.model.relaxation import DEFAULT_FILMS, Films
 from mbs.model.system import System
 from mbs.scene.assembly import Model, assemble
 from mbs.scene.bodies import build_bodies
@@ -116,6 +118,7 @@ class Bench:
     duration: float
     whole: bool
     housing: str | None
+    films: Films
 
     @property
     def ramp(self) -> RunUp:
@@ -145,7 +148,8 @@ class Bench:
         scene = parse_scene(text, self.scene.name, self.scene.name)
         scene = scene.with_bearings(dataclasses.replace(entry, slices=variant.slices) for entry in scene.bearings)
         bodies = [truncated(body, variant.housing) for body in build_bodies(scene.bodies)]
-        return assemble(dataclasses.replace(scene, bodies=bodies), variant.law, self.emap)
+        films = self.films if variant.law == "map" else None
+        return assemble(dataclasses.replace(scene, bodies=bodies), variant.law, self.emap, films=films)
 
     @functools.cache  # noqa: B019 - one bench a process
     def made(self, variant: Variant) -> Made:
@@ -370,13 +374,14 @@ def main() -> None:
     parser.add_argument("--duration", type=float, default=0.5, help="of the piece of the ramp around 1500 rpm [s]")
     parser.add_argument("--whole", action="store_true", help="the whole ramp of 5 s; fewer rows")
     parser.add_argument("--housing", help="the same housing with modes up to 12 kHz, by `python -m examples.housings`")
+    parser.add_argument("--films", choices=get_args(Films), default=DEFAULT_FILMS, help="of the map")
     given = parser.parse_args()
     if not SHORTEST <= given.duration <= LONGEST:
         parser.error(f"--duration: got {given.duration:g} s; allowed: {SHORTEST:g} to {LONGEST:g} s")
     scene = read_scene("gearbox")
     assert scene.run_up is not None
     duration = scene.run_up.duration if given.whole else given.duration
-    bench = Bench(scene, ehdmaps.open_map(given.map), duration, given.whole, given.housing)
+    bench = Bench(scene, ehdmaps.open_map(given.map), duration, given.whole, given.housing, given.films)
     begin, end = (bench.speed.at(at)[0] / RPM for at in (0.0, duration))
     print(f"{scene.title}: {begin:.0f} to {end:.0f} rpm in {duration:g} s; levels {Reference.of(bench.sensor).text}")
     for law in ("map", "hertz"):
