@@ -187,9 +187,9 @@ def _scales(axes: Axes, loads: FloatArray, values: FloatArray, name: str) -> Non
 def _approach_scale(axes: Axes, known: FloatArray) -> None:
     """Logarithmic both ways from zero, linear about it."""
     axes.set_yscale("symlog", linthresh=LINEAR_APPROACH, linscale=0.6)
-    axes.set_ylim(
-        *(1.5 * limit if abs(limit) > LINEAR_APPROACH else 1.1 * limit for limit in (known.min(), known.max()))
-    )
+    low, high = (1.5 * limit if abs(limit) > LINEAR_APPROACH else 1.1 * limit for limit in (known.min(), known.max()))
+    if low < high:
+        axes.set_ylim(low, high)
     decades = 10.0 ** np.arange(0, 8)
     axes.yaxis.set_major_locator(FixedLocator([*(-decades[::-1]), 0.0, *decades]))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
