@@ -38,6 +38,13 @@ SHARES = {"law_": 0.99, "law_valley_": 0.95}
 MOST_TRIES = 10
 """Draws per point in the valley: a map may hold a part of it, or none."""
 
+STANDS_ON_LINES = (
+    "these laws are made from refinement lines whose steps are fixed: other axes of [grid] do not bring them closer to "
+    "their bars; the quantiles of their errors stand above; `ehdmaps solve` gives a single point without a law"
+)
+STANDS_ON_POINTS = "these laws are made from the points of the map: more temperatures, speeds or loads help"
+"""What can be done where a bar is unmet: the steps of a backbone are constants of `ehdmaps.maps.backbone_plan`."""
+
 NOTHING = {"film_compliance": "none: no film to relate to", "damping": "none: no damping above zero to relate to"}
 """What stands in place of quantiles where no point has one."""
 
@@ -114,8 +121,16 @@ def checked_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -
         return {"law_check_points": len(check.tasks), "law_refused": str(error)}
 
 
-def unmet(dataset: xr.Dataset) -> list[str]:
-    """What the laws of a map miss, a line each; nothing where they were not checked."""
+def unmet(dataset: xr.Dataset, with_backbone: bool) -> list[str]:
+    """What the laws of a map miss, a line each, and what can be done; nothing where they were not checked.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map, with what its check found.
+    with_backbone : bool
+        Whether its laws are made from a backbone, and not from its own points.
+    """
     missed = []
     if "law_refused" in dataset.attrs:
         missed.append(f"no contact law: {dataset.attrs['law_refused']}")
@@ -126,8 +141,10 @@ def unmet(dataset: xr.Dataset) -> list[str]:
                 where = "in the damping valley" if "valley" in prefix else "over the map"
                 missed.append(
                     f"unmet: {name.replace('_', ' ')} of the contact laws is within its bar at {found:.1%} of the "
-                    f"points {where}; wanted {share:.0%}; more temperatures, speeds or loads, or a finer grid, help"
+                    f"points {where}; wanted {share:.0%}"
                 )
+    if any(line.startswith("unmet") for line in missed):
+        missed.append(STANDS_ON_LINES if with_backbone else STANDS_ON_POINTS)
     return missed
 
 

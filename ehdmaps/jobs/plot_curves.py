@@ -168,8 +168,9 @@ def _colour(sheet: Sheet, index: int) -> Any:
 def _scales(axes: Axes, loads: FloatArray, values: FloatArray, name: str) -> None:
     """Set log scales where there is something to show, and a quiet grid."""
     axes.set_xscale("log")
-    if loads.size > 1:
-        axes.set_xlim(loads[0], loads[-1])
+    # one load stands alone in the middle of two decades
+    beside = 1.0 if loads.size > 1 else 10.0
+    axes.set_xlim(loads[0] / beside, loads[-1] * beside)
     known = values[np.isfinite(values)]
     positive = known[known > 0]
     if name == "approach" and known.size:

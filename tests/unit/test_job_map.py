@@ -15,6 +15,7 @@ from ehdmaps.jobs.compare import compare, comparison_text
 from ehdmaps.jobs.curves import curves, law_field
 from ehdmaps.jobs.describe import describe
 from ehdmaps.jobs.generate import generate
+from ehdmaps.jobs.law_check import STANDS_ON_LINES, STANDS_ON_POINTS, unmet
 from ehdmaps.jobs.plot import plot_map
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.report import ERRORS, holes
@@ -31,7 +32,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status, contact_solution
-from tests.cases.jobs import LINE, SMALL
+from tests.cases.jobs import DRY, LINE, SMALL, spaced
 
 
 @dataclass(frozen=True)
@@ -458,10 +459,11 @@ def test_compare_refuses_maps_without_common_points():
         (SMALL, None),
         (LINE, None),
         (SMALL.replace("points = 7", "points = 2"), None),
+        (SMALL.replace(spaced("1 N/mm", "1000 N/mm", 7), '["50 N/mm"]'), None),
         (LINE, HertzSolver()),
         (SMALL, Holey((1e3, 1e4, 31622.776601683792), version="1")),
     ],
-    ids=["bearing", "one contact", "two loads", "dry", "holes"],
+    ids=["bearing", "one contact", "two loads", "one load", "dry", "holes"],
 )
 def test_every_kind_of_map_can_be_drawn(tmp_path, text, solver):
     plot_map(EHDMap(made(job_of(text), solver)), tmp_path / "a.png")
@@ -487,6 +489,29 @@ def test_the_page_names_what_it_shows(tmp_path, monkeypatch):
         "80 converged, 4 stagnated, 4 filled",
     ):
         assert part in text
+
+
+def test_unmet_bars_are_said_with_what_helps():
+    dataset = made(job_of())
+    worse = dataset.assign_attrs(law_damping_within_bar=0.98, law_valley_damping_within_bar=0.96)
+    missed = "unmet: damping of the contact laws is within its bar at 98.0% of the points over the map; wanted 99%"
+    assert unmet(worse, True) == [missed, STANDS_ON_LINES]
+    assert unmet(worse, False) == [missed, STANDS_ON_POINTS]
+    assert unmet(dataset.assign_attrs(law_refused="holes"), True) == ["no contact law: holes"]
+    assert unmet(dataset, True) == unmet(dataset, False) == []
+
+
+def test_the_check_of_dry_laws_holds_no_numbers_of_nothing(tmp_path):
+    generated = generate(job_of(DRY, law_check=20), tmp_path / "dry.nc", workers=1)
+    found = {name: value for name, value in generated.dataset.attrs.items() if name.startswith("law_")}
+    assert (
+        found["law_film_compliance_error"] == found["law_valley_film_compliance_error"] == "none: no film to relate to"
+    )
+    assert found["law_damping_error"] == "none: no damping above zero to relate to"
+    # 1/k and c are held to their second bars, which are no shares of the film's
+    assert all(value == 1.0 for name, value in found.items() if name.endswith("_within_bar"))
+    for text in (summary(generated, tmp_path / "dry.nc"), describe(EHDMap(generated.dataset), "dry.nc")):
+        assert not re.search(r"\bnan\b|e\+\d\d\d", text)
 
 
 def test_tradeoff_measures_against_the_reference():
