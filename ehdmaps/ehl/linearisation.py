@@ -104,7 +104,8 @@ def storage(linear: Arrays, rate: FloatArray) -> FloatArray:
     if rate.size > n + 2:
         mass_rate += linear.grid_mass * rate[n + 2]
     added = np.zeros(rate.size)
-    added[:n] = -mass_rate[:n]
+    for i in range(n):
+        added[i] = -mass_rate[i]
     added[n] = mass_rate[n]
     return added
 

@@ -321,7 +321,7 @@ def _in_si(
         notes.append("negative damping at the valley of an isothermal, Newtonian film; a contact law takes zero")
     profile = groups.profile
     assert profile is not None
-    notes.append(wall_stress_note(profile.position * half, profile.pressure, profile.film * film))
+    notes.append(wall_stress_note(profile.position * half, profile.pressure * peak, profile.film * film))
     return FilmSolution(
         status=status,
         reason="; ".join(filter(None, notes)),

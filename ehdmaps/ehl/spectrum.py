@@ -116,7 +116,8 @@ def _extend(linear: Arrays, basis: FloatArray, hessenberg: FloatArray, count: in
     found = solved(linear, storage(linear, basis[count]))
     for _ in range(2):
         along = basis[: count + 1] @ found
-        hessenberg[: count + 1, count] += along
+        for i in range(count + 1):
+            hessenberg[i, count] += along[i]
         found -= along @ basis[: count + 1]
     length = float(np.linalg.norm(found))
     hessenberg[count + 1, count] = length

@@ -13,6 +13,10 @@ from ehdmaps.arrays import FloatArray
 NEWTONIAN_LIMIT = 0.1
 """Wall stress over pressure above which a point is flagged: a choice, above the limiting stresses that oils have."""
 
+NEWTONIAN_STRESS = 1e6
+"""Shear stress up to which every oil is taken as Newtonian [Pa], a choice: mineral oils have Eyring stresses of 2 to
+10 MPa. Thick films under little load have small pressures, steep beside themselves, and hardly any stress."""
+
 LOADED = 0.1
 """Part of the largest pressure below which a place does not count: at the exit the pressure itself goes to zero."""
 
@@ -25,12 +29,13 @@ def wall_stress_share(position: FloatArray, pressure: FloatArray, film: FloatArr
     Parameters
     ----------
     position, pressure, film : ndarray, shape (n,)
-        Rising places, pressures that are not negative, and film thicknesses there; lengths in one unit.
+        Rising places, pressures that are not negative [Pa], and film thicknesses there; lengths in one unit.
 
     Returns
     -------
     float
-        max of (h/2) abs(dp/dx)/p where p is above a tenth of the largest pressure; 0 where there is no pressure.
+        max of (h/2) abs(dp/dx)/p where p is above a tenth of the largest pressure and the stress above
+        `NEWTONIAN_STRESS`; 0 where there is no such place.
 
     Examples
     --------
@@ -41,11 +46,9 @@ def wall_stress_share(position: FloatArray, pressure: FloatArray, film: FloatArr
     0.125
     """
     between = 0.5 * (pressure[1:] + pressure[:-1])
-    loaded = between > LOADED * float(np.max(pressure))
-    if not loaded.any():
-        return 0.0
     stress = 0.25 * (film[1:] + film[:-1]) * np.abs(np.diff(pressure)) / np.diff(position)
-    return float(np.max(stress[loaded] / between[loaded]))
+    counted = (between > LOADED * float(np.max(pressure))) & (stress > NEWTONIAN_STRESS)
+    return float(np.max(stress[counted] / between[counted], initial=0.0))
 
 
 def wall_stress_note(position: FloatArray, pressure: FloatArray, film: FloatArray) -> str:

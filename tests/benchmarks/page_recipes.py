@@ -50,11 +50,13 @@ class Output:
 
 @dataclass(frozen=True)
 class Mode:
-    """A row of a mode in a sweep: frequency at the first and last speed [Hz]; energy in the bearings if undamped."""
+    """A row of a mode in a sweep: frequency at the first and last speed [Hz], its damping ratio at the first; energy in
+    the bearings if undamped."""
 
     first: float
     last: float
     energy: tuple[float, float] = (0.0, 0.0)
+    damping_ratio: float = 0.0
 
     @property
     def change(self) -> float:
@@ -94,11 +96,14 @@ class Case:
         return max(mode.change for mode in self.complex.values())
 
     def bearing_modes(self) -> list[Mode]:
-        """Complex modes that fall and have half and more of their energy in the bearings (0.45 at either end)."""
+        """Complex modes along the load with half and more of their energy in the bearings (0.45 at either end).
+
+        Those across the load lie below 1.5 kHz.
+        """
         return [
             mode
             for number, mode in self.complex.items()
-            if number in self.undamped and max(self.undamped[number].energy) >= 0.45 and mode.change < -0.5
+            if number in self.undamped and max(self.undamped[number].energy) >= 0.45 and mode.first > 1500.0
         ]
 
 
@@ -117,7 +122,10 @@ def sweep_cases(text: str) -> list[Case]:
                 row + rf" .*%.*%.* {NUMBER} to {NUMBER}$", tables[0].rstrip()
             )
         }
-        modes = {int(n): Mode(float(first), float(last)) for n, first, last in re.findall(row, tables[1])}
+        modes = {
+            int(number): Mode(float(first), float(last), damping_ratio=float(ratio))
+            for number, first, last, ratio in re.findall(row + rf" +{NUMBER} to ", tables[1])
+        }
         case = re.search(r"(?m)^  case: (.*)$", part)
         found.append(
             Case(case[1] if case else part.partition("\n")[0], Along((k0, k1), (c0, c1)), undamped, modes, part)
@@ -156,7 +164,7 @@ def shaft_bearing_modes(outputs: Sequence[Output]) -> list[Figure]:
     """Modes that fall, over clearance, load and cage angle."""
     clearances, loads, *angles = (output.text for output in outputs)
     middle = one_case([clearances], "Reynolds map, 30 um")
-    found: list[Figure] = given("30")
+    found: list[Figure] = given("1.5 30")
     for mode in middle.bearing_modes():
         found += [mode.first, mode.last, mode.change]
     for clearance in ("40", "20"):
@@ -336,14 +344,35 @@ def highest_levels(text: str) -> list[float]:
     return [float(level) for level in re.findall(rf"highest sum level {NUMBER} dB", text)]
 
 
-def clearances(outputs: Sequence[Output]) -> list[Figure]:
-    """The table of differences over clearance."""
-    found: list[Figure] = given("5 95")
-    for output in outputs:
-        clearance = re.search(r"(\d+) um", output.command)
-        assert clearance is not None
-        found += [Given(clearance[1]), *differences_at_speed(output.text, "Reynolds map")]
-    return found
+@dataclass(frozen=True)
+class Variant:
+    """A row of `mbs variants`: differences of two laws [dB]."""
+
+    median: float
+    low: float
+    high: float
+    energy: float
+    highest: float
+
+
+def variants(text: str, sensor: str) -> dict[tuple[str, str], Variant]:
+    """Rows of a sensor that `mbs variants` prints, by what is varied and its value."""
+    part = re.split(r"(?m)^(?=sensor |range over)", text)
+    (own,) = (each for each in part if each.startswith(f"sensor {sensor},"))
+    row = rf"(?m)^  (\S+) +(\S.*?) +{NUMBER} +{NUMBER} to {NUMBER} +{NUMBER} +{NUMBER}$"
+    return {(key, value): Variant(*map(float, numbers)) for key, value, *numbers in re.findall(row, own)}
+
+
+def films_beside_dry(outputs: Sequence[Output]) -> list[Figure]:
+    """What `mbs variants` shows of the film beside dry contacts, at the sensors of the housing."""
+    rows = [variants(outputs[0].text, sensor) for sensor in ("S1", "S2", "S3")]
+    undamped = [row for each in rows for (key, _), row in each.items() if key != "law"]
+    damped = [row for each in rows for (key, _), row in each.items() if key == "law"]
+    medians, highest = [row.median for row in undamped], [row.highest for row in undamped]
+    return [
+        *(-max(medians), -min(medians), -max(highest), -min(highest)),
+        *(min(row.median for row in damped), max(row.median for row in damped)),
+    ]
 
 
 def levels_of_laws(outputs: Sequence[Output]) -> list[Figure]:
@@ -388,23 +417,27 @@ def peaks_dry(outputs: Sequence[Output]) -> list[Figure]:
 
 
 def readme_of_the_gearbox(outputs: Sequence[Output]) -> list[Figure]:
-    """Levels with and without clearance; largest falls and rises over speed, by cage angle and clearance."""
-    levels, tight, clearances, *angles = (output.text for output in outputs)
-    median, low, high, _ = differences_at_speed(levels, "Reynolds map")
+    """Levels beside dry contacts and their range; largest falls and rises over speed, by cage angle."""
+    levels, clearances, *angles = (output.text for output in outputs)
+    rows = variants(levels, "S1")
+    base = rows["base", "-"]
+    (damped,) = (row for (key, _), row in rows.items() if key == "law")
+    least, most, *_ = films_beside_dry(outputs[:1])
     middle = one_case([clearances], "Reynolds map, 30 um")
     cases = [middle, *(sweep_cases(text)[0] for text in angles)]
     falls, rises = ([getattr(case, name)() for case in cases] for name in ("steepest", "highest_rise"))
     return [
-        -median,
+        -base.median,
         *given("5 95"),
-        -high,
-        significant(-low, 2),
+        -base.high,
+        significant(-base.low, 2),
         *given("500 2500 40 30"),
-        -differences_at_speed(tight, "Reynolds map")[0],
+        least,
+        most,
+        *given("1.25e-5"),
+        abs(damped.median),
         -max(falls),
         -min(falls),
-        -one_case([clearances], "Reynolds map, 20 um").steepest(),
-        *given("20"),
         min(rises),
         max(rises),
     ]
@@ -431,14 +464,17 @@ def share_of_damping(outputs: Sequence[Output]) -> list[Figure]:
     return [half, *given("0.5"), whole, *given("1 5 95"), *bounds]
 
 
-def share_of_damping_in_the_gearbox(outputs: Sequence[Output]) -> list[Figure]:
-    """The largest omega b/u of the gearbox, and what is left above the limit."""
-    case = one_case([outputs[0].text], "Reynolds map, 30 um")
-    found = re.search(rf"omega b/u is up to {NUMBER} \({NUMBER} Hz at {NUMBER} rpm\)", case.text)
-    assert found is not None
-    ratio, frequency, speed = map(float, found.groups())
-    half, whole, *bounds = frequency_limit(outputs[1:])
-    return [ratio, 1e-3 * frequency, speed, *given("0.3 0.5 1"), half, whole, *given("5 95"), *bounds]
+def slow_and_memory(outputs: Sequence[Output]) -> list[Figure]:
+    """Fall and damping of the modes along the load with slow films and with memory, and the errors of both."""
+    found: list[Figure] = given("30")
+    for films, speeds in (("slow films", "500 2500"), ("films with memory", "")):
+        modes = one_case([outputs[0].text], f"Reynolds map, {films}").bearing_modes()
+        found += [-mode.change for mode in modes]
+        found += [*given(speeds), *(100.0 * mode.damping_ratio for mode in modes), *given("500")]
+    words = rf"estimated error of the dynamic stiffness along the load at {NUMBER} Hz and {NUMBER} rpm: {NUMBER} %"
+    told = [re.findall(f"{films}; {words}", outputs[0].text) for films in ("slow films", "films with memory")]
+    slow, memory = (max((tuple(map(float, row)) for row in rows), key=lambda row: row[2]) for rows in told)
+    return [*found, 1e-3 * slow[0], slow[1], slow[2], memory[2]]
 
 
 def solvers(outputs: Sequence[Output]) -> list[Figure]:
@@ -574,12 +610,12 @@ RECIPES: dict[str, Callable[[Sequence[Output]], list[Figure]]] = {
         constants_of_the_rigid,
         shaft_mode_of_the_rigid,
         hammer_test,
-        clearances,
+        films_beside_dry,
         levels_of_laws,
         level_of_the_formula,
         formula_beside_films,
         share_of_damping,
-        share_of_damping_in_the_gearbox,
+        slow_and_memory,
         solvers,
         show_of_a_map,
         gearbox_runs,

@@ -14,6 +14,7 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.force_at_point import FlatLaw
 from mbs.bearings.laws import hertz
+from mbs.bearings.slice_table import LawNumbers
 from mbs.bearings.speed_tables import NODES, STEP, SpeedTables
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import ElementDefaults, Forces, Load, Operation, Port, Sensor, Spring
@@ -215,7 +216,7 @@ class TestSpeedTables:
         return SpeedTables(bearing, FlatLaw(map_law()), TEMPERATURE, (1.0, 0.0))
 
     def room(self):
-        return np.zeros((NODES, 2 * 448, 8)), np.zeros((NODES, 10))
+        return np.zeros((NODES, 2 * 448, 8)), np.zeros((NODES, len(LawNumbers._fields)))
 
     def test_places_are_straight_in_the_logarithm(self):
         speeds = np.array([0.5, -0.7, 0.7, 2.0])

@@ -229,10 +229,10 @@ class TestFilmsOverSpeed:
     def blended(force, speeds):
         """Numbers and cells at the first of some speeds, and whether there are tables."""
         tables = SpeedTables(force.bearing, force.flat_law, TEMPERATURE, (1.0, 0.0))
-        rows = 2 * slice_table.ROWS
+        rows, numbers = 2 * slice_table.ROWS, len(slice_table.LawNumbers._fields)
         films = Films(
-            np.zeros((1, NODES, rows, 8)), np.zeros((1, NODES, 10)), np.zeros((1, rows, 8)), np.zeros((1, 10)),
-            np.full((1, 2), -1.0),
+            np.zeros((1, NODES, rows, 8)), np.zeros((1, NODES, numbers)), np.zeros((1, rows, 8)),
+            np.zeros((1, numbers)), np.full((1, 2), -1.0),
         )  # fmt: skip
         nodes, weights = tables.places(speeds)
         slots, sound, _ = tables.prepare(speeds, nodes, weights, films.tables[0], films.numbers[0])

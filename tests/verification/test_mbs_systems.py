@@ -77,7 +77,7 @@ class IsoBearing:
 @pytest.fixture(scope="module")
 def film_models():
     """NU308 with the film formula, by clearance; the law is made once, as it takes some seconds."""
-    loose = assemble(NU308, "formula", clearance=20e-6)
+    loose = assemble(NU308, "formula", clearance=20e-6, films="slow")
     tight = assemble(NU308, "hertz")
     bearings = [
         dataclasses.replace(entry, force=BearingForce(entry.bearing, other.force.law))
