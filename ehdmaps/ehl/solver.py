@@ -40,6 +40,10 @@ from ehdmaps.physics.wall_stress import wall_stress_note
 HEAVIEST_LOAD_NUMBER = 2e6
 """Moes' M above which the film is too thin for double precision to see it beside the elastic deflection."""
 
+LIGHTEST_LOAD_NUMBER = 1e-12
+"""Moes' M below which double precision does not see the elastic deflection, of size b^2/R, beside the film, H ~ 1/M:
+the linear response, made of both, loses digits, and its equations are singular from 1e-16 on."""
+
 LARGEST_OIL_NUMBER = 150.0
 """Moes' L above which no solve is tried."""
 
@@ -287,6 +291,8 @@ def _beyond_reach(peak: float, M: float, L: float) -> str:
         return f"groups M = {M:.4g}, L = {L:.4g} are not finite: load, speed or viscosity is absurd"
     if peak > LARGEST_PRESSURE:
         return f"Hertz pressure {peak / 1e9:.3g} GPa above {LARGEST_PRESSURE / 1e9:g} GPa"
+    if M < LIGHTEST_LOAD_NUMBER:
+        return f"M = {M:.3g} below {LIGHTEST_LOAD_NUMBER:g}: the elastic deflection is below round-off of the film"
     if M > HEAVIEST_LOAD_NUMBER:
         return f"M = {M:.3g} above {HEAVIEST_LOAD_NUMBER:g}: the film is below round-off of the elastic deflection"
     if L > LARGEST_OIL_NUMBER:

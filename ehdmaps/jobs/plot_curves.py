@@ -168,8 +168,9 @@ def _colour(sheet: Sheet, index: int) -> Any:
 def _scales(axes: Axes, loads: FloatArray, values: FloatArray, name: str) -> None:
     """Set log scales where there is something to show, and a quiet grid."""
     axes.set_xscale("log")
-    if loads.size > 1:
-        axes.set_xlim(loads[0], loads[-1])
+    # one load stands alone in the middle of two decades
+    beside = 1.0 if loads.size > 1 else 10.0
+    axes.set_xlim(loads[0] / beside, loads[-1] * beside)
     known = values[np.isfinite(values)]
     positive = known[known > 0]
     if name == "approach" and known.size:
@@ -187,9 +188,9 @@ def _scales(axes: Axes, loads: FloatArray, values: FloatArray, name: str) -> Non
 def _approach_scale(axes: Axes, known: FloatArray) -> None:
     """Logarithmic both ways from zero, linear about it."""
     axes.set_yscale("symlog", linthresh=LINEAR_APPROACH, linscale=0.6)
-    axes.set_ylim(
-        *(1.5 * limit if abs(limit) > LINEAR_APPROACH else 1.1 * limit for limit in (known.min(), known.max()))
-    )
+    low, high = (1.5 * limit if abs(limit) > LINEAR_APPROACH else 1.1 * limit for limit in (known.min(), known.max()))
+    if low < high:
+        axes.set_ylim(low, high)
     decades = 10.0 ** np.arange(0, 8)
     axes.yaxis.set_major_locator(FixedLocator([*(-decades[::-1]), 0.0, *decades]))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))

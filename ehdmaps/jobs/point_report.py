@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.report import ERRORS
+from ehdmaps.jobs.report import ERRORS, NONE_STATED
 from ehdmaps.physics import hertz
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
@@ -134,9 +134,12 @@ def point_table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, 
         place += f", slice of {LENGTH.text(length)} ({point.load * length:.5g} N)"
     if records and records[0]["frequency"]:
         place += f", oscillating at {records[0]['frequency']:.6g} Hz"
-    lines = [header, place, f"{'':38s}" + "".join(f"{record['contact']:>14s}" for record in records)]
-    for label, unit, values in rows:
-        shown = "".join(f"{_shown(value):>14s}" for value in values)
+    # a long status must not run into the next column
+    cells = [[record["contact"] for record in records], *([_shown(value) for value in row[2]] for row in rows)]
+    width = max(14, *(len(cell) + 2 for line in cells for cell in line))
+    lines = [header, place, f"{'':38s}" + "".join(f"{cell:>{width}s}" for cell in cells[0])]
+    for (label, unit, _), values in zip(rows, cells[1:], strict=True):
+        shown = "".join(f"{cell:>{width}s}" for cell in values)
         lines.append(f"  {label:22s} {unit:12s} {shown}")
     lines.extend(f"  {record['contact']}: {record['reason']}" for record in records if record["reason"])
     lines.extend(f"  {record['contact']}: {note}" for record in records if (note := _extrapolated(job, record)))
@@ -185,8 +188,15 @@ def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple
         yield row("k x length", "stiffness", Display("N/m"), length)
         yield row("c x length", "damping", Display("N s/m"), length)
     for name in ERRORS:
-        yield row(f"error of {name.removesuffix('_error').replace('_', ' ')}", name, plain)
+        stated = [_stated(record, name) for record in records]
+        yield f"error of {name.removesuffix('_error').replace('_', ' ')}", "", stated
     yield row("time to solve", "solve_seconds", Display("ms", 1e3))
+
+
+def _stated(record: dict[str, Any], error: str) -> float | str | None:
+    """Return an error of a contact; words where its value is known and the error is not."""
+    value = record[error.removesuffix("_error")]
+    return NONE_STATED if value is not None and record[error] is None else record[error]
 
 
 def _shown(value: Any) -> str:

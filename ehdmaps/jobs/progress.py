@@ -17,6 +17,9 @@ LINE_SECONDS = 10.0
 FIRST_SECONDS = 0.05
 """What is told this soon after the first piece of work belongs to it: runs in time tell many steps at once."""
 
+LONGEST_SHARE = 0.5 + 1e-9
+"""Of the time counted that one wait may make up where a rate is stated; two equal waits are enough of them."""
+
 _BAR = "{percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt} {unit}s [{elapsed}{postfix}]"
 
 _DURATIONS = ((120.0, 1.0, "s"), (7200.0, 60.0, "min"), (172800.0, 3600.0, "h"), (inf, 86400.0, "days"))
@@ -26,8 +29,9 @@ _DURATIONS = ((120.0, 1.0, "s"), (7200.0, 60.0, "min"), (172800.0, 3600.0, "h"),
 class Pace:
     """How fast it goes, and how long it will take.
 
-    It counts from the end of the first piece of work on: what compiles does so in the first one. Until a second one is
-    done there is no estimate.
+    It counts from the end of the first piece of work on, in which most of the code compiles. There is no estimate as
+    long as one wait makes up more than half of the time counted: a later piece may compile, too, or each process its
+    own code, and what that takes says nothing about the rest.
 
     Parameters
     ----------
@@ -43,6 +47,7 @@ class Pace:
         self._clock = clock
         self._first_told: float | None = None
         self._since = self._last = 0.0, 0
+        self._longest = 0.0
 
     def taken_over(self, count: int) -> None:
         """Count what was there."""
@@ -52,17 +57,20 @@ class Pace:
         """Count what is done now."""
         self.done += count
         now = self._clock()
+        waited = now - self._last[0]
         self._last = now, self.done
         if self._first_told is None:
             self._first_told = now
         if now <= self._first_told + FIRST_SECONDS:
             self._since = self._last
+        else:
+            self._longest = max(self._longest, waited)
 
     @property
     def rate(self) -> float | None:
         """Number a second [1/s]; None as long as nobody can know."""
         seconds, count = self._last[0] - self._since[0], self._last[1] - self._since[1]
-        return count / seconds if seconds > 0.0 else None
+        return count / seconds if seconds > 0.0 and self._longest <= LONGEST_SHARE * seconds else None
 
     @property
     def seconds_left(self) -> float | None:

@@ -41,6 +41,9 @@ ERRORS = (
 )
 """Error estimates in the order in which they are listed; the last five are missing in maps made before they were."""
 
+NONE_STATED = "none stated"
+"""What stands in place of an error that the solver does not state."""
+
 _NUMBER = re.compile(r"[-+]?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]+)?")
 
 
@@ -127,7 +130,7 @@ def error_lines(dataset: xr.Dataset) -> Iterator[str]:
             middle, high, most = (float(value) for value in np.quantile(known, (0.5, 0.95, 1.0)))
             yield f"  {label:25s} {middle:11.2g} {high:10.2g} {most:10.2g}"
         else:
-            yield f"  {label:25s}        none"
+            yield f"  {label:25s} {NONE_STATED:>11s}"
 
 
 def value_lines(dataset: xr.Dataset) -> Iterator[str]:

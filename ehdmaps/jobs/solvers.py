@@ -12,6 +12,7 @@ from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.units import short
 
 
 @dataclass(frozen=True)
@@ -191,8 +192,13 @@ def complete(solver: ContactSolver) -> ContactSolver:
     Raises
     ------
     InputError
-        For each member that is missing.
+        For something that solves nothing, and for each member that is missing.
     """
+    if isinstance(solver, type) or not callable(getattr(solver, "solve_line", None)):
+        raise InputError(
+            f"solver: got {short(solver)}, which is no solver; allowed: {', '.join(SOLVER_NAMES)}, or a solver such as "
+            "an instance of a class that inherits from ehdmaps.physics.solution.ContactSolverDefaults"
+        )
     # looked up without a call: a version may take a program to find out; what the Protocol writes down is no answer
     lacking = [name for name, stub in _MEMBERS.items() if inspect.getattr_static(solver, name, stub) is stub]
     if lacking:

@@ -88,7 +88,8 @@ def _column(chosen: xr.Dataset, contact: str, panels: list[Axes]) -> None:
     lossy = STIFFNESS.factor * omega * c
     _banded(loss, frequency, lossy, chosen["damping_error"].values)
     slow = STIFFNESS.factor * omega * float(chosen["slow_damping"])
-    low, high = _limits(lossy * (1.0 - chosen["damping_error"].values), lossy * (1.0 + chosen["damping_error"].values))
+    band = np.nan_to_num(chosen["damping_error"].values)
+    low, high = _limits(lossy * (1.0 - band), lossy * (1.0 + band))
     loss.plot(frequency, slow, color=_SLOW, lw=0.9, ls=(0, (5, 2)), label="k and c of slow motion")
     loss.set_ylim(low, high)
     loss.set_ylabel(f"loss part ωc, {STIFFNESS.unit}".replace("um", "µm"))
@@ -119,8 +120,10 @@ def _column(chosen: xr.Dataset, contact: str, panels: list[Axes]) -> None:
 
 
 def _banded(axes: Axes, frequency: FloatArray, values: FloatArray, error: FloatArray) -> None:
-    """A curve with the band of its estimated numerical error."""
-    axes.plot(frequency, values, color=_LINE, lw=1.2, label="at the frequency, with its estimated error")
+    """A curve with the band of its estimated numerical error, where there is one."""
+    stated = np.isfinite(error).any()
+    label = "at the frequency, with its estimated error" if stated else "at the frequency"
+    axes.plot(frequency, values, color=_LINE, lw=1.2, label=label)
     axes.fill_between(frequency, values * (1.0 - error), values * (1.0 + error), color=_LINE, alpha=0.25, lw=0.0)
 
 

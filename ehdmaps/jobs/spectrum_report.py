@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.report import NONE_STATED
 from ehdmaps.physics.solution import Status
 from ehdmaps.units import LENGTH, LOAD, SPEED, TEMPERATURE
 
@@ -103,8 +104,11 @@ def _block(chosen: xr.Dataset, contact: str, length: float | None) -> list[str]:
         columns[6:6] = [columns[2] * length, columns[4] * length]
     lines += ["".join(f"{word:>12s}" for word in words) for words in (heads, units)]
     for row in zip(*columns, strict=True):
-        cells = (
-            f"{value:12.1e}" if head == "error" else f"{value:12.5g}" for head, value in zip(heads, row, strict=True)
-        )
+        cells = (_error(value) if head == "error" else f"{value:12.5g}" for head, value in zip(heads, row, strict=True))
         lines.append("".join(cells) + ("  negative damping" if row[4] < 0.0 else ""))
     return lines
+
+
+def _error(value: float) -> str:
+    """An error in its column, in words where there is none."""
+    return f"{NONE_STATED:>12s}" if math.isnan(value) else f"{value:12.1e}"

@@ -13,6 +13,7 @@ from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.tasks import LineTask, film_arrays, line_tasks
 from ehdmaps.physics.solution import ContactSolver, Status
+from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 JUDGED = ("film_offset", "film_compliance", "loss_compliance", "central_film", "minimum_film")
 REFINEMENT = 4
@@ -44,6 +45,8 @@ class Measured:
         Wall time on one core.
     solved : int
         Points with a usable status.
+    lost : tuple of str
+        Points of the reference without a solution, each with its place and cause: nothing is compared there.
     errors : dict
         Relative errors by variable, at the points that it and the reference solved.
     """
@@ -51,6 +54,7 @@ class Measured:
     label: str
     seconds_per_point: float
     solved: int
+    lost: tuple[str, ...]
     errors: dict[str, FloatArray]
 
 
@@ -94,11 +98,12 @@ def measure(
     measured : tuple of Measured
         One a contestant.
     truth : Measured
-        The reference itself, without errors.
+        The reference itself, without errors, with the points that it could not solve.
     """
     chosen = _sample(job, lines)
     truth, seconds = _solve(reference.solver, chosen)
     known = _usable(truth["status"])
+    lost = _lost(chosen, truth)
     measured = []
     for entry in entries:
         films, spent = _solve(entry.solver, chosen)
@@ -108,8 +113,8 @@ def measure(
             scale = np.abs(truth[name][both])
             difference = np.abs(films[name][both] - truth[name][both])
             errors[name] = difference[scale > 0] / scale[scale > 0]
-        measured.append(Measured(entry.label, spent / known.size, int(_usable(films["status"]).sum()), errors))
-    return tuple(measured), Measured(reference.label, seconds / known.size, int(known.sum()), {})
+        measured.append(Measured(entry.label, spent / known.size, int(_usable(films["status"]).sum()), (), errors))
+    return tuple(measured), Measured(reference.label, seconds / known.size, int(known.sum()), lost, {})
 
 
 def table(measured: Sequence[Measured], truth: Measured, points: int) -> str:
@@ -140,6 +145,9 @@ def table(measured: Sequence[Measured], truth: Measured, points: int) -> str:
                 cells.append("-")
         numbers = f"{entry.seconds_per_point * 1e3:9.3g}{entry.solved:8d}"
         lines.append(f"{entry.label:26s}{numbers}" + "".join(f"{cell:>20s}" for cell in cells))
+    if truth.lost:
+        lines.append(f"without a solution by {truth.label}, and left out of the errors:")
+        lines += [f"  {point}" for point in truth.lost]
     return "\n".join(lines)
 
 
@@ -163,6 +171,17 @@ def _solve(solver: ContactSolver, chosen: Sequence[LineTask]) -> tuple[dict[str,
         )
     ]
     return film_arrays(films), time.perf_counter() - begin
+
+
+def _lost(chosen: Sequence[LineTask], truth: dict[str, FloatArray]) -> tuple[str, ...]:
+    """Place, status and cause of each point without a solution."""
+    points = [(line, load) for line in chosen for load in line.loads]
+    return tuple(
+        f"{line.contact.name}, {LOAD.text(load)}, {SPEED.text(line.entrainment_speed)}, "
+        f"{TEMPERATURE.text(line.temperature)}: {Status(int(status)).word}" + (f"; {reason}" if reason else "")
+        for (line, load), status, reason in zip(points, truth["status"], truth["reason"], strict=True)
+        if not Status(int(status)).usable
+    )
 
 
 def _usable(status: FloatArray) -> BoolArray:

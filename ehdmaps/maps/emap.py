@@ -27,7 +27,7 @@ from ehdmaps.maps.records import (
 )
 from ehdmaps.maps.rolling_film import RollingFilm, rolling_film
 from ehdmaps.maps.structure import completed, restructured
-from ehdmaps.maps.usable import check_backbone, check_grid
+from ehdmaps.maps.usable import check_backbone, check_grid, check_loads
 from ehdmaps.maps.validation import check_tables, validate
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
@@ -141,16 +141,18 @@ class EHDMap:
         InputError
             For a kind that the map does not have.
         MapError
-            If what the law is made from has holes left, or clusters of filled points.
+            If the map has one load only, or if what the law is made from has holes left, or clusters of filled points.
         """
         by_name = {contact.name: contact for contact in self.contacts}
         allowed = [name for name in get_args(LawKind) if name in by_name or (name == "series" and "inner" in by_name)]
         if kind not in allowed:
             raise InputError(f"contact law, kind: got {kind!r}; allowed in this map: {', '.join(allowed)}")
         names = ("inner", "outer") if kind == "series" else (kind,)
+        contacts = tuple(by_name[name] for name in names)
+        check_loads(self.dataset["load"].values, contacts)
         return ContactLaw(
             kind,
-            tuple(by_name[name] for name in names),
+            contacts,
             self.lubricant,
             self.film_field(names),
             outside,
@@ -171,7 +173,7 @@ class EHDMap:
             If it has holes left, or clusters of filled points.
         """
         chosen = tuple(contact for contact in self.contacts if contacts is None or contact.name in contacts)
-        self.check_usable(contacts)
+        self._check_films(chosen)
         if self.backbone is not None:
             return BackboneField(
                 self.backbone,
@@ -215,6 +217,11 @@ class EHDMap:
             With every reason.
         """
         chosen = tuple(contact for contact in self.contacts if contacts is None or contact.name in contacts)
+        check_loads(self.dataset["load"].values, chosen)
+        self._check_films(chosen)
+
+    def _check_films(self, chosen: tuple[LineContact, ...]) -> None:
+        """Refuse films of these contacts that cannot be interpolated."""
         if self.backbone is None:
             check_grid(self.dataset, chosen)
         else:

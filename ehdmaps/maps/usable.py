@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from ehdmaps.arrays import BoolArray
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import FILMS, IMAGINARY, REAL
@@ -24,6 +24,29 @@ from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 _SHOWN = 3
 _ROUND_OFF = 1e-9
 """Relative: what an axis of the backbone differs by from the axis of the map that it was laid for."""
+
+
+def check_loads(loads: FloatArray, contacts: Sequence[LineContact]) -> None:
+    """Refuse a law of a map with one load: nothing is known of how load and approach change together.
+
+    Parameters
+    ----------
+    loads : ndarray
+        Axis of the map [N/m].
+    contacts : sequence of LineContact
+        Contacts that the law uses.
+
+    Raises
+    ------
+    MapError
+        With what to do.
+    """
+    if loads.size < 2:
+        raise MapError(
+            f"law of {', '.join(contact.name for contact in contacts)}: the map has one load, "
+            f"{LOAD.text(float(loads[0]))}; a law needs two or more; add some to `load` of [grid] in the job, and "
+            "generate the map again"
+        )
 
 
 def check_grid(dataset: xr.Dataset, contacts: Sequence[LineContact]) -> None:
@@ -60,7 +83,8 @@ def check_grid(dataset: xr.Dataset, contacts: Sequence[LineContact]) -> None:
             f"{np.count_nonzero(clusters)} filled points beside one another, {_places(chosen, clusters)}; "
             "nothing is known there; solve them again with other settings of the solver"
         )
-    if not problems:
+    if not problems and np.any(chosen["film_offset"].values):  # else a dry map, of which all is known
+        check_loads(chosen["load"].values, contacts)
         problems = _unphysical(chosen, contacts)
     if problems:
         raise MapError("\n".join(f"law of {', '.join(names)}: the map has {problem}" for problem in problems))
@@ -172,12 +196,10 @@ def _clusters(filled: BoolArray) -> BoolArray:
 
 
 def _unphysical(chosen: xr.Dataset, contacts: Sequence[LineContact]) -> list[str]:
-    """Values of which no law can be made; a map without any film is a dry one, which is fine.
+    """Values of which no law can be made.
 
     A damping that is negative at the bottom of its valley is for the film field to lift.
     """
-    if not np.any(chosen["film_offset"].values):
-        return []
     moving = np.broadcast_to((chosen["entrainment_speed"].values > 0.0)[:, None], _shape(chosen))
     problems = []
     dry = np.array([contact.structural_compliance(chosen["load"].values) for contact in contacts])[:, :, None, None]

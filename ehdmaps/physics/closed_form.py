@@ -1,8 +1,8 @@
 """The solvers without a discretisation: `hertz` (dry) and `formula` (a published central film formula).
 
-Their numerical errors are zero, since they evaluate closed forms: how far the formula is from a full
-solution is a model error, which no error estimate of a map includes. Both are low-frequency limits: their film
-compliance and loss compliance do not depend on frequency.
+They state no errors (NaN): a closed form has no numerical error, and how far it is from a full solution, a model error,
+is not known here. Against `reynolds` the damping of a formula is often wrong by most of its size. Both are
+low-frequency limits: their film compliance and loss compliance do not depend on frequency.
 """
 
 from __future__ import annotations
@@ -141,12 +141,6 @@ class FormulaSolver(ContactSolverDefaults):
             central_film=film,
             minimum_film=minimum,
             max_pressure=peak,
-            film_offset_error=0.0,
-            film_compliance_error=0.0,
-            loss_compliance_error=0.0,
-            central_film_error=0.0,
-            minimum_film_error=0.0,
-            max_pressure_error=0.0,
             viscosity_extrapolated=peak > state.fitted_pressure,
         )
 
@@ -165,12 +159,6 @@ def _dry(contact: LineContact, load: float, status: Status, reason: str = "") ->
         central_film=0.0,
         minimum_film=0.0,
         max_pressure=peak,
-        film_offset_error=0.0,
-        film_compliance_error=0.0,
-        loss_compliance_error=0.0,
-        central_film_error=0.0,
-        minimum_film_error=0.0,
-        max_pressure_error=0.0,
     )
 
 

@@ -28,7 +28,7 @@ class OperatingPoint:
     Raises
     ------
     InputError
-        If a value is not finite or out of these limits.
+        If a value is no number, not finite or out of these limits.
     """
 
     load: float
@@ -37,13 +37,18 @@ class OperatingPoint:
 
     def __post_init__(self) -> None:
         problems = []
-        if not (math.isfinite(self.load) and self.load > 0):
-            problems.append(f"load: got {self.load!r} N/m; allowed: finite and > 0")
-        if not (math.isfinite(self.entrainment_speed) and self.entrainment_speed >= 0):
-            problems.append(
-                f"entrainment_speed: got {self.entrainment_speed!r} m/s; allowed: finite and >= 0; give its magnitude"
-            )
-        if not (math.isfinite(self.temperature) and self.temperature > 0):
-            problems.append(f"temperature: got {self.temperature!r} K; allowed: finite and > 0 K")
+        for name, unit, allowed, standstill in (
+            ("load", "N/m", "finite and > 0", False),
+            ("entrainment_speed", "m/s", "finite and >= 0; give its magnitude", True),
+            ("temperature", "K", "finite and > 0 K", False),
+        ):
+            value = getattr(self, name)
+            try:
+                possible = math.isfinite(value) and (value > 0 or (standstill and value == 0))
+            except (TypeError, OverflowError):
+                problems.append(f"{name}: got {value!r:.60}, no number of type float; allowed: [{unit}], {allowed}")
+            else:
+                if not possible:
+                    problems.append(f"{name}: got {value!r} {unit}; allowed: {allowed}")
         if problems:
             raise InputError(problems)

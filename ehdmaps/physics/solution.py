@@ -68,7 +68,8 @@ class FilmSolution:
         Mass of oil that goes through the contact, per length and time [kg/(m s)].
     film_offset_error, film_compliance_error, loss_compliance_error : float
         Estimated numerical errors, relative to the value beside them; positive where the value is too large, so that
-        errors of compliance and loss that come from one cause can cancel in the damping.
+        errors of compliance and loss that come from one cause can cancel in the damping. NaN where the solver states
+        none.
     central_film_error, minimum_film_error, max_pressure_error, rolling_force_error, mass_flow_error : float
         The same without a sign.
     iterations : int
@@ -117,7 +118,7 @@ class FilmSpectrum:
         film has no solution.
     errors : ndarray, shape (k, m)
         Estimates of the numerical error of S, complex and signed [m2/N]; of m estimates the one with the largest effect
-        counts.
+        counts. NaN where the solver states none.
     """
 
     film: FilmSolution

@@ -91,7 +91,7 @@ class ContactSpectrum:
             self.solution,
             stiffness=float(self.stiffness[index]),
             damping=float(self.damping[index]),
-            film_compliance_error=error / real if real > 0.0 else 0.0,
+            film_compliance_error=0.0 if error == 0.0 else error / real if real > 0.0 else math.nan,
             stiffness_error=float(self.stiffness_error[index]),
             damping_error=float(self.damping_error[index]),
         )

@@ -304,7 +304,11 @@ def test_solve_says_when_there_is_no_solution(capsys, monkeypatch):
     assert status == 1
     assert [record["status"] for record in records] == ["outside_validity", "outside_validity"]
     assert all(record["stiffness"] is None and record["reason"] == "too heavy" for record in records)
-    assert "inner: too heavy" in run(capsys, *heavy)[1]
+    table = run(capsys, *heavy)[1]
+    assert "inner: too heavy" in table
+    lines = [line for line in table.splitlines() if line.startswith(("  status", "  Hertz", "    "))]
+    assert lines[1].split() == ["status", "outside_validity", "outside_validity"]
+    assert len({len(line) for line in lines}) == 1  # the columns stand below one another
 
 
 @pytest.mark.parametrize(
@@ -314,7 +318,6 @@ def test_solve_says_when_there_is_no_solution(capsys, monkeypatch):
             ["nu309", "--load", "40 x", "--speed", "-1 m/s", "--temperature", "40"],
             [
                 "did you mean 'nu308'?",
-                "--length: missing",
                 "--load: got the unit 'x'",
                 "--speed: got '-1 m/s'",
                 "--temperature: got '40' without",
@@ -325,6 +328,9 @@ def test_solve_says_when_there_is_no_solution(capsys, monkeypatch):
             ["nu308", "--load", "1 kN", "--length", "0.001 mm", *POINT[4:]],
             ["--load over --length: got 1e+06 N/mm; allowed: 0.001 N/mm"],
         ),
+        (["nu308", "--load", "40 N", *POINT[4:]], ["--length: missing; a load in N needs the length that carries it"]),
+        (["nu308", "--load", "nan N/mm", *POINT[4:]], ["--load: got 'nan N/mm', which does not start with a number"]),
+        (["nu308", "--load", "nan", *POINT[2:]], ["allowed: a number with a unit of N, such as"]),
         (["nu308", *POINT, "--frequency", "500 rpm"], ["--frequency: got the unit 'rpm'"]),
         (["nu308", *POINT, "--solver", "foo"], ["--solver: got 'foo'; allowed: hertz"]),
     ],

@@ -9,7 +9,6 @@ import pytest
 
 import ehdmaps
 from ehdmaps.jobs.generate import Generated, generate
-from ehdmaps.jobs.law_check import unmet
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.summary import summary
 from ehdmaps.maps.schema import BACKBONE
@@ -70,13 +69,3 @@ def test_without_backbone(tmp_path: Path) -> None:
     assert ehdmaps.open_map(tmp_path / "bare.nc").backbone is None
     assert BACKBONE not in generated.dataset
     assert not any(name.startswith("law_") for name in generated.dataset.attrs)
-
-
-def test_unmet_bars_are_said(made: tuple[Generated, Path]) -> None:
-    dataset = made[0].dataset
-    worse = dataset.assign_attrs(law_damping_within_bar=0.98, law_valley_damping_within_bar=0.96)
-    assert unmet(worse) == [
-        "unmet: damping of the contact laws is within its bar at 98.0% of the points over the map; wanted 99%; "
-        "more temperatures, speeds or loads, or a finer grid, help"
-    ]
-    assert unmet(dataset.assign_attrs(law_refused="holes"))[0] == "no contact law: holes"

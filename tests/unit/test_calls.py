@@ -252,6 +252,22 @@ def test_a_solver_that_lacks_members_is_told_which():
     np.testing.assert_array_equal(found["stiffness"], ehdmaps.solve_points(CONTACT, FVA3, GRID, "formula")["stiffness"])
 
 
+@pytest.mark.parametrize("wrong", ["5e4", None, 1j, [1.0], 10**400])
+@pytest.mark.parametrize("name", ["load", "entrainment_speed", "temperature"])
+def test_a_point_of_what_is_no_number_is_refused(name, wrong):
+    values = {"load": 5e4, "entrainment_speed": 1.0, "temperature": 313.15} | {name: wrong}
+    with pytest.raises(InputError, match=rf"{name}: got .*, no number of type float; allowed: \["):
+        ehdmaps.OperatingPoint(**values)
+
+
+@pytest.mark.parametrize("solver", [None, 3, FormulaSolver])
+def test_what_is_no_solver_is_told_in_one_line(solver):
+    point = ehdmaps.OperatingPoint(5e4, 1.0, 313.15)
+    with pytest.raises(InputError, match=r"solver: got .*, which is no solver; allowed: hertz, formula") as caught:
+        ehdmaps.solve(CONTACT, FVA3, point, solver)
+    assert len(caught.value.problems) == 1
+
+
 def test_points_that_fail_are_results():
     found = ehdmaps.solve_points(CONTACT, FVA3, GRID, Failing())
     slow, fast = (found.isel(entrainment_speed=index) for index in (0, 1))

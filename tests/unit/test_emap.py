@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import subprocess
 import sys
@@ -220,11 +221,26 @@ def test_contacts_and_bearing_come_back_from_their_records(emap):
     assert bearing_from_json("null") is None
 
 
+@pytest.mark.parametrize("dry", [False, True])
+def test_a_law_of_one_load_is_refused_for_that_reason(dry):
+    emap = EHDMap((dry_dataset() if dry else dataset_of()).isel(load=[2]))
+    told = r"law of inner, outer: the map has one load, .* N/mm; a law needs two or more; add some to `load`"
+    for refused in (lambda: emap.law("series"), emap.check_usable):
+        with pytest.raises(MapError, match=told):
+            refused()
+    if dry:
+        assert emap.film_field().dry
+    else:
+        with pytest.raises(MapError, match=told):
+            emap.film_field()
+
+
 def test_solve_one_point():
     point = OperatingPoint(5e4, 1.0, 330.0)
     solution = ehdmaps.solve(CONTACTS[0], OIL, point, solver="formula")
     assert solution.status is ehdmaps.Status.CONVERGED
-    assert solution == ehdmaps.solve(CONTACTS[0], OIL, point, solver=FormulaSolver())
+    same = ehdmaps.solve(CONTACTS[0], OIL, point, solver=FormulaSolver())
+    np.testing.assert_equal(dataclasses.asdict(solution), dataclasses.asdict(same))  # NaN where no error is stated
     with pytest.raises(InputError, match="solver: got 'magic'; allowed: hertz, formula, reynolds"):
         ehdmaps.solve(CONTACTS[0], OIL, point, solver="magic")
 

@@ -1,7 +1,8 @@
 """Assembling, writing, opening, describing, comparing and drawing a map."""
 
 import json
-from dataclasses import dataclass, replace
+import re
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import pytest
@@ -14,9 +15,10 @@ from ehdmaps.jobs.compare import compare, comparison_text
 from ehdmaps.jobs.curves import curves, law_field
 from ehdmaps.jobs.describe import describe
 from ehdmaps.jobs.generate import generate
+from ehdmaps.jobs.law_check import STANDS_ON_LINES, STANDS_ON_POINTS, unmet
 from ehdmaps.jobs.plot import plot_map
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.jobs.report import holes
+from ehdmaps.jobs.report import ERRORS, holes
 from ehdmaps.jobs.summary import summary
 from ehdmaps.jobs.tasks import LATER_FIELDS, LONGEST_LINE, LineTask, line_tasks, solver_version
 from ehdmaps.jobs.tradeoff import Contestant, contestants, measure, table
@@ -30,7 +32,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status, contact_solution
-from tests.cases.jobs import LINE, SMALL
+from tests.cases.jobs import DRY, LINE, SMALL, spaced
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,15 @@ class Holey(ContactSolverDefaults):
 
     def settings(self):
         return {}
+
+
+class Stated(Holey):
+    """The same with errors of 1 %."""
+
+    def solve_line(self, *line):
+        errors = {field.name: 0.01 for field in fields(FilmSolution) if field.name.endswith("_error")}
+        films = super().solve_line(*line)
+        return tuple(replace(film, **errors) if film.status.usable else film for film in films)
 
 
 def job_of(text=SMALL, **changes):
@@ -167,7 +178,7 @@ def test_an_isolated_hole_is_filled_and_says_so():
 def test_other_holes_hold_no_numbers(fill, lost):
     text = SMALL.replace('"0.5 m/s", "1 m/s", "2 m/s"', '"0.5 m/s", "1 m/s"')  # the lost speed is at the edge
     job = job_of(text, fill=fill)
-    dataset = made(job, Holey(job.loads[lost]))
+    dataset = made(job, Stated(job.loads[lost]))
     hole = dataset["status"] == int(Status.STAGNATED)
     assert int(hole.sum()) == 4 * len(job.loads[lost])
     assert int(dataset["filled"].sum()) == 0
@@ -293,13 +304,21 @@ def test_describe_has_the_units_of_engineers(with_backbone):
 
 def test_error_estimates_of_films_and_pressure_are_in_the_map():
     names = ("central_film_error", "minimum_film_error", "max_pressure_error")
-    dry = made(job_of(), HertzSolver())
-    assert all((dry[name] == 0.0).all() and dry[name].attrs["units"] == "1" for name in names)
-    holey = made(job_of(), Holey((job_of().loads[3],)))
-    assert all(int(np.isnan(holey[name]).sum()) == 4 for name in names)
-    assert "\n  max pressure                        0" in describe(EHDMap(dry), "a.nc")
-    older = EHDMap(dry.drop_vars(list(names)))
-    assert "\n  max pressure                     none\n" in describe(older, "a.nc").split("accuracy")[1]
+    stated = made(job_of(), Stated((job_of().loads[3],)))
+    assert all(int(np.isnan(stated[name]).sum()) == 4 and stated[name].attrs["units"] == "1" for name in names)
+    assert "\n  max pressure                     0.01" in describe(EHDMap(stated), "a.nc")
+    older = EHDMap(stated.drop_vars(list(names)))
+    assert "\n  max pressure              none stated\n" in describe(older, "a.nc").split("accuracy")[1]
+
+
+@pytest.mark.parametrize("solver", [HertzSolver(), FormulaSolver()])
+def test_a_map_says_where_no_errors_are_stated(solver, tmp_path):
+    dataset = made(job_of(), solver)
+    assert all(np.isnan(dataset[name]).all() for name in ERRORS)
+    accuracy = describe(EHDMap(dataset), "a.nc").split("accuracy")[1]
+    assert accuracy.count("none stated") == len(ERRORS) and not re.search(r"\bnan\b", accuracy)
+    plot_map(EHDMap(dataset), tmp_path / "a.svg")
+    assert "stimated relative error" not in (tmp_path / "a.svg").read_text()
 
 
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), RuntimeError("NetCDF: HDF error")])
@@ -440,10 +459,11 @@ def test_compare_refuses_maps_without_common_points():
         (SMALL, None),
         (LINE, None),
         (SMALL.replace("points = 7", "points = 2"), None),
+        (SMALL.replace(spaced("1 N/mm", "1000 N/mm", 7), '["50 N/mm"]'), None),
         (LINE, HertzSolver()),
         (SMALL, Holey((1e3, 1e4, 31622.776601683792), version="1")),
     ],
-    ids=["bearing", "one contact", "two loads", "dry", "holes"],
+    ids=["bearing", "one contact", "two loads", "one load", "dry", "holes"],
 )
 def test_every_kind_of_map_can_be_drawn(tmp_path, text, solver):
     plot_map(EHDMap(made(job_of(text), solver)), tmp_path / "a.png")
@@ -471,6 +491,29 @@ def test_the_page_names_what_it_shows(tmp_path, monkeypatch):
         assert part in text
 
 
+def test_unmet_bars_are_said_with_what_helps():
+    dataset = made(job_of())
+    worse = dataset.assign_attrs(law_damping_within_bar=0.98, law_valley_damping_within_bar=0.96)
+    missed = "unmet: damping of the contact laws is within its bar at 98.0% of the points over the map; wanted 99%"
+    assert unmet(worse, True) == [missed, STANDS_ON_LINES]
+    assert unmet(worse, False) == [missed, STANDS_ON_POINTS]
+    assert unmet(dataset.assign_attrs(law_refused="holes"), True) == ["no contact law: holes"]
+    assert unmet(dataset, True) == unmet(dataset, False) == []
+
+
+def test_the_check_of_dry_laws_holds_no_numbers_of_nothing(tmp_path):
+    generated = generate(job_of(DRY, law_check=20), tmp_path / "dry.nc", workers=1)
+    found = {name: value for name, value in generated.dataset.attrs.items() if name.startswith("law_")}
+    assert (
+        found["law_film_compliance_error"] == found["law_valley_film_compliance_error"] == "none: no film to relate to"
+    )
+    assert found["law_damping_error"] == "none: no damping above zero to relate to"
+    # 1/k and c are held to their second bars, which are no shares of the film's
+    assert all(value == 1.0 for name, value in found.items() if name.endswith("_within_bar"))
+    for text in (summary(generated, tmp_path / "dry.nc"), describe(EHDMap(generated.dataset), "dry.nc")):
+        assert not re.search(r"\bnan\b|e\+\d\d\d", text)
+
+
 def test_tradeoff_measures_against_the_reference():
     job = job_of()
     entries = [
@@ -487,6 +530,19 @@ def test_tradeoff_measures_against_the_reference():
     text = table(measured, truth, 84)
     assert "84 points; errors relative to fine" in text
     assert "1.0e+00 / 1.0e+00" in text
+
+
+def test_tradeoff_names_the_points_that_the_reference_does_not_solve():
+    job = job_of()
+    lost = job.loads[3]
+    measured, truth = measure(job, 12, [Contestant("all", FormulaSolver())], Contestant("fine", Holey((lost,))))
+    assert (measured[0].solved, truth.solved, measured[0].errors["film_offset"].size) == (84, 80, 80)
+    told = table(measured, truth, 84).splitlines()
+    assert told[-5] == "without a solution by fine, and left out of the errors:"
+    assert told[-4:] == [f"  {point}" for point in truth.lost]
+    assert told[-1].startswith(f"  outer, {lost * 1e-3:.4g} N/mm, 1 m/s, ") and told[-1].endswith(
+        f" degC: stagnated; step {lost:g} too small"
+    )
 
 
 def test_tradeoff_knows_its_contestants():

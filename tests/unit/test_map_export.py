@@ -114,13 +114,17 @@ def test_texts_are_characters_that_old_programs_read(path):
     assert open_map(path).dataset["contact"].values.tolist() == ["inner", "outer"]
 
 
-def test_solve_tells_errors_and_extrapolation(capsys):
+def test_solve_tells_that_no_error_is_stated_and_extrapolation(capsys):
     point = ["--load", "300 N/mm", "--speed", "1 m/s", "--temperature", "40 degC"]
     assert main(["solve", "nu308", "--solver", "hertz", *point, "--json"]) == 0
     for record in json.loads(capsys.readouterr().out):
-        assert record["central_film_error"] == record["minimum_film_error"] == record["max_pressure_error"] == 0.0
+        assert record["central_film_error"] is record["minimum_film_error"] is record["max_pressure_error"] is None
     assert main(["solve", "nu308", "--solver", "formula", *point]) == 0
     printed = capsys.readouterr().out
+    assert "  error of damping                       none stated   none stated\n" in printed
+    assert main(["solve", "nu308", "--solver", "formula", *point, "--frequencies", "1 Hz", "10 Hz", "2"]) == 0
+    over_frequency = capsys.readouterr().out
+    assert over_frequency.count(" none stated") == 12 and "nan" not in over_frequency
     for name in ("inner", "outer"):
         assert f"  {name}: viscosity extrapolated: pressure above 0.6 GPa, to which it was fitted" in printed
     assert "  error of max pressure " in printed

@@ -128,15 +128,17 @@ def test_structural_laws_that_do_not_suit_are_refused(paths):
 
 
 @pytest.mark.parametrize("name", DERIVED)
-def test_what_contradicts_the_films_is_refused(name):
-    dataset = dataset_of()
+def test_what_contradicts_the_films_is_refused(name, paths):
+    dataset = open_map(paths["iso16281"]).dataset
     wrong = dataset.copy(deep=True)
     here = (1, 3, 2, 1)
     size = abs(float(dataset[name].values[here]))
     if name == "approach":  # a difference: held to the size of both parts
         size += float(dataset["film_offset"].values[here])
-    wrong[name].values[here] += 3.0 * SAME * size if size else 1e-3
-    with pytest.raises(MapError, match=f"map: variable {name} contradicts the films: 1 of 608 values are not what"):
+    wrong[name].values[here] += 3.0 * SAME * size
+    values = dataset[name].size
+    told = f"map: variable {name} contradicts the films: 1 of {values} values are not what"
+    with pytest.raises(MapError, match=told):
         EHDMap(wrong)
     within = dataset.copy(deep=True)
     within[name] = within[name] * (1.0 + 0.1 * SAME)

@@ -142,5 +142,11 @@ def test_a_line_without_points_is_refused() -> None:
         _field(plan, group)
 
 
+def test_the_lines_hang_on_the_ends_of_the_axes_alone() -> None:
+    """What `ehdmaps generate` tells where a law misses its bars: points of the map between the ends change nothing."""
+    axes = (np.linspace(*ends, 9).tolist() for ends in (LOADS, SPEEDS, TEMPERATURES))
+    assert plan_backbone(CONTACTS, OIL, *axes) == _plan()
+
+
 def test_no_backbone_at_rest() -> None:
     assert plan_backbone(CONTACTS, OIL, LOADS, (0.0,), TEMPERATURES) is None

@@ -297,6 +297,15 @@ def test_beyond_reach_is_a_status() -> None:
     assert SOLVER.solve_line(contact, OIL, (1e4,), 1e4, 260.0)[0].status is Status.OUTSIDE_VALIDITY
 
 
+def test_a_load_that_lifts_the_film_out_of_double_precision_is_a_status() -> None:
+    """Warnings are errors: the equations of the linear response would be singular here (M = 4e-35)."""
+    contact = BearingGeometry.named("NU308").contacts(STEEL, "half_space")[1]
+    film = SOLVER.solve_line(contact, OIL, (1e-30,), 0.1, 273.15)[0]
+    assert film.status is Status.OUTSIDE_VALIDITY
+    assert film.reason.startswith("M = 4.19e-35 below 1e-12: the elastic deflection is below round-off of the film")
+    assert math.isnan(film.film_offset)
+
+
 def test_the_lightest_loads_are_martins() -> None:
     """A load of 1e-6 N/m (M = 7e-11) is still solved, and is the rigid isoviscous film w h = 4.895 eta u R."""
     contact = CONTACTS[0]

@@ -34,5 +34,5 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     except KeyboardInterrupt:
         tell(f"\nstopped; what is solved is kept in {store_path(output)}: the same command goes on from there")
         return "", INTERRUPTED
-    missed = unmet(generated.dataset)
+    missed = unmet(generated.dataset, generated.backbone is not None)
     return "\n".join([summary(generated, output), *missed]), 1 if holes(generated.dataset) or missed else 0

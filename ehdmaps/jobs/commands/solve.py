@@ -172,13 +172,17 @@ def _read(arguments: argparse.Namespace) -> _Request:
         problems.append(f"{option}: got {text!r}; allowed: {display.text(low)} to {display.text(high)}")
         return None
 
-    per_length = _is_of_unit(arguments.load, "N/m")
+    # of a load that does not read nobody knows whether it needs a length
+    total = _is_of_unit(arguments.load, "N")
+    if not total and arguments.length is not None:
+        total = not _is_of_unit(arguments.load, "N/m")
     length: float | None = None
+    load: float | None = None
     if arguments.length is not None:
         length = read("--length", arguments.length, "m", 1e-6, 100.0, LENGTH)
-    elif not per_length:
+    elif total:
         problems.append('--length: missing; a load in N needs the length that carries it; or give --load in "N/mm"')
-    if per_length:
+    if not total:
         load = read("--load", arguments.load, "N/m", 1.0, 1e7, LOAD)
     else:
         force = read("--load", arguments.load, "N", 1e-6, 1e9, Display("N"))
