@@ -371,6 +371,7 @@ def films_beside_dry(outputs: Sequence[Output]) -> list[Figure]:
     medians, highest = [row.median for row in undamped], [row.highest for row in undamped]
     return [
         *(-max(medians), -min(medians), -max(highest), -min(highest)),
+        *given("12.5"),
         *(min(row.median for row in damped), max(row.median for row in damped)),
     ]
 
