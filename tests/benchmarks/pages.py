@@ -173,24 +173,24 @@ def report(name: str, found: Compared) -> None:
         print(f"    and {len(found.different) - SHOWN} more")
 
 
-def chosen(given: argparse.Namespace) -> list[Block]:
-    """Blocks that were asked for."""
+def chosen(given: argparse.Namespace) -> list[tuple[int, Block]]:
+    """Blocks that were asked for, each with its number among those of its page."""
     weights = {"quick"} | {weight for weight in WEIGHTS if getattr(given, weight, False)}
     found = []
     for page in given.pages or PAGES:
         found += [
-            block
-            for block in blocks(page, (ROOT / page).read_text(encoding="utf-8"))
+            (number, block)
+            for number, block in enumerate(blocks(page, (ROOT / page).read_text(encoding="utf-8")))
             if block.weight in weights and given.only in f"{block.name} {' '.join(block.commands)}"
         ]
     return found
 
 
-def write(block: Block, made: list[Output]) -> None:
-    """Replace a block in its page; offsets are looked up anew, since blocks before it may have changed."""
+def write(number: int, block: Block, made: list[Output]) -> None:
+    """Replace a block in its page; its place is looked up anew, since blocks before it may have changed."""
     path = ROOT / block.page
     text = path.read_text(encoding="utf-8")
-    (now,) = (each for each in blocks(block.page, text) if (each.line, each.recipe) == (block.line, block.recipe))
+    now = list(blocks(block.page, text))[number]
     path.write_text(text[: now.begin] + rewritten(now, made) + text[now.end :], encoding="utf-8")
 
 
@@ -222,7 +222,7 @@ def main() -> int:
         there = Runner(given.against.resolve(), (folder / "there").resolve(), given.maps, given.reuse)
     print(f"{'block':58} {'figures':>8} {'equal':>7} {'different':>10} {'exempt':>7}")
     wrong, failed, seen = 0, 0, set[str]()
-    for block in chosen(given):
+    for number, block in chosen(given):
         try:
             made = outputs(here, block)
             other = outputs(there, block) if there is not None else []
@@ -237,7 +237,7 @@ def main() -> int:
         report(block.name, found)
         wrong += len(found.different) + bool(found.problem)
         if given.write:
-            write(block, made)
+            write(number, block, made)
         for mine, its in zip(made, other, strict=bool(other)) if other else ():
             if mine.command not in seen:
                 whole = whole_outputs(its.text, mine.text)
