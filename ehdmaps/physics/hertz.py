@@ -58,7 +58,7 @@ def natural_time(load: Values, film_offset: Values, speed: float, radius: float,
     Examples
     --------
     >>> f"{natural_time(88571.4, 1e-6, speed=1.7, radius=5.5152e-3, reduced_modulus=230.769e9):.4g}"
-    '7.562e-05'
+    '7.538e-05'
     """
     width = half_width(load, radius, reduced_modulus)
     return as_given(np.sqrt(np.square(width) + 2.0 * film_offset * radius) / speed, load)

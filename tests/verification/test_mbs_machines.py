@@ -178,20 +178,24 @@ class TestFlexibleShaft:
         assert np.all(found[1] > found[0])
         assert np.all(found[2] > found[1])
 
-    def test_no_force_jumps_in_the_run_up(self, emap):
-        """A jump would be as large however short the steps are; here it falls with them."""
-        model = assemble(self.scene, "map", emap)
+    @pytest.mark.parametrize(("films", "most"), [("slow", 0.5), ("memory", 1.0)])
+    def test_no_force_jumps_in_the_run_up(self, emap, films, most):
+        """A jump would be as large however short the steps are; here it falls with them.
+
+        Films with memory are stiffer against the oscillation that the start of the run excites while they form.
+        """
+        model = assemble(self.scene, "map", emap, films=films)
         speed = SpeedProfile.ramp(0.0, 2000.0 * RPM, 0.1)
         start = equilibrium(model.system, Operation(0.0))
         largest = []
-        for step in (20e-6, 10e-6):
-            recorded = run(model.system, speed, 0.05, Settings(step, step), displacement=start.displacement)
+        for step in (10e-6, 2.5e-6):
+            recorded = run(model.system, speed, 0.01, Settings(step, step), displacement=start.displacement)
             size = np.hypot(recorded.forces[0][:, 1], recorded.forces[0][:, 2])
             largest.append(float(np.max(np.abs(np.diff(size)))))
-        # Half, but for what the start of the run excites at the highest frequencies.
-        assert largest[1] < 0.75 * largest[0]
+        # A quarter, but for what the start of the run excites at the highest frequencies.
+        assert largest[1] < 0.5 * largest[0]
         # The preload is 141 N; the jump of the switched law of the source is 155 % of it.
-        assert largest[0] < 0.5
+        assert largest[0] < most
 
 
 class TestRig:
