@@ -8,25 +8,15 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.copies import put
 from ehdmaps.maps.lines import FAST
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.bearing_kernel import Work, bearing_force
-from mbs.bearings.rings import (
-    Course,
-    CourseOfFilms,
-    Rings,
-    answer_ring,
-    course_of,
-    feels,
-    gather_rings,
-    motion_of,
-    shape_of,
-    shared,
-)
+from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
+from mbs.bearings.rings import Rings, answer_ring, feels, gather_rings, motion_of, shape_of
 from mbs.bearings.slice_table import CELLS, LawNumbers, PreparedLaw, law_numbers, store_numbers
 from mbs.bearings.speed_tables import NODES, SpeedTables
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
@@ -180,7 +170,7 @@ def bearings_answer(bearings: Bearings, moment: Moment, motion: FloatArray, answ
     return FOUND
 
 
-class BearingBlock:
+class BearingBlock(FilmBlock[Bearings]):
     """The bearings of a run; those with the same law at the same speed and temperature share their tables.
 
     Parameters
@@ -200,33 +190,18 @@ class BearingBlock:
         ]
         rings = gather_rings(members, films_of)
         films = room_of(len(tables), any(table.varies for table in tables))
-        self._course = CourseOfFilms(
+        course = CourseOfFilms(
             [table.places for table in tables],
             lambda film, *places: tables[film].prepare(*places, films.tables[film], films.numbers[film]),
         )
-        self._arrays = Bearings(
+        arrays = Bearings(
             rings=rings,
             rows=np.zeros(rings.most_slices, dtype=np.int64),
             states=np.zeros(4 * rings.most_slices),
             films=films,
             course=course_of(0, len(tables)),
         )
-
-    def begin(self, speeds: FloatArray) -> None:
-        """Find the places of the speeds [rad/s] on the tables."""
-        self._course.begin(speeds)
-
-    def prepare(self, first: int, last: int) -> tuple[Bearings, BoolArray]:
-        """Make the tables of the next steps, as many as are held at once.
-
-        Parameters
-        ----------
-        first, last : int
-            Steps of those that `begin` was told.
-        """
-        course, sound = self._course.prepare(first, last)
-        self._arrays.films.in_use[:] = -1.0
-        return self._arrays._replace(course=course), sound
+        super().__init__(course, arrays)
 
 
 def _force_of(element: BearingElement) -> BearingForce:

@@ -1,13 +1,10 @@
 """Bearings whose films have a memory, in compiled runs: each slice has a state, which goes on when a step is made.
 
-The first question at the end of a new step begins it, with the states of the last step that was made, here or in
-Python. Questions at other motions, and steps that are tried again with another length, leave these alone. Tables over
-the speed are mixed every `KEPT` steps, as slices read them.
+How a step begins, and what then goes on, has its home in `mbs.bearings.film_clock`.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -16,30 +13,26 @@ from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.memory import FilmState
 from ehdmaps.maps.memory_table import step_of
 from mbs.bearings.bearing_kernel import assemble_slices, check_motion, slice_approaches
-from mbs.bearings.memory_element import FilmStates, MemoryBearing
-from mbs.bearings.memory_kernel import CHANGE, KEPT, LATEST, LOAD, MEMORY, begin, commit, loads, resume
-from mbs.bearings.memory_tables import HIGHEST, MemoryFilms, MemoryTables, mix, room, table_in_use
-from mbs.bearings.rings import (
-    Course,
-    CourseOfFilms,
-    Rings,
-    answer_ring,
-    course_of,
-    feels,
-    gather_rings,
-    motion_of,
-    shape_of,
-    shared,
+from mbs.bearings.film_clock import (
+    ACCEPTED,
+    LAST,
+    STEPS,
+    TRIAL,
+    begin_step,
+    films_of_rows,
+    make_step,
+    new_clock,
+    resume_rows,
 )
+from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
+from mbs.bearings.memory_element import FilmStates, MemoryBearing
+from mbs.bearings.memory_kernel import MEMORY, begin, commit, loads
+from mbs.bearings.memory_tables import HIGHEST, MemoryFilms, MemoryTables, room, table_in_use
+from mbs.bearings.rings import Rings, answer_ring, feels, gather_rings, motion_of, shape_of
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
 from mbs.model.elements import Element
-
-ACCEPTED, LAST, TRIAL, STEPS = range(4)
-"""Times of a run: end of the last step that was made [s]; its length [s], 0 if there was none; end of the step that is
-tried [s], NaN before that is known; and how many were made."""
 
 
 class MemoryBearings(NamedTuple):
@@ -86,13 +79,8 @@ def memory_of(bearings: MemoryBearings, b: int) -> FloatArray:
 @njit(cache=True, error_model="numpy")
 def _begin(bearings: MemoryBearings, moment: Moment) -> None:
     """Begin a step: tables, and what its slices start from."""
-    clock, course, films = bearings.clock, bearings.course, bearings.films
-    clock[TRIAL] = moment.time
-    steps = int(clock[STEPS])
-    for film in range(films.in_use.shape[0]):
-        if films.in_use[film, 0] < 0.0 or steps % KEPT == 0:
-            mix(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
-    growth = (moment.time - clock[ACCEPTED]) / clock[LAST] if clock[LAST] > 0.0 else 0.0
+    films, steps = bearings.films, int(bearings.clock[STEPS])
+    growth = begin_step(bearings.clock, films, bearings.course, moment)
     for b in range(bearings.rings.firsts.size):
         begin(table_in_use(films, bearings.rings.films_of[b]), growth, steps, memory_of(bearings, b))
 
@@ -158,17 +146,14 @@ def memory_accept(bearings: MemoryBearings, moment: Moment) -> None:
     moment : Moment
         The step that was answered last.
     """
-    clock = bearings.clock
     for b in range(bearings.rings.firsts.size):
         size = bearings.rings.rollers[b] * bearings.rings.slices[b]
         table = table_in_use(bearings.films, bearings.rings.films_of[b])
         commit(table, memory_of(bearings, b), bearings.states[b][:size])
-    clock[LAST] = moment.time - clock[ACCEPTED]
-    clock[ACCEPTED] = moment.time
-    clock[STEPS] += 1.0
+    make_step(bearings.clock, moment)
 
 
-class MemoryBlock:
+class MemoryBlock(FilmBlock[MemoryBearings]):
     """The bearings with memory of a run; those with the same law at the same speed and temperature share their tables.
 
     Parameters
@@ -185,47 +170,29 @@ class MemoryBlock:
             for element in (elements[first] for first in firsts)
         ]
         rings, films = gather_rings(members, films_of), room(len(tables))
-        self._course = CourseOfFilms(
+        course = CourseOfFilms(
             [table.places for table in tables],
             lambda film, *places: tables[film].prepare(*places, films, film),
         )
-        self._arrays = MemoryBearings(
+        arrays = MemoryBearings(
             rings=rings,
             strict=np.array([element.law.outside == "error" for element in elements], dtype=np.bool_),
             memory=np.zeros((len(elements), MEMORY * rings.most_slices)),
             approaches=np.zeros(rings.most_slices),
             states=np.zeros((len(elements), 4 * rings.most_slices)),
-            clock=np.array([math.nan, 0.0, math.nan, 0.0]),
+            clock=new_clock(),
             films=films,
             course=course_of(0, len(tables)),
         )
-
-    def begin(self, speeds: FloatArray) -> None:
-        """Find the places of the speeds [rad/s] on the tables."""
-        self._course.begin(speeds)
-
-    def prepare(self, first: int, last: int) -> tuple[MemoryBearings, BoolArray]:
-        """Make the tables of the next steps, as many as are held at once.
-
-        Parameters
-        ----------
-        first, last : int
-            Steps of those that `begin` was told.
-        """
-        course, sound = self._course.prepare(first, last)
-        self._arrays.films.in_use[:] = -1.0
-        return self._arrays._replace(course=course), sound
+        super().__init__(course, arrays)
 
     def states(self) -> list[FilmStates]:
         """Films of each bearing after the last step that was made."""
         last, time = float(self._arrays.clock[LAST]), float(self._arrays.clock[ACCEPTED])
-        found = []
-        for b in range(self._arrays.strict.size):
-            approach, change, load = (
-                self._rows(b)[row].reshape(self._shape(b)).copy() for row in (LATEST, CHANGE, LOAD)
-            )
-            found.append(FilmStates(FilmState(approach, change, load, last), time))
-        return found
+        return [
+            FilmStates(films_of_rows(self._rows(b), self._shape(b), last), time)
+            for b in range(self._arrays.strict.size)
+        ]
 
     def resume(self, states: Sequence[FilmStates]) -> None:
         """Go on from the films that each bearing has in Python.
@@ -236,8 +203,7 @@ class MemoryBlock:
             One a bearing, all after the same step.
         """
         for b, (films, time) in enumerate(states):
-            resume(films.approach.reshape(-1), films.change.reshape(-1), films.load.reshape(-1), self._rows(b))
-            self._arrays.clock[: TRIAL + 1] = time, films.step, math.nan
+            resume_rows(films, time, self._rows(b), self._arrays.clock)
 
     def _shape(self, b: int) -> tuple[int, int]:
         """Rollers and slices of a bearing."""

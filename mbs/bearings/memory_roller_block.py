@@ -1,6 +1,6 @@
 """Rollers that are bodies, in compiled runs, with films that have a memory: each contact of a roller has its own.
 
-Steps begin and go on as in `mbs.bearings.memory_block`.
+Steps begin and go on as in `mbs.bearings.film_clock`.
 """
 
 from __future__ import annotations
@@ -13,14 +13,23 @@ import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from ehdmaps.maps.memory import FilmState
 from ehdmaps.maps.memory_table import step_of
 from mbs.bearings.bearing_kernel import Sizes, sizes_of
-from mbs.bearings.memory_block import ACCEPTED, LAST, STEPS, TRIAL
-from mbs.bearings.memory_kernel import CHANGE, KEPT, LATEST, LOAD, MEMORY, begin, commit, loads, resume
+from mbs.bearings.film_clock import (
+    ACCEPTED,
+    LAST,
+    STEPS,
+    TRIAL,
+    begin_step,
+    films_of_rows,
+    make_step,
+    new_clock,
+    resume_rows,
+)
+from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
+from mbs.bearings.memory_kernel import MEMORY, begin, commit, loads
 from mbs.bearings.memory_rollers import ContactStates, MemoryRollers
-from mbs.bearings.memory_tables import HIGHEST, MemoryFilms, MemoryTables, mix, room, table_in_use
-from mbs.bearings.rings import Course, CourseOfFilms, course_of, shared
+from mbs.bearings.memory_tables import HIGHEST, MemoryFilms, MemoryTables, room, table_in_use
 from mbs.bearings.roller_places import (
     Contact,
     Place,
@@ -51,7 +60,7 @@ class MemoryRollerBearings(NamedTuple):
     answered : array (bearings, 2, 2 Z n)
         Loads and tangents of the last answer.
     clock : array (4,)
-        Times of the run, see `mbs.bearings.memory_block`.
+        Times of the run, see `mbs.bearings.film_clock`.
     films : MemoryFilms
         Tables of the laws of single contacts.
     course : Course
@@ -79,13 +88,8 @@ def _memory_of(bearings: MemoryRollerBearings, b: int, side: int) -> FloatArray:
 @njit(cache=True, error_model="numpy")
 def _begin(bearings: MemoryRollerBearings, moment: Moment) -> None:
     """Begin a step: tables, and what slices start from."""
-    clock, course, films, rollers = bearings.clock, bearings.course, bearings.films, bearings.rollers
-    clock[TRIAL] = moment.time
-    steps = int(clock[STEPS])
-    for film in range(films.in_use.shape[0]):
-        if films.in_use[film, 0] < 0.0 or steps % KEPT == 0:
-            mix(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
-    growth = (moment.time - clock[ACCEPTED]) / clock[LAST] if clock[LAST] > 0.0 else 0.0
+    films, rollers, steps = bearings.films, bearings.rollers, int(bearings.clock[STEPS])
+    growth = begin_step(bearings.clock, films, bearings.course, moment)
     for b in range(bearings.strict.size):
         for side in range(2):
             begin(table_in_use(films, rollers.films_of[b, side]), growth, steps, _memory_of(bearings, b, side))
@@ -167,10 +171,10 @@ def memory_rollers_answer(bearings: MemoryRollerBearings, moment: Moment, motion
             return NO_SOLUTION
         if above and bearings.strict[b]:
             return IN_PYTHON
-        outside = 1 if above else 0
-        for side in range(2):
-            outside = max(outside, course.outside[moment.step, rollers.films_of[b, side]])
-        answers.outside[rollers.rings.places[b]] += outside
+        outside = (
+            course.outside[moment.step, rollers.films_of[b, 0]] + course.outside[moment.step, rollers.films_of[b, 1]]
+        )
+        answers.outside[rollers.rings.places[b]] += 1 if above or outside > 0 else 0
     return FOUND
 
 
@@ -185,18 +189,16 @@ def memory_rollers_accept(bearings: MemoryRollerBearings, moment: Moment) -> Non
     moment : Moment
         The step that was answered last.
     """
-    clock, rollers = bearings.clock, bearings.rollers
+    rollers = bearings.rollers
     for b in range(bearings.strict.size):
         size = rollers.rings.rollers[b] * rollers.rings.slices[b]
         for side in range(2):
             table = table_in_use(bearings.films, rollers.films_of[b, side])
             commit(table, _memory_of(bearings, b, side), bearings.answered[b, side][:size])
-    clock[LAST] = moment.time - clock[ACCEPTED]
-    clock[ACCEPTED] = moment.time
-    clock[STEPS] += 1.0
+    make_step(bearings.clock, moment)
 
 
-class MemoryRollerBlock:
+class MemoryRollerBlock(FilmBlock[MemoryRollerBearings]):
     """The bearings of a run; contacts with the same law at the same speed and temperature share their tables.
 
     Parameters
@@ -211,44 +213,29 @@ class MemoryRollerBlock:
         films_of, firsts = shared((id(law), plain.temperature, plain.rates[1]) for plain, law in pairs)
         tables = [MemoryTables(law, plain.temperature, plain.rates[1]) for plain, law in map(pairs.__getitem__, firsts)]
         rollers, films = gather_rollers(members, films_of), room(len(tables))
-        self._course = CourseOfFilms(
+        course = CourseOfFilms(
             [table.places for table in tables],
             lambda film, *places: tables[film].prepare(*places, films, film),
         )
         count, most = len(elements), rollers.rings.most_slices
-        self._arrays = MemoryRollerBearings(
+        arrays = MemoryRollerBearings(
             rollers=rollers,
             strict=np.array([any(law.outside == "error" for law in each.laws) for each in elements], dtype=np.bool_),
             memory=np.zeros((count, 2, MEMORY * most)),
             approaches=np.zeros(most),
             answered=np.zeros((count, 2, 2 * most)),
-            clock=np.array([math.nan, 0.0, math.nan, 0.0]),
+            clock=new_clock(),
             films=films,
             course=course_of(0, len(tables)),
         )
-
-    def begin(self, speeds: FloatArray) -> None:
-        """Find the places of the speeds [rad/s] on the tables."""
-        self._course.begin(speeds)
-
-    def prepare(self, first: int, last: int) -> tuple[MemoryRollerBearings, BoolArray]:
-        """Make the tables of the next steps, as many as are held at once.
-
-        Parameters
-        ----------
-        first, last : int
-            Steps of those that `begin` was told.
-        """
-        course, sound = self._course.prepare(first, last)
-        self._arrays.films.in_use[:] = -1.0
-        return self._arrays._replace(course=course), sound
+        super().__init__(course, arrays)
 
     def states(self) -> list[ContactStates]:
         """Films of both contacts of each bearing after the last step that was made."""
         last, time = float(self._arrays.clock[LAST]), float(self._arrays.clock[ACCEPTED])
         found = []
         for b in range(self._arrays.strict.size):
-            inner, outer = (self._films(b, side, last) for side in range(2))
+            inner, outer = (films_of_rows(self._rows(b, side), self._shape(b), last) for side in range(2))
             found.append(ContactStates((inner, outer), time))
         return found
 
@@ -262,16 +249,17 @@ class MemoryRollerBlock:
         """
         for b, (both, time) in enumerate(states):
             for side, films in enumerate(both):
-                rows = _memory_of.py_func(self._arrays, b, side)
-                resume(films.approach.reshape(-1), films.change.reshape(-1), films.load.reshape(-1), rows)
-                self._arrays.clock[: TRIAL + 1] = time, films.step, math.nan
+                resume_rows(films, time, self._rows(b, side), self._arrays.clock)
 
-    def _films(self, b: int, side: int, last: float) -> FilmState:
-        """Films of one side of a bearing, which have made a step of a length last."""
-        rings, rows = self._arrays.rollers.rings, _memory_of.py_func(self._arrays, b, side)
-        shape = int(rings.rollers[b]), int(rings.slices[b])
-        approach, change, load = (rows[row].reshape(shape).copy() for row in (LATEST, CHANGE, LOAD))
-        return FilmState(approach, change, load, last)
+    def _shape(self, b: int) -> tuple[int, int]:
+        """Rollers and slices of a bearing."""
+        rings = self._arrays.rollers.rings
+        return int(rings.rollers[b]), int(rings.slices[b])
+
+    def _rows(self, b: int, side: int) -> FloatArray:
+        """Memory of the slices of one side of a bearing."""
+        rows: FloatArray = _memory_of.py_func(self._arrays, b, side)
+        return rows
 
 
 MEMORY_ROLLERS = Kind(

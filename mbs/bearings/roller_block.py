@@ -13,11 +13,11 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.arrays import FloatArray, IntArray
 from mbs.bearings.bearing_block import Films, blend, room_of
 from mbs.bearings.bearing_kernel import RingMotion, Shape, Work, bearing_force, sizes_of
+from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
 from mbs.bearings.force_at_point import FlatLaw
-from mbs.bearings.rings import Course, CourseOfFilms, course_of, shared
 from mbs.bearings.roller_element import RollerElement
 from mbs.bearings.roller_places import (
     Contact,
@@ -112,7 +112,7 @@ def rollers_answer(bearings: RollerBearings, moment: Moment, motion: FloatArray,
     return FOUND
 
 
-class RollerBlock:
+class RollerBlock(FilmBlock[RollerBearings]):
     """The bearings of a run; contacts with the same law at the same speed and temperature share their tables.
 
     Parameters
@@ -131,34 +131,19 @@ class RollerBlock:
             tables.append(SpeedTables(plain.bearing, FlatLaw(law), plain.temperature, (plain.rates[1], 0.0)))
         rollers = gather_rollers(members, films_of)
         films = room_of(len(tables), any(table.varies for table in tables))
-        self._course = CourseOfFilms(
+        course = CourseOfFilms(
             [table.places for table in tables],
             lambda film, *places: tables[film].prepare(*places, films.tables[film], films.numbers[film]),
         )
         most = int(np.max(rollers.rings.slices, initial=0))
-        self._arrays = RollerBearings(
+        arrays = RollerBearings(
             rollers=rollers,
             rows=np.zeros(most, dtype=np.int64),
             states=np.zeros(4 * most),
             films=films,
             course=course_of(0, len(tables)),
         )
-
-    def begin(self, speeds: FloatArray) -> None:
-        """Find the places of the speeds [rad/s] on the tables."""
-        self._course.begin(speeds)
-
-    def prepare(self, first: int, last: int) -> tuple[RollerBearings, BoolArray]:
-        """Make the tables of the next steps, as many as are held at once.
-
-        Parameters
-        ----------
-        first, last : int
-            Steps of those that `begin` was told.
-        """
-        course, sound = self._course.prepare(first, last)
-        self._arrays.films.in_use[:] = -1.0
-        return self._arrays._replace(course=course), sound
+        super().__init__(course, arrays)
 
 
 ROLLERS = Kind(arrays=RollerBearings, answer=rollers_answer, feels=feels, gather=RollerBlock, alone=alone)

@@ -17,7 +17,7 @@ from matplotlib.patheffects import withStroke
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import COLOURS, SHADE
 from mbs.output.page import ESTIMATED, shade_handle
-from mbs.spectral.campbell import RunUpSpectra
+from mbs.spectral.campbell import Campbell, RunUpSpectra
 from mbs.spectral.levels import Reference, level
 from mbs.spectral.run_signal import RPM
 
@@ -42,6 +42,9 @@ _SPARSE = (0.0, (1.0, 4.0))
 _LIMIT = (0.0, (5.0, 1.5, 1.0, 1.5))
 _LIMIT_COLOUR = "#ff7f0e"
 """Of the frequency from which on the films are notably wrong: seen on the colours of the levels and on paper."""
+
+_SHORT_LABEL = 18
+"""Letters of a law's label of which two fit beside one another in the legend of the sum levels."""
 
 _LEAST_HEIGHT, _LEAST_WIDTH = 0.05, 0.12
 """Between two names of orders, as parts of a diagram."""
@@ -134,7 +137,7 @@ def campbell_figure(
     bar = upper.colorbar(ScalarMappable(colours, _MAP), ax=list(panels), pad=0.01, aspect=25, extend="min")
     bar.set_label(f"{reference.quantity} level, {_reference(reference)}", fontsize=7)
     bar.ax.tick_params(labelsize=7)
-    handles = _handles(orders, overlays, reaches, float(results[0].campbell.speeds.min()))
+    handles = _handles(orders, overlays, reaches, results[0].campbell)
     if handles:
         upper.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=6, frameon=False)
     left, right = lower.subplots(1, 2)
@@ -150,7 +153,8 @@ def campbell_figure(
         right.plot(place[shown], spectrum[shown], dashes, color=colour, lw=0.8)
     left.set_xlabel("speed, rpm", fontsize=7)
     left.set_ylabel(f"sum level, {_reference(reference)}", fontsize=7)
-    left.legend(fontsize=7, frameon=False, ncols=2 if len(laws) > 2 else 1)
+    side_by_side = len(laws) > 2 and max(map(len, laws)) <= _SHORT_LABEL
+    left.legend(fontsize=7, frameon=False, ncols=2 if side_by_side else 1)
     right.set_xlabel("order (periods a turn)", fontsize=7)
     right.set_ylabel(f"mean level, {_reference(reference)}", fontsize=7)
     right.set_xlim(0.0, last)
@@ -174,19 +178,19 @@ def _reach(panel: Axes, reach: Reach, factor: float) -> None:
 
 
 def _handles(
-    orders: Sequence[tuple[float, str]], overlays: Sequence[Overlay | None], reaches: Sequence[Reach], begin: float
+    orders: Sequence[tuple[float, str]], overlays: Sequence[Overlay | None], reaches: Sequence[Reach], drawn: Campbell
 ) -> list[Artist]:
-    """What the lines in the diagrams are."""
+    """What the lines are that are seen in the diagrams, whose speeds and frequencies are those of `drawn`."""
     found: list[Artist] = []
     if orders:
         found.append(Line2D([], [], color="0.5", lw=0.8, ls=_SPARSE, label="orders"))
     if any(overlay is not None for overlay in overlays):
         found.append(Line2D([], [], color="0.5", lw=0.8, ls="--", label="linear modes (|eigenvalue|/2π)"))
-    if any(np.isfinite(reach.limit).any() for reach in reaches):
+    if any((reach.limit < drawn.frequencies.max()).any() for reach in reaches):
         words = f"above the line: {ESTIMATED}"
         found.append(Line2D([], [], color=_LIMIT_COLOUR, lw=0.9, ls=_LIMIT, label=words))
     slow = max((reach.below for reach in reaches), default=0.0)
-    if slow >= begin:
+    if slow >= drawn.speeds.min():
         found.append(shade_handle(f"up to {slow * RPM:.4g} rpm: below the map, film fades to dry"))
     return found
 

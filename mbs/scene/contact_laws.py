@@ -94,7 +94,7 @@ def hertz_damper(law: str) -> Damper | None:
     Raises
     ------
     InputError
-        For a damper that is none, or out of range.
+        If what follows hertz: is no damping with a unit, or is out of range.
 
     Examples
     --------

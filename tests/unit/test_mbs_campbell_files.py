@@ -135,6 +135,15 @@ def test_what_is_not_valid_is_drawn_and_named(spectra):
     ]
 
 
+@pytest.mark.parametrize("words", ["Reynolds map", "Reynolds map, films with memory"])
+def test_the_legend_of_the_laws_stays_in_its_panel(spectra, words):
+    figure = campbell_figure("title", ["dry Hertz", words, f"{words} "], [spectra] * 3, REFERENCE)
+    figure.draw_without_rendering()
+    ((panel, legend),) = ((axes, axes.get_legend()) for axes in figure.axes if axes.get_legend() is not None)
+    assert legend.get_window_extent().x0 >= panel.get_window_extent().x0
+    assert legend.get_window_extent().x1 <= panel.get_window_extent().x1
+
+
 def test_silence_can_be_drawn(tmp_path):
     nothing = run_up_spectra(ramp(signal=np.zeros_like), 1e-6, 500.0)
     campbell_figure("title", ["a"], [nothing], REFERENCE).savefig(tmp_path / "figure.png")
