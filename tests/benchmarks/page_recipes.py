@@ -22,8 +22,7 @@ from tests.benchmarks.page_block import (
     compared_texts,
     with_figures,
 )
-
-NUMBER = r"([-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?)"
+from tests.benchmarks.printed_tables import NUMBER, Mode, one_case, sweep_cases, variants
 
 TIMES = tuple(
     re.compile(pattern)
@@ -46,105 +45,6 @@ class Output:
 
     command: str
     text: str
-
-
-@dataclass(frozen=True)
-class Mode:
-    """A row of a mode in a sweep: frequency at the first and last speed [Hz], its damping ratio at the first; energy in
-    the bearings if undamped."""
-
-    first: float
-    last: float
-    energy: tuple[float, float] = (0.0, 0.0)
-    damping_ratio: float = 0.0
-
-    @property
-    def change(self) -> float:
-        """Change over the speeds [%]."""
-        return 100.0 * (self.last / self.first - 1.0)
-
-
-@dataclass(frozen=True)
-class Along:
-    """Stiffness [N/um] and damping [N s/m] of the first bearing along the load, at the first and last speed."""
-
-    k: tuple[float, float]
-    c: tuple[float, float]
-
-    @property
-    def changes(self) -> tuple[float, float]:
-        """Changes of k and c [%]."""
-        return (100.0 * (self.k[1] / self.k[0] - 1.0), 100.0 * (self.c[1] / self.c[0] - 1.0))
-
-
-@dataclass(frozen=True)
-class Case:
-    """A case of `mbs sweep`."""
-
-    title: str
-    along: Along
-    undamped: dict[int, Mode]
-    complex: dict[int, Mode]
-    text: str
-
-    def steepest(self) -> float:
-        """Change of the complex mode that falls most [%]."""
-        return min(mode.change for mode in self.complex.values())
-
-    def highest_rise(self) -> float:
-        """Change of the complex mode that rises most [%]."""
-        return max(mode.change for mode in self.complex.values())
-
-    def bearing_modes(self) -> list[Mode]:
-        """Complex modes along the load with half and more of their energy in the bearings (0.45 at either end).
-
-        Those across the load lie below 1.5 kHz.
-        """
-        return [
-            mode
-            for number, mode in self.complex.items()
-            if number in self.undamped and max(self.undamped[number].energy) >= 0.45 and mode.first > 1500.0
-        ]
-
-
-def sweep_cases(text: str) -> list[Case]:
-    """Read the cases that `mbs sweep` prints."""
-    found = []
-    for part in re.split(r"(?m)^(?=\S.*: law )", text)[1:]:
-        along = re.search(rf"along the load k {NUMBER} to {NUMBER} N/um \([^)]*\), c {NUMBER} to {NUMBER} N s/m", part)
-        assert along is not None
-        k0, k1, c0, c1 = map(float, along.groups())
-        tables = part.split("complex modes  ")
-        row = rf"(?m)^ +(\d+) +{NUMBER} to +{NUMBER} +[-+][\d.]+ %"
-        undamped = {
-            int(number): Mode(float(first), float(last), (float(low), float(high)))
-            for number, first, last, low, high in re.findall(
-                row + rf" .*%.*%.* {NUMBER} to {NUMBER}$", tables[0].rstrip()
-            )
-        }
-        modes = {
-            int(number): Mode(float(first), float(last), damping_ratio=float(ratio))
-            for number, first, last, ratio in re.findall(row + rf" +{NUMBER} to ", tables[1])
-        }
-        case = re.search(r"(?m)^  case: (.*)$", part)
-        found.append(
-            Case(case[1] if case else part.partition("\n")[0], Along((k0, k1), (c0, c1)), undamped, modes, part)
-        )
-    return found
-
-
-def one_case(texts: Sequence[str], title: str) -> Case:
-    """The case with a title, of several sweeps.
-
-    Raises
-    ------
-    ValueError
-        There is none, or there are several.
-    """
-    found = [case for text in texts for case in sweep_cases(text) if title in case.title]
-    if len(found) != 1:
-        raise ValueError(f"{len(found)} cases are called '{title}'")
-    return found[0]
 
 
 def given(text: str) -> list[Figure]:
@@ -344,25 +244,6 @@ def highest_levels(text: str) -> list[float]:
     return [float(level) for level in re.findall(rf"highest sum level {NUMBER} dB", text)]
 
 
-@dataclass(frozen=True)
-class Variant:
-    """A row of `mbs variants`: differences of two laws [dB]."""
-
-    median: float
-    low: float
-    high: float
-    energy: float
-    highest: float
-
-
-def variants(text: str, sensor: str) -> dict[tuple[str, str], Variant]:
-    """Rows of a sensor that `mbs variants` prints, by what is varied and its value."""
-    part = re.split(r"(?m)^(?=sensor |range over)", text)
-    (own,) = (each for each in part if each.startswith(f"sensor {sensor},"))
-    row = rf"(?m)^  (\S+) +(\S.*?) +{NUMBER} +{NUMBER} to {NUMBER} +{NUMBER} +{NUMBER}$"
-    return {(key, value): Variant(*map(float, numbers)) for key, value, *numbers in re.findall(row, own)}
-
-
 def films_beside_dry(outputs: Sequence[Output]) -> list[Figure]:
     """What `mbs variants` shows of the film beside dry contacts, at the sensors of the housing."""
     rows = [variants(outputs[0].text, sensor) for sensor in ("S1", "S2", "S3")]
@@ -419,10 +300,10 @@ def peaks_dry(outputs: Sequence[Output]) -> list[Figure]:
 
 def readme_of_the_gearbox(outputs: Sequence[Output]) -> list[Figure]:
     """Levels beside dry contacts and their range; largest falls and rises over speed, by cage angle."""
-    levels, clearances, *angles = (output.text for output in outputs)
+    levels, beside_damped, clearances, *angles = (output.text for output in outputs)
     rows = variants(levels, "S1")
     base = rows["base", "-"]
-    (damped,) = (row for (key, _), row in rows.items() if key == "law")
+    damped = [row.median for sensor in ("S1", "S2", "S3") for row in variants(beside_damped, sensor).values()]
     least, most, *_ = films_beside_dry(outputs[:1])
     middle = one_case([clearances], "Reynolds map, 30 um")
     cases = [middle, *(sweep_cases(text)[0] for text in angles)]
@@ -436,7 +317,9 @@ def readme_of_the_gearbox(outputs: Sequence[Output]) -> list[Figure]:
         least,
         most,
         *given("1.25e-5"),
-        abs(damped.median),
+        abs(variants(beside_damped, "S1")["base", "-"].median),
+        min(damped),
+        max(damped),
         -max(falls),
         -min(falls),
         min(rises),
