@@ -35,7 +35,7 @@ from mbs.scene.fields import FORCE, MICROMETRE
 LAWS = ("hertz", "formula", "map")
 PROFILES = ("iso", "straight")
 OIL, CELSIUS_40, ROUGHNESS = "FVA3", 313.15, 0.3e-6
-"""Assumed where nothing is given: the oil, its temperature [K], the combined rms roughness [m]."""
+"""Assumed where nothing is given: the oil, the temperature of the raceways [K], the combined rms roughness [m]."""
 
 MOST_POINTS, MOST_SLICES = 500, 1000
 MOST_SLICES_IN_ALL = 5_000_000
