@@ -92,10 +92,14 @@ def test_a_bearing_warms_up_to_its_first_balance_or_runs_away():
 
     found = steady_temperatures(["b"], [paths], grows(0.3))
     np.testing.assert_allclose(found - AROUND, -15.0 * lambertw(-0.3).real, rtol=1e-8)
-    with pytest.raises(AnalysisError, match=r"bearing 'hot': thermal run-away: no balance below 200 degC"):
+    with pytest.raises(AnalysisError, match=r"bearing 'hot': thermal run-away: no heat balance below 200 degC"):
         steady_temperatures(
             ["cold", "hot"], [paths, paths], lambda t: np.array([1.0, 1.0]) * [[0.0], [1.0]] * grows(0.4)(t)
         )
+    with pytest.raises(
+        AnalysisError, match=r"bearing 'b': too hot: no heat balance below 200 degC, where its friction"
+    ):
+        steady_temperatures(["b"], [paths], lambda t: np.full((1, 2), 400.0))
     jumps = iter(range(1000))
     with pytest.raises(AnalysisError, match="bearing 'b': its heat balance does not settle"):
         steady_temperatures(["b"], [paths], lambda t: np.full((1, 2), 1.0 + next(jumps) % 2))
