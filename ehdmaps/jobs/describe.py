@@ -82,6 +82,9 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     if law:
         yield ""
         yield from law
+    if emap.low_loads is not None:
+        yield ""
+        yield f"contact laws at low loads: {emap.low_loads.text}"
     if emap.backbone is not None:
         yield ""
         yield from _backbone_lines(emap.backbone)

@@ -205,7 +205,8 @@ def _sampled(
     """Samples of g and of the summed curve, from below lift-off to beyond the held load."""
     curves = [ContactCurve(field, contact, speeds, temperatures) for contact in contacts]
     lowest, highest = field.load_range
-    first = np.cbrt(lowest)
+    known = field.first_loads(speeds, temperatures)
+    first = np.cbrt(known)
     faded = 0.7 * np.cbrt(np.min([curve.fade_load for curve in curves], axis=0))
     linear = np.linspace(-0.6, 1.0, 97)[:, None, None] * faded
     tail_range = float(np.max(np.log(first / faded)))
@@ -213,6 +214,7 @@ def _sampled(
     part = np.linspace(0.0, 1.0, count + 1)[1:-1, None, None]
     tail = np.concatenate((linear, faded * (first / faded) ** part))
 
+    low_loads = _log_lines(known, lowest, resolution.log_load)[:-1]
     mapped = _log_range(lowest, highest, resolution.log_load)
     most = min(highest_structural_load(contact) for contact in contacts)
     beyond = _log_range(highest, min(_BEYOND * held_load, most), resolution.log_load)[1:]
@@ -220,12 +222,13 @@ def _sampled(
     mapped_loads, beyond_loads = (
         np.broadcast_to(loads[:, None, None], (loads.size, *shape)).copy() for loads in (mapped, beyond)
     )
+    known_loads = np.concatenate((low_loads, mapped_loads))
     pieces = [
         _summed([curve.below(tail) for curve in curves]),
-        _summed([curve.mapped(mapped_loads) for curve in curves]),
+        _summed([curve.mapped(known_loads) for curve in curves]),
         _summed([curve.above(beyond_loads) for curve in curves]),
     ]
-    root = np.concatenate((tail, np.cbrt(mapped_loads), np.cbrt(beyond_loads)))
+    root = np.concatenate((tail, np.cbrt(known_loads), np.cbrt(beyond_loads)))
     return root, Curve(
         *(np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("approach", "slope", "loss_ratio"))
     )
@@ -235,6 +238,15 @@ def _log_range(low: float, high: float, step: float) -> FloatArray:
     """Values from low to high, uniform in their logarithm; the ends exactly."""
     values = np.geomspace(low, high, max(2, math.ceil(math.log(high / low) / step) + 1))
     values[0], values[-1] = low, high
+    return values
+
+
+def _log_lines(lows: FloatArray, high: float, step: float) -> FloatArray:
+    """Values from each low (n_u, n_T) to high, uniform in their logarithm, as many for each; high alone if all are."""
+    reach = float(np.max(np.log(high / lows)))
+    if not reach > 0.0:
+        return np.full((1, *lows.shape), high)
+    values: FloatArray = np.geomspace(lows, np.full_like(lows, high), max(2, math.ceil(reach / step) + 1))
     return values
 
 

@@ -48,7 +48,7 @@ class Curve:
 class _Edge:
     """Film at one end of the load range: offset h, compliance s, damping c, n = d ln c/d ln w; (n_u, n_T) each."""
 
-    load: float
+    load: FloatArray
     film_offset: FloatArray
     film_compliance: FloatArray
     damping: FloatArray
@@ -78,11 +78,16 @@ class ContactCurve:
         self._contact = contact
         self._speeds = speeds
         self._temperatures = temperatures
-        lowest, highest = field.load_range
-        low, self._high = self._edge(lowest, 1.0), self._edge(highest, -1.0)
+        self._first = field.first_loads(speeds, temperatures)
+        low, self._high = self._edge(self._first, 1.0), self._edge(np.full_like(self._first, field.load_range[1]), -1.0)
         self._tail = Tail(
-            lowest, low.film_offset, low.film_compliance, low.damping, low.damping_exponent, contact.radius
+            self._first, low.film_offset, low.film_compliance, low.damping, low.damping_exponent, contact.radius
         )
+
+    @property
+    def first_load(self) -> FloatArray:
+        """Load below which the tail holds [N/m], (n_u, n_T)."""
+        return self._first
 
     @property
     def fade_load(self) -> FloatArray:
@@ -90,7 +95,7 @@ class ContactCurve:
         return self._tail.fade_load
 
     def below(self, root: FloatArray) -> Curve:
-        """Tail: at and below the lowest mapped load; `root` is g (n, n_u, n_T)."""
+        """Tail: at and below the first load; `root` is g (n, n_u, n_T)."""
         film, film_slope, log_ratio = self._tail.films(root)
         load = np.maximum(root, 0.0) ** 3
         with np.errstate(invalid="ignore"):
@@ -99,7 +104,7 @@ class ContactCurve:
         return self._checked(curve, load)
 
     def mapped(self, load: FloatArray) -> Curve:
-        """Within the mapped loads [N/m], (n, n_u, n_T)."""
+        """From the first load to the highest one of the map [N/m], (n, n_u, n_T)."""
         film, film_compliance, loss = self._field.films(self._contact.name, load, self._speeds, self._temperatures)
         compliance = self._contact.structural_compliance(load) + film_compliance
         curve = Curve(
@@ -123,10 +128,9 @@ class ContactCurve:
         )
         return self._checked(curve, load)
 
-    def _edge(self, load: float, direction: float) -> _Edge:
+    def _edge(self, load: FloatArray, direction: float) -> _Edge:
         """Film and damping at an end of the range; the exponent of c from inside it, to second order."""
-        steps = load * np.exp(direction * _SMALL_STEP * np.arange(3.0))
-        loads = np.broadcast_to(steps[:, None, None], (3, self._speeds.size, self._temperatures.size)).copy()
+        loads = load * np.exp(direction * _SMALL_STEP * np.arange(3.0))[:, None, None]
         film, film_compliance, loss = self._field.films(self._contact.name, loads, self._speeds, self._temperatures)
         damping = loss / (self._contact.structural_compliance(loads) + film_compliance) ** 2
         logs = np.log(damping)

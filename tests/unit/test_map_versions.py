@@ -40,7 +40,8 @@ def test_laws_of_an_old_map_are_as_they_were(path, laws, kind):
     emap, recorded = open_map(path), RECORDED[path]
     law = (emap if laws == "laws" else EHDMap(emap.dataset)).law(kind)
     found = [law(*point) for point in recorded["points"]]
-    np.testing.assert_allclose(found, recorded[laws][kind], rtol=SAME_CODE)
+    # A backbone is now read below the lowest load too: nodes of the table lie elsewhere, and its error is 1e-6.
+    np.testing.assert_allclose(found, recorded[laws][kind], rtol=SAME_CODE if laws == "grid_laws" else 1e-6)
 
 
 @pytest.mark.parametrize("kind", ["series", "inner", "outer"])
