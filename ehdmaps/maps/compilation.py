@@ -128,6 +128,7 @@ def compile_table(
     end = float(np.max(stretched[held - 1])) + _MARGIN * resolution.approach
     nodes: FloatArray = start + resolution.approach * np.arange(math.ceil((end - start) / resolution.approach) + 1.0)
 
+    logs = np.log(curve.loss_ratio)
     values = np.empty((log_speeds.size, temperatures.size, nodes.size, 2))
     for i, j in np.ndindex(log_speeds.size, temperatures.size):
         line = stretched[:, i, j]
@@ -138,7 +139,7 @@ def compile_table(
                 "look at that part of the map, solve it again with a finer grid"
             )
         values[i, j, :, 0] = _continued_root(line, root[:, i, j], root_slope[:, i, j], nodes)
-        values[i, j, :, 1] = _continued_log(line, np.log(curve.loss_ratio[:, i, j]), nodes)
+        values[i, j, :, 1] = _continued_log(line, logs[:, i, j], nodes)
 
     coefficients = values
     place = np.stack((offset, 1.0 / scale), axis=-1)
@@ -205,8 +206,8 @@ def _sampled(
     """Samples of g and of the summed curve, from below lift-off to beyond the held load."""
     curves = [ContactCurve(field, contact, speeds, temperatures) for contact in contacts]
     lowest, highest = field.load_range
-    known = field.first_loads(speeds, temperatures)
-    first = np.cbrt(known)
+    begins = field.first_loads(speeds, temperatures)
+    first = np.cbrt(begins)
     faded = 0.7 * np.cbrt(np.min([curve.fade_load for curve in curves], axis=0))
     linear = np.linspace(-0.6, 1.0, 97)[:, None, None] * faded
     tail_range = float(np.max(np.log(first / faded)))
@@ -214,7 +215,7 @@ def _sampled(
     part = np.linspace(0.0, 1.0, count + 1)[1:-1, None, None]
     tail = np.concatenate((linear, faded * (first / faded) ** part))
 
-    low_loads = _log_lines(known, lowest, resolution.log_load)[:-1]
+    low_loads = _log_lines(begins, lowest, resolution.log_load)[:-1]
     mapped = _log_range(lowest, highest, resolution.log_load)
     most = min(highest_structural_load(contact) for contact in contacts)
     beyond = _log_range(highest, min(_BEYOND * held_load, most), resolution.log_load)[1:]
@@ -222,16 +223,10 @@ def _sampled(
     mapped_loads, beyond_loads = (
         np.broadcast_to(loads[:, None, None], (loads.size, *shape)).copy() for loads in (mapped, beyond)
     )
-    known_loads = np.concatenate((low_loads, mapped_loads))
-    pieces = [
-        _summed([curve.below(tail) for curve in curves]),
-        _summed([curve.mapped(known_loads) for curve in curves]),
-        _summed([curve.above(beyond_loads) for curve in curves]),
-    ]
-    root = np.concatenate((tail, np.cbrt(known_loads), np.cbrt(beyond_loads)))
-    return root, Curve(
-        *(np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("approach", "slope", "loss_ratio"))
-    )
+    known = np.concatenate((low_loads, mapped_loads))
+    films = [curve.film(tail, known, beyond_loads) for curve in curves]
+    total = _summed([curve.with_structure(film) for curve, film in zip(curves, films, strict=True)])
+    return films[0].root, total
 
 
 def _log_range(low: float, high: float, step: float) -> FloatArray:
