@@ -3,7 +3,7 @@
 Three choices make a small table exact enough:
 
 - The approach axis is stretched and aligned: s = asinh((delta - offset)/scale), with an offset and a scale that
-  follow the film over speed and temperature in closed form: approach, and its change with load, at the bottom of the
+  follow the film over speed and temperature: approach, and the dry contact's change with load, at the bottom of the
   damping valley. The valley stays at nearly constant s, and s is finest there.
 - The load is held as its cube root g: it fades out as the cube of the approach, so that g goes straight through
   zero, and w = max(g, 0)^3 is smooth and never negative.
@@ -26,12 +26,11 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
 from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.low_loads import valley_loads
 from ehdmaps.maps.splines import hermite, spline_coefficients
 from ehdmaps.maps.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import film_from_moes, moes_groups, valley_load_number
 
 _SCALE = 0.25
 _MARGIN = 4
@@ -117,8 +116,9 @@ def compile_table(
     low, high = (1.0 / (temperature - COLDEST) for temperature in field.temperature_range)
     colds = _axis(high, low, 1e-3 * resolution.temperature)
     temperatures = COLDEST + 1.0 / colds
-    offset, scale = _alignment(contacts, lubricant, np.exp(log_speeds), temperatures)
+    loads, scale = _alignment(contacts, lubricant, np.exp(log_speeds), temperatures)
     root, curve = _sampled(field, contacts, np.exp(log_speeds), temperatures, held_load, resolution)
+    offset = _approach_at(np.cbrt(loads), root, curve)
 
     stretched = np.arcsinh((curve.approach - offset) / scale)
     root_slope = scale * np.sqrt(1.0 + ((curve.approach - offset) / scale) ** 2) / curve.slope
@@ -174,25 +174,24 @@ def _inverse_step(nodes: FloatArray) -> float:
 def _alignment(
     contacts: Sequence[LineContact], lubricant: Lubricant, speeds: FloatArray, temperatures: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Offset and scale of the stretched approach [m], (n_u, n_T)."""
+    """Load at the bottom of the valley [N/m], and scale of the stretched approach there [m]; (n_u, n_T) each."""
     most = min(highest_structural_load(contact) for contact in contacts)
-    offset, scale = np.empty((2, speeds.size, temperatures.size))
-    states = [lubricant.at(float(temperature)) for temperature in temperatures]
-    for i, j in np.ndindex(speeds.size, temperatures.size):
-        state, speed = states[j], float(speeds[i])
-        alpha = state.pressure_viscosity.pressure_viscosity
-        logs, films = [], []
-        for contact in contacts:
-            oil = (speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
-            unit_load_number, oil_number = moes_groups(1.0, *oil)
-            load_number = float(valley_load_number(oil_number))
-            logs.append(math.log(load_number / unit_load_number))
-            film_number = moes_central(load_number, oil_number)
-            films.append(film_from_moes(film_number, speed, state.viscosity, contact.radius, contact.reduced_modulus))
-        load = min(math.exp(sum(logs) / len(logs)), most)
-        offset[i, j] = sum(contact.structural_approach(load) for contact in contacts) - sum(films)
-        scale[i, j] = _SCALE * load * sum(contact.structural_compliance(load) for contact in contacts)
-    return offset, scale
+    valleys = [valley_loads(contact, lubricant, speeds, temperatures) for contact in contacts]
+    loads = np.minimum(np.exp(np.mean(np.log(valleys), axis=0)), most)
+    compliance = sum(np.asarray(contact.structural_compliance(loads)) for contact in contacts)
+    return loads, _SCALE * loads * compliance
+
+
+def _approach_at(wanted: FloatArray, root: FloatArray, curve: Curve) -> FloatArray:
+    """Approach at one root g of each pair of speed and temperature, (n_u, n_T); held beyond the samples.
+
+    A closed form of the film would miss the valley by some per cent of the film, and by other per cents elsewhere: then
+    the valley wanders over s from node to node of speed and temperature, where it is narrower than it wanders.
+    """
+    offset = np.empty_like(wanted)
+    for place in np.ndindex(offset.shape):
+        offset[place] = np.interp(wanted[place], root[:, *place], curve.approach[:, *place])
+    return offset
 
 
 def _sampled(

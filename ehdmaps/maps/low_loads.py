@@ -131,6 +131,23 @@ def first_loads(
     return np.minimum(_JUST_BELOW * lowest_load, _loads_at(contacts, lubricant, start, speeds, temperatures))
 
 
+def valley_loads(
+    contact: LineContact, lubricant: Lubricant, speeds: FloatArray, temperatures: FloatArray
+) -> FloatArray:
+    """Loads [N/m] of a contact at the bottom of the damping valley, (n_u, n_T).
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    lubricant : Lubricant
+        The oil.
+    speeds, temperatures : array (n_u,), (n_T,)
+        u [m/s], > 0, and T [K].
+    """
+    return _loads_at([contact], lubricant, 0.0, speeds, temperatures)
+
+
 def same_load(lowest_load: float, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
     """One load for all speeds and temperatures, (n_u, n_T): films are known from there on only.
 
