@@ -61,7 +61,7 @@ def parser() -> argparse.ArgumentParser:
     solve.add_argument(
         "--speed", required=True, help='entrainment speed, such as "1.7 m/s", or of the inner ring, "500 rpm"'
     )
-    solve.add_argument("--temperature", required=True, help='of the oil, such as "40 degC"')
+    solve.add_argument("--temperature", required=True, help='of the raceways, such as "40 degC"')
     solve.add_argument("--frequency", help='of small oscillations, such as "1 kHz"; default: the low-frequency limit')
     solve.add_argument(
         "--frequencies",
@@ -93,7 +93,7 @@ def parser() -> argparse.ArgumentParser:
     export.add_argument("map", metavar="MAP.nc")
     export.add_argument("-o", "--output", metavar="CURVES.csv", help="default: the map's name with .csv")
     export.add_argument("--speed", help='entrainment speed, such as "1.7 m/s"; default: all of the map')
-    export.add_argument("--temperature", help='of the oil, such as "40 degC"; default: all of the map')
+    export.add_argument("--temperature", help='of the raceways, such as "40 degC"; default: all of the map')
     export.add_argument(
         "--contact", metavar="NAME", help="series | inner | outer | line; default: series, of a bare contact line"
     )

@@ -67,7 +67,8 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     yield f"axes ({dataset['status'].size} points)"
     yield f"  {'contact':20s} {dataset.sizes['contact']:5d}  {', '.join(map(str, dataset['contact'].values))}"
     for axis, display in AXES:
-        yield f"  {axis:20s} {dataset.sizes[axis]:5d}  {span(dataset[axis].values, display)}"
+        whose = ", of the raceways" if axis == "temperature" else ""
+        yield f"  {axis:20s} {dataset.sizes[axis]:5d}  {span(dataset[axis].values, display)}{whose}"
     yield ""
     yield "values (per unit length of contact)"
     yield from value_lines(dataset)
