@@ -128,6 +128,7 @@ def compile_table(
     end = float(np.max(stretched[held - 1])) + _MARGIN * resolution.approach
     nodes: FloatArray = start + resolution.approach * np.arange(math.ceil((end - start) / resolution.approach) + 1.0)
 
+    logs = np.log(curve.loss_ratio)
     values = np.empty((log_speeds.size, temperatures.size, nodes.size, 2))
     for i, j in np.ndindex(log_speeds.size, temperatures.size):
         line = stretched[:, i, j]
@@ -138,7 +139,7 @@ def compile_table(
                 "look at that part of the map, solve it again with a finer grid"
             )
         values[i, j, :, 0] = _continued_root(line, root[:, i, j], root_slope[:, i, j], nodes)
-        values[i, j, :, 1] = _continued_log(line, np.log(curve.loss_ratio[:, i, j]), nodes)
+        values[i, j, :, 1] = _continued_log(line, logs[:, i, j], nodes)
 
     coefficients = values
     place = np.stack((offset, 1.0 / scale), axis=-1)
@@ -220,15 +221,9 @@ def _sampled(
     mapped_loads, beyond_loads = (
         np.broadcast_to(loads[:, None, None], (loads.size, *shape)).copy() for loads in (mapped, beyond)
     )
-    pieces = [
-        _summed([curve.below(tail) for curve in curves]),
-        _summed([curve.mapped(mapped_loads) for curve in curves]),
-        _summed([curve.above(beyond_loads) for curve in curves]),
-    ]
-    root = np.concatenate((tail, np.cbrt(mapped_loads), np.cbrt(beyond_loads)))
-    return root, Curve(
-        *(np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("approach", "slope", "loss_ratio"))
-    )
+    films = [curve.film(tail, mapped_loads, beyond_loads) for curve in curves]
+    total = _summed([curve.with_structure(film) for curve, film in zip(curves, films, strict=True)])
+    return films[0].root, total
 
 
 def _log_range(low: float, high: float, step: float) -> FloatArray:

@@ -83,9 +83,9 @@ def exact_curve(field, contacts, loads, speed, temperature) -> Curve:
     curves = [ContactCurve(field, contact, speeds, temperatures) for contact in contacts]
     total = None
     for curve in curves:
-        piece = curve.mapped(np.asarray(loads)[:, None, None])
+        piece = curve.with_structure(curve.mapped(np.asarray(loads)[:, None, None]))
         total = piece if total is None else total + piece
-    return Curve(total.approach[:, 0, 0], total.slope[:, 0, 0], total.loss_ratio[:, 0, 0])
+    return Curve(total.approach[:, 0, 0], total.slope[:, 0, 0], total.loss[:, 0, 0])
 
 
 def exact_law(field, contacts, loads, speed, temperature):
