@@ -16,7 +16,7 @@ smooth: C1 with a stencil of 3 x 3 x 4, whose coefficients for both lie side by 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,19 +24,24 @@ from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
-from ehdmaps.maps.contact_curve import ContactCurve, Curve
+from ehdmaps.maps.contact_curve import ContactCurve, Curve, FilmSamples
 from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.maps.splines import hermite, spline_coefficients
 from ehdmaps.maps.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import film_from_moes, moes_groups, valley_load_number
+from ehdmaps.physics.roughness import SMOOTH, Surface
 
 _SCALE = 0.25
 _MARGIN = 4
 _BEYOND = 2.0
 _WIDEST_CONTACT = 0.9
+
+Layer = Callable[[FilmSamples, FloatArray, FloatArray], FilmSamples]
+"""What changes the film of a contact, at these speeds [m/s] and temperatures [K], before its structure is added."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +94,7 @@ def compile_table(
     speeds: tuple[float, float],
     held_load: float,
     resolution: Resolution | None = None,
+    surface: Surface = SMOOTH,
 ) -> ApproachTable:
     """Table of one contact, or of several in series, without centrifugal load.
 
@@ -106,6 +112,8 @@ def compile_table(
         Highest load [N/m] at which the table must be exact.
     resolution : Resolution, optional
         Spacing of nodes.
+    surface : Surface
+        Roughness of the surfaces.
 
     Raises
     ------
@@ -117,8 +125,9 @@ def compile_table(
     low, high = (1.0 / (temperature - COLDEST) for temperature in field.temperature_range)
     colds = _axis(high, low, 1e-3 * resolution.temperature)
     temperatures = COLDEST + 1.0 / colds
-    offset, scale = _alignment(contacts, lubricant, np.exp(log_speeds), temperatures)
-    root, curve = _sampled(field, contacts, np.exp(log_speeds), temperatures, held_load, resolution)
+    offset, scale = _alignment(contacts, lubricant, np.exp(log_speeds), temperatures, surface)
+    layers = [_layers(contact, lubricant, surface, field.speed_range[0]) for contact in contacts]
+    root, curve = _sampled(field, contacts, layers, np.exp(log_speeds), temperatures, held_load, resolution)
 
     stretched = np.arcsinh((curve.approach - offset) / scale)
     root_slope = scale * np.sqrt(1.0 + ((curve.approach - offset) / scale) ** 2) / curve.slope
@@ -172,9 +181,14 @@ def _inverse_step(nodes: FloatArray) -> float:
 
 
 def _alignment(
-    contacts: Sequence[LineContact], lubricant: Lubricant, speeds: FloatArray, temperatures: FloatArray
+    contacts: Sequence[LineContact],
+    lubricant: Lubricant,
+    speeds: FloatArray,
+    temperatures: FloatArray,
+    surface: Surface,
 ) -> tuple[FloatArray, FloatArray]:
-    """Offset and scale of the stretched approach [m], (n_u, n_T)."""
+    """Offset and scale of the stretched approach [m], (n_u, n_T); asperities do not let either of them vanish."""
+    rough = len(contacts) * surface.roughness
     most = min(highest_structural_load(contact) for contact in contacts)
     offset, scale = np.empty((2, speeds.size, temperatures.size))
     states = [lubricant.at(float(temperature)) for temperature in temperatures]
@@ -192,12 +206,18 @@ def _alignment(
         load = min(math.exp(sum(logs) / len(logs)), most)
         offset[i, j] = sum(contact.structural_approach(load) for contact in contacts) - sum(films)
         scale[i, j] = _SCALE * load * sum(contact.structural_compliance(load) for contact in contacts)
-    return offset, scale
+    return (offset, scale) if surface.smooth else (offset, np.hypot(scale, rough))
+
+
+def _layers(contact: LineContact, lubricant: Lubricant, surface: Surface, slowest: float) -> list[Layer]:
+    """What comes between the film of a map and the structure of a contact, in this order."""
+    return [] if surface.smooth else [RoughLayer(surface, contact, lubricant, slowest)]
 
 
 def _sampled(
     field: FilmField,
     contacts: Sequence[LineContact],
+    layers: Sequence[Sequence[Layer]],
     speeds: FloatArray,
     temperatures: FloatArray,
     held_load: float,
@@ -222,6 +242,9 @@ def _sampled(
         np.broadcast_to(loads[:, None, None], (loads.size, *shape)).copy() for loads in (mapped, beyond)
     )
     films = [curve.film(tail, mapped_loads, beyond_loads) for curve in curves]
+    for i, own in enumerate(layers):
+        for layer in own:
+            films[i] = layer(films[i], speeds, temperatures)
     total = _summed([curve.with_structure(film) for curve, film in zip(curves, films, strict=True)])
     return films[0].root, total
 

@@ -33,6 +33,7 @@ from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.roughness import SMOOTH, Surface
 
 
 class EHDMap:
@@ -126,8 +127,8 @@ class EHDMap:
         """The bearing; None for a bare contact."""
         return bearing_from_json(self.dataset.attrs["geometry"])
 
-    def law(self, kind: LawKind, outside: OutsidePolicy = "error") -> ContactLaw:
-        """Make a contact law from the map; takes about a second.
+    def law(self, kind: LawKind, outside: OutsidePolicy = "error", surface: Surface | None = None) -> ContactLaw:
+        """Make a contact law from the map; takes about a second, some seconds with rough surfaces.
 
         Parameters
         ----------
@@ -135,6 +136,8 @@ class EHDMap:
             A roller in equilibrium between both raceways, or one of the contacts of the map.
         outside : {"error", "clamp", "asymptote"}
             What happens outside the map, see `ContactLaw`.
+        surface : Surface, optional
+            Roughness of the surfaces; that of the map's job if left out, smooth where it states none.
 
         Raises
         ------
@@ -157,6 +160,7 @@ class EHDMap:
             self.film_field(names),
             outside,
             rolling=self.rolling_film,
+            surface=SMOOTH if surface is None else surface,
         )
 
     def film_field(self, contacts: tuple[str, ...] | None = None) -> FilmField:

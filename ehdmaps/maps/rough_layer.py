@@ -34,6 +34,7 @@ from numba import njit
 from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.maps.contact_curve import FilmSamples
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
@@ -46,12 +47,19 @@ OIL_EXPONENT, FULL_FROM = 0.12, 3.0
 LEAST_PRESSURE = 1e3
 """Pressure below which asperities are not asked [Pa], a hundredth of the air's: the Gaussian has no highest one."""
 
+WHOLE_TO, GONE_BELOW = 10.0, 1e3
+"""How far the film goes on below the lowest mapped speed, at constant Moes number, and where it is gone.
+
+At a tenth of the lowest speed, films of loaded contacts are some nanometres; nobody knows one of a thousandth.
+"""
+
 _FARTHEST, _DEEPEST = 14.0, -35.0
 _STEP = 0.02
-_THICK = 12.0
+_THICK = 8.0
 _STEPS = 60
-_EXACT = 1e-13
+_CLOSE = 1e-6
 _LEAST_OIL_NUMBER = 1e-6
+_LEAST_SHARE = 1e-3
 
 
 class Asperities(NamedTuple):
@@ -149,11 +157,19 @@ def scaled_film(log_load: float, log_oil: float, log_share: float) -> tuple[floa
     log_load, log_oil, log_share : float
         ln of Moes' M and L of the whole load, and of the share g of the film, <= 0.
     """
-    whole, whole_slope, _ = _moes(log_load, log_oil)
+    whole = _moes(log_load, log_oil)
+    return _scaled(log_load, log_oil, whole[0], whole[1], log_share)
+
+
+@njit(cache=True, error_model="numpy")
+def _scaled(
+    log_load: float, log_oil: float, whole: float, whole_slope: float, log_share: float
+) -> tuple[float, float, float]:
+    """`scaled_film`, where ln H of the whole load and its slope are known."""
     shared, slope, oil_slope = _moes(log_load + 0.5 * log_share, log_oil + 0.75 * log_share)
     square, half = math.exp(min(2.0 * log_load, 600.0)), FULL_FROM**2
     exponent = OIL_EXPONENT * square / (square + half)
-    by_load = 2.0 * OIL_EXPONENT * square / (square + half) * half / (square + half)
+    by_load = 2.0 * exponent * half / (square + half)
     return (
         shared - whole - (0.5 + exponent) * log_share,
         0.5 * slope + 0.75 * oil_slope - 0.5 - exponent,
@@ -168,79 +184,82 @@ def _softplus(s: float) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def _excess(
-    asperities: Asperities, log_film: float, log_pressure: float, log_load: float, log_oil: float, s: float
-) -> tuple[float, float, float, float]:
-    """ln of the gap over the scaled film at s = ln(g/(1 - g)); its derivatives by s, ln p and ln M; it rises with s."""
-    log_share, log_rest = -_softplus(-s), -_softplus(s)
-    share = math.exp(log_share)
-    gap, gap_slope = _along(asperities.start, asperities.log_gap, asperities.log_gap_slope, log_pressure + log_rest)
-    film, by_share, by_load = scaled_film(log_load, log_oil, log_share)
-    return gap - log_film - film, -gap_slope * share - by_share * (1.0 - share), gap_slope, -by_load
-
-
-@njit(cache=True, error_model="numpy")
 def _balance(
     asperities: Asperities, log_film: float, log_pressure: float, log_load: float, log_oil: float, first: float
-) -> tuple[float, float, float, float]:
-    """Balance of film and asperities: s, and the derivatives of the excess there."""
+) -> tuple[float, float, float]:
+    """Balance of film and asperities: s = ln(g/(1 - g)), and its derivatives by ln p along w ~ p^2, and by ln h.
+
+    At s, ln of the gap is above that of the scaled film by an excess, which rises with s: Newton's method within a
+    bracket.
+    """
+    whole, whole_slope, _ = _moes(log_load, log_oil)
     left, right, s = -math.inf, math.inf, first
-    by_s = by_p = by_m = 1.0
+    by_s = by_p = 1.0
     reach = 1.0
     for _ in range(_STEPS):
-        excess, by_s, by_p, by_m = _excess(asperities, log_film, log_pressure, log_load, log_oil, s)
+        log_share, log_rest = -_softplus(-s), -_softplus(s)
+        share = math.exp(log_share)
+        gap, by_p = _along(asperities.start, asperities.log_gap, asperities.log_gap_slope, log_pressure + log_rest)
+        film, by_share, by_load = _scaled(log_load, log_oil, whole, whole_slope, log_share)
+        excess, by_s = gap - log_film - film, -by_p * share - by_share * (1.0 - share)
+        by_p -= 2.0 * by_load
         if excess > 0.0:
             right = s
         else:
             left = s
         following = s - excess / by_s
-        if not left < following < right:
+        if not left <= following <= right:
             if left > -math.inf and right < math.inf:
                 following = 0.5 * (left + right)
             else:
                 following = s - reach if excess > 0.0 else s + reach
                 reach *= 2.0
         moved = abs(following - s)
-        if moved <= _EXACT * (1.0 + abs(s)):
-            break
         s = following
-    return s, by_s, by_p, by_m
+        if moved <= _CLOSE * (1.0 + abs(s)):  # the step after it would be its square
+            break
+    return s, -by_p / by_s, 1.0 / by_s
 
 
 @njit(cache=True, error_model="numpy")
 def _shared(
-    asperities: Asperities, sigma: float, pressures: FloatArray, pressure_slopes: FloatArray, unit_loads: FloatArray,
-    oils: FloatArray, film: FloatArray, slope: FloatArray, out: FloatArray,
+    asperities: Asperities, sigma: float, roots: FloatArray, pressures: FloatArray, pressure_slopes: FloatArray,
+    unit_loads: FloatArray, oils: FloatArray, film: FloatArray, slope: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """Rough offset, its slope and the share g of all samples, into `out` (3, n, n_u, n_T).
 
-    `pressures` and `pressure_slopes` are ln of (pi/4) p_H and its slope, of which the load number is `unit_loads` + 2 ln
-    of the pressure; `oils` is ln L.
+    `pressures` and `pressure_slopes` are ln of (pi/4) p_H and its slope by the root; ln M is `unit_loads` + 2 ln of the
+    pressure; `oils` is ln L.
     """
     n, n_u, n_t = film.shape
-    for j in range(n_u):
-        for k in range(n_t):
-            s = 0.0
-            for i in range(n):
+    # where the sample before found the balance, and how it changes with the root
+    last, change = np.zeros((n_u, n_t)), np.zeros((n_u, n_t))
+    for i in range(n):
+        for j in range(n_u):
+            for k in range(n_t):
                 h = film[i, j, k]
                 out[0, i, j, k], out[1, i, j, k], out[2, i, j, k] = h, slope[i, j, k], 1.0
                 if h > _THICK * sigma:
                     continue
                 log_p, by_root = pressures[i, j, k], pressure_slopes[i, j, k]
-                if h <= 0.0:  # at standstill asperities carry everything
-                    x, x_slope = _along(asperities.start, asperities.distance, asperities.distance_slope, log_p)
-                    out[0, i, j, k], out[1, i, j, k], out[2, i, j, k] = sigma * x, sigma * x_slope * by_root, 0.0
-                    continue
-                log_load = unit_loads[j, k] + 2.0 * log_p
-                s, by_s, by_p, by_m = _balance(asperities, math.log(h / sigma), log_p, log_load, oils[j, k], s)
-                s_slope = -((by_p + 2.0 * by_m) * by_root - slope[i, j, k] / h) / by_s
-                share = 1.0 / (1.0 + math.exp(-s))
-                x, x_slope = _along(
-                    asperities.start, asperities.distance, asperities.distance_slope, log_p - _softplus(s)
-                )
+                s_slope = share = log_rest = 0.0
+                if h > 0.0:  # without a film asperities carry everything
+                    first = last[j, k] + (change[j, k] * (roots[i, j, k] - roots[i - 1, j, k]) if i > 0 else 0.0)
+                    log_load = unit_loads[j, k] + 2.0 * log_p
+                    s, by_p, by_h = _balance(asperities, math.log(h / sigma), log_p, log_load, oils[j, k], first)
+                    s_slope = by_p * by_root + by_h * slope[i, j, k] / h
+                    share, log_rest = 1.0 / (1.0 + math.exp(-s)), -_softplus(s)
+                    last[j, k], change[j, k] = s, s_slope
+                x, by_log = _along(asperities.start, asperities.distance, asperities.distance_slope, log_p + log_rest)
                 out[0, i, j, k] = sigma * x
-                out[1, i, j, k] = sigma * x_slope * (by_root - share * s_slope)
+                out[1, i, j, k] = sigma * by_log * (by_root - share * s_slope)
                 out[2, i, j, k] = share
+
+
+def _part_left(speed: FloatArray) -> FloatArray:
+    """Part of the film that is left at a speed, in lowest mapped speeds: from all to none without a kink."""
+    place = np.clip(np.log(speed * GONE_BELOW) / math.log(GONE_BELOW / WHOLE_TO), 0.0, 1.0)
+    return np.asarray(place**3 * (10.0 - place * (15.0 - 6.0 * place)))
 
 
 @dataclass(frozen=True)
@@ -274,11 +293,29 @@ class RoughLayer:
         The contact.
     lubricant : Lubricant
         The oil.
+    slowest : float
+        Lowest mapped entrainment speed [m/s]: the film is whole down to a tenth of it, and gone at a thousandth.
     """
 
     surface: Surface
     contact: LineContact
     lubricant: Lubricant
+    slowest: float
+
+    def __call__(self, film: FilmSamples, speeds: FloatArray, temperatures: FloatArray) -> FilmSamples:
+        """Film between rough surfaces, in the place of that between smooth ones.
+
+        Parameters
+        ----------
+        film : FilmSamples
+            Film between smooth surfaces.
+        speeds, temperatures : array (n_u,), (n_T,)
+            Entrainment speeds [m/s], > 0, and temperatures [K].
+        """
+        part = _part_left(speeds / self.slowest)[:, None]
+        found = self.shared(film.root, part * film.offset, part * film.slope, speeds, temperatures)
+        share = np.maximum(part * found.share, _LEAST_SHARE)
+        return FilmSamples(film.root, found.offset, found.slope, film.loss * share**2)
 
     def shared(
         self, root: FloatArray, film: FloatArray, slope: FloatArray, speeds: FloatArray, temperatures: FloatArray
@@ -295,10 +332,11 @@ class RoughLayer:
             Entrainment speeds [m/s], and temperatures [K].
         """
         contact, modulus, sigma = self.contact, self.contact.reduced_modulus, self.surface.roughness
-        loaded = np.maximum(root, 0.0)
-        asked = 0.25 * math.pi * max_pressure(loaded**3, contact.radius, modulus)
-        pressure = np.hypot(asked, LEAST_PRESSURE)
-        by_root = 1.5 * (asked / pressure) ** 2 / np.where(root > 0.0, root, 1.0)
+        # p ~ w^(1/2) of Hertz above the least pressure, and so that it still rises where there is no load
+        at_one = 0.25 * math.pi * max_pressure(1.0, contact.radius, modulus)
+        least = (LEAST_PRESSURE / at_one) ** (2.0 / 3.0)
+        logs = math.log(LEAST_PRESSURE) + 1.5 * np.arcsinh(0.5 * root / least)
+        by_root = 1.5 / np.sqrt(root**2 + 4.0 * least**2)
         # p_H = sqrt(w E'/(2 pi R))
         per_square = 2.0 * math.pi * contact.radius / modulus * (4.0 / math.pi) ** 2
         loads, oils = np.zeros((2, speeds.size, temperatures.size))
@@ -310,8 +348,7 @@ class RoughLayer:
                     load, oil = moes_groups(1.0, float(speed), state.viscosity, alpha, contact.radius, modulus)
                     loads[j, k], oils[j, k] = math.log(load * per_square), math.log(max(oil, _LEAST_OIL_NUMBER))
         out = np.empty((3, *film.shape))
-        _shared(
-            asperities_of(self.surface, modulus), sigma, np.log(pressure), np.broadcast_to(by_root, film.shape).copy(),
-            loads, oils, np.ascontiguousarray(film), np.ascontiguousarray(slope), out,
-        )  # fmt: skip
+        roots, logs, by_root = (np.broadcast_to(values, film.shape).copy() for values in (root, logs, by_root))
+        films = np.ascontiguousarray(film), np.ascontiguousarray(slope)
+        _shared(asperities_of(self.surface, modulus), sigma, roots, logs, by_root, loads, oils, *films, out)
         return SharedFilm(out[0], out[1], out[2])

@@ -6,10 +6,10 @@ averaged, is sigma (phi(x) + x Phi(x)): it never vanishes, while the mean planes
 
 References
 ----------
-J. A. Greenwood, J. H. Tripp, "The contact of two nominally flat rough surfaces", Proc. IMechE 185, 1970, 625. For the
-usual values of eta sigma beta (0.03 to 0.05) and sigma/beta (0.0001 to 0.01) of steel see M. Teodorescu, S. Balakrishnan,
-H. Rahnejat, "Integrated tribological analysis within a multi-physics approach to system dynamics", Tribology and
-Interface Engineering Series 48, 2005, 725.
+J. A. Greenwood, J. H. Tripp, "The contact of two nominally flat rough surfaces", Proc. IMechE 185, 1970, 625. Usual
+values of eta sigma beta (0.03 to 0.05) and sigma/beta (0.0001 to 0.01) of steel: M. Teodorescu, S. Balakrishnan, H.
+Rahnejat, "Integrated tribological analysis within a multi-physics approach to system dynamics", Tribology and Interface
+Engineering Series 48, 2005, 725.
 """
 
 from __future__ import annotations
