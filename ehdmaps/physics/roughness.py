@@ -132,10 +132,10 @@ def asperity_pressure(
     """
     spots = surface.asperity_product**2
     stiff = 16.0 * math.sqrt(2.0) / 15.0 * math.pi * spots * math.sqrt(surface.asperity_slope) * 0.5 * reduced_modulus
-    elastic, plastic = stiff * asperity_integral(2.5, distance), surface.hardness * math.pi**2 * spots
+    yielding = surface.hardness * math.pi**2 * spots
+    elastic, plastic = stiff * asperity_integral(2.5, distance), yielding * asperity_integral(2.0, distance)
     by_elastic = -2.5 * stiff * asperity_integral(1.5, distance)
-    by_plastic = -2.0 * plastic * asperity_integral(1.0, distance)
-    plastic = plastic * asperity_integral(2.0, distance)
+    by_plastic = -2.0 * yielding * asperity_integral(1.0, distance)
     ratio = elastic / plastic
     below = (1.0 + ratio**_SHARPNESS) ** (-1.0 / _SHARPNESS)
     pressure = elastic * below
