@@ -24,6 +24,8 @@ from ehdmaps.maps.records import (
     contacts_from_json,
     contacts_of,
     lubricant_from_json,
+    surface_from_json,
+    surface_json,
 )
 from ehdmaps.maps.rolling_film import RollingFilm, rolling_film
 from ehdmaps.maps.structure import completed, restructured
@@ -105,6 +107,24 @@ class EHDMap:
             dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, self.backbone)
         return EHDMap(dataset, self.backbone)
 
+    def with_surface(self, surface: Surface) -> EHDMap:
+        """The same films, whose laws are those of other surfaces where nothing else is asked for.
+
+        Parameters
+        ----------
+        surface : Surface
+            Roughness of the surfaces.
+        """
+        if surface == self.surface:
+            return self
+        dataset = self.dataset.copy()
+        dataset.attrs.pop(schema.SURFACE, None)
+        if not surface.smooth:
+            dataset.attrs[schema.SURFACE] = surface_json(surface)
+        if schema.CHECKSUM in dataset.attrs:
+            dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, self.backbone)
+        return EHDMap(dataset, self.backbone)
+
     @cached_property
     def contacts(self) -> tuple[LineContact, ...]:
         """The line contacts, in the order of the contact axis, with their structural law."""
@@ -121,6 +141,12 @@ class EHDMap:
         oil = lubricant_from_json(self.dataset.attrs["lubricant"])
         check_oil(oil, self.dataset["temperature"].values[[0, -1]].tolist())
         return oil
+
+    @cached_property
+    def surface(self) -> Surface:
+        """Surfaces that the job of the map states, smooth where it states none; its points are those of smooth ones."""
+        stated = self.dataset.attrs.get(schema.SURFACE)
+        return SMOOTH if stated is None else surface_from_json(stated)
 
     @cached_property
     def bearing(self) -> BearingGeometry | None:
@@ -160,7 +186,7 @@ class EHDMap:
             self.film_field(names),
             outside,
             rolling=self.rolling_film,
-            surface=SMOOTH if surface is None else surface,
+            surface=self.surface if surface is None else surface,
         )
 
     def film_field(self, contacts: tuple[str, ...] | None = None) -> FilmField:

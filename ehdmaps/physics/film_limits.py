@@ -21,6 +21,9 @@ THICKEST_FILM = 0.3
 CONTINUUM = 1e-9
 """Film below which there is no continuum [m]."""
 
+NO_CONTINUUM, BELOW_ROUGHNESS = "film below 1 nm: no continuum", "film below the roughness"
+"""What is said of films that are too thin for their solution to be taken as it is."""
+
 
 def too_thick(film: float, radius: float) -> str:
     """Why a film is refused; empty where it is not.
@@ -53,5 +56,5 @@ def too_thin(film: float, roughness: float = 0.0) -> str:
     if not film > 0.0:
         return ""
     if film < CONTINUUM:
-        return "film below 1 nm: no continuum"
-    return "film below the roughness" if film < roughness else ""
+        return NO_CONTINUUM
+    return BELOW_ROUGHNESS if film < roughness else ""

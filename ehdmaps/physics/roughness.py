@@ -15,7 +15,9 @@ Engineering Series 48, 2005, 725.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 import numpy.typing as npt
@@ -30,7 +32,11 @@ FINEST, ROUGHEST = 1e-9, 1e-5
 HARDNESS = 7e9
 """Hardness of through-hardened bearing steel of 60 HRC [Pa], some 700 HV."""
 
-_LIMITS = {"asperity_product": (0.02, 0.5), "asperity_slope": (1e-4, 0.1), "hardness": (1e9, 1e11)}
+LIMITS: Mapping[str, tuple[float, float]] = MappingProxyType(
+    {"asperity_product": (0.02, 0.5), "asperity_slope": (1e-4, 0.1), "hardness": (1e9, 1e11)}
+)
+"""Smallest and largest value of each property of asperities that is taken; hardness in Pa."""
+
 _UNITS = {"hardness": " Pa"}
 _SHARPNESS = 4.0
 
@@ -67,7 +73,7 @@ class Surface:
             problems.append(
                 f"surface, roughness: got {self.roughness!r} m; allowed: {FINEST:g} to {ROUGHEST:g} m, or 0 (smooth)"
             )
-        for name, (least, most) in _LIMITS.items():
+        for name, (least, most) in LIMITS.items():
             value, unit = getattr(self, name), _UNITS.get(name, "")
             if not least <= value <= most:
                 problems.append(f"surface, {name}: got {value!r}{unit}; allowed: {least:g} to {most:g}{unit}")
