@@ -14,6 +14,8 @@ _SOLVER = "hertz | formula | reynolds | openfoam; instead of the job's, with its
 
 _STRUCTURE = "law of the solids in approach, k and c: iso16281 | palmgren | half_space; default: that of the job"
 
+_ROUGHNESS = 'combined rms roughness, "0.2 um", or smooth; default: that of the job'
+
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
@@ -48,11 +50,18 @@ def parser() -> argparse.ArgumentParser:
     show = commands.add_parser("show", help="what a map holds")
     show.add_argument("map", metavar="MAP.nc")
     show.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
+    show.add_argument("--roughness", metavar="LENGTH", help=_ROUGHNESS)
 
     plot = commands.add_parser("plot", help="stiffness, damping and films on one page")
     plot.add_argument("map", metavar="MAP.nc")
     plot.add_argument("-o", "--output", metavar="FIG.png", help="default: the map's name with .png; also .pdf, .svg")
     plot.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
+    plot.add_argument(
+        "--roughness",
+        metavar="LENGTH",
+        help='combined rms roughness, "0.2 um": Lambda and the film\'s share of the load instead, with the ending '
+        "_roughness.png",
+    )
 
     solve = commands.add_parser("solve", help="one operating point, as a table")
     solve.add_argument("job", metavar="JOB")
@@ -99,6 +108,7 @@ def parser() -> argparse.ArgumentParser:
     )
     export.add_argument("--points", metavar="N", type=_workers, default=200, help="loads of a curve; default: 200")
     export.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
+    export.add_argument("--roughness", metavar="LENGTH", help=_ROUGHNESS)
 
     compare = commands.add_parser("compare", help="differences between two maps")
     compare.add_argument("first", metavar="A.nc")
