@@ -241,7 +241,8 @@ def steady_temperatures(
         temperatures = temperatures + steps
         hot = int(np.argmax(temperatures.max(axis=1)))
         if temperatures[hot].max() > HOTTEST:
-            raise _too_hot(names[hot], conductances[hot] - slopes[hot], float(given[hot].sum()), float(left[hot].sum()))
+            slope = conductances[hot] - slopes[hot]
+            raise _too_hot(names[hot], slope, float(given[hot].sum()), float(left[hot].sum()))
         if float(np.abs(steps).max()) < _SHORTEST_STEP:
             return temperatures
     raise AnalysisError(
@@ -255,8 +256,8 @@ def _too_hot(name: str, slope: FloatArray, friction: float, left: float) -> Anal
     words = "thermal run-away" if np.linalg.eigvals(slope).real.min() <= 0.0 else "too hot"
     return AnalysisError(
         f"bearing {name!r}: {words}: no heat balance below {TEMPERATURE.text(HOTTEST)}, where its friction of "
-        f"{friction:.4g} W is {left:.4g} W more than its heat paths carry away; give it more conduction or oil, or more "
-        "clearance or looser fits if it loses its clearance as it warms"
+        f"{friction:.4g} W is {left:.4g} W more than its heat paths carry away; give it more conduction or oil, or "
+        "more clearance or looser fits if it loses its clearance as it warms"
     )
 
 
