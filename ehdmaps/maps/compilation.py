@@ -16,7 +16,7 @@ smooth: C1 with a stencil of 3 x 3 x 4, whose coefficients for both lie side by 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,18 +24,23 @@ from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
-from ehdmaps.maps.contact_curve import ContactCurve, Curve
+from ehdmaps.maps.contact_curve import ContactCurve, Curve, FilmSamples
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.low_loads import valley_loads
+from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.maps.splines import hermite, spline_coefficients
 from ehdmaps.maps.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.roughness import SMOOTH, Surface
 
 _SCALE = 0.25
 _MARGIN = 4
 _BEYOND = 2.0
 _WIDEST_CONTACT = 0.9
+
+Layer = Callable[[FilmSamples, FloatArray, FloatArray], FilmSamples]
+"""What changes the film of a contact, at these speeds [m/s] and temperatures [K], before its structure is added."""
 
 
 @dataclass(frozen=True)
@@ -88,6 +93,7 @@ def compile_table(
     speeds: tuple[float, float],
     held_load: float,
     resolution: Resolution | None = None,
+    surface: Surface = SMOOTH,
 ) -> ApproachTable:
     """Table of one contact, or of several in series, without centrifugal load.
 
@@ -105,6 +111,8 @@ def compile_table(
         Highest load [N/m] at which the table must be exact.
     resolution : Resolution, optional
         Spacing of nodes.
+    surface : Surface
+        Roughness of the surfaces.
 
     Raises
     ------
@@ -116,8 +124,9 @@ def compile_table(
     low, high = (1.0 / (temperature - COLDEST) for temperature in field.temperature_range)
     colds = _axis(high, low, 1e-3 * resolution.temperature)
     temperatures = COLDEST + 1.0 / colds
-    loads, scale = _alignment(contacts, lubricant, np.exp(log_speeds), temperatures)
-    root, curve = _sampled(field, contacts, np.exp(log_speeds), temperatures, held_load, resolution)
+    loads, scale = _alignment(contacts, lubricant, np.exp(log_speeds), temperatures, surface)
+    layers = [_layers(contact, lubricant, surface, field.speed_range[0]) for contact in contacts]
+    root, curve = _sampled(field, contacts, layers, np.exp(log_speeds), temperatures, held_load, resolution)
     offset = _approach_at(np.cbrt(loads), root, curve)
 
     stretched = np.arcsinh((curve.approach - offset) / scale)
@@ -172,14 +181,22 @@ def _inverse_step(nodes: FloatArray) -> float:
 
 
 def _alignment(
-    contacts: Sequence[LineContact], lubricant: Lubricant, speeds: FloatArray, temperatures: FloatArray
+    contacts: Sequence[LineContact],
+    lubricant: Lubricant,
+    speeds: FloatArray,
+    temperatures: FloatArray,
+    surface: Surface,
 ) -> tuple[FloatArray, FloatArray]:
-    """Load at the bottom of the valley [N/m], and scale of the stretched approach there [m]; (n_u, n_T) each."""
+    """Load at the bottom of the valley [N/m], and scale of the stretched approach there [m]; (n_u, n_T) each.
+
+    Asperities do not let the scale vanish.
+    """
     most = min(highest_structural_load(contact) for contact in contacts)
     valleys = [valley_loads(contact, lubricant, speeds, temperatures) for contact in contacts]
     loads = np.minimum(np.exp(np.mean(np.log(valleys), axis=0)), most)
     compliance = sum(np.asarray(contact.structural_compliance(loads)) for contact in contacts)
-    return loads, _SCALE * loads * compliance
+    scale = _SCALE * loads * compliance
+    return loads, scale if surface.smooth else np.hypot(scale, len(contacts) * surface.roughness)
 
 
 def _approach_at(wanted: FloatArray, root: FloatArray, curve: Curve) -> FloatArray:
@@ -194,9 +211,15 @@ def _approach_at(wanted: FloatArray, root: FloatArray, curve: Curve) -> FloatArr
     return offset
 
 
+def _layers(contact: LineContact, lubricant: Lubricant, surface: Surface, slowest: float) -> list[Layer]:
+    """What comes between the film of a map and the structure of a contact, in this order."""
+    return [] if surface.smooth else [RoughLayer(surface, contact, lubricant, slowest)]
+
+
 def _sampled(
     field: FilmField,
     contacts: Sequence[LineContact],
+    layers: Sequence[Sequence[Layer]],
     speeds: FloatArray,
     temperatures: FloatArray,
     held_load: float,
@@ -224,6 +247,9 @@ def _sampled(
     )
     known = np.concatenate((low_loads, mapped_loads))
     films = [curve.film(tail, known, beyond_loads) for curve in curves]
+    for i, own in enumerate(layers):
+        for layer in own:
+            films[i] = layer(films[i], speeds, temperatures)
     total = _summed([curve.with_structure(film) for curve, film in zip(curves, films, strict=True)])
     return films[0].root, total
 

@@ -25,6 +25,8 @@ from ehdmaps.maps.records import (
     contacts_from_json,
     contacts_of,
     lubricant_from_json,
+    surface_from_json,
+    surface_json,
 )
 from ehdmaps.maps.rolling_film import RollingFilm, rolling_film
 from ehdmaps.maps.structure import completed, restructured
@@ -34,6 +36,7 @@ from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.roughness import SMOOTH, Surface
 
 
 class EHDMap:
@@ -105,6 +108,24 @@ class EHDMap:
             dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, self.backbone)
         return EHDMap(dataset, self.backbone)
 
+    def with_surface(self, surface: Surface) -> EHDMap:
+        """The same films, whose laws are those of other surfaces where nothing else is asked for.
+
+        Parameters
+        ----------
+        surface : Surface
+            Roughness of the surfaces.
+        """
+        if surface == self.surface:
+            return self
+        dataset = self.dataset.copy()
+        dataset.attrs.pop(schema.SURFACE, None)
+        if not surface.smooth:
+            dataset.attrs[schema.SURFACE] = surface_json(surface)
+        if schema.CHECKSUM in dataset.attrs:
+            dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, self.backbone)
+        return EHDMap(dataset, self.backbone)
+
     @cached_property
     def contacts(self) -> tuple[LineContact, ...]:
         """The line contacts, in the order of the contact axis, with their structural law."""
@@ -123,12 +144,18 @@ class EHDMap:
         return oil
 
     @cached_property
+    def surface(self) -> Surface:
+        """Surfaces that the job of the map states, smooth where it states none; its points are those of smooth ones."""
+        stated = self.dataset.attrs.get(schema.SURFACE)
+        return SMOOTH if stated is None else surface_from_json(stated)
+
+    @cached_property
     def bearing(self) -> BearingGeometry | None:
         """The bearing; None for a bare contact."""
         return bearing_from_json(self.dataset.attrs["geometry"])
 
-    def law(self, kind: LawKind, outside: OutsidePolicy = "error") -> ContactLaw:
-        """Make a contact law from the map; takes about a second.
+    def law(self, kind: LawKind, outside: OutsidePolicy = "error", surface: Surface | None = None) -> ContactLaw:
+        """Make a contact law from the map; takes about a second, some seconds with rough surfaces.
 
         Parameters
         ----------
@@ -136,6 +163,8 @@ class EHDMap:
             A roller in equilibrium between both raceways, or one of the contacts of the map.
         outside : {"error", "clamp", "asymptote"}
             What happens outside the map, see `ContactLaw`.
+        surface : Surface, optional
+            Roughness of the surfaces; that of the map's job if left out, smooth where it states none.
 
         Raises
         ------
@@ -158,6 +187,7 @@ class EHDMap:
             self.film_field(names),
             outside,
             rolling=self.rolling_film,
+            surface=self.surface if surface is None else surface,
         )
 
     def film_field(self, contacts: tuple[str, ...] | None = None) -> FilmField:

@@ -27,9 +27,11 @@ from ehdmaps.maps.locked_film import FORMULA, LockedFactors, locked_compliances
 from ehdmaps.maps.low_loads import LowLoads, guessed_at, low_loads
 from ehdmaps.maps.memory import FilmMemory, FilmState
 from ehdmaps.maps.rolling_film import RollingFilm
+from ehdmaps.maps.rough_layer import GONE_BELOW
 from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE, ApproachTable, LawTable, Point
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.roughness import SMOOTH, Surface
 
 LawKind = Literal["series", "inner", "outer", "line"]
 OutsidePolicy = Literal["error", "clamp", "asymptote"]
@@ -73,6 +75,9 @@ class ContactLaw:
         Spacing of the nodes of the table.
     rolling : RollingFilm, optional
         Rolling force of the contacts, where the map holds it.
+    surface : Surface
+        Roughness of the surfaces: film and asperities share the load, see `ehdmaps.maps.rough_layer`. The law then
+        has a table down to a speed without a film, and goes over into the rough dry contact at standstill.
 
     Raises
     ------
@@ -97,6 +102,7 @@ class ContactLaw:
         outside: OutsidePolicy = "error",
         resolution: Resolution | None = None,
         rolling: RollingFilm | None = None,
+        surface: Surface = SMOOTH,
     ) -> None:
         if outside not in get_args(OutsidePolicy):
             raise InputError(f"contact law, outside: got {outside!r}; allowed: {', '.join(get_args(OutsidePolicy))}")
@@ -110,7 +116,8 @@ class ContactLaw:
         self._excursions: dict[tuple[str, str], Excursion] = {}
         self._lubricant = lubricant
         self._dry = field.dry
-        self._field = DryField(field) if field.dry else field
+        self.surface = surface
+        self._field = DryField(field, not surface.smooth) if field.dry else field
         self._resolution = resolution
         self.rolling = rolling
         self._plain = self._law_table()
@@ -359,6 +366,9 @@ class ContactLaw:
             high = SPEED_REACH * high if high > low else high
             most = min(highest_structural_load(contact) for contact in self.contacts)
             held = max(held, min(LOAD_REACH * highest, most))
+        rough = not self.surface.smooth
+        if rough and not self._dry:
+            low /= GONE_BELOW
         self._speeds, self._held_load = (low, high), held
         own = self._approach_table(self.contacts)
         return LawTable(
@@ -366,7 +376,7 @@ class ContactLaw:
             inner=own,
             outer=own,
             structure=np.array([structural_parameters(contact) for contact in self.contacts]),
-            film_speed=np.inf if self._dry else low,
+            film_speed=0.0 if rough else np.inf if self._dry else low,
             lowest_speed=low,
             highest_speed=high,
             lowest_temperature=self.temperature_range[0],
@@ -379,7 +389,9 @@ class ContactLaw:
 
     def _approach_table(self, contacts: Sequence[LineContact]) -> ApproachTable:
         """Table of some contacts in series."""
-        return compile_table(self._field, contacts, self._lubricant, self._speeds, self._held_load, self._resolution)
+        return compile_table(
+            self._field, contacts, self._lubricant, self._speeds, self._held_load, self._resolution, self.surface
+        )
 
     def _check_centrifugal(self, values: FloatArray) -> None:
         """Refuse centrifugal loads that this law does not take."""

@@ -142,7 +142,7 @@ def bearing_points(
     speeds : sequence of float
         Speeds of the inner ring [rad/s].
     temperature : float
-        Temperature of the oil [K].
+        Temperature of the raceways [K].
 
     Returns
     -------
