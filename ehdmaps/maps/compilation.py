@@ -26,14 +26,19 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
 from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.oil_layer import end_of_film, oil_layer
+from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.splines import hermite, spline_coefficients
 from ehdmaps.maps.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import film_from_moes, moes_groups, valley_load_number
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.starved import RIGID_FLOW, passing
 
 _SCALE = 0.25
+_LAYERED_STEP = 0.02
 _MARGIN = 4
 _BEYOND = 2.0
 _WIDEST_CONTACT = 0.9
@@ -89,6 +94,8 @@ def compile_table(
     speeds: tuple[float, float],
     held_load: float,
     resolution: Resolution | None = None,
+    supply: OilSupply = FLOODED,
+    rolling: RollingFilm | None = None,
 ) -> ApproachTable:
     """Table of one contact, or of several in series, without centrifugal load.
 
@@ -106,23 +113,28 @@ def compile_table(
         Highest load [N/m] at which the table must be exact.
     resolution : Resolution, optional
         Spacing of nodes.
+    supply : OilSupply, optional
+        Oil before each contact.
+    rolling : RollingFilm, optional
+        Mass flow of the contacts, where it is known.
 
     Raises
     ------
     MapError
         If the approach does not rise with load.
     """
-    resolution = resolution or Resolution()
+    resolution = resolution or (Resolution() if supply.flooded else Resolution(approach=_LAYERED_STEP))
     log_speeds = _axis(math.log(speeds[0]), math.log(speeds[1]), resolution.log_speed)
     low, high = (1.0 / (temperature - COLDEST) for temperature in field.temperature_range)
     colds = _axis(high, low, 1e-3 * resolution.temperature)
     temperatures = COLDEST + 1.0 / colds
-    offset, scale = _alignment(contacts, lubricant, np.exp(log_speeds), temperatures)
-    root, curve = _sampled(field, contacts, np.exp(log_speeds), temperatures, held_load, resolution)
+    us, layer = np.exp(log_speeds), supply.oil_layer
+    offset, scale = _alignment(contacts, lubricant, us, temperatures, layer)
+    root, curve = _sampled(field, contacts, us, temperatures, held_load, resolution, layer, rolling)
 
     stretched = np.arcsinh((curve.approach - offset) / scale)
     root_slope = scale * np.sqrt(1.0 + ((curve.approach - offset) / scale) ** 2) / curve.slope
-    lifted = np.count_nonzero(root[:, 0, 0] < 0.0)
+    lifted = int(np.count_nonzero(root[:, 0, 0] < 0.0))
     start = float(np.min(stretched[lifted])) - _MARGIN * resolution.approach
     held = np.count_nonzero(root[:, 0, 0] <= np.cbrt(held_load))
     end = float(np.max(stretched[held - 1])) + _MARGIN * resolution.approach
@@ -138,8 +150,12 @@ def compile_table(
                 f"load at {math.exp(log_speeds[i]):.4g} m/s, {temperatures[j]:.2f} K; a law needs that; "
                 "look at that part of the map, solve it again with a finer grid"
             )
-        values[i, j, :, 0] = _continued_root(line, root[:, i, j], root_slope[:, i, j], nodes)
-        values[i, j, :, 1] = _continued_log(line, logs[:, i, j], nodes)
+        samples = line, root[:, i, j], root_slope[:, i, j], logs[:, i, j]
+        if not supply.flooded:
+            samples = _lifted_off(*samples, lifted, resolution.approach)
+        line, roots, slopes, ratios = samples
+        values[i, j, :, 0] = _continued_root(line, roots, slopes, nodes)
+        values[i, j, :, 1] = _continued_log(line, ratios, nodes)
 
     coefficients = values
     place = np.stack((offset, 1.0 / scale), axis=-1)
@@ -172,9 +188,13 @@ def _inverse_step(nodes: FloatArray) -> float:
 
 
 def _alignment(
-    contacts: Sequence[LineContact], lubricant: Lubricant, speeds: FloatArray, temperatures: FloatArray
+    contacts: Sequence[LineContact],
+    lubricant: Lubricant,
+    speeds: FloatArray,
+    temperatures: FloatArray,
+    layer: float = math.inf,
 ) -> tuple[FloatArray, FloatArray]:
-    """Offset and scale of the stretched approach [m], (n_u, n_T)."""
+    """Offset and scale of the stretched approach [m], (n_u, n_T); the lift-off from a layer is at one s."""
     most = min(highest_structural_load(contact) for contact in contacts)
     offset, scale = np.empty((2, speeds.size, temperatures.size))
     states = [lubricant.at(float(temperature)) for temperature in temperatures]
@@ -190,8 +210,12 @@ def _alignment(
             film_number = moes_central(load_number, oil_number)
             films.append(film_from_moes(film_number, speed, state.viscosity, contact.radius, contact.reduced_modulus))
         load = min(math.exp(sum(logs) / len(logs)), most)
-        offset[i, j] = sum(contact.structural_approach(load) for contact in contacts) - sum(films)
+        passed = sum(float(passing(RIGID_FLOW * film, layer)) * film for film in films)
+        offset[i, j] = sum(contact.structural_approach(load) for contact in contacts) - passed
         scale[i, j] = _SCALE * load * sum(contact.structural_compliance(load) for contact in contacts)
+    if layer < math.inf:
+        distance = offset + sum(end_of_film(contact, layer) for contact in contacts)
+        scale = distance * float(np.min(scale / distance))
     return offset, scale
 
 
@@ -202,6 +226,8 @@ def _sampled(
     temperatures: FloatArray,
     held_load: float,
     resolution: Resolution,
+    layer: float = math.inf,
+    rolling: RollingFilm | None = None,
 ) -> tuple[FloatArray, Curve]:
     """Samples of g and of the summed curve, from below lift-off to beyond the held load."""
     curves = [ContactCurve(field, contact, speeds, temperatures) for contact in contacts]
@@ -222,6 +248,11 @@ def _sampled(
         np.broadcast_to(loads[:, None, None], (loads.size, *shape)).copy() for loads in (mapped, beyond)
     )
     films = [curve.film(tail, mapped_loads, beyond_loads) for curve in curves]
+    if layer < math.inf:
+        films = [
+            oil_layer(contact, layer, curve.tail, rolling, speeds, temperatures)(film)
+            for contact, curve, film in zip(contacts, curves, films, strict=True)
+        ]
     total = _summed([curve.with_structure(film) for curve, film in zip(curves, films, strict=True)])
     return films[0].root, total
 
@@ -239,6 +270,26 @@ def _summed(curves: Sequence[Curve]) -> Curve:
     for curve in curves[1:]:
         total = total + curve
     return total
+
+
+def _lifted_off(
+    line: FloatArray, root: FloatArray, slope: FloatArray, log_ratio: FloatArray, lifted: int, step: float
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Samples of s, g, dg/ds and ln(c/w) of a contact on a layer, from two nodes below its lift-off, g[lifted] = 0.
+
+    Where a layer ends, g rises with an almost vertical tangent, which no table resolves: below, it goes on with the
+    slope that it has over two nodes. ln(c/w) is held there.
+    """
+    line, root, slope, log_ratio = (values[lifted:] for values in (line, root, slope, log_ratio))
+    steepest = float(np.interp(line[0] + 2.0 * step, line, root)) / (2.0 * step)
+    least = min(float(slope[0]), steepest)
+    below = -step * np.array([2.0, 1.0])
+    return (
+        np.concatenate((line[0] + below, line)),
+        np.concatenate((least * below, root)),
+        np.concatenate((np.full(2, least), slope)),
+        np.concatenate((np.full(2, log_ratio[0]), log_ratio)),
+    )
 
 
 def _continued_root(line: FloatArray, root: FloatArray, slope: FloatArray, nodes: FloatArray) -> FloatArray:

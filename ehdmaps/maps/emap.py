@@ -33,6 +33,7 @@ from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 
 
 class EHDMap:
@@ -126,7 +127,7 @@ class EHDMap:
         """The bearing; None for a bare contact."""
         return bearing_from_json(self.dataset.attrs["geometry"])
 
-    def law(self, kind: LawKind, outside: OutsidePolicy = "error") -> ContactLaw:
+    def law(self, kind: LawKind, outside: OutsidePolicy = "error", supply: OilSupply | None = None) -> ContactLaw:
         """Make a contact law from the map; takes about a second.
 
         Parameters
@@ -135,6 +136,8 @@ class EHDMap:
             A roller in equilibrium between both raceways, or one of the contacts of the map.
         outside : {"error", "clamp", "asymptote"}
             What happens outside the map, see `ContactLaw`.
+        supply : OilSupply, optional
+            Oil before each contact; flooded if left out.
 
         Raises
         ------
@@ -157,6 +160,7 @@ class EHDMap:
             self.film_field(names),
             outside,
             rolling=self.rolling_film,
+            supply=supply or FLOODED,
         )
 
     def film_field(self, contacts: tuple[str, ...] | None = None) -> FilmField:

@@ -25,6 +25,7 @@ from ehdmaps.physics.approach import ISO_LINE_CONSTANT, STEEL_REDUCED_MODULUS, S
 from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solids import reduced_modulus
 from ehdmaps.physics.unilateral import unilateral_force
 from mbs.bearings.bearing import Bearing
@@ -201,6 +202,7 @@ def formula(
     structural_law: StructuralLaw = "iso16281",
     kind: LawKind = "series",
     outside: OutsidePolicy = "error",
+    supply: OilSupply | None = None,
 ) -> ContactLaw:
     """Law of a film formula over a range of loads, speeds and temperatures; takes some seconds.
 
@@ -216,6 +218,8 @@ def formula(
         See `ehdmaps.physics.closed_form.FormulaSolver` and `ehdmaps.physics.approach`.
     kind, outside
         See `ContactLaw`.
+    supply : OilSupply, optional
+        Oil before each contact; flooded if left out.
 
     Raises
     ------
@@ -241,7 +245,7 @@ def formula(
     films = [_films(contact, lubricant, FormulaSolver(film_formula), loads, speeds, temperatures) for contact in chosen]
     offset, compliance, loss = (np.stack(part) for part in zip(*films, strict=True))
     field = GridField(chosen, lubricant, loads, speeds, temperatures, offset, compliance, loss)
-    return ContactLaw(kind, chosen, lubricant, field, outside)
+    return ContactLaw(kind, chosen, lubricant, field, outside, supply=supply or FLOODED)
 
 
 def _films(
