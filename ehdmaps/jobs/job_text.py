@@ -8,10 +8,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.supply import supply_keys
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.catalogue import estimate, estimate_from_dimensions, static_rating
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.pressure_viscosity import PRESSURE_LAWS
 from ehdmaps.physics.solids import Material
 from ehdmaps.units import quantity
@@ -40,6 +42,7 @@ def job_text(
     lubricant: Lubricant,
     axes: Sequence[Iterable[float]],
     solver: Mapping[str, Entry],
+    supply: OilSupply | None = None,
 ) -> str:
     """Write a job file.
 
@@ -55,6 +58,8 @@ def job_text(
         Loads [N/m], entrainment speeds [m/s], temperatures [K].
     solver : mapping
         All keys of [solver].
+    supply : OilSupply, optional
+        Oil supply for [supply]; no such table if left out.
 
     Raises
     ------
@@ -74,6 +79,7 @@ def job_text(
             "density": _quantity(material.density, "kg/m^3"),
         },
         "lubricant": lubricant_keys(lubricant),
+        **({} if supply is None else {"supply": supply_keys(supply)}),
         "grid": {
             "load": [_quantity(value, "N/m") for value in loads],
             "entrainment_speed": [_quantity(value, "m/s") for value in speeds],

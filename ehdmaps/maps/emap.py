@@ -24,6 +24,7 @@ from ehdmaps.maps.records import (
     contacts_from_json,
     contacts_of,
     lubricant_from_json,
+    supply_from_json,
 )
 from ehdmaps.maps.rolling_film import RollingFilm, rolling_film
 from ehdmaps.maps.structure import completed, restructured
@@ -123,6 +124,12 @@ class EHDMap:
         return oil
 
     @cached_property
+    def supply(self) -> OilSupply:
+        """The oil supply that the job of the map states, flooded where it states none; points are flooded anyway."""
+        stated = self.dataset.attrs.get(schema.OIL_SUPPLY)
+        return FLOODED if stated is None else supply_from_json(stated)
+
+    @cached_property
     def bearing(self) -> BearingGeometry | None:
         """The bearing; None for a bare contact."""
         return bearing_from_json(self.dataset.attrs["geometry"])
@@ -137,7 +144,7 @@ class EHDMap:
         outside : {"error", "clamp", "asymptote"}
             What happens outside the map, see `ContactLaw`.
         supply : OilSupply, optional
-            Oil before each contact; flooded if left out.
+            Oil before each contact; what the job of the map states if left out, see `supply`.
 
         Raises
         ------
@@ -160,7 +167,7 @@ class EHDMap:
             self.film_field(names),
             outside,
             rolling=self.rolling_film,
-            supply=supply or FLOODED,
+            supply=supply or self.supply,
         )
 
     def film_field(self, contacts: tuple[str, ...] | None = None) -> FilmField:

@@ -286,7 +286,23 @@ NUMBERS = ("lubricant_verified", "structural_scaling")
 CHECKSUM = "content_sha256"
 """Attribute with the checksum of everything that a law or a reader of the map relies on; see `checksum`."""
 
-TEXTS = ("title", "job_name", "created", "fill", "solver_version", "openfoam_version", "openfoam_build", CHECKSUM)
+OIL_SUPPLY = "oil_supply"
+"""Attribute of a map whose job states the oil supply of its contacts, JSON: what its laws have by default.
+
+The points of a map are those of flooded films, whatever it says.
+"""
+
+TEXTS = (
+    "title",
+    "job_name",
+    "created",
+    "fill",
+    "solver_version",
+    "openfoam_version",
+    "openfoam_build",
+    OIL_SUPPLY,
+    CHECKSUM,
+)
 """Attributes that are texts, where a map has them; others than those named here are left alone."""
 
 REFERENCE_CONTACT = "reference_contact"
