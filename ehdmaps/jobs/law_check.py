@@ -18,6 +18,7 @@ from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.moes import moes_groups, valley_load_number
+from ehdmaps.physics.oil_supply import FLOODED
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.roughness import SMOOTH
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
@@ -175,8 +176,8 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
         usable = [i for i in chosen if Status(int(results[check.tasks[i].key]["status"][0])).usable]
         if not usable:
             continue
-        # Fresh solves are those of smooth surfaces, whatever the job states.
-        law = emap.law(contact.name, surface=SMOOTH)  # type: ignore[arg-type]
+        # Fresh solves are those of flooded films between smooth surfaces, whatever the job states.
+        law = emap.law(contact.name, supply=FLOODED, surface=SMOOTH)  # type: ignore[arg-type]
         rows = _errors(law, [(check.tasks[i], results[check.tasks[i].key]) for i in usable])
         errors.append(rows[:, :2])
         within.append(rows[:, 2:])

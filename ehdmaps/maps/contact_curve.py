@@ -138,12 +138,25 @@ class ContactCurve:
         )
 
     @property
+    def tail(self) -> Tail:
+        """Film below the lowest mapped load."""
+        return self._tail
+
+    @property
     def fade_load(self) -> FloatArray:
         """Load below which the tail fades out [N/m], (n_u, n_T)."""
         return self._tail.fade_load
 
     def film(self, root: FloatArray, mapped: FloatArray, above: FloatArray) -> FilmSamples:
-        """Film at the roots g of the tail, at loads within the map and at loads above it; each (., n_u, n_T)."""
+        """Film from the tail to above the map.
+
+        Parameters
+        ----------
+        root : array (., n_u, n_T)
+            Roots g of the tail, as of `below`.
+        mapped, above : array (., n_u, n_T)
+            Loads within the map, and above it [N/m].
+        """
         return self.below(root).then(self.mapped(mapped)).then(self.above(above))
 
     def below(self, root: FloatArray) -> FilmSamples:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from ehdmaps.errors import InputError
 from mbs.scene.assembly import Model
+from mbs.scene.contact_laws import supply_words
 from mbs.scene.fields import MICROMETRE
 
 
@@ -40,6 +41,12 @@ def clearance_text(model: Model) -> str:
     """The diametral clearances of all bearings in words, such as ``20 um``; empty without bearings."""
     clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
     return ", ".join(MICROMETRE.text(value) for value in clearances)
+
+
+def common_supply(models: Iterable[Model]) -> str:
+    """The oil supply of all models whose law has films, for titles; empty where they differ, and without films."""
+    found = {supply_words(model.supplies) for model in models if model.supplies}
+    return f"films {found.pop()}" if len(found) == 1 else ""
 
 
 def common_clearance(model: Model) -> float:

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM, TEMPERATURE, quantity
-from mbs.analyses.case import Case
+from mbs.analyses.case import Case, common_supply
 from mbs.analyses.film_errors import film_errors, notable_from
 from mbs.analyses.reach import axes_outside, fade_of
 from mbs.analyses.sweep import SweepSettings, sweep
@@ -22,6 +22,7 @@ from mbs.linearised.crossings import exchanged
 from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Operation
+from mbs.output.bearing_text import flooded_note
 from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import Model
 from mbs.scene.fields import MICROMETRE
@@ -48,6 +49,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_course(entry),
             *_films(case.model),
             *_bearings(entry, torque),
+            *(f"  {line}" for line in flooded_note(_largest(torque), case.model.supplies.values())),
             *_undamped(entry),
             *_complex(entry),
             *_exchanged(entry),
@@ -68,6 +70,7 @@ def _figure(cases: Sequence[Case], found: Sequence[Sweep]) -> Figure:
     clearances = {entry.geometry.diametral_clearance for case in cases for entry in case.model.scene.bearings}
     words = [
         f"law {cases[0].model.law}" if one_law else "laws side by side",
+        *([supply] if not one_law and (supply := common_supply(case.model for case in cases)) else []),
         TEMPERATURE.text(scene.temperature),
         *([f"clearance {MICROMETRE.text(clearances.pop())}"] if len(clearances) == 1 else []),
         *([f"{cases[0].load_factor:g} x load"] if len(cases) == 1 and cases[0].load_factor != 1.0 else []),
@@ -168,9 +171,14 @@ def _bearings(result: Sweep, torque: FloatArray) -> list[str]:
         if np.all(np.isfinite(torque[:, index])):
             lines.append(
                 f"  {name}: rolling torque {1e3 * torque[0, index]:.4g} to {1e3 * torque[-1, index]:.4g} N mm "
-                "(flooded films only)"
+                "(films only)"
             )
     return lines
+
+
+def _largest(torque: FloatArray) -> float:
+    """Largest rolling torque of all speeds and bearings, 0 where none is known."""
+    return float(np.nan_to_num(torque).max(initial=0.0))
 
 
 def _undamped(result: Sweep) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ehdmaps.jobs.problem import read_contacts
+from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import short
 from mbs.scene import fields
@@ -40,9 +41,14 @@ def read_bearing(section: Table, name: str) -> BearingSpec | None:
     centrifugal = section.get("centrifugal")
     if "centrifugal" in section and not isinstance(centrifugal, bool):
         section.note("centrifugal", f"got {short(centrifugal)}; allowed: true, false")
+    own = section.table("supply", f"{section.where} supply")
+    supply = read_supply(own) if own else None
+    if own:
+        own.close()
     if inner is None or outer is None or geometry is None:
         return None
-    return BearingSpec(name, inner, outer, geometry, profile, slices, angle, rollers == "bodies", centrifugal is True)
+    bodies = rollers == "bodies"
+    return BearingSpec(name, inner, outer, geometry, profile, slices, angle, bodies, centrifugal is True, supply)
 
 
 def bearing_problems(spec: BearingSpec, surroundings: Surroundings) -> list[str]:
@@ -86,7 +92,7 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
     from mbs.scene.surroundings import Built
 
     bearing = Bearing(spec.geometry, spec.profile, spec.slices)
-    laws = surroundings.laws.of(bearing)
+    laws = surroundings.laws.of(bearing, surroundings.laws.supply(spec))
     memory = surroundings.laws.memory == "memory"
     plain = (MemoryBearing if memory and not spec.rollers_as_bodies else BearingElement)(
         name=spec.name,

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.oil_supply import OilSupply
 from mbs.flexible.attached import Attached
 from mbs.flexible.plan import ReductionPlan
 from mbs.flexible.shaft_layout import shaft_problems
@@ -204,6 +205,8 @@ class BearingSpec:
         Whether each roller has a radial freedom, between two contacts with a law each.
     centrifugal : bool
         Whether the centrifugal load of the rollers is taken into account.
+    supply : OilSupply or None
+        Oil supply of this bearing; None for that of the scene.
     """
 
     name: str
@@ -215,6 +218,7 @@ class BearingSpec:
     start_angle: float = 0.0
     rollers_as_bodies: bool = False
     centrifugal: bool = False
+    supply: OilSupply | None = None
 
 
 def _freeze(spec: object, *names: str) -> None:
