@@ -20,8 +20,8 @@ from ehdmaps.ehl.newton import CONVERGED, DIVERGED
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.errors import InputError
-from ehdmaps.physics.closed_form import THIN_FILM_LIMIT
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.film_limits import THIN_FILM_LIMIT, too_thick
 from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups
@@ -403,6 +403,9 @@ def _in_si(
     """Scale films by b^2/R, the compliance by b/(p_H R), the loss by b^2/(p_H R u), the rolling force by p_H b^2/R."""
     film = half * half / contact.radius
     compliance = half / (peak * contact.radius)
+    refused = too_thick(groups.film_offset * film, contact.radius)
+    if refused:
+        return FilmSolution(Status.OUTSIDE_VALIDITY, refused, iterations=groups.steps, solve_seconds=seconds)
     status, notes = Status.CONVERGED, []
     thickness = groups.film_offset * film / contact.radius
     if thickness > THIN_FILM_LIMIT:

@@ -19,6 +19,7 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.moes import moes_groups, valley_load_number
 from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.roughness import SMOOTH
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
 
 SEED = 20260
@@ -174,7 +175,9 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
         usable = [i for i in chosen if Status(int(results[check.tasks[i].key]["status"][0])).usable]
         if not usable:
             continue
-        rows = _errors(emap.law(contact.name), [(check.tasks[i], results[check.tasks[i].key]) for i in usable])  # type: ignore[arg-type]
+        # Fresh solves are those of smooth surfaces, whatever the job states.
+        law = emap.law(contact.name, surface=SMOOTH)  # type: ignore[arg-type]
+        rows = _errors(law, [(check.tasks[i], results[check.tasks[i].key]) for i in usable])
         errors.append(rows[:, :2])
         within.append(rows[:, 2:])
         valley.append(np.array(usable) >= check.general)

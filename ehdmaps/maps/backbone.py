@@ -34,6 +34,7 @@ from ehdmaps.maps.backbone_plan import NEIGHBOURS, VALLEY
 from ehdmaps.maps.film_field import lifted_loss
 from ehdmaps.maps.locked_film import film_of
 from ehdmaps.maps.locked_fit import MOST, fitted_factor, response_error
+from ehdmaps.maps.low_loads import first_loads, known_from
 from ehdmaps.maps.mixing import mix_lines
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
@@ -173,6 +174,7 @@ class BackboneField:
         offset, compliance, loss = (np.asarray(group[name].values, dtype=float) for name in FILMS)
         self._responses = _Responses.of(group)
         self._zeta, self._films = zeta, (offset, compliance, loss)
+        self._start = known_from(zeta, np.isfinite(offset) & np.isfinite(compliance) & np.isfinite(loss))
         self._lattice = np.array(
             [
                 self._line(nodes, zeta, offset[:, j, k], compliance[:, j, k], loss[:, j, k], j, k)
@@ -249,6 +251,17 @@ class BackboneField:
                 results[:, :, m, n] = self._at(chosen, loads[:, m, n], float(u), float(T), lines, weights)
         return results[0], results[1], results[2]
 
+    def first_loads(self, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
+        """Loads from which on the backbone is read [N/m], (n_u, n_T); see `FilmField.first_loads`.
+
+        Parameters
+        ----------
+        speeds, temperatures : array (n_u,), (n_T,)
+            [m/s], > 0, and [K].
+        """
+        contacts = list(self._contacts.values())
+        return first_loads(contacts, self._lubricant, self.load_range[0], self._start, speeds, temperatures)
+
     def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> FloatArray | None:
         """Factors of the closed formula of the locked film; see `FilmField.locked_factors`."""
         if self._responses is None:
@@ -289,7 +302,7 @@ class BackboneField:
         unit, valley, _ = self._scales(self._reference, speed, temperature)
         loads = np.exp(self._zeta) * valley / unit
         # the backbone reaches beyond the loads of the map, where a structural law need not hold
-        solids = self._solids.structural_compliance(np.clip(loads, *self.load_range))
+        solids = self._solids.structural_compliance(np.minimum(loads, self.load_range[1]))
         width = half_width(loads, self._reference.radius, self._reference.reduced_modulus)
         lifted = lifted_loss(loss, width, speed, solids + compliance)
         error = response_error(solids, response, errors)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ehdmaps.maps.low_loads import RIGID
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, valley_load_number
@@ -98,11 +99,11 @@ def plan_backbone(
     ratios = [reference.radius / c.radius for c in contacts]
     speed_axis = _log_axis(min(positive) * min(ratios), max(positive) * max(ratios), SPEED_STEP)
     temperature_axis = _linear_axis(min(temperatures), max(temperatures), TEMPERATURE_STEP)
-    span = {
-        (j, k): zeta_span(contacts, lubricant, reference, loads, u, T)
-        for j, u in enumerate(speed_axis)
-        for k, T in enumerate(temperature_axis)
-    }
+    span = {}
+    for j, u in enumerate(speed_axis):
+        for k, T in enumerate(temperature_axis):
+            low, high = zeta_span(contacts, lubricant, reference, loads, u, T)
+            span[j, k] = min(low, RIGID), high
     zeta = _zeta_axis(min(low for low, _ in span.values()), max(high for _, high in span.values()))
     reach = NEIGHBOURS // 2
     lines = []

@@ -6,7 +6,7 @@ the cube of the approach, everything is smooth in g, through zero and on to nega
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -20,6 +20,41 @@ _SMALL_STEP = 1e-4
 
 
 @dataclass(frozen=True)
+class FilmSamples:
+    """Samples of the film of a contact over g = w^(1/3), without its structure.
+
+    Layers between the film and the structure take such samples and give back others, at the same roots.
+
+    Attributes
+    ----------
+    root : array (n, n_u, n_T)
+        g [(N/m)^(1/3)], rising; negative where there is no load.
+    offset : array (n, n_u, n_T)
+        Film offset h [m].
+    slope : array (n, n_u, n_T)
+        dh/dg [m/(N/m)^(1/3)], negative where the film thins with load.
+    loss : array (n, n_u, n_T)
+        (c/w) D^2 with D = d(delta)/dg of the contact, structure and all [m s/(N/m)^(2/3)], positive. Losses of
+        contacts in series add, and a loss stands for the film alone: a film between walls of any structure keeps it.
+    """
+
+    root: FloatArray
+    offset: FloatArray
+    slope: FloatArray
+    loss: FloatArray
+
+    @property
+    def load(self) -> FloatArray:
+        """w [N/m]."""
+        return load_of(self.root)
+
+    def then(self, following: FilmSamples) -> FilmSamples:
+        """These samples and those of higher loads."""
+        both = ((getattr(self, item.name), getattr(following, item.name)) for item in fields(self))
+        return FilmSamples(*(np.concatenate(pair) for pair in both))
+
+
+@dataclass(frozen=True)
 class Curve:
     """Samples of a curve over g = w^(1/3); the sum of two curves is two contacts in series.
 
@@ -28,27 +63,45 @@ class Curve:
     approach : array (n, n_u, n_T)
         delta [m].
     slope : array (n, n_u, n_T)
-        d(delta)/dg [m/(N/m)^(1/3)], positive and finite also where the stiffness vanishes.
-    loss_ratio : array (n, n_u, n_T)
-        c/w [s/m], positive.
+        D = d(delta)/dg [m/(N/m)^(1/3)], positive and finite also where the stiffness vanishes.
+    loss : array (n, n_u, n_T)
+        (c/w) D^2, as of `FilmSamples`.
     """
 
     approach: FloatArray
     slope: FloatArray
-    loss_ratio: FloatArray
+    loss: FloatArray
+
+    @property
+    def loss_ratio(self) -> FloatArray:
+        """c/w [s/m], positive."""
+        return self.loss / self.slope**2
 
     def __add__(self, other: Curve) -> Curve:
         """Contacts in series at equal load: approaches add, the rate divides as the slopes do."""
-        slope = self.slope + other.slope
-        ratio = self.loss_ratio * (self.slope / slope) ** 2 + other.loss_ratio * (other.slope / slope) ** 2
-        return Curve(self.approach + other.approach, slope, ratio)
+        return Curve(self.approach + other.approach, self.slope + other.slope, self.loss + other.loss)
+
+
+def load_of(root: FloatArray) -> FloatArray:
+    """Load w = g^3 [N/m], zero below g = 0."""
+    load: FloatArray = np.maximum(root, 0.0) ** 3
+    return load
+
+
+def dry_slope(contact: LineContact, root: FloatArray) -> FloatArray:
+    """d(delta)/dg of a contact without any film; zero at and below g = 0."""
+    with np.errstate(invalid="ignore"):
+        slope: FloatArray = np.where(
+            root > 0.0, 3.0 * np.maximum(root, 0.0) ** 2 * contact.structural_compliance(load_of(root)), 0.0
+        )
+    return slope
 
 
 @dataclass(frozen=True)
 class _Edge:
     """Film at one end of the load range: offset h, compliance s, damping c, n = d ln c/d ln w; (n_u, n_T) each."""
 
-    load: float
+    load: FloatArray
     film_offset: FloatArray
     film_compliance: FloatArray
     damping: FloatArray
@@ -78,10 +131,10 @@ class ContactCurve:
         self._contact = contact
         self._speeds = speeds
         self._temperatures = temperatures
-        lowest, highest = field.load_range
-        low, self._high = self._edge(lowest, 1.0), self._edge(highest, -1.0)
+        first = field.first_loads(speeds, temperatures)
+        low, self._high = self._edge(first, 1.0), self._edge(np.full_like(first, field.load_range[1]), -1.0)
         self._tail = Tail(
-            lowest, low.film_offset, low.film_compliance, low.damping, low.damping_exponent, contact.radius
+            first, low.film_offset, low.film_compliance, low.damping, low.damping_exponent, contact.radius
         )
 
     @property
@@ -89,53 +142,48 @@ class ContactCurve:
         """Load below which the tail fades out [N/m], (n_u, n_T)."""
         return self._tail.fade_load
 
-    def below(self, root: FloatArray) -> Curve:
-        """Tail: at and below the lowest mapped load; `root` is g (n, n_u, n_T)."""
-        film, film_slope, log_ratio = self._tail.films(root)
-        load = np.maximum(root, 0.0) ** 3
-        with np.errstate(invalid="ignore"):
-            dry_slope = np.where(root > 0.0, 3.0 * root**2 * self._contact.structural_compliance(load), 0.0)
-        curve = Curve(self._contact.structural_approach(load) - film, dry_slope - film_slope, np.exp(log_ratio))
-        return self._checked(curve, load)
+    def film(self, root: FloatArray, known: FloatArray, above: FloatArray) -> FilmSamples:
+        """Film below, within and above the loads that are known.
 
-    def mapped(self, load: FloatArray) -> Curve:
-        """Within the mapped loads [N/m], (n, n_u, n_T)."""
-        film, film_compliance, loss = self._field.films(self._contact.name, load, self._speeds, self._temperatures)
-        compliance = self._contact.structural_compliance(load) + film_compliance
-        curve = Curve(
-            self._contact.structural_approach(load) - film,
-            3.0 * np.cbrt(load) ** 2 * compliance,
-            loss / compliance**2 / load,
-        )
-        return self._checked(curve, load)
+        Parameters
+        ----------
+        root : array (., n_u, n_T)
+            g of the tail.
+        known, above : array (., n_u, n_T)
+            Loads from the first known one to the highest of the map, and above [N/m].
+        """
+        return self.below(root).then(self.mapped(known)).then(self.above(above))
 
-    def above(self, load: FloatArray) -> Curve:
-        """Above the mapped loads: film offset and c go on with their exponents at the end of the map."""
+    def below(self, root: FloatArray) -> FilmSamples:
+        """Tail: film at and below the first known load; `root` is g (n, n_u, n_T)."""
+        offset, slope, log_ratio = self._tail.films(root)
+        return FilmSamples(root, offset, slope, np.exp(log_ratio) * (dry_slope(self._contact, root) - slope) ** 2)
+
+    def mapped(self, load: FloatArray) -> FilmSamples:
+        """Film from the first known load to the highest of the map [N/m], (n, n_u, n_T)."""
+        offset, compliance, loss = self._field.films(self._contact.name, load, self._speeds, self._temperatures)
+        root = np.cbrt(load)
+        return FilmSamples(root, offset, -3.0 * root**2 * compliance, 9.0 * root * loss)
+
+    def above(self, load: FloatArray) -> FilmSamples:
+        """Film above the mapped loads: its offset and c go on with their exponents at the end of the map."""
         edge = self._high
+        root = np.cbrt(load)
         ratio = load / edge.load
         exponent = -edge.film_compliance * edge.load / edge.film_offset
-        film = edge.film_offset * ratio**exponent
-        compliance = self._contact.structural_compliance(load) - exponent * film / load
-        curve = Curve(
-            self._contact.structural_approach(load) - film,
-            3.0 * np.cbrt(load) ** 2 * compliance,
-            edge.damping * ratio**edge.damping_exponent / load,
-        )
-        return self._checked(curve, load)
+        with np.errstate(over="ignore"):  # of an impossible film, whose mapped part is refused
+            offset = edge.film_offset * ratio**exponent
+            slope = 3.0 * exponent * offset / root
+            damping = edge.damping * ratio**edge.damping_exponent
+            loss = damping / load * (dry_slope(self._contact, root) - slope) ** 2
+        return FilmSamples(root, offset, slope, loss)
 
-    def _edge(self, load: float, direction: float) -> _Edge:
-        """Film and damping at an end of the range; the exponent of c from inside it, to second order."""
-        steps = load * np.exp(direction * _SMALL_STEP * np.arange(3.0))
-        loads = np.broadcast_to(steps[:, None, None], (3, self._speeds.size, self._temperatures.size)).copy()
-        film, film_compliance, loss = self._field.films(self._contact.name, loads, self._speeds, self._temperatures)
-        damping = loss / (self._contact.structural_compliance(loads) + film_compliance) ** 2
-        logs = np.log(damping)
-        exponent = direction * (-1.5 * logs[0] + 2.0 * logs[1] - 0.5 * logs[2]) / _SMALL_STEP
-        return _Edge(load, film[0], film_compliance[0], damping[0], exponent)
-
-    def _checked(self, curve: Curve, load: FloatArray) -> Curve:
-        """Refuse what no law can be made from."""
-        for values, what in ((curve.slope, "stiffness"), (curve.loss_ratio, "damping")):
+    def with_structure(self, film: FilmSamples) -> Curve:
+        """Curve of the contact with a film; what no law can be made from is refused."""
+        load = film.load
+        slope = dry_slope(self._contact, film.root) - film.slope
+        curve = Curve(self._contact.structural_approach(load) - film.offset, slope, film.loss)
+        for values, what in ((slope, "stiffness"), (film.loss, "damping")):
             wrong = ~(values > 0.0)  # NaN too
             if bool(np.any(wrong)):
                 i, j, k = (int(index[0]) for index in np.nonzero(wrong))
@@ -146,3 +194,12 @@ class ContactCurve:
                     "solve it again with a finer grid"
                 )
         return curve
+
+    def _edge(self, load: FloatArray, direction: float) -> _Edge:
+        """Film and damping at an end of the range; the exponent of c from inside it, to second order."""
+        loads = load * np.exp(direction * _SMALL_STEP * np.arange(3.0))[:, None, None]
+        film, film_compliance, loss = self._field.films(self._contact.name, loads, self._speeds, self._temperatures)
+        damping = loss / (self._contact.structural_compliance(loads) + film_compliance) ** 2
+        logs = np.log(damping)
+        exponent = direction * (-1.5 * logs[0] + 2.0 * logs[1] - 0.5 * logs[2]) / _SMALL_STEP
+        return _Edge(load, film[0], film_compliance[0], damping[0], exponent)

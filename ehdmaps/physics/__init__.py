@@ -25,6 +25,8 @@ rolling             rolling force: its integral, the rigid film, Matsuyama's fit
 traction            traction over the slide-to-roll ratio by laws of shear stress
 peak                what the largest of sampled pressures lacks to the peak
 oil_supply          `OilSupply`: flooded, or an oil layer before the contact
+roughness           `Surface`: asperities of rough surfaces, and the mean gap between them
+film_limits         how thick and how thin a film may be
 wall_stress         shear stress at the walls over pressure: where no oil is Newtonian
 thermal             reduction of the film by inlet shear heating
 structure           film and solids together: approach, stiffness, damping

@@ -17,6 +17,7 @@ import xarray as xr
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.analyses.campbell import followed_orders, recorded_run, run_course, silent_run
+from mbs.analyses.operating import held
 from mbs.analyses.progress import Progress, silent
 from mbs.analyses.varied import VARIED, LawChoice, Subject, Value
 from mbs.model.elements import Sensor
@@ -258,7 +259,7 @@ def _place(subject: Subject, settings: CampbellSettings, runs: list[_Run], place
     """Where the run of a subject stands among all runs; it is appended where it is a new one."""
     asked = f"{_law_content(subject)} {subject.law.films} {subject.clearance!r} {subject.scene!r}"
     if asked not in places:
-        model = subject.model()
+        model = held(subject.model())
         # Films and clearance that were not named are those that the model has.
         same = f"{_law_content(subject)} {model.memory} {model.scene!r}"
         if same not in places:

@@ -25,6 +25,7 @@ from ehdmaps.physics.approach import ISO_LINE_CONSTANT, STEEL_REDUCED_MODULUS, S
 from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.roughness import SMOOTH, Surface
 from ehdmaps.physics.solids import reduced_modulus
 from ehdmaps.physics.unilateral import unilateral_force
 from mbs.bearings.bearing import Bearing
@@ -201,6 +202,7 @@ def formula(
     structural_law: StructuralLaw = "iso16281",
     kind: LawKind = "series",
     outside: OutsidePolicy = "error",
+    surface: Surface = SMOOTH,
 ) -> ContactLaw:
     """Law of a film formula over a range of loads, speeds and temperatures; takes some seconds.
 
@@ -214,7 +216,7 @@ def formula(
         Lowest and highest [N/m], [m/s], [K], as of a map.
     film_formula, structural_law
         See `ehdmaps.physics.closed_form.FormulaSolver` and `ehdmaps.physics.approach`.
-    kind, outside
+    kind, outside, surface
         See `ContactLaw`.
 
     Raises
@@ -241,7 +243,7 @@ def formula(
     films = [_films(contact, lubricant, FormulaSolver(film_formula), loads, speeds, temperatures) for contact in chosen]
     offset, compliance, loss = (np.stack(part) for part in zip(*films, strict=True))
     field = GridField(chosen, lubricant, loads, speeds, temperatures, offset, compliance, loss)
-    return ContactLaw(kind, chosen, lubricant, field, outside)
+    return ContactLaw(kind, chosen, lubricant, field, outside, surface=surface)
 
 
 def _films(

@@ -7,8 +7,8 @@ import dataclasses
 from collections.abc import Sequence
 
 from ehdmaps.errors import InputError
-from ehdmaps.units import RPM, TEMPERATURE, closest
-from mbs.analyses.case import clearance_text
+from ehdmaps.units import RPM, closest
+from mbs.analyses.case import clearance_text, temperature_text
 from mbs.analyses.reach import axes_outside
 from mbs.analyses.variants import Variant, VariantsResult, Variation, variants
 from mbs.analyses.varied import VARIED, LawChoice
@@ -82,10 +82,10 @@ def _variations(given: Sequence[Sequence[str]], problems: list[str]) -> list[Var
 
 def _base(found: VariantsResult) -> str:
     """What the base is, in words."""
-    scene, course = found.models[1].scene, found.course
+    course = found.course
     return (
         f"run-up from {RPM.text(course.speed.at(0.0)[0])} to {RPM.text(course.speed.at(course.duration)[0])} in "
-        f"{course.duration:.4g} s, {TEMPERATURE.text(scene.temperature)}, clearance "
+        f"{course.duration:.4g} s, {temperature_text(found.models[1])}, clearance "
         f"{clearance_text(found.models[1]) or 'none'}"
     )
 

@@ -46,6 +46,10 @@ class ValleyField:
     def contacts(self):
         return tuple(contact.name for contact in self.line_contacts)
 
+    def first_loads(self, speeds, temperatures):
+        """The lowest load everywhere; see `FilmField.first_loads`."""
+        return np.full((len(speeds), len(temperatures)), self.load_range[0])
+
     def locked_factors(self, contact, loads, speed, temperature):
         """Nothing is known of films that oscillate; see `FilmField.locked_factors`."""
 
@@ -83,9 +87,9 @@ def exact_curve(field, contacts, loads, speed, temperature) -> Curve:
     curves = [ContactCurve(field, contact, speeds, temperatures) for contact in contacts]
     total = None
     for curve in curves:
-        piece = curve.mapped(np.asarray(loads)[:, None, None])
+        piece = curve.with_structure(curve.mapped(np.asarray(loads)[:, None, None]))
         total = piece if total is None else total + piece
-    return Curve(total.approach[:, 0, 0], total.slope[:, 0, 0], total.loss_ratio[:, 0, 0])
+    return Curve(total.approach[:, 0, 0], total.slope[:, 0, 0], total.loss[:, 0, 0])
 
 
 def exact_law(field, contacts, loads, speed, temperature):

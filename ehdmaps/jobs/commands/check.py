@@ -12,6 +12,7 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.refinement import refinement
 from ehdmaps.jobs.report import AXES, span
+from ehdmaps.jobs.surface import surface_words
 from ehdmaps.jobs.tasks import LineTask, line_tasks
 from ehdmaps.physics.sensitivity import film_change
 from ehdmaps.physics.solution import ContactSolver, Status
@@ -46,6 +47,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"  {job.title}, {job.lubricant.title}, solver {job.solver}, structural law {job.contacts[0].structural_law}",
         *([f"  bearing: {job.bearing.estimated}"] if job.bearing and job.bearing.estimated else []),
         *oil_lines(job),
+        f"  surfaces {surface_words(job.surface)}",
         f"  {'contact':20s} {len(job.contacts):6d}  {names}",
         *axes,
         f"  points  {job.points} of the map, {extra} for its contact laws",
