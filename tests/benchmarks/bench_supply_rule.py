@@ -9,7 +9,8 @@ rule (`ehdmaps.physics.starved`, without the rounding of its corner at r = 1):
 
 - film offset h = r h_flooded F(r);
 - stiffness k at a given layer, the meniscus following: the slope of that film over the load, in series with the solids;
-- damping c = c_flooded G(r), the meniscus where it is, in series with the solids;
+- damping c, the meniscus where it is: film compliance and loss compliance of the flooded film times those ratios of the
+  rigid contact to the power of n = -d ln(h)/d ln(w), in series with the solids;
 - rolling force.
 """
 
@@ -17,12 +18,12 @@ from __future__ import annotations
 
 import argparse
 import math
-import time
 from typing import NamedTuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
@@ -30,7 +31,7 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import FilmSolution
-from ehdmaps.physics.starved import damping_ratio, film_ratio, rolling_ratio
+from ehdmaps.physics.starved import compliance_ratio, damping_ratio, film_ratio, rolling_ratio
 
 CONTACT = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[0]
 OIL = Lubricant.named("FVA3")
@@ -66,7 +67,6 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Rule for contacts on an oil layer beside the Reynolds solver.")
     parser.add_argument("--table", action="store_true", help="print all points")
     table = parser.parse_args().table
-    started = time.process_time()
     with threadpool_limits(1):
         rows, missing = solve_all()
     if table:
@@ -74,9 +74,7 @@ def main() -> None:
         print("".join(f"{name:>9} {'rule':>7}" for name in ("h/r", "k", "c", "force")) + f"{'s':>9} {'b':>8}")
         for row in rows:
             print(line_of(row))
-    print(
-        f"{len(rows)} starved points, {missing} without a solution, {time.process_time() - started:.1f} s of processor"
-    )
+    print(f"{len(rows)} starved points, {missing} without a solution")
     print(f"{'error of the rule [%]':22s}" + "".join(f"{name:>26s}" for name in NAMES))
     print(f"{'':22s}" + f"{'median':>12s}{'95 %':>7s}{'worst':>7s}" * len(NAMES))
     for r_name, chosen in (("r >= 0.5", lambda row: row.ratio >= 0.5), ("all r", lambda _: True)):
@@ -160,12 +158,20 @@ def compared(
         (
             heights[0] / full.film_offset,
             1.0 / (dry + slope) / full_stiffness,
-            float(damping_ratio(root)) / ratio**0.75,
+            held_damping(full, dry, point.load, root) / full_damping,
             float(rolling_ratio(root)),
         ),
         film.film_compliance / full.film_compliance,
         film.loss_compliance / full.loss_compliance,
     )
+
+
+def held_damping(flooded: FilmSolution, dry: float, load: float, root: FloatArray) -> float:
+    """c of film and solids by the rule, the meniscus held; `root` is sqrt(r)."""
+    exponent = min(max(flooded.film_compliance * load / flooded.film_offset, 0.0), 1.0)
+    softer = float(compliance_ratio(root) * root**2)
+    loss = float(damping_ratio(root) / root**1.5) * softer**2
+    return flooded.loss_compliance * loss**exponent / (dry + flooded.film_compliance * softer**exponent) ** 2
 
 
 if __name__ == "__main__":
