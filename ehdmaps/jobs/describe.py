@@ -28,6 +28,7 @@ from ehdmaps.maps.records import record_from_json
 from ehdmaps.maps.rough_films import BOUNDARY, FILM_PARAMETER, FILM_SHARE, MIXED, rough_variables
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.solution import Status
 from ehdmaps.units import FILM, LENGTH, PRESSURE, TEMPERATURE, Display
 
 SHOWN_TEMPERATURES = (313.15, 373.15)
@@ -173,8 +174,12 @@ def _backbone_lines(backbone: xr.Dataset) -> Iterator[str]:
     """Yield the size of the group of refinement lines."""
     sizes = [backbone.sizes[name] for name in schema.BACKBONE_DIMS]
     yield "refinement lines of the contact law (group backbone)"
-    solved = int((backbone["status"].values != schema.NOT_NEEDED).sum())
+    status = backbone["status"].values
+    solved = int((status != schema.NOT_NEEDED).sum())
     yield f"  {solved} points: {sizes[0]} loads about the damping valley, {sizes[1]} speeds, {sizes[2]} temperatures"
+    bridged = solved - int(np.isin(status, [int(known) for known in Status if known.usable]).sum())
+    if bridged:
+        yield f"  {bridged} of them without a solution: single ones are bridged along their lines"
     if schema.NATURAL not in backbone.variables:
         yield "  response over frequency: none; films in time lock by a closed formula"
         return

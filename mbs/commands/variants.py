@@ -13,7 +13,7 @@ from mbs.analyses.reach import axes_outside
 from mbs.analyses.variants import Variant, VariantsResult, Variation, variants
 from mbs.analyses.varied import VARIED, LawChoice
 from mbs.commands.cases import read_compared
-from mbs.commands.common import Told, read_option, write
+from mbs.commands.common import Told, held_lines, read_option, write
 from mbs.commands.reach import outside_lines
 from mbs.output.variants_plot import variants_figure
 from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
@@ -97,6 +97,7 @@ def _heading(found: VariantsResult) -> list[str]:
         f"{scene.title}: {_base(found)}",
         f"  first law: {found.models[0].law}",
         f"  second law: {found.models[1].law}",
+        *held_lines(found.models[1]),
         f"  {len(found.variants) - 1} changes, one at a time, {found.runs} runs; sum level up to "
         f"{HERTZ.text(found.settings.highest)} of the second law minus that of the first, dB: at the same speed, of "
         "the mean energies, of the highest of each at any speed",
