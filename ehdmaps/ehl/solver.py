@@ -86,8 +86,8 @@ class SuppliedFilm:
 class ReynoldsSolver(ContactSolverDefaults):
     """Finite-difference solver of the steady line contact and of its linear response.
 
-    Isothermal, Newtonian, piezoviscous, compressible, with Reynolds' cavitation condition at the exit. All contacts are
-    fully flooded, but those of `supplied_film`, which takes an oil layer before them.
+    Isothermal, Newtonian, piezoviscous, compressible, with Reynolds' cavitation condition at the exit; fully flooded,
+    but for `supplied_film`, which takes an oil layer before the contact.
 
     Attributes
     ----------
@@ -264,8 +264,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         """
         state = lubricant.at(point.temperature)
         film, flooded = self._solve(contact, state, point, None)
-        # a flooded film that is refused for its thickness still says how much oil it takes
-        if flooded is None or flooded.outcome != CONVERGED:
+        if flooded is None or not film.status.usable:
             return SuppliedFilm(film)
         half = float(half_width(point.load, contact.radius, contact.reduced_modulus))
         peak = float(max_pressure(point.load, contact.radius, contact.reduced_modulus))

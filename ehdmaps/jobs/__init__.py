@@ -32,7 +32,6 @@ opening      the map of a command, by the structural law that it names
 describe     what a map file holds, in words
 plot         what a map file holds, on one page
 plot_curves  one panel of that page
-plot_curves  one panel of that page
 film_output  files with the film itself, beside the numbers of one point
 traction     traction of one point over the slide-to-roll ratio
 supplied     one point behind an oil layer: flow ratio and place of the meniscus
