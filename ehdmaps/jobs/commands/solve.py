@@ -142,7 +142,7 @@ def _with_supply(
     assert isinstance(solver, ReynoldsSolver)
     found = {contact.name: solver.supplied_film(contact, job.lubricant, point, supply) for contact in job.contacts}
     records = [
-        point_record(contact_solution(found[contact.name].film, contact, point), contact, job.lubricant, point, 0.0)
+        point_record(contact_solution(found[contact.name].film, contact, point), contact, job, point, 0.0)
         for contact in job.contacts
     ]
     if arguments.json:
