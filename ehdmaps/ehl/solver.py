@@ -264,7 +264,8 @@ class ReynoldsSolver(ContactSolverDefaults):
         """
         state = lubricant.at(point.temperature)
         film, flooded = self._solve(contact, state, point, None)
-        if flooded is None or not film.status.usable:
+        # a flooded film that is refused for its thickness still says how much oil it takes
+        if flooded is None or flooded.outcome != CONVERGED:
             return SuppliedFilm(film)
         half = float(half_width(point.load, contact.radius, contact.reduced_modulus))
         peak = float(max_pressure(point.load, contact.radius, contact.reduced_modulus))
