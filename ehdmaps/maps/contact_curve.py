@@ -138,6 +138,11 @@ class ContactCurve:
         )
 
     @property
+    def tail(self) -> Tail:
+        """Film below the lowest mapped load."""
+        return self._tail
+
+    @property
     def fade_load(self) -> FloatArray:
         """Load below which the tail fades out [N/m], (n_u, n_T)."""
         return self._tail.fade_load

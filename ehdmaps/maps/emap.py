@@ -25,6 +25,7 @@ from ehdmaps.maps.records import (
     contacts_from_json,
     contacts_of,
     lubricant_from_json,
+    supply_from_json,
     surface_from_json,
     surface_json,
 )
@@ -36,6 +37,7 @@ from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.roughness import SMOOTH, Surface
 
 
@@ -144,6 +146,12 @@ class EHDMap:
         return oil
 
     @cached_property
+    def supply(self) -> OilSupply:
+        """The oil supply that the job of the map states, flooded where it states none; points are flooded anyway."""
+        stated = self.dataset.attrs.get(schema.OIL_SUPPLY)
+        return FLOODED if stated is None else supply_from_json(stated)
+
+    @cached_property
     def surface(self) -> Surface:
         """Surfaces that the job of the map states, smooth where it states none; its points are those of smooth ones."""
         stated = self.dataset.attrs.get(schema.SURFACE)
@@ -154,7 +162,13 @@ class EHDMap:
         """The bearing; None for a bare contact."""
         return bearing_from_json(self.dataset.attrs["geometry"])
 
-    def law(self, kind: LawKind, outside: OutsidePolicy = "error", surface: Surface | None = None) -> ContactLaw:
+    def law(
+        self,
+        kind: LawKind,
+        outside: OutsidePolicy = "error",
+        supply: OilSupply | None = None,
+        surface: Surface | None = None,
+    ) -> ContactLaw:
         """Make a contact law from the map; takes about a second, some seconds with rough surfaces.
 
         Parameters
@@ -163,6 +177,8 @@ class EHDMap:
             A roller in equilibrium between both raceways, or one of the contacts of the map.
         outside : {"error", "clamp", "asymptote"}
             What happens outside the map, see `ContactLaw`.
+        supply : OilSupply, optional
+            Oil before each contact; what the job of the map states if left out, see `supply`.
         surface : Surface, optional
             Roughness of the surfaces; that of the map's job if left out, smooth where it states none.
 
@@ -187,6 +203,7 @@ class EHDMap:
             self.film_field(names),
             outside,
             rolling=self.rolling_film,
+            supply=supply or self.supply,
             surface=self.surface if surface is None else surface,
         )
 

@@ -20,17 +20,20 @@ from ehdmaps.maps.compilation import (
     highest_structural_load,
     structural_parameters,
 )
+from ehdmaps.maps.contact_curve import ContactCurve
 from ehdmaps.maps.dry import DryField
 from ehdmaps.maps.excursions import Axis, Excursion, Range
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.locked_film import FORMULA, LockedFactors, locked_compliances
 from ehdmaps.maps.low_loads import LowLoads, guessed_at, low_loads
 from ehdmaps.maps.memory import FilmMemory, FilmState
+from ehdmaps.maps.oil_layer import oil_layer
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.rough_layer import GONE_BELOW
 from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE, ApproachTable, LawTable, Point
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.roughness import SMOOTH, Surface
 
 LawKind = Literal["series", "inner", "outer", "line"]
@@ -74,7 +77,9 @@ class ContactLaw:
     resolution : Resolution, optional
         Spacing of the nodes of the table.
     rolling : RollingFilm, optional
-        Rolling force of the contacts, where the map holds it.
+        Rolling force and mass flow of the contacts, where the map holds them.
+    supply : OilSupply, optional
+        Oil before each contact; flooded if left out. See `ehdmaps.maps.oil_layer`.
     surface : Surface
         Roughness of the surfaces: film and asperities share the load, see `ehdmaps.maps.rough_layer`. The law then
         has a table down to a speed without a film, and goes over into the rough dry contact at standstill.
@@ -103,6 +108,7 @@ class ContactLaw:
         outside: OutsidePolicy = "error",
         resolution: Resolution | None = None,
         rolling: RollingFilm | None = None,
+        supply: OilSupply = FLOODED,
         surface: Surface = SMOOTH,
     ) -> None:
         if outside not in get_args(OutsidePolicy):
@@ -121,6 +127,7 @@ class ContactLaw:
         self._field = DryField(field, not surface.smooth) if field.dry else field
         self._resolution = resolution
         self.rolling = rolling
+        self.supply = supply
         self._plain = self._law_table()
         self._latest: LawAtPoint | None = None
 
@@ -348,14 +355,24 @@ class ContactLaw:
             known = field.locked_factors(contact.name, loads, u, T)
             if known is None:
                 return FORMULA
-            films = field.films(contact.name, loads[:, None, None], np.array([u]), np.array([T]))
-            own_offset, own_compliance = films[0][:, 0, 0], films[1][:, 0, 0]
+            own_offset, own_compliance = self._films(contact, loads, u, T)
             by_formula = locked_compliances((contact,), own_offset, loads, own_compliance)
             whole += by_formula * known
             offset += own_offset
             compliance += own_compliance
         factors = whole / locked_compliances(self.contacts, offset, loads, compliance)
         return LockedFactors(math.log(lowest), (loads.size - 1) / math.log(highest / lowest), factors)
+
+    def _films(self, contact: LineContact, loads: FloatArray, u: float, T: float) -> tuple[FloatArray, FloatArray]:
+        """Film offset [m] and film compliance [m2/N] of a contact at loads within the map, u and T too; (n,)."""
+        speeds, kelvins, every = np.array([u]), np.array([T]), loads[:, None, None]
+        if self.supply.flooded:
+            films = self._field.films(contact.name, every, speeds, kelvins)
+            return films[0][:, 0, 0], films[1][:, 0, 0]
+        curve = ContactCurve(self._field, contact, speeds, kelvins)
+        layer = oil_layer(contact, self.supply.oil_layer, curve.tail, self.rolling, speeds, kelvins)
+        film = layer(curve.mapped(every))
+        return film.offset[:, 0, 0], -film.slope[:, 0, 0] / (3.0 * np.cbrt(loads) ** 2)
 
     def _law_table(self) -> LawTable:
         """Everything but the single contacts of a series."""
@@ -391,7 +408,15 @@ class ContactLaw:
     def _approach_table(self, contacts: Sequence[LineContact]) -> ApproachTable:
         """Table of some contacts in series."""
         return compile_table(
-            self._field, contacts, self._lubricant, self._speeds, self._held_load, self._resolution, self.surface
+            self._field,
+            contacts,
+            self._lubricant,
+            self._speeds,
+            self._held_load,
+            self._resolution,
+            FLOODED if self._dry else self.supply,
+            self.rolling,
+            self.surface,
         )
 
     def _check_centrifugal(self, values: FloatArray) -> None:
@@ -534,7 +559,9 @@ class LawAtPoint:
         u, T = self.entrainment_speed, self.temperature
         return np.stack(
             [
-                self.law.rolling.rolling_force(contact.name, loads + extra.get(contact.name, 0.0), u, T)
+                self.law.rolling.rolling_force(
+                    contact.name, loads + extra.get(contact.name, 0.0), u, T, self.law.supply
+                )
                 for contact in self.law.contacts
             ]
         )

@@ -34,7 +34,9 @@ from ehdmaps.maps.splines import spline_weights
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_number
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rolling import RIGID_ROLLING_CONSTANT
+from ehdmaps.physics.starved import passing, rolling_ratio
 
 NAMES = ("rolling_force", "mass_flow")
 """Variables of the map and of its backbone."""
@@ -44,6 +46,7 @@ RIGID_FLOW_NUMBER = 3.0
 
 _PRESSURE_EXPONENT = 1.5
 _STEP = 1e-3
+_FLOW_STEP = 0.1
 
 _Reader = Callable[[LineContact, FloatArray, float, float], FloatArray]
 """From contact, loads (n,) from the first known to the highest one, speed and temperature to ln f and ln g, (2, n)."""
@@ -82,7 +85,12 @@ class RollingFilm:
         self._loads, self._temperatures = load_range, temperature_range
 
     def rolling_force(
-        self, contact: str, load: npt.ArrayLike, entrainment_speed: float, temperature: float
+        self,
+        contact: str,
+        load: npt.ArrayLike,
+        entrainment_speed: float,
+        temperature: float,
+        supply: OilSupply = FLOODED,
     ) -> FloatArray:
         """Rolling force of both walls together [N/m], in the shape of the loads; zero without load or speed.
 
@@ -94,8 +102,15 @@ class RollingFilm:
             w [N/m], >= 0.
         entrainment_speed, temperature : float
             u [m/s], of either sign, and T [K].
+        supply : OilSupply, optional
+            Oil before the contact. On a layer the force is less by the factor of the starved contact between rigid
+            surfaces, see `ehdmaps.physics.starved`.
         """
-        return self._found(0, contact, load, entrainment_speed, temperature)
+        force = self._found(0, contact, load, entrainment_speed, temperature)
+        if supply.flooded:
+            return force
+        flow = self.flow(contact, load, entrainment_speed, temperature)
+        return force * rolling_ratio(np.sqrt(passing(flow, supply.oil_layer)))
 
     def mass_flow(self, contact: str, load: npt.ArrayLike, entrainment_speed: float, temperature: float) -> FloatArray:
         """Mass flow through the contact [kg/(m s)], inf without load, zero without speed; arguments as before.
@@ -106,6 +121,44 @@ class RollingFilm:
             Arguments of `rolling_force`.
         """
         return self._found(1, contact, load, entrainment_speed, temperature)
+
+    def flow(self, contact: str, load: npt.ArrayLike, entrainment_speed: float, temperature: float) -> FloatArray:
+        """Mass flow over density at rest and speed [m], inf without load, zero without speed; arguments as before.
+
+        Parameters
+        ----------
+        contact, load, entrainment_speed, temperature
+            Arguments of `rolling_force`.
+        """
+        mass = self.mass_flow(contact, load, entrainment_speed, temperature)
+        if entrainment_speed == 0.0:
+            return mass
+        T = float(np.clip(temperature, *self._temperatures))
+        return mass / (self._lubricant.at(T).density * abs(entrainment_speed))
+
+    def flow_film(self, contact: str, lowest_load: float, speeds: FloatArray, temperatures: FloatArray) -> CubicSpline:
+        """Mass flow over density at rest and speed, as ln of it [m] over ln(w), up to the highest load of the map.
+
+        Parameters
+        ----------
+        contact : str
+            Name of a contact of the map.
+        lowest_load : float
+            Load at which the spline begins [N/m], > 0.
+        speeds, temperatures : array (n_u,), (n_T,)
+            Entrainment speeds [m/s], > 0, and temperatures [K]; values of the spline are (n_u, n_T).
+        """
+        line, low, high = self._contacts[contact], lowest_load, self._loads[1]
+        loads = np.geomspace(low, high, 4 + math.ceil(math.log(high / low) / _FLOW_STEP))
+        logs = np.empty((loads.size, speeds.size, temperatures.size))
+        for j, speed in enumerate(speeds.tolist()):
+            for k, kelvin in enumerate(temperatures.tolist()):
+                state = self._lubricant.at(kelvin)
+                number = moes_speed_number(speed, state.viscosity, line.radius, line.reduced_modulus)
+                logs[:, j, k] = self._logarithms(line, loads, speed, kelvin)[1] + math.log(
+                    line.radius * math.sqrt(number)
+                )
+        return CubicSpline(np.log(loads), logs)
 
     def _found(self, which: int, name: str, load: npt.ArrayLike, speed: float, temperature: float) -> FloatArray:
         """One of both, in SI."""

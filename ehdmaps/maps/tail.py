@@ -24,7 +24,9 @@ from ehdmaps.arrays import FloatArray
 THICK_FILM = 0.005
 """h/R at which the fade begins, unless the map itself reaches thicker films."""
 
-_FADE_RATIO = 4.0
+FADE_RATIO = 4.0
+"""Film at which the fade ends, over that at which it begins."""
+
 _LEAST_COMPLIANCE = 1e-3
 _JOIN_POWER = 3.0
 _NEWTON_STEPS = 60
@@ -62,7 +64,7 @@ class Tail:
     @property
     def fade_load(self) -> FloatArray:
         """Load at ha [N/m]."""
-        return self._strength / (self.fade_film - self._pole)
+        return self.strength / (self.fade_film - self.pole)
 
     @property
     def _compliance(self) -> FloatArray:
@@ -70,12 +72,12 @@ class Tail:
         return np.maximum(self.film_compliance, _LEAST_COMPLIANCE * self.film_offset / self.load)
 
     @property
-    def _strength(self) -> FloatArray:
-        """A [N]."""
+    def strength(self) -> FloatArray:
+        """A [N]: w (h - hs) of the film that does not fade."""
         return self.load**2 * self._compliance
 
     @property
-    def _pole(self) -> FloatArray:
+    def pole(self) -> FloatArray:
         """hs [m]."""
         return self.film_offset - self.load * self._compliance
 
@@ -96,7 +98,7 @@ class Tail:
         log_ratio : array
             ln(c/w), c/w in s/m.
         """
-        strength, pole, fade = self._strength, self._pole, self.fade_film
+        strength, pole, fade = self.strength, self.pole, self.fade_film
         # Above the fade the hyperbola is inverted at once; in the fade tau goes from 1 at ha to 0 at 4 ha.
         unfaded = root >= np.cbrt(self.fade_load)
         safe = np.where(unfaded, root, 1.0)
@@ -106,11 +108,11 @@ class Tail:
         faded = np.nonzero(~unfaded)
         lines = faded[1:]
         start = fade[lines]
-        span, reach = (_FADE_RATIO - 1.0) * start, _FADE_RATIO * start - pole[lines]
+        span, reach = (FADE_RATIO - 1.0) * start, FADE_RATIO * start - pole[lines]
         unit = np.cbrt(strength[lines])
         tau = _faded_place(root[faded] / unit, span, reach)
         _, tau_slope = _faded_root(tau, span, reach)
-        film[faded] = _FADE_RATIO * start - span * tau
+        film[faded] = FADE_RATIO * start - span * tau
         slope[faded] = -span / (unit * tau_slope)
 
         part = self.load * self._compliance / (film - pole)

@@ -7,6 +7,7 @@ change does not concern are not made again: a dry law knows no temperature.
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,7 +24,7 @@ from mbs.analyses.varied import VARIED, LawChoice, Subject, Value
 from mbs.model.elements import Sensor
 from mbs.output.results import described
 from mbs.output.variants_data import variants_dataset
-from mbs.scene.assembly import Model
+from mbs.scene.assembly import Model, supply_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings, RunUp
 from mbs.spectral.campbell import campbell
@@ -199,13 +200,15 @@ def variants(
     rows = tuple(_variant(change, pair, outcomes) for change, pair in zip([None, *variations], pairs, strict=True))
     if not any(row.differences for row in rows):
         raise AnalysisError("\n".join(f"warning: {row.words}: {row.problem}" for row in rows))
-    base = runs[pairs[0][0]].model, runs[pairs[0][1]].model
+    first, second = (runs[place].model for place in pairs[0])
+    base = (held(first), held(second)) if rows[0].differences else (first, second)
     labels = laws[0].label, laws[1].label
     dataset = described(
         variants_dataset(rows, sensors),
         scene=scene.name,
         scene_toml=scene.text,
         law=f"{labels[0]}: {base[0].law}; {labels[1]}: {base[1].law}",
+        **supply_attributes(list(zip(labels, base, strict=True))),
     )
     course = runs[pairs[0][0]].course
     return VariantsResult(settings, course, base, labels, sensors, rows, len(outcomes), dataset)
@@ -257,11 +260,13 @@ def _planned(
 
 def _place(subject: Subject, settings: CampbellSettings, runs: list[_Run], places: dict[str, int]) -> int:
     """Where the run of a subject stands among all runs; it is appended where it is a new one."""
-    asked = f"{_law_content(subject)} {subject.law.films} {subject.clearance!r} {subject.scene!r}"
+    asked = (
+        f"{_law_content(subject)} {subject.law.films} {subject.law.supply!r} {subject.clearance!r} {subject.scene!r}"
+    )
     if asked not in places:
-        model = held(subject.model())
-        # Films and clearance that were not named are those that the model has.
-        same = f"{_law_content(subject)} {model.memory} {model.scene!r}"
+        model = subject.model()
+        # Films, oil supply and clearance that were not named are those that the model has.
+        same = f"{_law_content(subject)} {model.memory} {model.supplies!r} {model.scene!r}"
         if same not in places:
             problems: list[str] = []
             course = run_course(subject.scene, settings.highest, problems)
@@ -270,6 +275,9 @@ def _place(subject: Subject, settings: CampbellSettings, runs: list[_Run], place
             order = max((order for order, _ in followed_orders(model, settings, course)), default=None)
             if not any(run.course == course and run.highest_order == order for run in runs):
                 campbell(silent_run(course), 1.0, settings.highest, settings.window, order)
+            # Bad input is said before anything runs; a bearing that runs away is said in its row.
+            with contextlib.suppress(AnalysisError):
+                held(model)
             places[same] = len(runs)
             runs.append(_Run(model, course, order))
         places[asked] = places[same]
@@ -277,7 +285,7 @@ def _place(subject: Subject, settings: CampbellSettings, runs: list[_Run], place
 
 
 def _law_content(subject: Subject) -> str:
-    """The law of a subject without its films, as a text: the same text, the same law."""
+    """The law of a subject without its films and their oil supply, as a text: the same text, the same law."""
     return f"{subject.law.name} {id(subject.law.emap)}"
 
 
@@ -295,7 +303,7 @@ def _made(
     found: list[_Outcome] = []
     for run in runs:
         try:
-            record = recorded_run(run.model, run.course, sensors, told)
+            record = recorded_run(held(run.model), run.course, sensors, told)
             levels = []
             for column, sensor in enumerate(sensors):
                 signal = RunSignal(record.time, record.speed, record.angle, record.signals[:, column])

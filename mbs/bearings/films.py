@@ -27,6 +27,8 @@ from ehdmaps.physics.films import dowson_higginson_minimum, martin_minimum, moes
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.starved import RIGID_FLOW, film_ratio, passing, pressure_ratio, rolling_ratio
 
 SIDES = ("inner", "outer")
 """The contacts of a roller, in the order of all arrays."""
@@ -87,6 +89,37 @@ class FilmSource(Protocol):
         ...
 
 
+def on_supply(state: ContactState, flow: FloatArray, supply: OilSupply) -> ContactState:
+    """Contacts on an oil layer, from those that are flooded; see `ehdmaps.physics.starved`.
+
+    Film and rolling force have the ratios of the starved contact between rigid surfaces. So has the largest pressure,
+    up to that of Hertz; a spike above it is left as it is.
+
+    Parameters
+    ----------
+    state : ContactState
+        Flooded contacts.
+    flow : array
+        Their mass flow over density at rest and speed [m].
+    supply : OilSupply
+        Oil before the contacts.
+    """
+    if supply.flooded:
+        return state
+    passed = passing(flow, supply.oil_layer)
+    root = np.sqrt(passed)
+    film = passed * film_ratio(root)[0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        risen = np.where(passed > 0.0, state.max_pressure * pressure_ratio(root) * root**-1.5, 0.0)
+    return replace(
+        state,
+        max_pressure=np.minimum(risen, np.maximum(state.max_pressure, state.hertz_pressure)),
+        central_film=film * state.central_film,
+        minimum_film=film * state.minimum_film,
+        rolling_force=rolling_ratio(root) * state.rolling_force,
+    )
+
+
 @dataclass(frozen=True)
 class DryContacts:
     """Contacts without a film.
@@ -127,15 +160,19 @@ class FormulaFilms:
         Inner and outer.
     lubricant : Lubricant
         The oil.
+    supply : OilSupply
+        Oil before each contact; flooded if left out.
     """
 
     contacts: tuple[LineContact, ...]
     lubricant: Lubricant
+    supply: OilSupply = FLOODED
 
     @property
     def words(self) -> str:
         """The formulas."""
-        return f"films: Moes' formula (minimum: Dowson-Higginson, Martin) for {self.lubricant.name}"
+        formulas = "Moes' formula (minimum: Dowson-Higginson, Martin)"
+        return f"films: {formulas} for {self.lubricant.name}, {self.supply.label}"
 
     def state(self, side: int, load: FloatArray, entrainment_speed: float, temperature: float) -> ContactState:
         """Hertz' pressure and films by formula, zero at standstill; see `FilmSource.state`."""
@@ -144,7 +181,8 @@ class FormulaFilms:
         loaded = load > 0.0
         central, minimum = np.full(load.shape, np.nan), np.full(load.shape, np.nan)
         central[loaded], minimum[loaded] = self._films(contact, load[loaded], abs(entrainment_speed), temperature)
-        return ContactState(pressure, pressure, central, minimum, np.full(load.shape, np.nan))
+        state = ContactState(pressure, pressure, central, minimum, np.full(load.shape, np.nan))
+        return on_supply(state, RIGID_FLOW * central, self.supply)
 
     def _films(
         self, contact: LineContact, load: FloatArray, speed: float, temperature: float
@@ -175,6 +213,8 @@ class MapFilms:
     ----------
     emap : EHDMap
         Map of a bearing.
+    supply : OilSupply, optional
+        Oil before each contact; what the job of the map states if left out.
 
     Raises
     ------
@@ -183,6 +223,7 @@ class MapFilms:
     """
 
     emap: EHDMap
+    supply: OilSupply | None = None
     _formula: FormulaFilms = field(init=False)
 
     def __post_init__(self) -> None:
@@ -201,7 +242,12 @@ class MapFilms:
     @property
     def words(self) -> str:
         """The map."""
-        return f"films of the map, {self.lubricant.name}"
+        return f"films of the map, {self.lubricant.name}, {self.in_force.label}"
+
+    @property
+    def in_force(self) -> OilSupply:
+        """The oil supply: what was given, else what the job of the map states."""
+        return self.supply or self.emap.supply
 
     @property
     def lubricant(self) -> Lubricant:
@@ -224,7 +270,11 @@ class MapFilms:
         ratios[loaded] = self._ratios(side, load[loaded], abs(entrainment_speed), temperature)
         pressure = np.where(loaded, ratios[..., 0] * plain.hertz_pressure, 0.0)
         central, minimum = (ratios[..., part] * plain.central_film for part in (1, 2))
-        return ContactState(plain.hertz_pressure, pressure, central, minimum, rolling)
+        state = ContactState(plain.hertz_pressure, pressure, central, minimum, rolling)
+        if found is None:
+            return on_supply(state, RIGID_FLOW * central, self.in_force)
+        flow = found.flow(SIDES[side], np.maximum(load, 0.0), entrainment_speed, temperature)
+        return on_supply(state, flow, self.in_force)
 
     def _ratios(self, side: int, load: FloatArray, speed: float, temperature: float) -> FloatArray:
         """Ratios (n, 3) at positive loads, held at the edges of the map."""

@@ -29,7 +29,7 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import TEMPERATURE
 
 HOTTEST = 473.15
-"""Of a raceway [K]: 200 degC, where bearing steel has lost its temper. A balance that gets there has run away."""
+"""Highest temperature of a raceway [K]: 200 degC, where bearing steel loses its hardness."""
 
 RESIDUAL = 1e-10
 """Heat that is left of a balance that counts as closed, as a part of the friction."""
@@ -219,9 +219,10 @@ def steady_temperatures(
     Notes
     -----
     Newton, beginning without friction. How the heat of a bearing follows both of its temperatures is found by two
-    probes, with all bearings at once; their small influence on each other is left to the iteration. Steps are limited,
-    so that a bearing warms up to its first balance; where its friction grows faster than what is carried away, they go
-    on in the direction in which the heat drives it, until it is settled or too hot.
+    probes, with all bearings at once; their small influence on each other is left to the iteration. Where Newton's step
+    is too long, or leads uphill because friction grows faster than its heat is carried away, it is an implicit step in
+    time instead, in which the heat that is left warms the raceways. So a bearing warms up to its first balance, or on
+    until it is too hot.
     """
     conductances, sources = (np.array(part) for part in zip(*(entry.network for entry in paths), strict=True))
     temperatures: FloatArray = _solved(conductances, sources)
@@ -240,16 +241,22 @@ def steady_temperatures(
         temperatures = temperatures + steps
         hot = int(np.argmax(temperatures.max(axis=1)))
         if temperatures[hot].max() > HOTTEST:
-            raise AnalysisError(
-                f"bearing {names[hot]!r}: thermal run-away: no balance below {TEMPERATURE.text(HOTTEST)}, where its "
-                f"friction of {given[hot].sum():.4g} W is {left[hot].sum():.4g} W more than its heat paths carry away; "
-                "give it more conduction or oil, or more clearance or looser fits if it loses its clearance as it warms"
-            )
+            raise _too_hot(names[hot], conductances[hot] - slopes[hot], float(given[hot].sum()), float(left[hot].sum()))
         if float(np.abs(steps).max()) < _SHORTEST_STEP:
             return temperatures
     raise AnalysisError(
         f"bearing {names[int(np.argmax(np.abs(left).max(axis=1)))]!r}: its heat balance does not settle: "
         f"{np.abs(left).max():.3g} W are left after {_ROUNDS} steps; check its heat paths, or give its temperatures"
+    )
+
+
+def _too_hot(name: str, slope: FloatArray, friction: float, left: float) -> AnalysisError:
+    """What is said of a bearing without a balance: whether it runs away, or heat has too narrow a way out."""
+    words = "thermal run-away" if np.linalg.eigvals(slope).real.min() <= 0.0 else "too hot"
+    return AnalysisError(
+        f"bearing {name!r}: {words}: no heat balance below {TEMPERATURE.text(HOTTEST)}, where its friction of "
+        f"{friction:.4g} W is {left:.4g} W more than its heat paths carry away; give it more conduction or oil, or "
+        "more clearance or looser fits if it loses its clearance as it warms"
     )
 
 
@@ -269,8 +276,15 @@ def _slopes(heat: Callable[[FloatArray], FloatArray], temperatures: FloatArray, 
 
 
 def _step(slope: FloatArray, left: FloatArray) -> FloatArray:
-    """Newton's step (2,) [K], limited; where heat grows faster than its removal, the longest one in its direction."""
-    if np.linalg.eigvals(slope).real.min() <= 0.0:
-        return np.full(2, math.copysign(_LONGEST_STEP, float(left.sum())))
-    step = np.linalg.solve(slope, left)
-    return np.asarray(step * min(1.0, _LONGEST_STEP / max(float(np.abs(step).max()), 1e-300)))
+    """Step (2,) [K]: Newton's, or as far as heat that is left would warm the raceways in a time, both limited.
+
+    (slope + sigma) step = left is an implicit step in time, with a heat capacity over sigma; Newton's without it.
+    """
+    least = float(np.linalg.eigvals(slope).real.min())
+    sigma = 0.0 if least > 0.0 else -2.0 * least + 1e-3 * float(np.abs(slope).max())
+    while True:
+        step = np.linalg.solve(slope + sigma * np.eye(2), left)
+        longest = float(np.abs(step).max())
+        if longest <= _LONGEST_STEP:
+            return np.asarray(step)
+        sigma = max(2.0 * sigma, 0.1 * float(np.abs(slope).max()))

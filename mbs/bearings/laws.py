@@ -25,6 +25,7 @@ from ehdmaps.physics.approach import ISO_LINE_CONSTANT, STEEL_REDUCED_MODULUS, S
 from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.roughness import SMOOTH, Surface
 from ehdmaps.physics.solids import reduced_modulus
 from ehdmaps.physics.unilateral import unilateral_force
@@ -202,7 +203,8 @@ def formula(
     structural_law: StructuralLaw = "iso16281",
     kind: LawKind = "series",
     outside: OutsidePolicy = "error",
-    surface: Surface = SMOOTH,
+    supply: OilSupply | None = None,
+    surface: Surface | None = None,
 ) -> ContactLaw:
     """Law of a film formula over a range of loads, speeds and temperatures; takes some seconds.
 
@@ -216,8 +218,12 @@ def formula(
         Lowest and highest [N/m], [m/s], [K], as of a map.
     film_formula, structural_law
         See `ehdmaps.physics.closed_form.FormulaSolver` and `ehdmaps.physics.approach`.
-    kind, outside, surface
+    kind, outside
         See `ContactLaw`.
+    supply : OilSupply, optional
+        Oil before each contact; flooded if left out.
+    surface : Surface, optional
+        Roughness of the surfaces; smooth if left out.
 
     Raises
     ------
@@ -243,7 +249,7 @@ def formula(
     films = [_films(contact, lubricant, FormulaSolver(film_formula), loads, speeds, temperatures) for contact in chosen]
     offset, compliance, loss = (np.stack(part) for part in zip(*films, strict=True))
     field = GridField(chosen, lubricant, loads, speeds, temperatures, offset, compliance, loss)
-    return ContactLaw(kind, chosen, lubricant, field, outside, surface=surface)
+    return ContactLaw(kind, chosen, lubricant, field, outside, supply=supply or FLOODED, surface=surface or SMOOTH)
 
 
 def _films(

@@ -21,6 +21,7 @@ from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside
 from mbs.analyses.rings import ring_motions
 from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.heat import HeatPaths
 from mbs.commands.reach import outside_lines
 from mbs.linearised.validity import NOTABLE, FilmError
 from mbs.model.equilibrium import Equilibrium
@@ -73,9 +74,9 @@ def held_lines(model: Model) -> list[str]:
     Parameters
     ----------
     model : Model
-        The model of the run, in operation.
+        The model of the run.
     """
-    if not any(state.heat for state in model.states):
+    if not any(isinstance(bearing.thermal, HeatPaths) for bearing in model.scene.bearings):
         return []
     return [f"  temperatures and clearances are held at those of {RPM.text(model.scene.speed)}, of [operation]"]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,11 +14,15 @@ from scipy.special import lambertw
 
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.maps.emap import open_map
+from ehdmaps.physics.solids import STEEL, Material
 from mbs import (
+    CampbellSettings,
     HammerSettings,
+    LawChoice,
     SweepRange,
     SweepSettings,
     assemble,
+    campbell,
     hammer,
     lsa,
     modes,
@@ -26,8 +31,10 @@ from mbs import (
     runup,
     statics,
     sweep,
+    variants,
 )
 from mbs.analyses.operating import held, operating
+from mbs.bearings.fits import Mounting, Seat
 from mbs.bearings.friction import load_torque, viscous_torque
 from mbs.bearings.heat import HeatPaths, heat_of_contacts, steady_temperatures
 from mbs.model.profiles import SpeedProfile
@@ -85,10 +92,14 @@ def test_a_bearing_warms_up_to_its_first_balance_or_runs_away():
 
     found = steady_temperatures(["b"], [paths], grows(0.3))
     np.testing.assert_allclose(found - AROUND, -15.0 * lambertw(-0.3).real, rtol=1e-8)
-    with pytest.raises(AnalysisError, match=r"bearing 'hot': thermal run-away: no balance below 200 degC"):
+    with pytest.raises(AnalysisError, match=r"bearing 'hot': thermal run-away: no heat balance below 200 degC"):
         steady_temperatures(
             ["cold", "hot"], [paths, paths], lambda t: np.array([1.0, 1.0]) * [[0.0], [1.0]] * grows(0.4)(t)
         )
+    with pytest.raises(
+        AnalysisError, match=r"bearing 'b': too hot: no heat balance below 200 degC, where its friction"
+    ):
+        steady_temperatures(["b"], [paths], lambda t: np.full((1, 2), 400.0))
     jumps = iter(range(1000))
     with pytest.raises(AnalysisError, match="bearing 'b': its heat balance does not settle"):
         steady_temperatures(["b"], [paths], lambda t: np.full((1, 2), 1.0 + next(jumps) % 2))
@@ -276,6 +287,24 @@ def test_what_is_wrong_about_the_keys_is_said(more, words):
         scene(more)
 
 
+def test_the_block_of_the_reference_page_is_read():
+    page = (Path(__file__).parents[2] / "mbs" / "REFERENCE.md").read_text()
+    block = page.partition("### Warm bearings and their fits")[2].partition("```toml")[2].partition("```")[0]
+    (bearing,) = parse_scene(PLAIN[: PLAIN.index("[[bearings]]")] + block, "page", "page").bearings
+    assert bearing.thermal == HeatPaths(
+        shaft=0.5,
+        shaft_temperature=318.15,
+        housing=2.0,
+        oil_flow=6.0,
+        oil_inlet=313.15,
+        raceways_to_oil=4.0,
+        between_raceways=0.3,
+        constant_power=3.0,
+    )
+    aluminium = Material(70e9, STEEL.poisson_ratio)
+    assert bearing.mounting == Mounting(Seat(8e-6, 40e-3, 10e-3), Seat(-5e-6, 90e-3, 130e-3, aluminium, 23.8e-6))
+
+
 def test_seats_that_do_not_fit_are_refused_with_the_bearing():
     text = FIT.replace("40 mm", "55 mm") + 'expansion = "12e-6 1/K"\n'
     assert scene(text).bearings[0].mounting.expansion == 12e-6
@@ -290,6 +319,17 @@ def test_a_plan_takes_fits_and_refuses_heat():
     assert fitted.static_load < 0.97 * plan(scene()).needed[0].static_load  # more rollers carry
     with pytest.raises(InputError, match="got thermal in left; allowed: one temperature for all"):
         plan(scene(BALANCE))
+
+
+def test_comparisons_say_what_is_missing_before_anything_runs():
+    course = RunUp(SpeedProfile.ramp(10.0, 100.0, 0.5), 0.5, Settings(1e-4, 1e-4))
+    given = dataclasses.replace(scene(ADDED), run_up=course)
+    laws = LawChoice("dry", "hertz"), LawChoice("damped", "hertz:1e-5 s")
+    look = CampbellSettings(highest=1000.0)
+    with pytest.raises(InputError, match="knows no rolling force"):
+        variants(given, laws, [], settings=look)
+    with pytest.raises(InputError, match="knows no rolling force"):
+        campbell(assemble(given), look)
 
 
 def test_commands_say_temperatures_clearance_and_where_heat_goes(tmp_path, capsys):

@@ -1,0 +1,233 @@
+"""The film of a contact on an oil layer, from the film of the flooded contact.
+
+A line has no side flow: what passes through the contact in the steady state is the layer, or the flow m of the flooded
+contact where that is less. With r = min(1, h_oil/m) at equal load, speed and temperature the film is
+
+    h = r h_flooded F(r),        c = c_flooded G(r),
+
+F and G of the starved contact between rigid surfaces (`ehdmaps.physics.starved`). F runs from 1 to 1.2257 as r goes to
+zero: the film of a lightly loaded contact goes to the layer itself, and the load to nothing. A gap wider than the
+layer is dry. c is that with the meniscus where it is; the oil is too slow to move it at the frequencies of noise.
+
+- The corner at r = 1 is rounded, r = (1 + (m/h_oil)^8)^(-1/8); that takes 8 % off the film where m is h_oil, and less
+  than 1 % where they differ by a third.
+- s = sqrt(r), in which F and G are smooth, is rounded below r = `ROUNDED`^3, so that the load goes to zero as the cube
+  of the approach, as the table of a law wants it.
+- Below the lowest mapped load the film does not fade at 0.005 R: the hyperbola w (h - hs) = A feeds the layer. Its flow
+  is that of the film, m/h going over into 1.2257 of the rigid contact. Layers thicker than those 0.005 R
+  fade into the law of the flooded contact: 1/h^8 is that of the layer and that of the fade, less that of the
+  hyperbola.
+- A map without mass flow has m = 1.2257 h. That is right for light loads, where layers act; in a loaded contact m/h is
+  0.8 to 1.2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline, PPoly
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.maps.contact_curve import FilmSamples, dry_slope
+from ehdmaps.maps.rolling_film import RollingFilm
+from ehdmaps.maps.tail import FADE_RATIO, THICK_FILM, Tail
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.starved import CORNER, RIGID_FLOW, damping_ratio, film_ratio, passing
+
+ROUNDED = 0.2
+"""Cube root of the flow ratio r below which sqrt(r) is rounded."""
+
+_FADING = 1.5
+
+
+def end_of_film(contact: LineContact, layer: float) -> float:
+    """Film at which a contact loses its load [m]: the layer, or the end of the fade of a flooded one, rounded.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    layer : float
+        Oil layer [m].
+    """
+    faded = FADE_RATIO * THICK_FILM * contact.radius
+    return float(faded * passing(faded, layer))
+
+
+def oil_layer(
+    contact: LineContact,
+    thickness: float,
+    tail: Tail,
+    rolling: RollingFilm | None,
+    speeds: FloatArray,
+    temperatures: FloatArray,
+) -> OilLayer:
+    """Layer before a contact, at given speeds and temperatures.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    thickness : float
+        Layer, of both surfaces together [m], finite.
+    tail : Tail
+        Film of the contact below the first known load.
+    rolling : RollingFilm or None
+        Mass flow of the flooded contact; None where it is not known.
+    speeds, temperatures : array (n_u,), (n_T,)
+        Entrainment speeds [m/s], > 0, and temperatures [K].
+    """
+    lowest = float(np.min(tail.load))
+    flow = None if rolling is None else rolling.flow_film(contact.name, lowest, speeds, temperatures)
+    return OilLayer(contact, thickness, tail, flow)
+
+
+@dataclass(frozen=True)
+class OilLayer:
+    """From the film of a flooded contact to that of the same contact on an oil layer.
+
+    Attributes
+    ----------
+    contact : LineContact
+        The contact.
+    thickness : float
+        Layer before it, of both surfaces together [m].
+    tail : Tail
+        Film of the contact below the first known load.
+    flow : CubicSpline, optional
+        ln of the flooded contact's mass flow over density at rest and speed [m], over ln(w) from the first known load
+        on, values (n_u, n_T); it goes on straight above. None where the map holds none.
+    """
+
+    contact: LineContact
+    thickness: float
+    tail: Tail
+    flow: CubicSpline | None
+
+    def __call__(self, film: FilmSamples) -> FilmSamples:
+        """Film on the layer, at the same loads.
+
+        Parameters
+        ----------
+        film : FilmSamples
+            Film of the flooded contact, with as many loads below the first known one at all speeds and temperatures.
+        """
+        first = np.cbrt(self.tail.load[0, 0]) * (1.0 - 1e-12)
+        rows = int(np.count_nonzero(film.root[:, 0, 0] < first))
+        below, above = _rows(film, slice(None, rows)), _rows(film, slice(rows, None))
+        return self._below(below).then(self._above(above))
+
+    def _above(self, film: FilmSamples) -> FilmSamples:
+        """Film at and above the first known load."""
+        log_slope = film.slope / film.offset
+        ratio, ratio_slope = self._flow_per_film(film)
+        layered = self._layered(film.root, film.load * film.offset, 3.0 / film.root + log_slope, ratio, ratio_slope)
+        dry = dry_slope(self.contact, film.root)
+        slope = layered.offset * layered.log_slope
+        widened = (dry - slope) / (dry - film.slope)
+        damping = damping_ratio(layered.root_ratio) / layered.root_ratio**1.5
+        return FilmSamples(film.root, layered.offset, slope, film.loss * damping * widened**2)
+
+    def _below(self, film: FilmSamples) -> FilmSamples:
+        """Film below the first known load."""
+        tail, root, load = self.tail, film.root, film.load
+        strength = tail.strength + tail.pole * load
+        log_strength_slope = 3.0 * tail.pole * np.maximum(root, 0.0) ** 2 / strength
+        layered = self._layered(root, strength, log_strength_slope, *self._flow_per_tail(root))
+
+        # The film of the hyperbola over that of the fade is zero without load.
+        part = film.offset * load / strength
+        by_layer = film.offset / layered.offset
+        log_slope = film.slope / film.offset
+        steep = 3.0 * tail.strength / strength * film.offset * np.maximum(root, 0.0) ** 2 / strength
+        sum_ = by_layer**CORNER + 1.0 - part**CORNER
+        sum_slope = by_layer**CORNER * (log_slope - layered.log_slope) - part**CORNER * log_slope
+        sum_slope -= part ** (CORNER - 1.0) * steep
+        offset = film.offset * sum_ ** (-1.0 / CORNER)
+        slope = offset * (log_slope - sum_slope / sum_)
+
+        # c/w of the hyperbola goes like sqrt(w), of the layer like (root/s)^1.5, which is finite without load.
+        first = np.cbrt(tail.load)
+        unit = tail.damping / tail.load * np.exp((tail.damping_exponent - 1.5) * ((load / tail.load) ** 3 - 1.0) / 3.0)
+        dry = dry_slope(self.contact, root)
+        of_fade = film.loss / (dry - film.slope) ** 2
+        of_layer = unit * damping_ratio(layered.root_ratio) * (layered.per_root * first) ** -1.5
+        of_hyperbola = unit * np.sqrt(load / tail.load)
+        both = (of_layer / of_fade) ** CORNER + 1.0 - (of_hyperbola / of_fade) ** CORNER
+        ratio = of_fade * both ** (1.0 / CORNER)
+        return FilmSamples(root, offset, slope, ratio * (dry - slope) ** 2)
+
+    def _flow_per_film(self, film: FilmSamples) -> tuple[FloatArray, FloatArray]:
+        """m/h at and above the first known load, and its logarithm's derivative by g."""
+        if self.flow is None:
+            return np.full_like(film.root, RIGID_FLOW), np.zeros_like(film.root)
+        logs, slopes = _flow_at(self.flow, np.log(film.load))
+        return np.exp(logs) / film.offset, 3.0 * slopes / film.root - film.slope / film.offset
+
+    def _flow_per_tail(self, root: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """m/h of the hyperbola, and its logarithm's derivative by g: from that of the map to that of the rigid film.
+
+        ln(m/h) leaves the rigid one as the pressure does, like w^1.5, and joins the map with its slope.
+        """
+        if self.flow is None:
+            return np.full_like(root, RIGID_FLOW), np.zeros_like(root)
+        tail = self.tail
+        logs, slopes = _flow_at(self.flow, np.log(tail.load)[None])
+        excess = logs[0] - np.log(tail.film_offset * RIGID_FLOW)
+        exponent = slopes[0] + 1.0 - tail.pole / tail.film_offset
+        held = np.maximum(root, 1e-30) / np.cbrt(tail.load)
+        rest = exponent - _FADING * excess
+        fading = held ** (3.0 * _FADING)
+        log_ratio = fading * (excess + rest * 3.0 * np.log(held))
+        slope = 3.0 * (_FADING * log_ratio + fading * rest) / (held * np.cbrt(tail.load))
+        return RIGID_FLOW * np.exp(log_ratio), slope
+
+    def _layered(
+        self, root: FloatArray, strength: FloatArray, strength_slope: FloatArray, ratio: FloatArray, slope: FloatArray
+    ) -> _Layered:
+        """Film on the layer where w h of the flooded contact is `strength`, m/h `ratio`; slopes are of logarithms."""
+        per_root = np.cbrt(self.thickness / (ratio * strength))
+        flow = root * per_root  # cube root of h_oil/m
+        flow_slope = per_root * (1.0 - root * (slope + strength_slope) / 3.0)
+        third = 3.0 * CORNER
+        corner = 1.0 + np.maximum(flow, 0.0) ** third
+        passed = flow * corner ** (-1.0 / third)
+        passed_slope = corner ** (-1.0 - 1.0 / third) * flow_slope
+        rounded = passed**4 + ROUNDED**4
+        factor = (rounded / (1.0 + ROUNDED**4)) ** 0.125
+        root_ratio = passed * factor
+        root_slope = factor * (1.0 + 0.5 * passed**4 / rounded) * passed_slope
+        share, share_slope = film_ratio(root_ratio)
+        log_slope = -slope - 3.0 * np.maximum(flow, 0.0) ** (third - 1.0) / corner * flow_slope
+        return _Layered(
+            offset=self.thickness / ratio * corner ** (-1.0 / CORNER) * share,
+            log_slope=log_slope + share_slope / share * root_slope,
+            root_ratio=root_ratio,
+            per_root=per_root * corner ** (-1.0 / third) * factor,
+        )
+
+
+@dataclass(frozen=True)
+class _Layered:
+    """Film h on the layer, d ln(h)/dg, s = sqrt(r), and s/g, which is positive without load too."""
+
+    offset: FloatArray
+    log_slope: FloatArray
+    root_ratio: FloatArray
+    per_root: FloatArray
+
+
+def _flow_at(flow: CubicSpline, log_load: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """ln(m) and its derivative by ln(w) at loads (n, n_u, n_T), of the same shape; straight above the map."""
+    held = np.minimum(log_load, flow.x[-1])
+    logs, slopes = np.empty((2, *held.shape))
+    for place in np.ndindex(held.shape[1:]):
+        line = PPoly(flow.c[:, :, *place], flow.x)
+        logs[:, *place], slopes[:, *place] = line(held[:, *place]), line(held[:, *place], 1)
+    return logs + slopes * (log_load - held), slopes
+
+
+def _rows(film: FilmSamples, rows: slice) -> FilmSamples:
+    """Some of the samples."""
+    return FilmSamples(film.root[rows], film.offset[rows], film.slope[rows], film.loss[rows])
