@@ -150,12 +150,13 @@ def compile_table(
                 f"load at {math.exp(log_speeds[i]):.4g} m/s, {temperatures[j]:.2f} K; a law needs that; "
                 "look at that part of the map, solve it again with a finer grid"
             )
-        samples = line, root[:, i, j], root_slope[:, i, j], logs[:, i, j]
+        roots, slopes, ratios, within = root[:, i, j], root_slope[:, i, j], logs[:, i, j], nodes
         if not supply.flooded:
-            samples = _lifted_off(*samples, lifted, resolution.approach)
-        line, roots, slopes, ratios = samples
+            line, roots, ratios = line[lifted:], roots[lifted:], ratios[lifted:]
+            slopes = _slackened(line, roots, slopes[lifted:], resolution.approach)
+            within = np.maximum(nodes, line[0])
         values[i, j, :, 0] = _continued_root(line, roots, slopes, nodes)
-        values[i, j, :, 1] = _continued_log(line, ratios, nodes)
+        values[i, j, :, 1] = _continued_log(line, ratios, within)
 
     coefficients = values
     place = np.stack((offset, 1.0 / scale), axis=-1)
@@ -272,24 +273,13 @@ def _summed(curves: Sequence[Curve]) -> Curve:
     return total
 
 
-def _lifted_off(
-    line: FloatArray, root: FloatArray, slope: FloatArray, log_ratio: FloatArray, lifted: int, step: float
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Samples of s, g, dg/ds and ln(c/w) of a contact on a layer, from two nodes below its lift-off, g[lifted] = 0.
+def _slackened(line: FloatArray, root: FloatArray, slope: FloatArray, step: float) -> FloatArray:
+    """Slopes dg/ds of samples from lift-off, g = 0, the first one no steeper than over two nodes of a table.
 
-    Where a layer ends, g rises with an almost vertical tangent, which no table resolves: below, it goes on with the
-    slope that it has over two nodes. ln(c/w) is held there.
+    Where a layer ends, g rises with an almost vertical tangent, which no table resolves.
     """
-    line, root, slope, log_ratio = (values[lifted:] for values in (line, root, slope, log_ratio))
-    steepest = float(np.interp(line[0] + 2.0 * step, line, root)) / (2.0 * step)
-    least = min(float(slope[0]), steepest)
-    below = -step * np.array([2.0, 1.0])
-    return (
-        np.concatenate((line[0] + below, line)),
-        np.concatenate((least * below, root)),
-        np.concatenate((np.full(2, least), slope)),
-        np.concatenate((np.full(2, log_ratio[0]), log_ratio)),
-    )
+    over_two = float(np.interp(line[0] + 2.0 * step, line, root)) / (2.0 * step)
+    return np.concatenate(([min(float(slope[0]), over_two)], slope[1:]))
 
 
 def _continued_root(line: FloatArray, root: FloatArray, slope: FloatArray, nodes: FloatArray) -> FloatArray:
