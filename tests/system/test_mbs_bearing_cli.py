@@ -130,7 +130,7 @@ def test_a_bearing_of_ones_own(here, capsys):
         OWN + '[material]\nyoungs_modulus = "100 GPa"\n[lubricant]\nname = "Spirax MA 80W"\n'
     )
     soft = run(capsys, "oil.toml", "--load", "5 kN", "--speed", "1500 rpm")[1]
-    assert "for Spirax MA 80W (unverified data)" in soft and "oil FVA3" not in soft
+    assert "for Spirax MA 80W, flooded (unverified data of the oil)" in soft and "oil FVA3" not in soft
     assert value(soft, "Hertz pressure") < 0.8 * value(out, "Hertz pressure")
     assert value(soft, "stiffness") < 0.6 * value(out, "stiffness")
     shipped = run(capsys, "nu308", "--load", "5 kN", "--speed", "1500 rpm")[1]
