@@ -200,7 +200,7 @@ def _assumed(arguments: argparse.Namespace, given: _Given, emap: EHDMap | None, 
     if arguments.temperature is None:
         found.append(f"temperature {TEMPERATURE.text(CELSIUS_40)}")
     if surface.smooth:
-        found.append(f"combined rms roughness {MICROMETRE.text(ROUGHNESS)}, for Lambda only")
+        found.append(f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)")
     if arguments.clearance is None and given.geometry.diametral_clearance == 0.0:
         found.append("no clearance")
     if arguments.oil is None and given.oil is None and emap is None:
