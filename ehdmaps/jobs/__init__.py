@@ -8,6 +8,7 @@ table        one table of a TOML file, read key by key with all its problems
 axes         the axes of the grid
 problem      bearing or contact, material, lubricant
 supply       oil supply of a job, a scene or a command line, as text
+surface      roughness of a job, a scene or a command line, as text
 reader       job file, shipped job or map file -> `Job`
 job_text     values in SI -> the text of a job file, for `Job.build`
 solvers      names and settings of the solvers
@@ -33,6 +34,7 @@ plot         what a map file holds, on one page
 plot_curves  one panel of that page
 film_output  files with the film itself, beside the numbers of one point
 traction     traction of one point over the slide-to-roll ratio
+supplied     one point behind an oil layer: flow ratio and place of the meniscus
 film_plot    pressure, film and velocities of one point, on one page
 compare      differences between two maps
 tradeoff     speed against accuracy, measured

@@ -16,6 +16,7 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import STEEL, Material
 
 MOST_POINTS = 2_000_000
@@ -60,6 +61,9 @@ class Job:
     supply : OilSupply or None
         Oil supply that the contact laws of the map have by default; None where the job states none, which is flooded.
         The points of the map are those of flooded films.
+    surface : Surface or None
+        Surfaces that the contact laws of the map have by default; None where the job states none, which is smooth. The
+        points of the map are those of smooth surfaces.
     """
 
     name: str
@@ -76,6 +80,7 @@ class Job:
     backbone: str = "law"
     law_check: int = 0
     supply: OilSupply | None = None
+    surface: Surface | None = None
 
     @classmethod
     def build(
@@ -89,6 +94,7 @@ class Job:
         contact: LineContact | None = None,
         material: Material = STEEL,
         supply: OilSupply | None = None,
+        surface: Surface | None = None,
         solver: str = "reynolds",
         solver_options: Mapping[str, str | int | float | bool] | None = None,
         structural_law: StructuralLaw = "iso16281",
@@ -118,6 +124,8 @@ class Job:
             Material of the bearing.
         supply : OilSupply, optional
             Oil supply that contact laws have by default; none is stated if left out.
+        surface : Surface, optional
+            Rough surfaces that contact laws have by default; none are stated if left out.
         solver : str
             hertz, formula, reynolds or openfoam.
         solver_options : mapping, optional
@@ -167,6 +175,7 @@ class Job:
                 **(solver_options or {}),
             },
             supply,
+            surface,
         )
         job = parse_job(text, name, "Job.build")
         check_oil(lubricant, job, "Job.build, ")

@@ -9,12 +9,14 @@ from dataclasses import replace
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.supply import supply_keys
+from ehdmaps.jobs.surface import surface_keys
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.catalogue import estimate, estimate_from_dimensions, static_rating
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.pressure_viscosity import PRESSURE_LAWS
+from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import Material
 from ehdmaps.units import quantity
 
@@ -43,6 +45,7 @@ def job_text(
     axes: Sequence[Iterable[float]],
     solver: Mapping[str, Entry],
     supply: OilSupply | None = None,
+    surface: Surface | None = None,
 ) -> str:
     """Write a job file.
 
@@ -60,6 +63,8 @@ def job_text(
         All keys of [solver].
     supply : OilSupply, optional
         Oil supply for [supply]; no such table if left out.
+    surface : Surface, optional
+        Surfaces for [surface]; no such table if left out, or smooth.
 
     Raises
     ------
@@ -80,6 +85,7 @@ def job_text(
         },
         "lubricant": lubricant_keys(lubricant),
         **({} if supply is None else {"supply": supply_keys(supply)}),
+        **({} if surface is None or surface.smooth else {"surface": surface_keys(surface)}),
         "grid": {
             "load": [_quantity(value, "N/m") for value in loads],
             "entrainment_speed": [_quantity(value, "m/s") for value in speeds],

@@ -2,27 +2,30 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
+from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import SPECTRUM_FIELDS, LineTask, with_later_fields
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, FILMS, IMAGINARY, REAL
-from ehdmaps.maps.backbone_plan import BackbonePlan, plan_backbone
+from ehdmaps.maps.backbone_plan import STEPS, BackbonePlan, Steps, plan_backbone
 from ehdmaps.maps.rolling_film import NAMES as ROLLING
 from ehdmaps.physics.solution import ContactSolver, Status
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """Plan of a backbone and its tasks, one a line and in the plan's order."""
+    """Plan of a backbone, the steps that it was made with, and its tasks, one a line and in the plan's order."""
 
     plan: BackbonePlan
+    steps: Steps
     tasks: tuple[LineTask, ...]
 
     @property
@@ -31,13 +34,25 @@ class Refinement:
         return sum(task.points for task in self.tasks)
 
 
-def refinement(job: Job, solver: ContactSolver) -> Refinement | None:
-    """Plan the backbone of a job; None where the solver does not ask for one or the job declines it."""
+def refinement(job: Job, solver: ContactSolver, steps: Steps = STEPS) -> Refinement | None:
+    """Plan the backbone of a job; None where the solver does not ask for one or the job declines it.
+
+    Parameters
+    ----------
+    job : Job
+        What to make.
+    solver : ContactSolver
+        What solves it.
+    steps : Steps
+        Largest steps of the backbone.
+    """
     if not solver.wants_backbone or job.backbone == "none":
         return None
-    plan = plan_backbone(job.contacts, job.lubricant, job.loads, job.entrainment_speeds, job.temperatures)
+    plan = plan_backbone(job.contacts, job.lubricant, job.loads, job.entrainment_speeds, job.temperatures, steps)
     if plan is None:
         return None
+    # these lines stand for their groups: how thick their own film is does not matter
+    of_groups = replace(solver, thickest_film=math.inf) if isinstance(solver, ReynoldsSolver) else solver
     tasks = tuple(
         LineTask(
             contact=plan.contact,
@@ -45,12 +60,12 @@ def refinement(job: Job, solver: ContactSolver) -> Refinement | None:
             loads=line.loads,
             entrainment_speed=line.speed,
             temperature=line.temperature,
-            solver=solver,
+            solver=of_groups,
             natural_frequencies=solver.natural_frequencies,
         )
         for line in plan.lines
     )
-    return Refinement(plan, tasks)
+    return Refinement(plan, steps, tasks)
 
 
 def backbone_group(refined: Refinement, results: Mapping[str, Arrays]) -> xr.Dataset:

@@ -3,7 +3,7 @@
 Three choices make a small table exact enough:
 
 - The approach axis is stretched and aligned: s = asinh((delta - offset)/scale), with an offset and a scale that
-  follow the film over speed and temperature in closed form: approach, and its change with load, at the bottom of the
+  follow the film over speed and temperature: approach, and the dry contact's change with load, at the bottom of the
   damping valley. The valley stays at nearly constant s, and s is finest there.
 - The load is held as its cube root g: it fades out as the cube of the approach, so that g goes straight through
   zero, and w = max(g, 0)^3 is smooth and never negative.
@@ -26,19 +26,20 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
 from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.low_loads import valley_loads
 from ehdmaps.maps.oil_layer import end_of_film, oil_layer
 from ehdmaps.maps.rolling_film import RollingFilm
+from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.maps.splines import hermite, spline_coefficients
 from ehdmaps.maps.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import film_from_moes, moes_groups, valley_load_number
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.starved import RIGID_FLOW, passing
+from ehdmaps.physics.roughness import SMOOTH, Surface
 
 _SCALE = 0.25
-_LAYERED_STEP = 0.02
+_LAYERED_STEP, _ROOT_STEP = 0.02, 0.1
+_FOOT = 0.1
 _MARGIN = 4
 _BEYOND = 2.0
 _WIDEST_CONTACT = 0.9
@@ -96,6 +97,7 @@ def compile_table(
     resolution: Resolution | None = None,
     supply: OilSupply = FLOODED,
     rolling: RollingFilm | None = None,
+    surface: Surface = SMOOTH,
 ) -> ApproachTable:
     """Table of one contact, or of several in series, without centrifugal load.
 
@@ -117,6 +119,8 @@ def compile_table(
         Oil before each contact.
     rolling : RollingFilm, optional
         Mass flow of the contacts, where it is known.
+    surface : Surface
+        Roughness of the surfaces.
 
     Raises
     ------
@@ -129,8 +133,14 @@ def compile_table(
     colds = _axis(high, low, 1e-3 * resolution.temperature)
     temperatures = COLDEST + 1.0 / colds
     us, layer = np.exp(log_speeds), supply.oil_layer
-    offset, scale = _alignment(contacts, lubricant, us, temperatures, layer)
-    root, curve = _sampled(field, contacts, us, temperatures, held_load, resolution, layer, rolling)
+    loads, scale = _alignment(contacts, lubricant, us, temperatures, surface.roughness)
+    slowest, rough = field.speed_range[0], () if surface.smooth else contacts
+    sharing = [RoughLayer(surface, contact, lubricant, slowest) for contact in rough]
+    root, curve = _sampled(field, contacts, us, temperatures, held_load, resolution, layer, rolling, sharing)
+    offset = _approach_at(np.cbrt(loads), root, curve)
+    if layer < math.inf:  # the lift-off from a layer is at one s
+        distance = offset + sum(end_of_film(contact, layer) for contact in contacts)
+        scale = distance * float(np.min(scale / distance))
 
     stretched = np.arcsinh((curve.approach - offset) / scale)
     root_slope = scale * np.sqrt(1.0 + ((curve.approach - offset) / scale) ** 2) / curve.slope
@@ -152,9 +162,14 @@ def compile_table(
             )
         roots, slopes, ratios, within = root[:, i, j], root_slope[:, i, j], logs[:, i, j], nodes
         if not supply.flooded:
-            line, roots, ratios = line[lifted:], roots[lifted:], ratios[lifted:]
-            slopes = _slackened(line, roots, slopes[lifted:], resolution.approach)
+            foot = lifted if surface.smooth else int(np.searchsorted(roots, _FOOT))
+            line, roots, slopes, ratios = line[foot:], roots[foot:], slopes[foot:], ratios[foot:]
             within = np.maximum(nodes, line[0])
+            if surface.smooth:
+                slopes = _slackened(line, roots, slopes, resolution.approach)
+            else:
+                line, roots, slopes = _without_foot(line, roots, slopes, resolution.approach)
+                ratios = np.concatenate((np.full(2, ratios[0]), ratios))
         values[i, j, :, 0] = _continued_root(line, roots, slopes, nodes)
         values[i, j, :, 1] = _continued_log(line, ratios, within)
 
@@ -193,31 +208,29 @@ def _alignment(
     lubricant: Lubricant,
     speeds: FloatArray,
     temperatures: FloatArray,
-    layer: float = math.inf,
+    roughness: float,
 ) -> tuple[FloatArray, FloatArray]:
-    """Offset and scale of the stretched approach [m], (n_u, n_T); the lift-off from a layer is at one s."""
+    """Load at the bottom of the valley [N/m], and scale of the stretched approach there [m]; (n_u, n_T) each.
+
+    Where films are thinner than the roughness, that sets the scale.
+    """
     most = min(highest_structural_load(contact) for contact in contacts)
-    offset, scale = np.empty((2, speeds.size, temperatures.size))
-    states = [lubricant.at(float(temperature)) for temperature in temperatures]
-    for i, j in np.ndindex(speeds.size, temperatures.size):
-        state, speed = states[j], float(speeds[i])
-        alpha = state.pressure_viscosity.pressure_viscosity
-        logs, films = [], []
-        for contact in contacts:
-            oil = (speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
-            unit_load_number, oil_number = moes_groups(1.0, *oil)
-            load_number = float(valley_load_number(oil_number))
-            logs.append(math.log(load_number / unit_load_number))
-            film_number = moes_central(load_number, oil_number)
-            films.append(film_from_moes(film_number, speed, state.viscosity, contact.radius, contact.reduced_modulus))
-        load = min(math.exp(sum(logs) / len(logs)), most)
-        passed = sum(float(passing(RIGID_FLOW * film, layer)) * film for film in films)
-        offset[i, j] = sum(contact.structural_approach(load) for contact in contacts) - passed
-        scale[i, j] = _SCALE * load * sum(contact.structural_compliance(load) for contact in contacts)
-    if layer < math.inf:
-        distance = offset + sum(end_of_film(contact, layer) for contact in contacts)
-        scale = distance * float(np.min(scale / distance))
-    return offset, scale
+    valleys = [valley_loads(contact, lubricant, speeds, temperatures) for contact in contacts]
+    loads = np.minimum(np.exp(np.mean(np.log(valleys), axis=0)), most)
+    compliance = sum(np.asarray(contact.structural_compliance(loads)) for contact in contacts)
+    return loads, np.hypot(_SCALE * loads * compliance, len(contacts) * roughness)
+
+
+def _approach_at(wanted: FloatArray, root: FloatArray, curve: Curve) -> FloatArray:
+    """Approach at one root g of each pair of speed and temperature, (n_u, n_T); held beyond the samples.
+
+    A closed form of the film would miss the valley by some per cent of the film, and by other per cents elsewhere: then
+    the valley wanders over s from node to node of speed and temperature, where it is narrower than it wanders.
+    """
+    offset = np.empty_like(wanted)
+    for place in np.ndindex(offset.shape):
+        offset[place] = np.interp(wanted[place], root[:, *place], curve.approach[:, *place])
+    return offset
 
 
 def _sampled(
@@ -229,18 +242,23 @@ def _sampled(
     resolution: Resolution,
     layer: float = math.inf,
     rolling: RollingFilm | None = None,
+    sharing: Sequence[RoughLayer] = (),
 ) -> tuple[FloatArray, Curve]:
     """Samples of g and of the summed curve, from below lift-off to beyond the held load."""
     curves = [ContactCurve(field, contact, speeds, temperatures) for contact in contacts]
     lowest, highest = field.load_range
-    first = np.cbrt(lowest)
+    begins = field.first_loads(speeds, temperatures)
+    first = np.cbrt(begins)
     faded = 0.7 * np.cbrt(np.min([curve.fade_load for curve in curves], axis=0))
     linear = np.linspace(-0.6, 1.0, 97)[:, None, None] * faded
+    if sharing:
+        linear = _dense_at_zero(faded, min(rough.least_root for rough in sharing))
     tail_range = float(np.max(np.log(first / faded)))
     count = max(8, math.ceil(3.0 * tail_range / (2.0 * resolution.log_load)))
     part = np.linspace(0.0, 1.0, count + 1)[1:-1, None, None]
     tail = np.concatenate((linear, faded * (first / faded) ** part))
 
+    low_loads = _log_lines(begins, lowest, resolution.log_load)[:-1]
     mapped = _log_range(lowest, highest, resolution.log_load)
     most = min(highest_structural_load(contact) for contact in contacts)
     beyond = _log_range(highest, min(_BEYOND * held_load, most), resolution.log_load)[1:]
@@ -248,20 +266,44 @@ def _sampled(
     mapped_loads, beyond_loads = (
         np.broadcast_to(loads[:, None, None], (loads.size, *shape)).copy() for loads in (mapped, beyond)
     )
-    films = [curve.film(tail, mapped_loads, beyond_loads) for curve in curves]
+    known = np.concatenate((low_loads, mapped_loads))
+    films = [curve.film(tail, known, beyond_loads) for curve in curves]
     if layer < math.inf:
         films = [
             oil_layer(contact, layer, curve.tail, rolling, speeds, temperatures)(film)
             for contact, curve, film in zip(contacts, curves, films, strict=True)
         ]
+    if sharing:
+        films = [rough(film, speeds, temperatures) for rough, film in zip(sharing, films, strict=True)]
     total = _summed([curve.with_structure(film) for curve, film in zip(curves, films, strict=True)])
     return films[0].root, total
+
+
+def _dense_at_zero(end: FloatArray, unit: float) -> FloatArray:
+    """Values of g from -0.6 end through zero to `end` (n_u, n_T): even steps about zero, then even in the logarithm.
+
+    Asperities begin to carry within the unit.
+    """
+    below, above = (np.arcsinh(part * end / unit) for part in (0.6, 1.0))
+    counts = (max(2, math.ceil(float(np.max(reach)) / _ROOT_STEP)) for reach in (below, above))
+    shares = [np.linspace(0.0, 1.0, count + 1)[1:, None, None] for count in counts]
+    lower, upper = (unit * np.sinh(share * reach) for share, reach in zip(shares, (below, above), strict=True))
+    return np.concatenate((-lower[::-1], np.zeros((1, *end.shape)), upper))
 
 
 def _log_range(low: float, high: float, step: float) -> FloatArray:
     """Values from low to high, uniform in their logarithm; the ends exactly."""
     values = np.geomspace(low, high, max(2, math.ceil(math.log(high / low) / step) + 1))
     values[0], values[-1] = low, high
+    return values
+
+
+def _log_lines(lows: FloatArray, high: float, step: float) -> FloatArray:
+    """Values from each low (n_u, n_T) to high, uniform in their logarithm, as many for each; high alone if all are."""
+    reach = float(np.max(np.log(high / lows)))
+    if not reach > 0.0:
+        return np.full((1, *lows.shape), high)
+    values: FloatArray = np.geomspace(lows, np.full_like(lows, high), max(2, math.ceil(reach / step) + 1))
     return values
 
 
@@ -280,6 +322,23 @@ def _slackened(line: FloatArray, root: FloatArray, slope: FloatArray, step: floa
     """
     over_two = float(np.interp(line[0] + 2.0 * step, line, root)) / (2.0 * step)
     return np.concatenate(([min(float(slope[0]), over_two)], slope[1:]))
+
+
+def _without_foot(
+    line: FloatArray, root: FloatArray, slope: FloatArray, step: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Samples of s, g and dg/ds, from two nodes below the first one with the slope that g has over the next two.
+
+    On a layer, asperities give g a foot of less than a thousandth of 1 N/m, with a knee at its end that no table
+    resolves.
+    """
+    over_two = (float(np.interp(line[0] + 2.0 * step, line, root)) - float(root[0])) / (2.0 * step)
+    below = -step * np.array([2.0, 1.0])
+    return (
+        np.concatenate((line[0] + below, line)),
+        np.concatenate((root[0] + over_two * below, root)),
+        np.concatenate((np.full(2, over_two), slope)),
+    )
 
 
 def _continued_root(line: FloatArray, root: FloatArray, slope: FloatArray, nodes: FloatArray) -> FloatArray:

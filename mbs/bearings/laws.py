@@ -26,6 +26,7 @@ from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.roughness import SMOOTH, Surface
 from ehdmaps.physics.solids import reduced_modulus
 from ehdmaps.physics.unilateral import unilateral_force
 from mbs.bearings.bearing import Bearing
@@ -203,6 +204,7 @@ def formula(
     kind: LawKind = "series",
     outside: OutsidePolicy = "error",
     supply: OilSupply | None = None,
+    surface: Surface | None = None,
 ) -> ContactLaw:
     """Law of a film formula over a range of loads, speeds and temperatures; takes some seconds.
 
@@ -220,6 +222,8 @@ def formula(
         See `ContactLaw`.
     supply : OilSupply, optional
         Oil before each contact; flooded if left out.
+    surface : Surface, optional
+        Roughness of the surfaces; smooth if left out.
 
     Raises
     ------
@@ -242,10 +246,12 @@ def formula(
     loads = _axis(load, 0.25)
     speeds = _axis(entrainment_speed, 0.25)
     temperatures = np.linspace(*temperature, max(4, math.ceil((temperature[1] - temperature[0]) / 8.0) + 1))
-    films = [_films(contact, lubricant, FormulaSolver(film_formula), loads, speeds, temperatures) for contact in chosen]
+    # a law has corners of cold oil and light loads that no bearing comes to: its films fade there
+    solver = FormulaSolver(film_formula, math.inf)
+    films = [_films(contact, lubricant, solver, loads, speeds, temperatures) for contact in chosen]
     offset, compliance, loss = (np.stack(part) for part in zip(*films, strict=True))
     field = GridField(chosen, lubricant, loads, speeds, temperatures, offset, compliance, loss)
-    return ContactLaw(kind, chosen, lubricant, field, outside, supply=supply or FLOODED)
+    return ContactLaw(kind, chosen, lubricant, field, outside, supply=supply or FLOODED, surface=surface or SMOOTH)
 
 
 def _films(

@@ -13,8 +13,10 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.roughness import Surface
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.films import FilmSource
+from mbs.bearings.state import BearingState
 from mbs.gears.gear import GearMesh
 from mbs.model.elements import Operation
 from mbs.model.places import Places
@@ -22,7 +24,7 @@ from mbs.model.relaxation import Films
 from mbs.model.system import System
 from mbs.scene import kinds
 from mbs.scene.bodies import build_bodies
-from mbs.scene.contact_laws import ContactLaws, choose_law, supply_words
+from mbs.scene.contact_laws import ContactLaws, choose_law, supply_words, surface_label
 from mbs.scene.kinds import ElementKind
 from mbs.scene.scene import Scene
 from mbs.scene.surroundings import Built, Surroundings
@@ -51,8 +53,15 @@ class Model:
     memory : {"slow", "memory"}
         Whether films relax, or have the stiffness and damping of slow motion at any frequency, as laws without films
         always have.
+    states : tuple of BearingState
+        Temperatures, clearance and heat of each bearing, of a model that is in operation at some speed, see
+        `mbs.analyses.operating`; empty before, and where no bearing has temperatures, heat or fits of its own.
+    found : dict of float to Model
+        The same model in operation, by speed, where it was asked for.
     supplies : mapping of str to OilSupply
         Oil supply of each bearing by its name; empty for laws without films.
+    surface : Surface or None
+        Surfaces of the contacts; None for laws without films.
     """
 
     scene: Scene
@@ -63,7 +72,10 @@ class Model:
     films: Mapping[str, FilmSource]
     label: str
     memory: Films = "slow"
+    states: tuple[BearingState, ...] = ()
+    found: dict[float, Model] = field(default_factory=dict, repr=False)
     supplies: Mapping[str, OilSupply] = field(default_factory=dict)
+    surface: Surface | None = None
 
     @property
     def operation(self) -> Operation:
@@ -162,13 +174,15 @@ def assemble(
         label=laws.label,
         memory=laws.memory,
         supplies=laws.supplies,
+        surface=laws.surface,
     )
 
 
 def law_attributes(model: Model) -> Mapping[str, str]:
     """Provenance of a result."""
     named = {"scene": model.scene.name, "scene_toml": model.scene.text, "law": model.law}
-    return {**named, **supply_attributes([(model.label, model)])}
+    surface = {} if model.surface is None else {"surface": surface_label(model.surface)}
+    return {**named, **supply_attributes([(model.label, model)]), **surface}
 
 
 def supply_attributes(models: Sequence[tuple[str, Model]]) -> dict[str, str]:
