@@ -354,7 +354,8 @@ def advanced(
         stretched, compliance = approach_at(table, w)
         rise = compliance * slope + dy
         short = delta - stretched - y
-        tangent = slope / rise
+        # zero, but for rounding, where the film has ended
+        tangent = slope / rise if slope > 0.0 and rise > 0.0 else 0.0
         if short > 0.0:
             left = xi
         else:

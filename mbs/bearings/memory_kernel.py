@@ -160,6 +160,19 @@ def _round(step: Step, memory: FloatArray, delta: FloatArray, load: FloatArray, 
     return left
 
 
+@njit(cache=True, error_model="numpy")
+def _unsettled(step: Step, memory: FloatArray, delta: FloatArray, load: FloatArray, tangent: FloatArray) -> None:
+    """Give the slices that Newton's steps on parabolas do not settle to the table, whose steps have a bracket.
+
+    So it is where a film begins to carry within a step, as on an oil layer: its parabolas are flat on one side.
+    """
+    before = load.copy()
+    _round(step, memory, delta, load, tangent)
+    for i in range(load.size):
+        if not abs(load[i] - before[i]) <= _TOLERANCE * (abs(load[i]) + _SMALL):
+            memory[TRIAL, i] = math.inf
+
+
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def loads(
     table: MemoryTable, step: Step, memory: FloatArray, delta: FloatArray, load: FloatArray, tangent: FloatArray
@@ -179,9 +192,13 @@ def loads(
     load, tangent : array (n,)
         Written: [N/m], [N/m2].
     """
+    left = 1.0
     for _ in range(_ROUNDS):
-        if _round(step, memory, delta, load, tangent) == 0.0:
+        left = _round(step, memory, delta, load, tangent)
+        if left == 0.0:
             break
+    if left > 0.0:
+        _unsettled(step, memory, delta, load, tangent)
     trial, around, reach, loaded, load_reach = (
         memory[TRIAL],
         memory[AROUND],
@@ -197,6 +214,10 @@ def loads(
         return
     for i in range(delta.size):
         if not (abs(trial[i] - around[i]) <= reach[i] and abs(load[i] - loaded[i]) <= load_reach[i]):
+            if delta[i] <= table.lift_off:
+                # Out of contact, as many slices on an oil layer are: what the table would find.
+                load[i], tangent[i], trial[i] = 0.0, 0.0, table.lift_off
+                continue
             xi = memory[LATEST, i]
             before = equilibrium_at(table, xi)[4]
             load[i], tangent[i], trial[i] = advanced(table, step, delta[i], before, memory[CHANGE, i], xi)
@@ -230,7 +251,9 @@ def commit(table: MemoryTable, memory: FloatArray, load: FloatArray) -> None:
     if far > 0.0:
         for i in range(load.size):
             if not abs(trial[i] - around[i]) <= reach[i]:
-                change[i] = equilibrium_at(table, trial[i])[4] - equilibrium_at(table, latest[i])[4]
+                change[i] = 0.0
+                if trial[i] != latest[i]:
+                    change[i] = equilibrium_at(table, trial[i])[4] - equilibrium_at(table, latest[i])[4]
                 fading[i] = fading_of(change[i])
                 around[i] = math.inf
     for i in range(load.size):

@@ -13,6 +13,7 @@ from numba import njit
 from ehdmaps.errors import InputError, OutsideMapError
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.memory_table import advanced, equilibrium_at, step_of
+from ehdmaps.physics.oil_supply import OilSupply
 from mbs import assemble, read_scene
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
@@ -83,6 +84,29 @@ def test_slices_by_parabolas_are_those_of_the_table(frequency, amplitude):
     exact = by_table(table, 1e-5, deltas)
     # What parabolas leave out in third order; of light slices, whose load matters little, a few 1e-4.
     assert by_kernel(table, 1e-5, deltas) == pytest.approx(exact, rel=1e-3, abs=1e-6 * np.max(exact))
+
+
+@pytest.mark.parametrize("layer", [0.7e-6, 2e-6])
+def test_slices_on_an_oil_layer_lift_off_and_touch_as_those_of_the_table(layer):
+    """Films end within a micrometre there: steps of parabolas that do not settle, and slices out of contact."""
+    supplied = ContactLaw("series", CONTACTS, OIL, SMALL_FIELD, "clamp", supply=OilSupply(layer))
+    table = supplied.at(1.2, 330.0).memory.table
+    random = np.random.default_rng(6)
+    swing = np.sin(2.0 * math.pi * 1500.0 * 1e-5 * np.arange(200))[:, None] * random.uniform(-2e-6, 2e-6, 100)
+    deltas = table.lift_off + random.uniform(-2e-6, 3e-6, 100) + swing
+    exact = by_table(table, 1e-5, deltas)
+    assert np.any(exact < 1e-6) and np.max(exact) > 1e3
+    assert by_kernel(table, 1e-5, deltas) == pytest.approx(exact, rel=1e-3, abs=1e-3 * np.max(exact))
+
+
+def test_a_slice_out_of_contact_has_no_stiffness():
+    """A tangent without a load that changes would keep Newton's steps of a machine from settling."""
+    table = (
+        ContactLaw("series", CONTACTS, OIL, SMALL_FIELD, "clamp", supply=OilSupply(1e-6)).at(1.2, 330.0).memory.table
+    )
+    for h in (1e-5, 1e-8):
+        w, tangent, xi = advanced(table, step_of(h, 0.0), table.lift_off - 1e-6, 0.0, 0.0, table.lift_off)
+        assert (w, tangent, xi) == (pytest.approx(0.0, abs=1e-20), 0.0, table.lift_off)
 
 
 def test_a_bearing_in_python_answers_small_oscillations_as_the_linear_analyses_have_it():
