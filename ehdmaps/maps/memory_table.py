@@ -350,7 +350,7 @@ def advanced(
         stretched, compliance = approach_at(table, w)
         rise = compliance * slope + dy
         short = delta - stretched - y
-        tangent = slope / rise
+        tangent = slope / rise if rise > 0.0 else 0.0  # no load on a contact without any film: 0/0
         if short > 0.0:
             left = xi
         else:
