@@ -3,11 +3,15 @@
 A line has no side flow: what passes through the contact in the steady state is the layer, or the flow m of the flooded
 contact where that is less. With r = min(1, h_oil/m) at equal load, speed and temperature the film is
 
-    h = r h_flooded F(r),        c = c_flooded G(r),
+    h = r h_flooded F(r),        c = b/(S + s)^2,        s = s_flooded s(r)^n,        b = b_flooded b(r)^n,
 
-F and G of the starved contact between rigid surfaces (`ehdmaps.physics.starved`). F runs from 1 to 1.2257 as r goes to
-zero: the film of a lightly loaded contact goes to the layer itself, and the load to nothing. A gap wider than the
-layer is dry. c is that with the meniscus where it is; the oil is too slow to move it at the frequencies of noise.
+S the compliance of the structure, s and b the compliance and the loss compliance of the film with the meniscus where it
+is: at the frequencies of noise it has no time to move. F, s(r) and b(r) are of the starved contact between rigid
+surfaces (`ehdmaps.physics.starved`), n = -d ln(h)/d ln(w) of the flooded film is one for light loads and near zero in a
+loaded contact, which keeps b: numerically it is 0.95 to 3.3 times that of the flooded one, at r = 0.9 to 0.4.
+
+F runs from 1 to 1.2257 as r goes to zero: the film of a lightly loaded contact goes to the layer itself, and the load
+to nothing. A gap wider than the layer is dry.
 
 - The corner at r = 1 is rounded, r = (1 + (m/h_oil)^8)^(-1/8); that takes 8 % off the film where m is h_oil, and less
   than 1 % where they differ by a third.
@@ -33,7 +37,7 @@ from ehdmaps.maps.contact_curve import FilmSamples, dry_slope
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.tail import FADE_RATIO, THICK_FILM, Tail
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.starved import CORNER, RIGID_FLOW, damping_ratio, film_ratio, passing
+from ehdmaps.physics.starved import CORNER, RIGID_FLOW, compliance_ratio, damping_ratio, film_ratio, passing
 
 ROUNDED = 0.2
 """Cube root of the flow ratio r below which sqrt(r) is rounded."""
@@ -125,9 +129,14 @@ class OilLayer:
         layered = self._layered(film.root, film.load * film.offset, 3.0 / film.root + log_slope, ratio, ratio_slope)
         dry = dry_slope(self.contact, film.root)
         slope = layered.offset * layered.log_slope
-        widened = (dry - slope) / (dry - film.slope)
-        damping = damping_ratio(layered.root_ratio) / layered.root_ratio**1.5
-        return FilmSamples(film.root, layered.offset, slope, film.loss * damping * widened**2)
+        own = np.maximum(-film.slope, 0.0)
+        exponent = np.clip(-film.root * log_slope / 3.0, 0.0, 1.0)
+        s = layered.root_ratio
+        raised = (damping_ratio(s) * s**-1.5) ** (0.5 * exponent)
+        held = (compliance_ratio(s) * s**2) ** exponent
+        # (c/w) D^2, with c/w of the flooded contact and what the layer makes of it.
+        raised *= (dry + own) / (dry / held + own) * (dry - slope) / (dry - film.slope)
+        return FilmSamples(film.root, layered.offset, slope, film.loss * raised**2)
 
     def _below(self, film: FilmSamples) -> FilmSamples:
         """Film below the first known load."""
@@ -147,16 +156,27 @@ class OilLayer:
         offset = film.offset * sum_ ** (-1.0 / CORNER)
         slope = offset * (log_slope - sum_slope / sum_)
 
-        # c/w of the hyperbola goes like sqrt(w), of the layer like (root/s)^1.5, which is finite without load.
-        first = np.cbrt(tail.load)
+        # c/w of the hyperbola goes like sqrt(w) and is raised by the layer, so that it is finite without load.
         unit = tail.damping / tail.load * np.exp((tail.damping_exponent - 1.5) * ((load / tail.load) ** 3 - 1.0) / 3.0)
         dry = dry_slope(self.contact, root)
         of_fade = film.loss / (dry - film.slope) ** 2
-        of_layer = unit * damping_ratio(layered.root_ratio) * (layered.per_root * first) ** -1.5
         of_hyperbola = unit * np.sqrt(load / tail.load)
+        of_layer = unit * self._raised(root, strength, layered) ** 2
         both = (of_layer / of_fade) ** CORNER + 1.0 - (of_hyperbola / of_fade) ** CORNER
         ratio = of_fade * both ** (1.0 / CORNER)
         return FilmSamples(root, offset, slope, ratio * (dry - slope) ** 2)
+
+    def _raised(self, root: FloatArray, strength: FloatArray, layered: _Layered) -> FloatArray:
+        """Root of c/w on the layer over that of the hyperbola, times (w/w1)^(1/4): finite without load."""
+        tail, s, held = self.tail, np.maximum(layered.root_ratio, 1e-30), np.maximum(root, 0.0)
+        exponent = np.minimum(tail.strength / strength, 1.0)
+        own = 3.0 * tail.strength
+        dry = dry_slope(self.contact, root) * held**4
+        light = damping_ratio(layered.root_ratio) ** (0.5 * exponent) * s ** (0.75 * (1.0 - exponent))
+        light *= (layered.per_root * np.cbrt(tail.load)) ** -0.75
+        stiff = np.where(dry > 0.0, dry * (compliance_ratio(layered.root_ratio) * s**2) ** -exponent, 0.0)
+        raised: FloatArray = light * (dry + own) / (stiff + own)
+        return raised
 
     def _flow_per_film(self, film: FilmSamples) -> tuple[FloatArray, FloatArray]:
         """m/h at and above the first known load, and its logarithm's derivative by g."""

@@ -88,6 +88,25 @@ def damping_ratio(root: FloatArray) -> FloatArray:
     return _ratio(root, 1)
 
 
+def compliance_ratio(root: FloatArray) -> FloatArray:
+    """Film compliance of the starved contact, its meniscus held, over that of the flooded one, over s^2.
+
+    The loss compliance has the ratio of c times the square of this one.
+
+    Parameters
+    ----------
+    root : array
+        s, as of `film_ratio`.
+
+    Examples
+    --------
+    >>> s = np.sqrt([0.2, 0.6, 0.9])
+    >>> [round(float(ratio), 3) for ratio in compliance_ratio(s) * s**2]
+    [0.105, 0.427, 0.82]
+    """
+    return _ratio(root, 4)
+
+
 def rolling_ratio(root: FloatArray) -> FloatArray:
     """Rolling force of the starved contact over that of the flooded one; 0 at s = 0.
 
@@ -126,14 +145,14 @@ def _ratio(root: FloatArray, which: int) -> FloatArray:
 
 @cache
 def _polynomials() -> FloatArray:
-    """The four ratios, free of their powers of s, over 2 sqrt(1 - s) - 1, in which the end at s = 1 is smooth."""
+    """The five ratios, free of their powers of s, over 2 sqrt(1 - s) - 1, in which the end at s = 1 is smooth."""
     place = 0.5 + 0.5 * np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
     solved = np.stack([_solved(float(1.0 - z**2)) for z in place]) / _solved(1.0)
     return np.asarray(chebfit(2.0 * place - 1.0, solved, _DEGREE), dtype=np.float64)
 
 
-def _solved(s: float) -> tuple[float, float, float, float]:
-    """Film, damping, rolling force and pressure over what they go with in s, in units of their own, at s > 0.
+def _solved(s: float) -> tuple[float, ...]:
+    """Film, c, rolling force, pressure and compliance over what they go with in s, in units of their own, at s > 0.
 
     In units of h0 and sqrt(2 R h0), with x = tan(theta): the pressure is zero at the meniscus and at the exit x_e,
     where h is m = 1 + x_e^2, and h_in is m/(1 - s).
@@ -155,12 +174,30 @@ def _solved(s: float) -> tuple[float, float, float, float]:
     flow = 1.0 + square
     theta, weight = _nodes(inlet, outlet)
     x, inverse = np.tan(theta), np.cos(theta) ** 2
-    mean = (weight @ (x * inverse**2)) / (weight @ inverse**2)
+    area = float(weight @ inverse**2)
+    mean = (weight @ (x * inverse**2)) / area
     squeeze = float(weight @ ((x - mean) ** 2 * inverse**2))
     force = float(weight @ (np.sin(theta) ** 2 - square * inverse))
     theta, weight = _nodes(inlet, -outlet)
     pressure = float(weight @ ((np.sin(theta) ** 2 - square * np.cos(theta) ** 2) * np.cos(theta) ** 2))
-    return 1.0 / flow, squeeze * (flow / s) ** 1.5, force * math.sqrt(flow) / s**2.5, pressure * (flow / s) ** 1.5
+    return (
+        1.0 / flow,
+        squeeze * (flow / s) ** 1.5,
+        force * math.sqrt(flow) / s**2.5,
+        pressure * (flow / s) ** 1.5,
+        1.0 / (flow * _load_exponent(inlet, flow, s, area)),
+    )
+
+
+def _load_exponent(inlet: float, flow: float, s: float, area: float) -> float:
+    """-d ln(w)/d ln(h0) at a meniscus that is held, from w h0 = 24 eta u R s^2/(4 m); `area` is Int dx/h^3."""
+    part = 1.0 - s  # m/h_in
+    at, inverse = -math.tan(inlet), math.cos(inlet) ** 2  # 1/h_in
+    if inverse < 1e-30:
+        return 1.0
+    change = (1.0 - part) * inverse**2 / area  # dm/dx_in
+    per_inlet = 2.0 * (2.0 * at * part * inverse - change * inverse) / s - change / flow
+    return 1.0 + 0.5 * at * per_inlet
 
 
 def _nodes(low: float, high: float) -> tuple[FloatArray, FloatArray]:
