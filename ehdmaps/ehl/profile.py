@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.elastic import DRY_DATUM
@@ -56,11 +57,14 @@ class Profile:
 
     @property
     def rolling_force(self) -> float:
-        """Int H dP, that of the inlet before the grid included [b^2/R p_H]."""
+        """Int H dP, that of a flooded inlet before the grid included [b^2/R p_H]."""
+        inside = film_times_rise(self.film, self.pressure)
+        if self.layout.starved:
+            return inside
         before = rolling_force_of_inlet(
             -float(self.position[0]), float(self.film[0]), self.mass_flow, self.problem.wedge, radius=1.0
         )
-        return film_times_rise(self.film, self.pressure) + before
+        return inside + before
 
     @property
     def fourth_order_share(self) -> float:
@@ -134,6 +138,28 @@ def moved(profile: Profile, grid: Grid, by_index: bool) -> FloatArray:
     else:
         excess = np.interp(grid.x, profile.grid.x, excess)
     pressure = excess + _hertz(grid.x + exit_at)
+    return np.concatenate([np.maximum(pressure[1:-1], 0.0), profile.unknowns[-3:]])
+
+
+def starved_start(profile: Profile, grid: Grid) -> FloatArray:
+    """Start on a starved grid at the same places.
+
+    Without a spike by monotone cubics: a kink of the pressure spoils the derivative of the flow by the film, and Newton
+    misses a thick film for it. The pressure that the profile has where the grid begins is taken away in the shape of a
+    cubic that ends at the exit.
+
+    Parameters
+    ----------
+    profile : Profile
+        Solution nearby, on its own grid.
+    grid : Grid
+        Grid of the start.
+    """
+    if profile.spike is not None:
+        return moved(profile, grid, by_index=False)
+    curve = PchipInterpolator(profile.grid.x, profile.pressure)
+    pressure = curve(np.maximum(grid.x, profile.grid.x[0]))
+    pressure -= pressure[0] * (grid.x / grid.x[0]) ** 3
     return np.concatenate([np.maximum(pressure[1:-1], 0.0), profile.unknowns[-3:]])
 
 

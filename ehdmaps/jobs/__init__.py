@@ -7,6 +7,7 @@ job          `Job`, what a job file asks for, in SI
 table        one table of a TOML file, read key by key with all its problems
 axes         the axes of the grid
 problem      bearing or contact, material, lubricant
+surface      roughness of a job, a scene or a command line, as text
 reader       job file, shipped job or map file -> `Job`
 job_text     values in SI -> the text of a job file, for `Job.build`
 solvers      names and settings of the solvers

@@ -17,7 +17,7 @@ from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask, solver_version, with_later_fields
 from ehdmaps.maps import schema
-from ehdmaps.maps.records import contacts_json
+from ehdmaps.maps.records import contacts_json, surface_json
 from ehdmaps.maps.structure import derived
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.solution import ContactSolver, Status
@@ -154,6 +154,7 @@ def _attributes(job: Job, solver: ContactSolver) -> dict[str, Any]:
         "geometry": record_json(job.bearing.record() if job.bearing else None),
         "lubricant": record_json(job.lubricant.record()),
         "lubricant_verified": int(job.lubricant.verified),
+        **({} if job.surface is None else {schema.SURFACE: surface_json(job.surface)}),
         "package_versions": record_json(package_versions()),
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
     }

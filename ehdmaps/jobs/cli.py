@@ -14,6 +14,8 @@ _SOLVER = "hertz | formula | reynolds | openfoam; instead of the job's, with its
 
 _STRUCTURE = "law of the solids in approach, k and c: iso16281 | palmgren | half_space; default: that of the job"
 
+_ROUGHNESS = 'combined rms roughness, "0.2 um", or smooth; default: that of the job'
+
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
@@ -48,11 +50,18 @@ def parser() -> argparse.ArgumentParser:
     show = commands.add_parser("show", help="what a map holds")
     show.add_argument("map", metavar="MAP.nc")
     show.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
+    show.add_argument("--roughness", metavar="LENGTH", help=_ROUGHNESS)
 
     plot = commands.add_parser("plot", help="stiffness, damping and films on one page")
     plot.add_argument("map", metavar="MAP.nc")
     plot.add_argument("-o", "--output", metavar="FIG.png", help="default: the map's name with .png; also .pdf, .svg")
     plot.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
+    plot.add_argument(
+        "--roughness",
+        metavar="LENGTH",
+        help='combined rms roughness, "0.2 um": Lambda and the film\'s share of the load instead, with the ending '
+        "_roughness.png",
+    )
 
     solve = commands.add_parser("solve", help="one operating point, as a table")
     solve.add_argument("job", metavar="JOB")
@@ -61,7 +70,7 @@ def parser() -> argparse.ArgumentParser:
     solve.add_argument(
         "--speed", required=True, help='entrainment speed, such as "1.7 m/s", or of the inner ring, "500 rpm"'
     )
-    solve.add_argument("--temperature", required=True, help='of the oil, such as "40 degC"')
+    solve.add_argument("--temperature", required=True, help='of the raceways, such as "40 degC"')
     solve.add_argument("--frequency", help='of small oscillations, such as "1 kHz"; default: the low-frequency limit')
     solve.add_argument(
         "--frequencies",
@@ -93,12 +102,13 @@ def parser() -> argparse.ArgumentParser:
     export.add_argument("map", metavar="MAP.nc")
     export.add_argument("-o", "--output", metavar="CURVES.csv", help="default: the map's name with .csv")
     export.add_argument("--speed", help='entrainment speed, such as "1.7 m/s"; default: all of the map')
-    export.add_argument("--temperature", help='of the oil, such as "40 degC"; default: all of the map')
+    export.add_argument("--temperature", help='of the raceways, such as "40 degC"; default: all of the map')
     export.add_argument(
         "--contact", metavar="NAME", help="series | inner | outer | line; default: series, of a bare contact line"
     )
     export.add_argument("--points", metavar="N", type=_workers, default=200, help="loads of a curve; default: 200")
     export.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
+    export.add_argument("--roughness", metavar="LENGTH", help=_ROUGHNESS)
 
     compare = commands.add_parser("compare", help="differences between two maps")
     compare.add_argument("first", metavar="A.nc")

@@ -20,12 +20,15 @@ from ehdmaps.jobs.report import (
     status_lines,
     value_lines,
 )
+from ehdmaps.jobs.surface import surface_words
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.records import record_from_json
+from ehdmaps.maps.rough_films import BOUNDARY, FILM_PARAMETER, FILM_SHARE, MIXED, rough_variables
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.solution import Status
 from ehdmaps.units import FILM, LENGTH, PRESSURE, TEMPERATURE, Display
 
 SHOWN_TEMPERATURES = (313.15, 373.15)
@@ -63,17 +66,21 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     yield from _geometry_lines(emap)
     yield ""
     yield from _oil_lines(emap.lubricant)
+    yield f"  {'surfaces':20s} {surface_words(emap.surface if schema.SURFACE in attributes else None)}"
     yield ""
     yield f"axes ({dataset['status'].size} points)"
     yield f"  {'contact':20s} {dataset.sizes['contact']:5d}  {', '.join(map(str, dataset['contact'].values))}"
     for axis, display in AXES:
-        yield f"  {axis:20s} {dataset.sizes[axis]:5d}  {span(dataset[axis].values, display)}"
+        whose = ", of the raceways" if axis == "temperature" else ""
+        yield f"  {axis:20s} {dataset.sizes[axis]:5d}  {span(dataset[axis].values, display)}{whose}"
     yield ""
     yield "values (per unit length of contact)"
     yield from value_lines(dataset)
+    if not emap.surface.smooth:
+        yield from _roughness_lines(emap)
     yield ""
     yield "statuses"
-    yield from status_lines(dataset)
+    yield from status_lines(dataset, emap.surface.roughness)
     yield from extrapolated_lines(dataset)
     yield ""
     yield "accuracy of the points"
@@ -82,11 +89,27 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     if law:
         yield ""
         yield from law
+    if emap.low_loads is not None:
+        yield ""
+        yield f"contact laws at low loads: {emap.low_loads.text}"
     if emap.backbone is not None:
         yield ""
         yield from _backbone_lines(emap.backbone)
     yield ""
     yield from _provenance_lines(attributes)
+
+
+def _roughness_lines(emap: EHDMap) -> Iterator[str]:
+    """Yield what the roughness makes of the films: Lambda, and the film's share of the load."""
+    found = rough_variables(emap.dataset, emap.contacts, emap.lubricant, emap.surface)
+    parameter, share = (found[name].values[np.isfinite(found[name].values)] for name in (FILM_PARAMETER, FILM_SHARE))
+    if not parameter.size:
+        return
+    yield f"  {emap.surface.label}, combined rms of both surfaces"
+    below = [f"{100.0 * np.mean(parameter < limit):.0f} % of the points below {limit:g}" for limit in (BOUNDARY, MIXED)]
+    yield f"    Lambda, minimum film over roughness: {', '.join(below)}; median {np.median(parameter):.3g}"
+    most = ", ".join(f"{100.0 * np.mean(share < part):.0f} % below {part:g}" for part in (0.5, 0.9, 0.99))
+    yield f"    share of the film in the load: {most} (of the points); smallest {np.min(share):.2g}"
 
 
 def _geometry_lines(emap: EHDMap) -> Iterator[str]:
@@ -151,8 +174,12 @@ def _backbone_lines(backbone: xr.Dataset) -> Iterator[str]:
     """Yield the size of the group of refinement lines."""
     sizes = [backbone.sizes[name] for name in schema.BACKBONE_DIMS]
     yield "refinement lines of the contact law (group backbone)"
-    solved = int((backbone["status"].values != schema.NOT_NEEDED).sum())
+    status = backbone["status"].values
+    solved = int((status != schema.NOT_NEEDED).sum())
     yield f"  {solved} points: {sizes[0]} loads about the damping valley, {sizes[1]} speeds, {sizes[2]} temperatures"
+    bridged = solved - int(np.isin(status, [int(known) for known in Status if known.usable]).sum())
+    if bridged:
+        yield f"  {bridged} of them without a solution: single ones are bridged along their lines"
     if schema.NATURAL not in backbone.variables:
         yield "  response over frequency: none; films in time lock by a closed formula"
         return

@@ -15,6 +15,7 @@ from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import STEEL, Material
 
 MOST_POINTS = 2_000_000
@@ -56,6 +57,9 @@ class Job:
         "law": solve the lines that a contact law needs, where the solver is made for it; "none": leave them out.
     law_check : int
         Random points at which the contact laws are compared with fresh solves.
+    surface : Surface or None
+        Surfaces that the contact laws of the map have by default; None where the job states none, which is smooth. The
+        points of the map are those of smooth surfaces.
     """
 
     name: str
@@ -71,6 +75,7 @@ class Job:
     fill: str = "neighbours"
     backbone: str = "law"
     law_check: int = 0
+    surface: Surface | None = None
 
     @classmethod
     def build(
@@ -83,6 +88,7 @@ class Job:
         bearing: BearingGeometry | None = None,
         contact: LineContact | None = None,
         material: Material = STEEL,
+        surface: Surface | None = None,
         solver: str = "reynolds",
         solver_options: Mapping[str, str | int | float | bool] | None = None,
         structural_law: StructuralLaw = "iso16281",
@@ -110,6 +116,8 @@ class Job:
             A bare line contact; it brings its material and structural law.
         material : Material
             Material of the bearing.
+        surface : Surface, optional
+            Rough surfaces that contact laws have by default; none are stated if left out.
         solver : str
             hertz, formula, reynolds or openfoam.
         solver_options : mapping, optional
@@ -158,6 +166,7 @@ class Job:
                 "law_check": law_check,
                 **(solver_options or {}),
             },
+            surface=surface,
         )
         job = parse_job(text, name, "Job.build")
         check_oil(lubricant, job, "Job.build, ")

@@ -14,6 +14,7 @@ from ehdmaps.jobs import solvers, toml_text
 from ehdmaps.jobs.axes import LOAD_AXIS, TEMPERATURE_AXIS, read_axis, read_speeds
 from ehdmaps.jobs.job import MOST_CHECKS, MOST_POINTS, Job
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
+from ehdmaps.jobs.surface import read_surface
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.bearing import BearingGeometry
@@ -24,7 +25,7 @@ LONGEST_FILE = 1_000_000
 """Bytes of a job file; axes of a hundred thousand values still fit."""
 
 _SIGNATURES = (b"CDF", b"\x89HDF")
-_TABLES = ("schema", "bearing", "contact", "material", "lubricant", "grid", "solver")
+_TABLES = ("schema", "bearing", "contact", "material", "lubricant", "surface", "grid", "solver")
 
 
 def shipped_jobs() -> tuple[str, ...]:
@@ -113,6 +114,10 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
     bearing, contacts = read_contacts(top, law)
     oil_section = top.table("lubricant", "[lubricant]", required="a table with the name of an oil, or its data")
     oil = read_lubricant(oil_section) if oil_section else None
+    surface_section = top.table("surface", "[surface]")
+    surface = read_surface(surface_section) if surface_section else None
+    if surface_section:
+        surface_section.close()
 
     axes: list[tuple[float, ...] | None] = [None, None, None]
     grid = top.table("grid", "[grid]", required="a table with load, entrainment_speed and temperature")
@@ -131,6 +136,7 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
         bearing=bearing,
         contacts=contacts,
         lubricant=oil,
+        surface=surface,
         loads=loads,
         entrainment_speeds=speeds,
         temperatures=temperatures,

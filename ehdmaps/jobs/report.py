@@ -10,6 +10,7 @@ import xarray as xr
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.records import record_from_json
+from ehdmaps.physics.film_limits import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM, too_thin
 from ehdmaps.physics.solution import Status
 from ehdmaps.units import (
     DAMPING,
@@ -53,19 +54,65 @@ def holes(dataset: xr.Dataset) -> int:
     return int(np.count_nonzero(~np.isin(dataset["status"].values, usable)))
 
 
-def status_lines(dataset: xr.Dataset) -> Iterator[str]:
+def words_of(status: Status, film: float, roughness: float = 0.0) -> str:
+    """Return a status in words; no film is shown as plainly converged that is too thin for the theory.
+
+    Parameters
+    ----------
+    status : Status
+        Status of a point.
+    film : float
+        Its minimum film [m].
+    roughness : float
+        Combined rms roughness [m]; 0 where none is known.
+    """
+    thin = too_thin(film, roughness) if status is Status.CONVERGED else ""
+    return f"{status.word}, {thin}" if thin else status.word
+
+
+def status_counts(dataset: xr.Dataset, roughness: float = 0.0) -> dict[str, BoolArray]:
+    """Return which points have each status, flat, by its words; those that no point has are left out.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map.
+    roughness : float
+        Combined rms roughness [m]; 0 where none is known.
+    """
+    status, film = dataset["status"].values.ravel(), dataset["minimum_film"].values.ravel()
+    converged = (status == int(Status.CONVERGED)) & (film > 0.0)
+    below = converged & (film < CONTINUUM)
+    rough = converged & ~below & (film < roughness)
+    word = Status.CONVERGED.word
+    found = {known.word: status == int(known) for known in Status}
+    found = {
+        word: found[word] & ~below & ~rough,
+        f"{word}, {BELOW_ROUGHNESS}": rough,
+        f"{word}, {NO_CONTINUUM}": below,
+        **{known: here for known, here in found.items() if known != word},
+    }
+    return {words: here for words, here in found.items() if here.any()}
+
+
+def status_lines(dataset: xr.Dataset, roughness: float = 0.0) -> Iterator[str]:
     """Yield the statuses, grouped by cause, with the corner of the map where each is found.
 
     Reasons that differ in their numbers only count as one cause; the first is shown.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map.
+    roughness : float
+        Combined rms roughness [m]; 0 where none is known.
     """
-    status = dataset["status"].values.ravel()
     reasons = np.array([plain(reason) for reason in dataset["reason"].values.ravel()], dtype=object)
     causes = np.array([_NUMBER.sub("#", reason) for reason in reasons], dtype=object)
-    for known in Status:
-        here = status == int(known)
-        if not here.any():
-            continue
-        yield f"  {known.word:17s} {np.count_nonzero(here):7d}  {100.0 * here.mean():6.2f} %"
+    for words, here in status_counts(dataset, roughness).items():
+        yield f"  {words:17s} {np.count_nonzero(here):7d}  {100.0 * here.mean():6.2f} %"
+        if "," in words:
+            yield f"              {_corner(dataset, here)}"
         for cause in sorted(set(causes[here]) - {""}):
             of_cause = here & (causes == cause)
             count = int(np.count_nonzero(of_cause))

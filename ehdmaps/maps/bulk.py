@@ -162,7 +162,7 @@ def _others(
 ) -> int:
     """Mark the points that the table alone does not answer, and count them."""
     count = 0
-    slowest, fastest = table.film_speed, table.counted_speed
+    slowest, fastest = max(table.film_speed, table.lowest_speed), table.counted_speed
     coldest, hottest, highest = table.lowest_temperature, table.highest_temperature, table.highest_root
     for i in range(delta.size):
         size, t, d, r = abs(entrainment_speed[i]), temperature[i], delta[i], rate[i]

@@ -18,6 +18,9 @@ from ehdmaps.maps import schema
 
 _ATTRIBUTES = ("contacts", "geometry", "lubricant", "structural_law", schema.REFERENCE_CONTACT)
 
+_WHERE_STATED = (schema.SURFACE,)
+"""Attributes that only some maps have: of the others the checksum is that of a table without them."""
+
 
 def content_sha256(dataset: xr.Dataset, backbone: xr.Dataset | None) -> str:
     """Return the checksum of a map, in hexadecimal digits.
@@ -36,6 +39,9 @@ def content_sha256(dataset: xr.Dataset, backbone: xr.Dataset | None) -> str:
             continue
         for name in _ATTRIBUTES:
             digest.update(_header(group, name, held.attrs.get(name)))
+        for name in _WHERE_STATED:
+            if name in held.attrs:
+                digest.update(_header(group, name, held.attrs[name]))
         for entry in schema.table(group, version):
             if entry.name in held.variables:
                 found = held[entry.name]
@@ -64,7 +70,7 @@ def check_content(dataset: xr.Dataset, backbone: xr.Dataset | None, where: str) 
     stated = dataset.attrs.get(schema.CHECKSUM)
     if stated is not None and stated != content_sha256(dataset, backbone):
         raise MapError(
-            f"{where}: was changed since it was made: variables, contacts, geometry, oil or group "
+            f"{where}: was changed since it was made: variables, contacts, geometry, oil, surface or group "
             f"{schema.BACKBONE} do not match its attribute {schema.CHECKSUM}; generate it again; or, if the "
             "change is meant, delete that attribute, and the map counts as yours"
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from os import PathLike, fspath
 from typing import get_args
 
@@ -17,6 +17,7 @@ from ehdmaps.maps.checksum import check_content, content_sha256
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
+from ehdmaps.maps.low_loads import FirstLoads, LowLoads, first_loads, known_from, low_loads, same_load
 from ehdmaps.maps.reading import read_map
 from ehdmaps.maps.records import (
     bearing_from_json,
@@ -24,6 +25,8 @@ from ehdmaps.maps.records import (
     contacts_from_json,
     contacts_of,
     lubricant_from_json,
+    surface_from_json,
+    surface_json,
 )
 from ehdmaps.maps.rolling_film import RollingFilm, rolling_film
 from ehdmaps.maps.structure import completed, restructured
@@ -34,6 +37,7 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.roughness import SMOOTH, Surface
 
 
 class EHDMap:
@@ -105,6 +109,24 @@ class EHDMap:
             dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, self.backbone)
         return EHDMap(dataset, self.backbone)
 
+    def with_surface(self, surface: Surface) -> EHDMap:
+        """The same films, whose laws are those of other surfaces where nothing else is asked for.
+
+        Parameters
+        ----------
+        surface : Surface
+            Roughness of the surfaces.
+        """
+        if surface == self.surface:
+            return self
+        dataset = self.dataset.copy()
+        dataset.attrs.pop(schema.SURFACE, None)
+        if not surface.smooth:
+            dataset.attrs[schema.SURFACE] = surface_json(surface)
+        if schema.CHECKSUM in dataset.attrs:
+            dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, self.backbone)
+        return EHDMap(dataset, self.backbone)
+
     @cached_property
     def contacts(self) -> tuple[LineContact, ...]:
         """The line contacts, in the order of the contact axis, with their structural law."""
@@ -123,12 +145,24 @@ class EHDMap:
         return oil
 
     @cached_property
+    def surface(self) -> Surface:
+        """Surfaces that the job of the map states, smooth where it states none; its points are those of smooth ones."""
+        stated = self.dataset.attrs.get(schema.SURFACE)
+        return SMOOTH if stated is None else surface_from_json(stated)
+
+    @cached_property
     def bearing(self) -> BearingGeometry | None:
         """The bearing; None for a bare contact."""
         return bearing_from_json(self.dataset.attrs["geometry"])
 
-    def law(self, kind: LawKind, outside: OutsidePolicy = "error", supply: OilSupply | None = None) -> ContactLaw:
-        """Make a contact law from the map; takes about a second.
+    def law(
+        self,
+        kind: LawKind,
+        outside: OutsidePolicy = "error",
+        supply: OilSupply | None = None,
+        surface: Surface | None = None,
+    ) -> ContactLaw:
+        """Make a contact law from the map; takes about a second, some seconds with rough surfaces.
 
         Parameters
         ----------
@@ -138,6 +172,8 @@ class EHDMap:
             What happens outside the map, see `ContactLaw`.
         supply : OilSupply, optional
             Oil before each contact; flooded if left out.
+        surface : Surface, optional
+            Roughness of the surfaces; that of the map's job if left out, smooth where it states none.
 
         Raises
         ------
@@ -161,6 +197,7 @@ class EHDMap:
             outside,
             rolling=self.rolling_film,
             supply=supply or FLOODED,
+            surface=self.surface if surface is None else surface,
         )
 
     def film_field(self, contacts: tuple[str, ...] | None = None) -> FilmField:
@@ -206,6 +243,23 @@ class EHDMap:
         """
         reference = None if self.backbone is None else self._reference(self.backbone)
         return rolling_film(self.dataset, self.backbone, reference, self.contacts, self.lubricant)
+
+    @cached_property
+    def low_loads(self) -> LowLoads | None:
+        """Where the laws take films as those of rigid contacts, and whether that is right; None without any film."""
+        moving = self.dataset["entrainment_speed"].values > 0.0
+        if not np.any(moving) or not np.any(self.dataset["film_offset"].values > 0.0):
+            return None
+        temperatures = self.dataset["temperature"].values.astype(np.float64)
+        (lowest, _), speeds = self._range("load"), self._range("entrainment_speed")
+        first: FirstLoads = partial(same_load, lowest)
+        if self.backbone is not None:
+            group = self.backbone.transpose(*schema.BACKBONE_DIMS, ...)
+            solved = np.all([np.isfinite(group[name].values) for name in FILMS], axis=0)
+            start = known_from(group[schema.BACKBONE_DIMS[0]].values, solved)
+            first = partial(first_loads, self.contacts, self.lubricant, lowest, start)
+        ends = float(temperatures[0]), float(temperatures[-1])
+        return low_loads(first, self.contacts, self.lubricant, lowest, speeds, ends)
 
     def check_usable(self, contacts: tuple[str, ...] | None = None) -> None:
         """Refuse a map of whose films no law of these contacts can be made; only what the law reads is looked at.

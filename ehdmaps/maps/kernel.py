@@ -282,7 +282,7 @@ def collapse(
         int64, counted up.
     """
     speed, temperature = within_map(table, entrainment_speed, temperature, counts)
-    part = min(speed / table.film_speed, 1.0)
+    part = 1.0 if speed >= table.film_speed else speed / table.film_speed
     film = part * part * part * (10.0 - part * (15.0 - 6.0 * part))
     log_speed = log(max(speed, table.lowest_speed))
     q = centrifugal_load
@@ -353,7 +353,8 @@ def evaluate(
         return math.nan, math.nan, math.nan
     speed = abs(entrainment_speed)
     if (
-        table.film_speed <= speed <= table.counted_speed
+        table.film_speed <= speed
+        and table.lowest_speed <= speed <= table.counted_speed
         and table.lowest_temperature <= temperature <= table.highest_temperature
         and centrifugal_load == 0.0
     ):

@@ -25,13 +25,16 @@ from ehdmaps.maps.dry import DryField
 from ehdmaps.maps.excursions import Axis, Excursion, Range
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.locked_film import FORMULA, LockedFactors, locked_compliances
+from ehdmaps.maps.low_loads import LowLoads, guessed_at, low_loads
 from ehdmaps.maps.memory import FilmMemory, FilmState
 from ehdmaps.maps.oil_layer import oil_layer
 from ehdmaps.maps.rolling_film import RollingFilm
+from ehdmaps.maps.rough_layer import GONE_BELOW
 from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE, ApproachTable, LawTable, Point
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.roughness import SMOOTH, Surface
 
 LawKind = Literal["series", "inner", "outer", "line"]
 OutsidePolicy = Literal["error", "clamp", "asymptote"]
@@ -75,8 +78,11 @@ class ContactLaw:
         Spacing of the nodes of the table.
     rolling : RollingFilm, optional
         Rolling force and mass flow of the contacts, where the map holds them.
-    supply : OilSupply, optional
-        Oil before each contact; flooded if left out. See `ehdmaps.maps.oil_layer`.
+    supply : OilSupply
+        Oil before each contact, see `ehdmaps.maps.oil_layer`.
+    surface : Surface
+        Roughness of the surfaces: film and asperities share the load, see `ehdmaps.maps.rough_layer`. The law then
+        has a table down to a speed without a film, and goes over into the rough dry contact at standstill.
 
     Raises
     ------
@@ -102,6 +108,7 @@ class ContactLaw:
         resolution: Resolution | None = None,
         rolling: RollingFilm | None = None,
         supply: OilSupply = FLOODED,
+        surface: Surface = SMOOTH,
     ) -> None:
         if outside not in get_args(OutsidePolicy):
             raise InputError(f"contact law, outside: got {outside!r}; allowed: {', '.join(get_args(OutsidePolicy))}")
@@ -115,7 +122,8 @@ class ContactLaw:
         self._excursions: dict[tuple[str, str], Excursion] = {}
         self._lubricant = lubricant
         self._dry = field.dry
-        self._field = DryField(field) if field.dry else field
+        self.surface = surface
+        self._field = DryField(field, not surface.smooth) if field.dry else field
         self._resolution = resolution
         self.rolling = rolling
         self.supply = supply
@@ -139,6 +147,28 @@ class ContactLaw:
         """Scratch for `kernel.collapse` and `kernel.evaluate`, one for each thread and each `Point` kept."""
         return _workspace(self.table)
 
+    @cached_property
+    def low_loads(self) -> LowLoads | None:
+        """Where the film goes over into that of a rigid contact, and whether that is right; None of a dry law."""
+        if self._dry or not self.speed_range[0] > 0.0:
+            return None
+        first, lowest = self._field.first_loads, self.load_range[0]
+        return low_loads(first, self.contacts, self._lubricant, lowest, self.speed_range, self.temperature_range)
+
+    def guessed_below(self, entrainment_speed: float, temperature: float) -> float:
+        """Load [N/m] below which the film is a guess, see `low_loads`; 0 where it is none.
+
+        Parameters
+        ----------
+        entrainment_speed, temperature : float
+            u [m/s], of either sign, and T [K]; held at the edges of the map.
+        """
+        if self.low_loads is None or not self.low_loads.guessed:
+            return 0.0
+        (slow, fast), (cold, hot) = self.speed_range, self.temperature_range
+        u, T = min(max(abs(entrainment_speed), slow), fast), min(max(temperature, cold), hot)
+        return guessed_at(self._field.first_loads, self.contacts, self._lubricant, u, T)
+
     @property
     def outside_counts(self) -> dict[str, int]:
         """How many points were outside the map so far, by cause."""
@@ -148,7 +178,8 @@ class ContactLaw:
     def excursions(self) -> tuple[Excursion, ...]:
         """Where points were outside the map so far: axis, side, number, the farthest one, and where the map ends.
 
-        Of calls of the law and of `LawAtPoint`, and of what compiled callers report by `note_outside`.
+        Of calls of the law and of `LawAtPoint`, and of what compiled callers report by `note_outside`. Loads below the
+        map are told where the film there is a guess, see `low_loads`; they are no error with any policy.
         """
         return tuple(self._excursions[key] for key in sorted(self._excursions))
 
@@ -162,7 +193,11 @@ class ContactLaw:
         values : float or array
             [N/m], [m/s] or [K]; those within the map are passed over.
         """
-        for found in self._ranges[axis].excursions(np.atleast_1d(np.asarray(values, dtype=np.float64))):
+        self._keep(self._ranges[axis].excursions(np.atleast_1d(np.asarray(values, dtype=np.float64))))
+
+    def _keep(self, excursions: Sequence[Excursion]) -> None:
+        """Add up excursions of one axis and side."""
+        for found in excursions:
             key = found.axis, found.side
             self._excursions[key] = self._excursions[key] + found if key in self._excursions else found
 
@@ -228,6 +263,7 @@ class ContactLaw:
         counts = np.zeros(4, dtype=np.int64)
         _evaluate_many(table, flat, forces, counts)
         self._settle(counts, named, flat)
+        self._note_low(forces[0], flat[2], flat[3])
         w, dw_ddelta, dw_drate = (force.reshape(shape)[()] for force in forces)
         return w, dw_ddelta, dw_drate
 
@@ -311,7 +347,7 @@ class ContactLaw:
         field = self._field
         (slow, fast), (cold, hot) = field.speed_range, field.temperature_range
         u, T = min(max(abs(entrainment_speed), slow), fast), min(max(temperature, cold), hot)
-        lowest, highest = field.load_range
+        lowest, highest = float(field.first_loads(np.array([u]), np.array([T]))[0, 0]), field.load_range[1]
         loads = np.geomspace(lowest, highest, 2 + math.ceil(math.log(highest / lowest) / _LOAD_STEP))
         whole, offset, compliance = np.zeros((3, loads.size))
         for contact in self.contacts:
@@ -327,7 +363,7 @@ class ContactLaw:
         return LockedFactors(math.log(lowest), (loads.size - 1) / math.log(highest / lowest), factors)
 
     def _films(self, contact: LineContact, loads: FloatArray, u: float, T: float) -> tuple[FloatArray, FloatArray]:
-        """Film offset [m] and film compliance [m2/N] of a contact at loads within the map, u and T too; (n,)."""
+        """Film offset [m] and film compliance [m2/N] of a contact at known loads, within the map; (n,)."""
         speeds, kelvins, every = np.array([u]), np.array([T]), loads[:, None, None]
         if self.supply.flooded:
             films = self._field.films(contact.name, every, speeds, kelvins)
@@ -347,6 +383,9 @@ class ContactLaw:
             high = SPEED_REACH * high if high > low else high
             most = min(highest_structural_load(contact) for contact in self.contacts)
             held = max(held, min(LOAD_REACH * highest, most))
+        rough = not self.surface.smooth
+        if rough and not self._dry:
+            low /= GONE_BELOW
         self._speeds, self._held_load = (low, high), held
         own = self._approach_table(self.contacts)
         return LawTable(
@@ -354,7 +393,7 @@ class ContactLaw:
             inner=own,
             outer=own,
             structure=np.array([structural_parameters(contact) for contact in self.contacts]),
-            film_speed=np.inf if self._dry else low,
+            film_speed=0.0 if rough else np.inf if self._dry else low,
             lowest_speed=low,
             highest_speed=high,
             lowest_temperature=self.temperature_range[0],
@@ -375,6 +414,7 @@ class ContactLaw:
             self._held_load,
             self._resolution,
             FLOODED if self._dry else self.supply,
+            self.surface,
             self.rolling,
         )
 
@@ -422,6 +462,18 @@ class ContactLaw:
             found = self._ranges[axis].excursions(full)
             problems += [f"{axis}: got {one.text.removeprefix(axis).strip()}" for one in found]
         return problems
+
+    def _note_low(self, loads: FloatArray, speeds: FloatArray, temperatures: FloatArray) -> None:
+        """Note loads (n,) that lie where the film is a guess; speeds and temperatures (n,) or (1,)."""
+        if self.low_loads is None or not self.low_loads.guessed:
+            return
+        low = (loads > 0.0) & (loads < self.load_range[0])
+        if not np.any(low):
+            return
+        places = np.stack([np.broadcast_to(speeds, loads.shape)[low], np.broadcast_to(temperatures, loads.shape)[low]])
+        different, which = np.unique(places, axis=1, return_inverse=True)
+        for i, (u, T) in enumerate(different.T.tolist()):
+            self._keep(Range("load", self.guessed_below(u, T), np.inf).excursions(loads[low][which.reshape(-1) == i]))
 
     def _load_problem(self, count: int, flat: Sequence[FloatArray]) -> str:
         """Note the loads that are too high, and say which."""
@@ -543,6 +595,7 @@ class LawAtPoint:
             fixed = (self.entrainment_speed, self.temperature, self.centrifugal_load)
             flat += [np.full(flat[0].size, value) for value in fixed]
             self.law._settle(counts, named, flat)
+        self.law._note_low(forces[0], np.array([self.entrainment_speed]), np.array([self.temperature]))
         w, dw_ddelta, dw_drate = (force.reshape(shape)[()] for force in forces)
         return w, dw_ddelta, dw_drate, self.outside or bool(counts.any())
 

@@ -16,6 +16,7 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.pressure_viscosity import law_from_record
+from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import Material
 from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw, VogelViscosity
 
@@ -149,6 +150,30 @@ def lubricant_from_json(text: str) -> Lubricant:
         )
     except _UNREADABLE as error:
         raise _broken("lubricant", error) from error
+
+
+def surface_json(surface: Surface) -> str:
+    """Attribute `surface` of a map with these surfaces."""
+    return json.dumps(asdict(surface), sort_keys=True, allow_nan=False)
+
+
+def surface_from_json(text: str) -> Surface:
+    """Surfaces of a map, from its attribute `surface`: the fields of a `Surface`.
+
+    Raises
+    ------
+    MapError
+        If the text is no such record.
+
+    Examples
+    --------
+    >>> surface_from_json('{"roughness": 2e-07}').label
+    'roughness 0.2 um'
+    """
+    try:
+        return Surface(**read_json(text, "surface"))
+    except _UNREADABLE as error:
+        raise _broken("surface", error) from error
 
 
 def check_oil(lubricant: Lubricant, temperatures: Iterable[float]) -> None:

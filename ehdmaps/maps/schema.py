@@ -186,7 +186,7 @@ TABLE = (
     Variable("contact", "1", "contact of the roller with this raceway", "str", dims=("contact",)),
     _axis("load", "N m-1", "load per unit length", (1e-6, 1e12)),
     _axis("entrainment_speed", "m s-1", "mean of the two surface speeds", (0.0, 1e6)),
-    _axis("temperature", "K", "oil temperature", _KELVINS),
+    _axis("temperature", "K", "temperature of the raceways, the surfaces of the contact", _KELVINS),
     _derived("approach", "m", "mutual approach of the bodies, positive together"),
     Variable("film_offset", "m", "dry minus lubricated approach at equal load"),
     Variable("film_compliance", "m2 N-1", "minus the derivative of the film offset by load", since=2),
@@ -233,7 +233,7 @@ TABLE = (
     Variable("filled", "1", "values interpolated from neighbours; status keeps the cause", "int8", flags=_NO_YES),
     _axis("zeta", "1", "ln(M/M_valley(L))", (-100.0, 100.0), BACKBONE),
     _axis("reference_speed", "m s-1", "entrainment speed of the reference contact", (1e-12, 1e6), BACKBONE),
-    _axis("temperature", "K", "oil temperature", _KELVINS, BACKBONE),
+    _axis("temperature", "K", "temperature of the raceways, the surfaces of the contact", _KELVINS, BACKBONE),
     _of_backbone("film_offset", "m", "dry minus lubricated approach at equal load"),
     _of_backbone("film_compliance", "m2 N-1", "minus the derivative of the film offset by load"),
     _of_backbone("loss_compliance", "m2 s N-1", "damping over squared stiffness, low-frequency limit"),
@@ -286,7 +286,23 @@ NUMBERS = ("lubricant_verified", "structural_scaling")
 CHECKSUM = "content_sha256"
 """Attribute with the checksum of everything that a law or a reader of the map relies on; see `checksum`."""
 
-TEXTS = ("title", "job_name", "created", "fill", "solver_version", "openfoam_version", "openfoam_build", CHECKSUM)
+SURFACE = "surface"
+"""Attribute of a map whose job states rough surfaces, JSON: what its laws have by default.
+
+The points of a map are those of smooth surfaces, whatever it says.
+"""
+
+TEXTS = (
+    "title",
+    "job_name",
+    "created",
+    "fill",
+    "solver_version",
+    "openfoam_version",
+    "openfoam_build",
+    SURFACE,
+    CHECKSUM,
+)
 """Attributes that are texts, where a map has them; others than those named here are left alone."""
 
 REFERENCE_CONTACT = "reference_contact"

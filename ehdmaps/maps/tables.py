@@ -65,7 +65,7 @@ class LawTable(NamedTuple):
     structure : array (n, 3)
         Structural law of each contact: kind, and two parameters.
     film_speed : float
-        Speed below which the film is faded [m/s]; inf for a map without films.
+        Speed below which the film is faded [m/s]; inf for a map without films, 0 where it goes over into asperities.
     lowest_speed, highest_speed : float
         Speed range of the table [m/s], > 0.
     lowest_temperature, highest_temperature : float

@@ -19,8 +19,9 @@ from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
 from ehdmaps.openfoam.parameters import FLOWS, SHEARS, Flow, Mesh, Parameters, Shear, Start
 from ehdmaps.openfoam.results import FilmTable
 from ehdmaps.openfoam.run import RunError
-from ehdmaps.physics.closed_form import THIN_FILM_LIMIT, HertzSolver
+from ehdmaps.physics.closed_form import HertzSolver
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.film_limits import THIN_FILM_LIMIT, too_thick
 from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.hertz import DRY_COMPLIANCE, LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
@@ -426,6 +427,9 @@ def _film(
         """Relative, > 0 where refinement lowers the value."""
         return (of_coarse - value) / (3.0 * value) if value else math.nan
 
+    refused = too_thick(found.film_offset, contact.radius)
+    if refused:
+        return FilmSolution(Status.OUTSIDE_VALIDITY, refused, solve_seconds=seconds)
     status, notes = Status.CONVERGED, [coarse.note, fine.note]
     if found.film_offset / contact.radius > THIN_FILM_LIMIT:
         status = Status.ASYMPTOTE

@@ -17,6 +17,7 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.damping import rolling_film_damping
+from ehdmaps.physics.film_limits import THIN_FILM_LIMIT, too_thick
 from ehdmaps.physics.films import (
     dowson_higginson_minimum,
     dowson_toyoda_central,
@@ -31,9 +32,6 @@ from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status
 
 FilmFormula = Literal["moes", "dowson-toyoda", "pan-hamrock"]
-
-THIN_FILM_LIMIT = 0.01
-"""h/R above which a film is outside thin-film theory."""
 
 
 @dataclass(frozen=True)
@@ -128,6 +126,9 @@ class FormulaSolver(ContactSolverDefaults):
                 status=Status.OUTSIDE_VALIDITY,
                 reason=f"the film formula {self.film_formula} gives no finite, positive film here",
             )
+        refused = too_thick(film, contact.radius)
+        if refused:
+            return FilmSolution(status=Status.OUTSIDE_VALIDITY, reason=refused)
         status, reason = Status.CONVERGED, ""
         if film / contact.radius > THIN_FILM_LIMIT:
             status = Status.ASYMPTOTE

@@ -26,6 +26,7 @@ from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.roughness import SMOOTH, Surface
 from ehdmaps.physics.solids import reduced_modulus
 from ehdmaps.physics.unilateral import unilateral_force
 from mbs.bearings.bearing import Bearing
@@ -203,6 +204,7 @@ def formula(
     kind: LawKind = "series",
     outside: OutsidePolicy = "error",
     supply: OilSupply | None = None,
+    surface: Surface = SMOOTH,
 ) -> ContactLaw:
     """Law of a film formula over a range of loads, speeds and temperatures; takes some seconds.
 
@@ -216,7 +218,7 @@ def formula(
         Lowest and highest [N/m], [m/s], [K], as of a map.
     film_formula, structural_law
         See `ehdmaps.physics.closed_form.FormulaSolver` and `ehdmaps.physics.approach`.
-    kind, outside
+    kind, outside, surface
         See `ContactLaw`.
     supply : OilSupply, optional
         Oil before each contact; flooded if left out.
@@ -245,7 +247,7 @@ def formula(
     films = [_films(contact, lubricant, FormulaSolver(film_formula), loads, speeds, temperatures) for contact in chosen]
     offset, compliance, loss = (np.stack(part) for part in zip(*films, strict=True))
     field = GridField(chosen, lubricant, loads, speeds, temperatures, offset, compliance, loss)
-    return ContactLaw(kind, chosen, lubricant, field, outside, supply=supply or FLOODED)
+    return ContactLaw(kind, chosen, lubricant, field, outside, supply=supply or FLOODED, surface=surface)
 
 
 def _films(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.maps.emap import EHDMap, open_map
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.films import FilmSource
+from mbs.bearings.state import BearingState
 from mbs.gears.gear import GearMesh
 from mbs.model.elements import Operation
 from mbs.model.places import Places
@@ -50,6 +51,11 @@ class Model:
     memory : {"slow", "memory"}
         Whether films relax, or have the stiffness and damping of slow motion at any frequency, as laws without films
         always have.
+    states : tuple of BearingState
+        Temperatures, clearance and heat of each bearing, of a model that is in operation at some speed, see
+        `mbs.analyses.operating`; empty before, and where no bearing has temperatures, heat or fits of its own.
+    found : dict of float to Model
+        The same model in operation, by speed, where it was asked for.
     """
 
     scene: Scene
@@ -60,6 +66,8 @@ class Model:
     films: Mapping[str, FilmSource]
     label: str
     memory: Films = "slow"
+    states: tuple[BearingState, ...] = ()
+    found: dict[float, Model] = field(default_factory=dict, repr=False)
 
     @property
     def operation(self) -> Operation:

@@ -9,9 +9,11 @@ from collections.abc import Iterator
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.generate import available_cores
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.law_check import check_points
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.refinement import refinement
 from ehdmaps.jobs.report import AXES, span
+from ehdmaps.jobs.surface import surface_words
 from ehdmaps.jobs.tasks import LineTask, line_tasks
 from ehdmaps.physics.sensitivity import film_change
 from ehdmaps.physics.solution import ContactSolver, Status
@@ -40,12 +42,13 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     ]
     names = ", ".join(contact.name for contact in job.contacts)
     refined = refinement(job, solver)
-    extra = (refined.points if refined else 0) + job.law_check
+    extra = (refined.points if refined else 0) + check_points(job.law_check)
     lines = [
         f"{arguments.job}: no problems",
         f"  {job.title}, {job.lubricant.title}, solver {job.solver}, structural law {job.contacts[0].structural_law}",
         *([f"  bearing: {job.bearing.estimated}"] if job.bearing and job.bearing.estimated else []),
         *oil_lines(job),
+        f"  surfaces {surface_words(job.surface)}",
         f"  {'contact':20s} {len(job.contacts):6d}  {names}",
         *axes,
         f"  points  {job.points} of the map, {extra} for its contact laws",

@@ -18,7 +18,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     path = Path(arguments.map)
     output = Path(arguments.output) if arguments.output else path.with_suffix(".csv")
     check_outputs([Output("-o", output, TABLE)], [path])
-    emap = open_given(path, arguments.structure)
+    emap = open_given(path, arguments.structure, arguments.roughness)
     text = table(emap, _chosen(arguments, emap), path.name)
     write_text(output, text, TABLE)
     return f"{output}: written", 0
