@@ -12,7 +12,9 @@ from ehdmaps.errors import AnalysisError
 from ehdmaps.program import Parser, run
 from mbs.model.relaxation import DEFAULT_FILMS
 
-VARIED_KEYS = "clearance, temperature, films, housing-damping, ramp, start-angle, load-factor, step, slices, law"
+VARIED_KEYS = (
+    "clearance, temperature, films, supply, housing-damping, ramp, start-angle, load-factor, step, slices, law"
+)
 """The keys of `mbs.analyses.varied.VARIED`, which takes longer to import than a command to be refused."""
 
 _MORE = "; more than once to compare"
@@ -89,6 +91,17 @@ def _films(command: argparse.ArgumentParser, compares: bool) -> None:
         help="memory: films follow oscillations at their own frequency; slow: stiffness and damping of slow motion at "
         f"any frequency; dry: --law hertz{_MORE if compares else ''}; default: {DEFAULT_FILMS}. Statics are the same "
         "for memory and slow",
+    )
+
+
+def _supply(command: argparse.ArgumentParser, of: str, compares: bool) -> None:
+    """Add the oil supply."""
+    command.add_argument(
+        "--supply",
+        metavar="OIL",
+        action="append",
+        help="oil that all bearings get: flooded | oil bath | oil air | grease, or the oil layer before "
+        f"each contact, such as '5 um'{_MORE if compares else ''}; default: {of}",
     )
 
 
@@ -187,6 +200,7 @@ def _bearing(commands: Any) -> None:
         help="hertz | hertz:TIME | hertz:DAMPING (TIME: damping over stiffness) | formula | map; default: map with "
         "--map, else hertz",
     )
+    _supply(command, "[supply] of the file, else of the job of the map, else flooded", compares=False)
     command.add_argument(
         "--oil", metavar="NAME", help="oil without a map: FVA3, Spirax MA 80W; default: the file's, else FVA3"
     )
@@ -267,6 +281,8 @@ def _scene_command(
     )
     command.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
     command.add_argument("--law", metavar="LAW", action="append", help=f"{_LAW}{more}")
+    # Films stand side by side in lsa, too.
+    _supply(command, "[supply] of the scene, else of the job of the map, else flooded", compares or name == "lsa")
     command.add_argument(
         "--clearance",
         metavar="LENGTH",

@@ -86,8 +86,8 @@ class SuppliedFilm:
 class ReynoldsSolver(ContactSolverDefaults):
     """Finite-difference solver of the steady line contact and of its linear response.
 
-    Isothermal, Newtonian, piezoviscous, compressible, with Reynolds' cavitation condition at the exit; fully flooded, but
-    for `supplied_film`, which takes an oil layer before the contact.
+    Isothermal, Newtonian, piezoviscous, compressible, with Reynolds' cavitation condition at the exit; fully flooded,
+    but for `supplied_film`, which takes an oil layer before the contact.
 
     Attributes
     ----------

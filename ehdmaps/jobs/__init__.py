@@ -7,6 +7,7 @@ job          `Job`, what a job file asks for, in SI
 table        one table of a TOML file, read key by key with all its problems
 axes         the axes of the grid
 problem      bearing or contact, material, lubricant
+supply       oil supply of a job, a scene or a command line, as text
 surface      roughness of a job, a scene or a command line, as text
 reader       job file, shipped job or map file -> `Job`
 job_text     values in SI -> the text of a job file, for `Job.build`
@@ -30,7 +31,6 @@ summary      what happened, in words
 opening      the map of a command, by the structural law that it names
 describe     what a map file holds, in words
 plot         what a map file holds, on one page
-plot_curves  one panel of that page
 plot_curves  one panel of that page
 film_output  files with the film itself, beside the numbers of one point
 traction     traction of one point over the slide-to-roll ratio

@@ -154,6 +154,7 @@ def _attributes(job: Job, solver: ContactSolver) -> dict[str, Any]:
         "geometry": record_json(job.bearing.record() if job.bearing else None),
         "lubricant": record_json(job.lubricant.record()),
         "lubricant_verified": int(job.lubricant.verified),
+        **({} if job.supply is None else {schema.OIL_SUPPLY: record_json(job.supply)}),
         **({} if job.surface is None else {schema.SURFACE: surface_json(job.surface)}),
         "package_versions": record_json(package_versions()),
         "created": datetime.now(UTC).isoformat(timespec="seconds"),

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
@@ -10,6 +12,8 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.rough_films import LEAST_SPEED
+from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.physics.contact import LineContact
 
 
@@ -44,8 +48,32 @@ def law_field(emap: EHDMap) -> FilmField | None:
         return None
 
 
+SMOOTH_LAYERS: Mapping[str, RoughLayer] = MappingProxyType({})
+"""No load sharing in any contact."""
+
+
+def rough_layers(emap: EHDMap) -> Mapping[str, RoughLayer]:
+    """Return the load sharing of the contacts of a map, by their names; none where its surfaces are smooth.
+
+    Parameters
+    ----------
+    emap : EHDMap
+        The map.
+    """
+    if emap.surface.smooth:
+        return SMOOTH_LAYERS
+    speeds = emap.dataset["entrainment_speed"].values
+    slowest = float(min(speeds[speeds > 0.0], default=LEAST_SPEED))
+    return {contact.name: RoughLayer(emap.surface, contact, emap.lubricant, slowest) for contact in emap.contacts}
+
+
 def curves(
-    field: FilmField, contacts: tuple[LineContact, ...], loads: FloatArray, speed: float, temperature: float
+    field: FilmField,
+    contacts: tuple[LineContact, ...],
+    loads: FloatArray,
+    speed: float,
+    temperature: float,
+    layers: Mapping[str, RoughLayer] = SMOOTH_LAYERS,
 ) -> Curves:
     """Curves of contacts that carry the same load.
 
@@ -59,14 +87,24 @@ def curves(
         [N/m], > 0.
     speed, temperature : float
         [m/s], >= 0; [K].
+    layers : mapping
+        Load sharing of film and asperities, by the name of a contact; none where its surfaces are smooth.
     """
     approach, offset, compliance, loss = (np.zeros(loads.size) for _ in range(4))
     for contact in contacts:
         approach += contact.structural_approach(loads)
         compliance += contact.structural_compliance(loads)
-        if field.dry or speed == 0.0:
+        layer = layers.get(contact.name)
+        still = field.dry or speed == 0.0
+        if still and layer is None:
             continue
-        films = field.films(contact.name, loads[:, None, None], np.array([speed]), np.array([temperature]))
+        at, root = (np.array([speed]), np.array([temperature])), np.cbrt(loads)[:, None, None]
+        # at standstill nothing but asperities
+        nothing = np.zeros((3, loads.size, 1, 1))
+        films = nothing if still else field.films(contact.name, loads[:, None, None], *at)
+        if layer is not None:
+            shared = layer.shared(root, films[0], -3.0 * root**2 * films[1], *at)
+            films = shared.offset, -shared.slope / (3.0 * root**2), films[2] * shared.share**2
         film, film_compliance, film_loss = (values[:, 0, 0] for values in films)
         approach -= film
         offset += film

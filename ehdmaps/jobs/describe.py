@@ -20,6 +20,7 @@ from ehdmaps.jobs.report import (
     status_lines,
     value_lines,
 )
+from ehdmaps.jobs.supply import supply_words
 from ehdmaps.jobs.surface import surface_words
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR
@@ -66,6 +67,7 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     yield from _geometry_lines(emap)
     yield ""
     yield from _oil_lines(emap.lubricant)
+    yield f"  {'supply':20s} {supply_words(emap.supply if schema.OIL_SUPPLY in attributes else None)}"
     yield f"  {'surfaces':20s} {surface_words(emap.surface if schema.SURFACE in attributes else None)}"
     yield ""
     yield f"axes ({dataset['status'].size} points)"

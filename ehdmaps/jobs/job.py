@@ -15,6 +15,7 @@ from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import STEEL, Material
 
@@ -57,6 +58,9 @@ class Job:
         "law": solve the lines that a contact law needs, where the solver is made for it; "none": leave them out.
     law_check : int
         Random points at which the contact laws are compared with fresh solves.
+    supply : OilSupply or None
+        Oil supply that the contact laws of the map have by default; None where the job states none, which is flooded.
+        The points of the map are those of flooded films.
     surface : Surface or None
         Surfaces that the contact laws of the map have by default; None where the job states none, which is smooth. The
         points of the map are those of smooth surfaces.
@@ -75,6 +79,7 @@ class Job:
     fill: str = "neighbours"
     backbone: str = "law"
     law_check: int = 0
+    supply: OilSupply | None = None
     surface: Surface | None = None
 
     @classmethod
@@ -88,6 +93,7 @@ class Job:
         bearing: BearingGeometry | None = None,
         contact: LineContact | None = None,
         material: Material = STEEL,
+        supply: OilSupply | None = None,
         surface: Surface | None = None,
         solver: str = "reynolds",
         solver_options: Mapping[str, str | int | float | bool] | None = None,
@@ -116,6 +122,8 @@ class Job:
             A bare line contact; it brings its material and structural law.
         material : Material
             Material of the bearing.
+        supply : OilSupply, optional
+            Oil supply that contact laws have by default; none is stated if left out.
         surface : Surface, optional
             Rough surfaces that contact laws have by default; none are stated if left out.
         solver : str
@@ -166,7 +174,8 @@ class Job:
                 "law_check": law_check,
                 **(solver_options or {}),
             },
-            surface=surface,
+            supply,
+            surface,
         )
         job = parse_job(text, name, "Job.build")
         check_oil(lubricant, job, "Job.build, ")

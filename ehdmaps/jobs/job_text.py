@@ -8,11 +8,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.supply import supply_keys
 from ehdmaps.jobs.surface import surface_keys
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.catalogue import estimate, estimate_from_dimensions, static_rating
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.pressure_viscosity import PRESSURE_LAWS
 from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import Material
@@ -42,6 +44,7 @@ def job_text(
     lubricant: Lubricant,
     axes: Sequence[Iterable[float]],
     solver: Mapping[str, Entry],
+    supply: OilSupply | None = None,
     surface: Surface | None = None,
 ) -> str:
     """Write a job file.
@@ -58,6 +61,8 @@ def job_text(
         Loads [N/m], entrainment speeds [m/s], temperatures [K].
     solver : mapping
         All keys of [solver].
+    supply : OilSupply, optional
+        Oil supply for [supply]; no such table if left out.
     surface : Surface, optional
         Surfaces for [surface]; no such table if left out, or smooth.
 
@@ -79,6 +84,7 @@ def job_text(
             "density": _quantity(material.density, "kg/m^3"),
         },
         "lubricant": lubricant_keys(lubricant),
+        **({} if supply is None else {"supply": supply_keys(supply)}),
         **({} if surface is None or surface.smooth else {"surface": surface_keys(surface)}),
         "grid": {
             "load": [_quantity(value, "N/m") for value in loads],

@@ -19,11 +19,12 @@ from ehdmaps.maps.backbone import BackboneField
 from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.maps.compilation import highest_structural_load
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.law import ContactLaw
+from ehdmaps.maps.law import ContactLaw, OutsidePolicy
 from ehdmaps.maps.tail import THICK_FILM
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.moes import moes_groups, valley_load_number
+from ehdmaps.physics.oil_supply import FLOODED
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.roughness import SMOOTH
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
@@ -297,8 +298,9 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
             wanted = [i for i, task in enumerate(check.tasks) if task.contact == contact and check.inside(i) == inside]
             chosen = [i for i in wanted if _known(check.tasks[i], results[check.tasks[i].key], check.regions[i])]
             if chosen:
-                # Fresh solves are those of smooth surfaces, whatever the job states.
-                law = emap.law(contact.name, "error" if inside else "asymptote", surface=SMOOTH)  # type: ignore[arg-type]
+                # Fresh solves are those of flooded films between smooth surfaces, whatever the job states.
+                policy: OutsidePolicy = "error" if inside else "asymptote"
+                law = emap.law(contact.name, policy, supply=FLOODED, surface=SMOOTH)  # type: ignore[arg-type]
                 rows.append(_errors(law, [(check.tasks[i], results[check.tasks[i].key]) for i in chosen]))
                 regions += [check.regions[i] for i in chosen]
     counted = [region in INSIDE for region in check.regions]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -28,11 +29,12 @@ from ehdmaps.jobs.plot_curves import (
     keep_corners_free,
     spread,
 )
-from ehdmaps.jobs.report import fitted_pressure, plain, span
+from ehdmaps.jobs.report import fitted_pressure, plain, span, status_counts
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.outputs import write_figure
+from ehdmaps.physics.film_limits import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
 from ehdmaps.physics.solution import Status
 from ehdmaps.units import DAMPING, FILM, LOAD, SPEED, STIFFNESS, TEMPERATURE, Display
 
@@ -50,8 +52,13 @@ _PANELS: tuple[tuple[str, str, Display], ...] = (
     ("minimum_film", "minimum film", FILM),
 )
 _SMALL = _PANELS[:2]
+_FILMS = ("central_film", "minimum_film")
+THIN: Mapping[str, Any] = {
+    BELOW_ROUGHNESS: {"facecolor": "0.93", "edgecolor": "none", "zorder": 0},
+    NO_CONTINUUM: {"facecolor": "0.8", "edgecolor": "none", "zorder": 0},
+}
 _LOGARITHMIC = ("stiffness", "damping", "central_film", "minimum_film")
-_FONT: Any = {"font.size": 7.5, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6}
+FONT: Any = {"font.size": 7.5, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6}
 
 
 def plot_map(emap: EHDMap, output: Path) -> None:
@@ -73,7 +80,7 @@ def plot_map(emap: EHDMap, output: Path) -> None:
     """
     import matplotlib as mpl
 
-    with mpl.rc_context(_FONT):
+    with mpl.rc_context(FONT):
         write_figure(_page(Sheet(emap, law_field(emap))), output, RESOLUTION)
 
 
@@ -101,6 +108,8 @@ def _page(sheet: Sheet) -> Figure:
         for column, (name, label, display) in enumerate(_PANELS):
             axes = figure.add_subplot(grid[row, column])
             draw_curves(axes, sheet, name, display, (row, shown))
+            if name in _FILMS:
+                _shade_thin(axes, sheet, display)
             axes.set_ylabel(f"{label}, {typeset(display.unit)}", labelpad=1)
             if row == 0:
                 axes.set_title(label, fontsize=8.5, fontweight="bold", pad=4)
@@ -117,7 +126,24 @@ def _page(sheet: Sheet) -> Figure:
                 )
     if small:
         _small_multiples(figure, sheet, temperatures, middle)
-    scale = figure.add_axes((0.936, middle + 0.055, 0.011, 0.875 - middle - 0.055))
+    speed_bar(figure, sheet, (0.936, middle + 0.055, 0.011, 0.875 - middle - 0.055))
+    _legend(figure, sheet)
+    return figure
+
+
+def speed_bar(figure: Figure, sheet: Sheet, place: tuple[float, float, float, float]) -> None:
+    """Draw the scale of the speed's colours.
+
+    Parameters
+    ----------
+    figure : Figure
+        The page.
+    sheet : Sheet
+        The map.
+    place : tuple of float
+        Left, bottom, width and height, as shares of the page.
+    """
+    scale = figure.add_axes(place)
     bar = figure.colorbar(ScalarMappable(sheet.colours, "viridis"), cax=scale)
     shown_speeds = [sheet.speeds[index] for index in spread(sheet.speeds.size, MOST_CURVES)]
     bar.set_ticks([speed for speed in shown_speeds if speed > 0.0], minor=False)
@@ -125,8 +151,21 @@ def _page(sheet: Sheet) -> Figure:
     bar.ax.yaxis.set_minor_locator(NullLocator())
     bar.ax.tick_params(length=2.0, pad=1.5)
     bar.set_label(f"entrainment speed, {SPEED.unit}", labelpad=1)
-    _legend(figure, sheet)
-    return figure
+
+
+def _thin(sheet: Sheet) -> list[tuple[float, str]]:
+    """Films that are too thin for the theory: below which [m], and why; those that the map has."""
+    found, roughness = sheet.dataset["minimum_film"].values, sheet.emap.surface.roughness
+    limits = ((roughness, BELOW_ROUGHNESS), (CONTINUUM, NO_CONTINUUM))
+    return [(limit, words) for limit, words in limits if np.any((found > 0.0) & (found < limit))]
+
+
+def _shade_thin(axes: Axes, sheet: Sheet, display: Display) -> None:
+    """Shade the films that are too thin for the theory."""
+    bottom, top = axes.get_ylim()
+    for limit, words in _thin(sheet):
+        axes.axhspan(bottom, display.value(limit), **THIN[words])
+    axes.set_ylim(bottom, top)
 
 
 def _small_multiples(figure: Figure, sheet: Sheet, temperatures: list[int], top: float) -> None:
@@ -146,7 +185,7 @@ def _small_multiples(figure: Figure, sheet: Sheet, temperatures: list[int], top:
     figure.text(
         0.057,
         top - 0.012,
-        f"{_contact_words(first)}, over temperature of the raceways",
+        f"{contact_words(first)}, over temperature of the raceways",
         fontsize=8.5,
         fontweight="bold",
     )
@@ -170,27 +209,54 @@ def _small_multiples(figure: Figure, sheet: Sheet, temperatures: list[int], top:
 def _heading(figure: Figure, emap: EHDMap, shown: int) -> None:
     """Write the title and, below it, what the page shows."""
     dataset, attributes = emap.dataset, emap.dataset.attrs
+    what, oil = what_is_mapped(emap)
+    rough = "" if emap.surface.smooth else ", smooth surfaces"
     at = typeset(TEMPERATURE.text(float(dataset["temperature"].values[shown])))
-    what = emap.bearing.title if emap.bearing else f"line contact, R = {emap.contacts[0].radius * 1e3:.4g} mm"
-    estimated = "pressure-viscosity estimated" if emap.lubricant.estimated else "data not verified"
-    unverified = "" if emap.lubricant.verified else f" ({estimated})"
-    oil = emap.lubricant.title if emap.lubricant.title.endswith("oil") else f"oil {emap.lubricant.title}"
-    _write(figure, 0.963, f"EHD contact map: {what}, {oil}{unverified}", 13, "bold")
-    _write(
+    write_line(figure, 0.963, f"EHD contact map: {what}, {oil}", 13, "bold")
+    write_line(
         figure,
         0.928,
         f"Per unit length of contact, at {at} over load and entrainment speed.  "
-        f"Solver {plain(attributes['solver'])}, structural law {plain(attributes['structural_law'])}.  "
+        f"Solver {plain(attributes['solver'])}, structural law {plain(attributes['structural_law'])}{rough}.  "
         f"Mapped: {span(dataset['load'].values, LOAD)}, {span(dataset['entrainment_speed'].values, SPEED)}, "
         f"{typeset(span(dataset['temperature'].values, TEMPERATURE))} of the raceways.",
         8,
     )
 
 
-def _write(
+def what_is_mapped(emap: EHDMap) -> tuple[str, str]:
+    """Return bearing or contact, and oil, in the words of a title.
+
+    Parameters
+    ----------
+    emap : EHDMap
+        The map.
+    """
+    what = emap.bearing.title if emap.bearing else f"line contact, R = {emap.contacts[0].radius * 1e3:.4g} mm"
+    estimated = "pressure-viscosity estimated" if emap.lubricant.estimated else "data not verified"
+    unverified = "" if emap.lubricant.verified else f" ({estimated})"
+    oil = emap.lubricant.title if emap.lubricant.title.endswith("oil") else f"oil {emap.lubricant.title}"
+    return what, f"{oil}{unverified}"
+
+
+def write_line(
     figure: Figure, height: float, text: str, size: float, weight: str = "normal", colour: str = "black"
 ) -> None:
-    """Write a line of the page; texts of a map are no formulas."""
+    """Write a line of the page; texts of a map are no formulas.
+
+    Parameters
+    ----------
+    figure : Figure
+        The page.
+    height : float
+        Place of the middle of the line, as a share of the page.
+    text : str
+        The line.
+    size : float
+        Size of its letters [pt].
+    weight, colour : str
+        Their weight and colour.
+    """
     figure.text(0.057, height, text, fontsize=size, fontweight=weight, color=colour, va="center", parse_math=False)
 
 
@@ -206,27 +272,40 @@ def _legend(figure: Figure, sheet: Sheet) -> None:
         fontsize=7.5,
         columnspacing=2.5,
     )
-    _write(figure, 0.014, _facts(sheet.dataset), 6.5, colour="0.35")
+    write_line(figure, 0.014, _facts(sheet.dataset, sheet.emap.surface.roughness), 6.5, colour="0.35")
 
 
 def _entries(sheet: Sheet) -> list[Line2D | Patch]:
     """Entries of the legend."""
-    dataset = sheet.dataset
-    status, filled = dataset["status"].values, dataset["filled"].values.astype(bool)
-    lost = ~np.isin(status, [int(known) for known in Status if known.usable])
     entries: list[Line2D | Patch] = [
         Line2D([], [], color="black", lw=0.8, ls=(0, (4, 2)), label="dry (structural law alone)")
     ]
     if sheet.field is not None:
         curve = "k, c, approach between the points (dots): films of the contact laws"
         entries.append(Line2D([], [], color="0.3", lw=1.0, marker=".", ms=3, label=curve))
+    entries += [Patch(label=words, **THIN[words]) for _, words in _thin(sheet)]
+    if any((sheet.dataset[name].values <= 0).any() and (sheet.dataset[name].values > 0).any() for name in _LOGARITHMIC):
+        entries.append(Line2D([], [], ls="", color="0.3", label="zero or negative", **BELOW))
+    return entries + mark_entries(sheet)
+
+
+def mark_entries(sheet: Sheet) -> list[Line2D | Patch]:
+    """Return the entries of a legend for what is marked in every panel.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        The map.
+    """
+    dataset = sheet.dataset
+    status, filled = dataset["status"].values, dataset["filled"].values.astype(bool)
+    lost = ~np.isin(status, [int(known) for known in Status if known.usable])
+    entries: list[Line2D | Patch] = []
     if sheet.extrapolated_from:
         where = f"viscosity extrapolated at some speed: above {fitted_pressure(dataset)}"
         entries.append(Patch(label=where, **HATCH))
     if (status == int(Status.ASYMPTOTE)).any():
         entries.append(Line2D([], [], ls="", mec="0.3", label=f"asymptote: {_limits(dataset)}", **ASYMPTOTE))
-    if any((dataset[name].values <= 0).any() and (dataset[name].values > 0).any() for name in _LOGARITHMIC):
-        entries.append(Line2D([], [], ls="", color="0.3", label="zero or negative", **BELOW))
     if (lost & filled).any():
         entries.append(Line2D([], [], ls="", label="no solution, filled from neighbours", **FILLED))
     if (lost & ~filled).any():
@@ -241,13 +320,11 @@ def _limits(dataset: xr.Dataset) -> str:
     return typeset("; ".join(causes[:2])) if causes else "a stated limit"
 
 
-def _facts(dataset: xr.Dataset) -> str:
+def _facts(dataset: xr.Dataset, roughness: float) -> str:
     """Return the line on how the map was made."""
     attributes = dataset.attrs
-    status = dataset["status"].values
-    counts = [
-        f"{np.count_nonzero(status == int(known))} {known.word}" for known in Status if (status == int(known)).any()
-    ]
+    found = status_counts(dataset, roughness)
+    counts = [f"{np.count_nonzero(here)} {words}" for words, here in found.items()]
     filled = int(np.count_nonzero(dataset["filled"].values))
     if filled:
         counts.append(f"{filled} filled")
@@ -260,12 +337,18 @@ def _facts(dataset: xr.Dataset) -> str:
     versions = record_from_json(attributes["package_versions"], "package_versions")
     estimates = f"Estimated relative error (95 % of points): {', '.join(errors)}.  " if errors else ""
     return (
-        f"{status.size} points: {', '.join(counts)}.  {estimates}"
+        f"{dataset['status'].size} points: {', '.join(counts)}.  {estimates}"
         f"ehdmaps {versions.get('ehdmaps', '')}, {plain(attributes.get('created', ''))[:10]}, "
         f"job {plain(attributes.get('job_name', ''))} {plain(attributes['job_sha256'])[:12]}"
     )
 
 
-def _contact_words(name: str) -> str:
-    """Return how a contact is called in a heading."""
+def contact_words(name: str) -> str:
+    """Return how a contact is called in a heading.
+
+    Parameters
+    ----------
+    name : str
+        Name of the contact in the map.
+    """
     return "Line contact" if name in schema.CONTACT_NAMES[1] else f"{name.capitalize()} contact"

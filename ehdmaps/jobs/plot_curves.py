@@ -48,15 +48,18 @@ class Sheet:
         The map.
     field : FilmField or None
         Films of its contact laws; None where it makes none.
+    derived : xarray.Dataset or None
+        Variables of its points that follow from it, and are drawn as its own.
     """
 
     emap: EHDMap
     field: FilmField | None
+    derived: xr.Dataset | None = None
 
-    @property
+    @cached_property
     def dataset(self) -> xr.Dataset:
-        """What the map holds."""
-        return self.emap.dataset
+        """What the map holds, and what is derived of it."""
+        return self.emap.dataset if self.derived is None else self.emap.dataset.assign(self.derived.data_vars)
 
     @property
     def speeds(self) -> FloatArray:

@@ -6,14 +6,20 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.report import ERRORS, NONE_STATED
+from ehdmaps.maps.rough_films import FILM_PARAMETER, FILM_SHARE, LEAST_SPEED, film_share
+from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.physics import hertz
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.film_limits import too_thin
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.solution import ContactSolution
+from ehdmaps.physics.roughness import SMOOTH, Surface
+from ehdmaps.physics.solution import ContactSolution, Status
 from ehdmaps.units import FILM, LENGTH, LOAD, MASS_FLOW, PRESSURE, ROLLING_FORCE, RPM, TEMPERATURE, Display
 
 _SOLUTION_FIELDS = (
@@ -37,7 +43,7 @@ _SOLUTION_FIELDS = (
 
 
 def point_record(
-    solution: ContactSolution, contact: LineContact, oil: Lubricant, point: OperatingPoint, frequency: float
+    solution: ContactSolution, contact: LineContact, job: Job, point: OperatingPoint, frequency: float
 ) -> dict[str, Any]:
     """Return one contact's solution as plain values, SI; None where there is no number.
 
@@ -47,19 +53,22 @@ def point_record(
         What the solver and the solids give.
     contact : LineContact
         The contact.
-    oil : Lubricant
-        The oil.
+    job : Job
+        What it belongs to: oil, and surfaces.
     point : OperatingPoint
         Load, entrainment speed, temperature.
     frequency : float
         [Hz].
     """
+    surface = job.surface or SMOOTH
     record: dict[str, Any] = {
         "contact": contact.name,
-        **point_place(contact, oil, point),
+        **point_place(contact, job.lubricant, point),
         "frequency": frequency,
         **_numbers(solution),
+        **_rough(solution, contact, job.lubricant, point, surface),
         "status": solution.status.word,
+        "film_note": too_thin(solution.minimum_film, surface.roughness),
         "reason": solution.reason,
     }
     return {
@@ -94,6 +103,22 @@ def _numbers(solution: ContactSolution) -> dict[str, Any]:
     values = {name: getattr(solution, name) for name in _SOLUTION_FIELDS}
     values["viscosity_extrapolated"] = int(solution.viscosity_extrapolated)
     return values
+
+
+def _rough(
+    solution: ContactSolution, contact: LineContact, oil: Lubricant, point: OperatingPoint, surface: Surface
+) -> dict[str, float]:
+    """Return what the roughness makes of the film; nothing between smooth surfaces."""
+    if surface.smooth:
+        return {}
+    layer = RoughLayer(surface, contact, oil, max(point.entrainment_speed, LEAST_SPEED))
+    place = (np.array([value]) for value in (point.load, point.entrainment_speed, point.temperature))
+    share = film_share(layer, np.full((1, 1, 1), solution.film_offset), *place)
+    return {
+        "roughness": surface.roughness,
+        FILM_PARAMETER: solution.minimum_film / surface.roughness,
+        FILM_SHARE: float(share.item()),
+    }
 
 
 def _groups(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> dict[str, float | None]:
@@ -132,6 +157,8 @@ def point_table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, 
     place = f"{LOAD.text(point.load)}, {_speed(job, point)}, {TEMPERATURE.text(point.temperature)}"
     if length is not None:
         place += f", slice of {LENGTH.text(length)} ({point.load * length:.5g} N)"
+    if job.surface is not None and not job.surface.smooth:
+        place += f", {job.surface.label} (films, k and c are those of smooth surfaces)"
     if records and records[0]["frequency"]:
         place += f", oscillating at {records[0]['frequency']:.6g} Hz"
     # a long status must not run into the next column
@@ -170,7 +197,7 @@ def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple
         return label, display.unit, values
 
     plain = Display("")
-    yield "status", "", [record["status"] for record in records]
+    yield "status", "", [words_of(record) for record in records]
     yield row("M", "M", plain)
     yield row("L", "L", plain)
     yield row("Hertz half-width", "hertz_half_width", FILM)
@@ -180,6 +207,9 @@ def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple
     yield row("film offset", "film_offset", FILM)
     yield row("central film", "central_film", FILM)
     yield row("minimum film", "minimum_film", FILM)
+    if FILM_PARAMETER in records[0]:
+        yield row("film over roughness", FILM_PARAMETER, plain)
+        yield row("film's share of load", FILM_SHARE, plain)
     yield row("rolling force", "rolling_force", ROLLING_FORCE)
     yield row("mass flow", "mass_flow", MASS_FLOW)
     yield row("stiffness k", "stiffness", Display("N/m2"))
@@ -191,6 +221,18 @@ def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple
         stated = [_stated(record, name) for record in records]
         yield f"error of {name.removesuffix('_error').replace('_', ' ')}", "", stated
     yield row("time to solve", "solve_seconds", Display("ms", 1e3))
+
+
+def words_of(record: dict[str, Any]) -> str:
+    """Return the status of a record; no film is plainly converged that is too thin for the theory.
+
+    Parameters
+    ----------
+    record : dict
+        Record of a contact, see `point_record`.
+    """
+    thin = record["film_note"] if record["status"] == Status.CONVERGED.word else ""
+    return f"{record['status']}, {thin}" if thin else str(record["status"])
 
 
 def _stated(record: dict[str, Any], error: str) -> float | str | None:

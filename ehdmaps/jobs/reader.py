@@ -14,6 +14,7 @@ from ehdmaps.jobs import solvers, toml_text
 from ehdmaps.jobs.axes import LOAD_AXIS, TEMPERATURE_AXIS, read_axis, read_speeds
 from ehdmaps.jobs.job import MOST_CHECKS, MOST_POINTS, Job
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
+from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.surface import read_surface
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
@@ -25,7 +26,7 @@ LONGEST_FILE = 1_000_000
 """Bytes of a job file; axes of a hundred thousand values still fit."""
 
 _SIGNATURES = (b"CDF", b"\x89HDF")
-_TABLES = ("schema", "bearing", "contact", "material", "lubricant", "surface", "grid", "solver")
+_TABLES = ("schema", "bearing", "contact", "material", "lubricant", "supply", "surface", "grid", "solver")
 
 
 def shipped_jobs() -> tuple[str, ...]:
@@ -114,6 +115,10 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
     bearing, contacts = read_contacts(top, law)
     oil_section = top.table("lubricant", "[lubricant]", required="a table with the name of an oil, or its data")
     oil = read_lubricant(oil_section) if oil_section else None
+    supply_section = top.table("supply", "[supply]")
+    supply = read_supply(supply_section) if supply_section else None
+    if supply_section:
+        supply_section.close()
     surface_section = top.table("surface", "[surface]")
     surface = read_surface(surface_section) if surface_section else None
     if surface_section:
@@ -136,6 +141,7 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
         bearing=bearing,
         contacts=contacts,
         lubricant=oil,
+        supply=supply,
         surface=surface,
         loads=loads,
         entrainment_speeds=speeds,

@@ -10,7 +10,7 @@ import xarray as xr
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.records import record_from_json
-from ehdmaps.physics.film_limits import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM, too_thin
+from ehdmaps.physics.film_limits import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
 from ehdmaps.physics.solution import Status
 from ehdmaps.units import (
     DAMPING,
@@ -52,22 +52,6 @@ def holes(dataset: xr.Dataset) -> int:
     """Return the number of points without a solution, filled or not."""
     usable = [int(status) for status in Status if status.usable]
     return int(np.count_nonzero(~np.isin(dataset["status"].values, usable)))
-
-
-def words_of(status: Status, film: float, roughness: float = 0.0) -> str:
-    """Return a status in words; no film is shown as plainly converged that is too thin for the theory.
-
-    Parameters
-    ----------
-    status : Status
-        Status of a point.
-    film : float
-        Its minimum film [m].
-    roughness : float
-        Combined rms roughness [m]; 0 where none is known.
-    """
-    thin = too_thin(film, roughness) if status is Status.CONVERGED else ""
-    return f"{status.word}, {thin}" if thin else status.word
 
 
 def status_counts(dataset: xr.Dataset, roughness: float = 0.0) -> dict[str, BoolArray]:

@@ -18,7 +18,7 @@ from ehdmaps.maps import schema
 
 _ATTRIBUTES = ("contacts", "geometry", "lubricant", "structural_law", schema.REFERENCE_CONTACT)
 
-_WHERE_STATED = (schema.SURFACE,)
+_WHERE_STATED = (schema.OIL_SUPPLY, schema.SURFACE)
 """Attributes that only some maps have: of the others the checksum is that of a table without them."""
 
 
@@ -70,7 +70,7 @@ def check_content(dataset: xr.Dataset, backbone: xr.Dataset | None, where: str) 
     stated = dataset.attrs.get(schema.CHECKSUM)
     if stated is not None and stated != content_sha256(dataset, backbone):
         raise MapError(
-            f"{where}: was changed since it was made: variables, contacts, geometry, oil, surface or group "
+            f"{where}: was changed since it was made: variables, contacts, geometry, oil, surface, oil supply or group "
             f"{schema.BACKBONE} do not match its attribute {schema.CHECKSUM}; generate it again; or, if the "
             "change is meant, delete that attribute, and the map counts as yours"
         )

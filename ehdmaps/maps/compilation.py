@@ -16,7 +16,7 @@ smooth: C1 with a stencil of 3 x 3 x 4, whose coefficients for both lie side by 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,7 +24,7 @@ from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
-from ehdmaps.maps.contact_curve import ContactCurve, Curve, FilmSamples
+from ehdmaps.maps.contact_curve import ContactCurve, Curve
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.low_loads import valley_loads
 from ehdmaps.maps.oil_layer import end_of_film, oil_layer
@@ -38,13 +38,11 @@ from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.roughness import SMOOTH, Surface
 
 _SCALE = 0.25
-_LAYERED_STEP = 0.02
+_LAYERED_STEP, _ROOT_STEP = 0.02, 0.1
+_FOOT = 0.1
 _MARGIN = 4
 _BEYOND = 2.0
 _WIDEST_CONTACT = 0.9
-
-Layer = Callable[[FilmSamples, FloatArray, FloatArray], FilmSamples]
-"""What changes the film of a contact, at these speeds [m/s] and temperatures [K], before its structure is added."""
 
 
 @dataclass(frozen=True)
@@ -98,8 +96,8 @@ def compile_table(
     held_load: float,
     resolution: Resolution | None = None,
     supply: OilSupply = FLOODED,
-    surface: Surface = SMOOTH,
     rolling: RollingFilm | None = None,
+    surface: Surface = SMOOTH,
 ) -> ApproachTable:
     """Table of one contact, or of several in series, without centrifugal load.
 
@@ -117,12 +115,12 @@ def compile_table(
         Highest load [N/m] at which the table must be exact.
     resolution : Resolution, optional
         Spacing of nodes.
-    supply : OilSupply
+    supply : OilSupply, optional
         Oil before each contact.
-    surface : Surface
-        Roughness of the surfaces.
     rolling : RollingFilm, optional
         Mass flow of the contacts, where it is known.
+    surface : Surface
+        Roughness of the surfaces.
 
     Raises
     ------
@@ -134,14 +132,14 @@ def compile_table(
     low, high = (1.0 / (temperature - COLDEST) for temperature in field.temperature_range)
     colds = _axis(high, low, 1e-3 * resolution.temperature)
     temperatures = COLDEST + 1.0 / colds
-    loads, scale = _alignment(contacts, lubricant, np.exp(log_speeds), temperatures, surface)
-    layers = [_layers(contact, lubricant, surface, field.speed_range[0]) for contact in contacts]
-    oil = supply.oil_layer, rolling
-    root, curve = _sampled(field, contacts, oil, layers, np.exp(log_speeds), temperatures, held_load, resolution)
+    us, layer = np.exp(log_speeds), supply.oil_layer
+    loads, scale = _alignment(contacts, lubricant, us, temperatures, surface.roughness)
+    slowest, rough = field.speed_range[0], () if surface.smooth else contacts
+    sharing = [RoughLayer(surface, contact, lubricant, slowest) for contact in rough]
+    root, curve = _sampled(field, contacts, us, temperatures, held_load, resolution, layer, rolling, sharing)
     offset = _approach_at(np.cbrt(loads), root, curve)
-    if not supply.flooded:
-        # The lift-off from the layer, where it is sharpest, stays at one s as the valley does.
-        distance = offset + sum(end_of_film(contact, supply.oil_layer) for contact in contacts)
+    if layer < math.inf:  # the lift-off from a layer is at one s
+        distance = offset + sum(end_of_film(contact, layer) for contact in contacts)
         scale = distance * float(np.min(scale / distance))
 
     stretched = np.arcsinh((curve.approach - offset) / scale)
@@ -162,11 +160,12 @@ def compile_table(
                 f"load at {math.exp(log_speeds[i]):.4g} m/s, {temperatures[j]:.2f} K; a law needs that; "
                 "look at that part of the map, solve it again with a finer grid"
             )
-        roots, slopes, ratios, within = root[:, i, j], root_slope[:, i, j], logs[:, i, j], nodes
+        samples, within = (line, root[:, i, j], root_slope[:, i, j], logs[:, i, j]), nodes
         if not supply.flooded:
-            line, roots, ratios = line[lifted:], roots[lifted:], ratios[lifted:]
-            slopes = _slackened(line, roots, slopes[lifted:], resolution.approach)
-            within = np.maximum(nodes, line[0])
+            foot = lifted if surface.smooth else int(np.searchsorted(root[:, i, j], _FOOT))
+            samples = _lifted_off(*samples, foot, resolution.approach)
+            within = np.maximum(nodes, samples[0][0])
+        line, roots, slopes, ratios = samples
         values[i, j, :, 0] = _continued_root(line, roots, slopes, nodes)
         values[i, j, :, 1] = _continued_log(line, ratios, within)
 
@@ -205,18 +204,17 @@ def _alignment(
     lubricant: Lubricant,
     speeds: FloatArray,
     temperatures: FloatArray,
-    surface: Surface,
+    roughness: float,
 ) -> tuple[FloatArray, FloatArray]:
     """Load at the bottom of the valley [N/m], and scale of the stretched approach there [m]; (n_u, n_T) each.
 
-    Asperities do not let the scale vanish.
+    Where films are thinner than the roughness, that sets the scale.
     """
     most = min(highest_structural_load(contact) for contact in contacts)
     valleys = [valley_loads(contact, lubricant, speeds, temperatures) for contact in contacts]
     loads = np.minimum(np.exp(np.mean(np.log(valleys), axis=0)), most)
     compliance = sum(np.asarray(contact.structural_compliance(loads)) for contact in contacts)
-    scale = _SCALE * loads * compliance
-    return loads, scale if surface.smooth else np.hypot(scale, len(contacts) * surface.roughness)
+    return loads, np.hypot(_SCALE * loads * compliance, len(contacts) * roughness)
 
 
 def _approach_at(wanted: FloatArray, root: FloatArray, curve: Curve) -> FloatArray:
@@ -231,20 +229,16 @@ def _approach_at(wanted: FloatArray, root: FloatArray, curve: Curve) -> FloatArr
     return offset
 
 
-def _layers(contact: LineContact, lubricant: Lubricant, surface: Surface, slowest: float) -> list[Layer]:
-    """What comes between the film of a map and the structure of a contact, in this order."""
-    return [] if surface.smooth else [RoughLayer(surface, contact, lubricant, slowest)]
-
-
 def _sampled(
     field: FilmField,
     contacts: Sequence[LineContact],
-    oil: tuple[float, RollingFilm | None],
-    layers: Sequence[Sequence[Layer]],
     speeds: FloatArray,
     temperatures: FloatArray,
     held_load: float,
     resolution: Resolution,
+    layer: float = math.inf,
+    rolling: RollingFilm | None = None,
+    sharing: Sequence[RoughLayer] = (),
 ) -> tuple[FloatArray, Curve]:
     """Samples of g and of the summed curve, from below lift-off to beyond the held load."""
     curves = [ContactCurve(field, contact, speeds, temperatures) for contact in contacts]
@@ -253,6 +247,8 @@ def _sampled(
     first = np.cbrt(begins)
     faded = 0.7 * np.cbrt(np.min([curve.fade_load for curve in curves], axis=0))
     linear = np.linspace(-0.6, 1.0, 97)[:, None, None] * faded
+    if sharing:
+        linear = _dense_at_zero(faded, min(rough.least_root for rough in sharing))
     tail_range = float(np.max(np.log(first / faded)))
     count = max(8, math.ceil(3.0 * tail_range / (2.0 * resolution.log_load)))
     part = np.linspace(0.0, 1.0, count + 1)[1:-1, None, None]
@@ -268,13 +264,27 @@ def _sampled(
     )
     known = np.concatenate((low_loads, mapped_loads))
     films = [curve.film(tail, known, beyond_loads) for curve in curves]
-    for i, own in enumerate(layers):
-        if oil[0] < math.inf:
-            films[i] = oil_layer(contacts[i], oil[0], curves[i].tail, oil[1], speeds, temperatures)(films[i])
-        for layer in own:
-            films[i] = layer(films[i], speeds, temperatures)
+    if layer < math.inf:
+        films = [
+            oil_layer(contact, layer, curve.tail, rolling, speeds, temperatures)(film)
+            for contact, curve, film in zip(contacts, curves, films, strict=True)
+        ]
+    if sharing:
+        films = [rough(film, speeds, temperatures) for rough, film in zip(sharing, films, strict=True)]
     total = _summed([curve.with_structure(film) for curve, film in zip(curves, films, strict=True)])
     return films[0].root, total
+
+
+def _dense_at_zero(end: FloatArray, unit: float) -> FloatArray:
+    """Values of g from -0.6 end through zero to `end` (n_u, n_T): even steps about zero, then even in the logarithm.
+
+    Asperities begin to carry within the unit.
+    """
+    below, above = (np.arcsinh(part * end / unit) for part in (0.6, 1.0))
+    counts = (max(2, math.ceil(float(np.max(reach)) / _ROOT_STEP)) for reach in (below, above))
+    shares = [np.linspace(0.0, 1.0, count + 1)[1:, None, None] for count in counts]
+    lower, upper = (unit * np.sinh(share * reach) for share, reach in zip(shares, (below, above), strict=True))
+    return np.concatenate((-lower[::-1], np.zeros((1, *end.shape)), upper))
 
 
 def _log_range(low: float, high: float, step: float) -> FloatArray:
@@ -301,13 +311,20 @@ def _summed(curves: Sequence[Curve]) -> Curve:
     return total
 
 
-def _slackened(line: FloatArray, root: FloatArray, slope: FloatArray, step: float) -> FloatArray:
-    """Slopes dg/ds of samples from lift-off, g = 0, the first one no steeper than over two nodes of a table.
+def _lifted_off(
+    line: FloatArray, root: FloatArray, slope: FloatArray, log_ratio: FloatArray, lifted: int, step: float
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Samples of s, g, dg/ds and ln(c/w) of a contact on a layer, from its lift-off on.
 
-    Where a layer ends, g rises with an almost vertical tangent, which no table resolves.
+    There, g[lifted] is 0, or what is left of a foot.
+
+    Where a layer ends, g rises with an almost vertical tangent, which no table resolves: below, it goes on with the
+    slope that it has over two nodes. So goes the foot that asperities give it, of less than a thousandth of 1 N/m.
     """
-    over_two = float(np.interp(line[0] + 2.0 * step, line, root)) / (2.0 * step)
-    return np.concatenate(([min(float(slope[0]), over_two)], slope[1:]))
+    line, root, slope, log_ratio = (values[lifted:] for values in (line, root, slope, log_ratio))
+    steepest = float(np.interp(line[0] + 2.0 * step, line, root)) / (2.0 * step)
+    least = min(float(slope[0]), steepest) if root[0] == 0.0 else steepest
+    return line, root, np.concatenate(([least], slope[1:])), log_ratio
 
 
 def _continued_root(line: FloatArray, root: FloatArray, slope: FloatArray, nodes: FloatArray) -> FloatArray:

@@ -25,6 +25,7 @@ from ehdmaps.maps.records import (
     contacts_from_json,
     contacts_of,
     lubricant_from_json,
+    supply_from_json,
     surface_from_json,
     surface_json,
 )
@@ -145,6 +146,12 @@ class EHDMap:
         return oil
 
     @cached_property
+    def supply(self) -> OilSupply:
+        """The oil supply that the job of the map states, flooded where it states none; points are flooded anyway."""
+        stated = self.dataset.attrs.get(schema.OIL_SUPPLY)
+        return FLOODED if stated is None else supply_from_json(stated)
+
+    @cached_property
     def surface(self) -> Surface:
         """Surfaces that the job of the map states, smooth where it states none; its points are those of smooth ones."""
         stated = self.dataset.attrs.get(schema.SURFACE)
@@ -171,7 +178,7 @@ class EHDMap:
         outside : {"error", "clamp", "asymptote"}
             What happens outside the map, see `ContactLaw`.
         supply : OilSupply, optional
-            Oil before each contact; flooded if left out.
+            Oil before each contact; what the job of the map states if left out, see `supply`.
         surface : Surface, optional
             Roughness of the surfaces; that of the map's job if left out, smooth where it states none.
 
@@ -196,7 +203,7 @@ class EHDMap:
             self.film_field(names),
             outside,
             rolling=self.rolling_film,
-            supply=supply or FLOODED,
+            supply=supply or self.supply,
             surface=self.surface if surface is None else surface,
         )
 

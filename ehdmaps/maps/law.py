@@ -78,8 +78,8 @@ class ContactLaw:
         Spacing of the nodes of the table.
     rolling : RollingFilm, optional
         Rolling force and mass flow of the contacts, where the map holds them.
-    supply : OilSupply
-        Oil before each contact, see `ehdmaps.maps.oil_layer`.
+    supply : OilSupply, optional
+        Oil before each contact; flooded if left out. See `ehdmaps.maps.oil_layer`.
     surface : Surface
         Roughness of the surfaces: film and asperities share the load, see `ehdmaps.maps.rough_layer`. The law then
         has a table down to a speed without a film, and goes over into the rough dry contact at standstill.
@@ -363,7 +363,7 @@ class ContactLaw:
         return LockedFactors(math.log(lowest), (loads.size - 1) / math.log(highest / lowest), factors)
 
     def _films(self, contact: LineContact, loads: FloatArray, u: float, T: float) -> tuple[FloatArray, FloatArray]:
-        """Film offset [m] and film compliance [m2/N] of a contact at known loads, within the map; (n,)."""
+        """Film offset [m] and film compliance [m2/N] of a contact at loads within the map, u and T too; (n,)."""
         speeds, kelvins, every = np.array([u]), np.array([T]), loads[:, None, None]
         if self.supply.flooded:
             films = self._field.films(contact.name, every, speeds, kelvins)
@@ -414,8 +414,8 @@ class ContactLaw:
             self._held_load,
             self._resolution,
             FLOODED if self._dry else self.supply,
-            self.surface,
             self.rolling,
+            self.surface,
         )
 
     def _check_centrifugal(self, values: FloatArray) -> None:

@@ -15,6 +15,7 @@ from ehdmaps.errors import InputError, MapError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.pressure_viscosity import law_from_record
 from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import Material
@@ -150,6 +151,31 @@ def lubricant_from_json(text: str) -> Lubricant:
         )
     except _UNREADABLE as error:
         raise _broken("lubricant", error) from error
+
+
+def supply_from_json(text: str) -> OilSupply:
+    """Oil supply of a map, from its attribute `oil_supply`: the fields of an `OilSupply`, "inf" for infinity.
+
+    Raises
+    ------
+    MapError
+        If the text is no such record.
+
+    Examples
+    --------
+    >>> supply_from_json('{"lubrication": "flooded", "oil_layer": "inf"}').flooded
+    True
+    """
+    try:
+        record = read_json(text, "oil_supply")
+        if set(record) != {"oil_layer", "lubrication"}:
+            raise KeyError(", ".join(map(str, record)))
+        layer = math.inf if record["oil_layer"] == "inf" else record["oil_layer"]
+        if isinstance(layer, bool):
+            raise TypeError(f"got the layer {layer!r}")
+        return OilSupply(layer, record["lubrication"])
+    except _UNREADABLE as error:
+        raise _broken("oil_supply", error) from error
 
 
 def surface_json(surface: Surface) -> str:

@@ -19,7 +19,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -137,28 +136,29 @@ class RollingFilm:
         T = float(np.clip(temperature, *self._temperatures))
         return mass / (self._lubricant.at(T).density * abs(entrainment_speed))
 
-    def flow_line(self, contact: str, lowest_load: float, speeds: FloatArray, temperatures: FloatArray) -> FlowLine:
-        """Mass flow over density at rest and speed, from a load to the highest of the map.
+    def flow_film(self, contact: str, lowest_load: float, speeds: FloatArray, temperatures: FloatArray) -> CubicSpline:
+        """Mass flow over density at rest and speed, as ln of it [m] over ln(w), up to the highest load of the map.
 
         Parameters
         ----------
         contact : str
             Name of a contact of the map.
         lowest_load : float
-            Where the line begins [N/m].
+            Load at which the spline begins [N/m], > 0.
         speeds, temperatures : array (n_u,), (n_T,)
-            Entrainment speeds [m/s], > 0, and temperatures [K].
+            Entrainment speeds [m/s], > 0, and temperatures [K]; values of the spline are (n_u, n_T).
         """
-        line, highest = self._contacts[contact], self._loads[1]
-        loads = np.geomspace(lowest_load, highest, 4 + math.ceil(math.log(highest / lowest_load) / _FLOW_STEP))
+        line, low, high = self._contacts[contact], lowest_load, self._loads[1]
+        loads = np.geomspace(low, high, 4 + math.ceil(math.log(high / low) / _FLOW_STEP))
         logs = np.empty((loads.size, speeds.size, temperatures.size))
         for j, speed in enumerate(speeds.tolist()):
             for k, kelvin in enumerate(temperatures.tolist()):
                 state = self._lubricant.at(kelvin)
                 number = moes_speed_number(speed, state.viscosity, line.radius, line.reduced_modulus)
-                film = math.log(line.radius * math.sqrt(number))
-                logs[:, j, k] = self._logarithms(line, loads, speed, kelvin)[1] + film
-        return FlowLine(CubicSpline(np.log(loads), logs))
+                logs[:, j, k] = self._logarithms(line, loads, speed, kelvin)[1] + math.log(
+                    line.radius * math.sqrt(number)
+                )
+        return CubicSpline(np.log(loads), logs)
 
     def _found(self, which: int, name: str, load: npt.ArrayLike, speed: float, temperature: float) -> FloatArray:
         """One of both, in SI."""
@@ -198,36 +198,6 @@ class RollingFilm:
         M, _ = moes_groups(loads, speed, viscosity, 0.0, contact.radius, contact.reduced_modulus)
         force = RIGID_ROLLING_CONSTANT * np.sqrt(0.5 * M)
         return np.log(np.stack([force, RIGID_FLOW_NUMBER / M]))
-
-
-@dataclass(frozen=True)
-class FlowLine:
-    """ln of the flow m [m] over ln(w), at pairs of speed and temperature.
-
-    Attributes
-    ----------
-    spline : CubicSpline
-        ln(m) over ln(w) at even steps, values (n_u, n_T).
-    """
-
-    spline: CubicSpline
-
-    def at(self, log_load: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """ln(m) and its derivative by ln(w), (n, n_u, n_T); straight above the map.
-
-        Parameters
-        ----------
-        log_load : array (n, n_u, n_T)
-            ln(w) of each pair of speed and temperature.
-        """
-        places = self.spline.x
-        cell = np.clip(np.searchsorted(places, log_load, side="right") - 1, 0, places.size - 2)
-        held = np.minimum(log_load, places[-1])
-        part = held - places[cell]
-        rows, columns = np.ogrid[: log_load.shape[1], : log_load.shape[2]]
-        a, b, c, d = self.spline.c[:, cell, rows, columns]
-        slope = c + part * (2.0 * b + 3.0 * part * a)
-        return d + part * (c + part * (b + part * a)) + slope * (log_load - held), slope
 
 
 def rolling_film(

@@ -18,6 +18,9 @@ FILM_PARAMETER, FILM_SHARE = "film_parameter", "film_share"
 BOUNDARY, MIXED = 1.0, 3.0
 """Lambda below which lubrication is usually called boundary, and mixed: asperities carry most, or some, of the load."""
 
+LEAST_SPEED = 1e-9
+"""Speed that stands for a standstill where one above zero is needed [m/s]."""
+
 
 def rough_variables(
     dataset: xr.Dataset, contacts: tuple[LineContact, ...], lubricant: Lubricant, surface: Surface
@@ -45,7 +48,7 @@ def rough_variables(
     loads, speeds, temperatures = (ordered[name].values.astype(np.float64) for name in DIMS[1:])
     share = np.empty(tuple(ordered.sizes[name] for name in DIMS))
     for i, contact in enumerate(contacts):
-        layer = RoughLayer(surface, contact, lubricant, max(float(speeds[-1]), 1e-9))
+        layer = RoughLayer(surface, contact, lubricant, max(float(speeds[-1]), LEAST_SPEED))
         share[i] = film_share(layer, ordered["film_offset"].values[i], loads, speeds, temperatures)
     variables = {
         FILM_PARAMETER: (

@@ -302,6 +302,13 @@ class RoughLayer:
     lubricant: Lubricant
     slowest: float
 
+    @property
+    def least_root(self) -> float:
+        """Cube root of the load at which asperities are asked no less than `LEAST_PRESSURE`."""
+        contact = self.contact
+        at_one = 0.25 * math.pi * float(max_pressure(1.0, contact.radius, contact.reduced_modulus))
+        return float((LEAST_PRESSURE / at_one) ** (2.0 / 3.0))
+
     def __call__(self, film: FilmSamples, speeds: FloatArray, temperatures: FloatArray) -> FilmSamples:
         """Film between rough surfaces, in the place of that between smooth ones.
 
@@ -333,8 +340,7 @@ class RoughLayer:
         """
         contact, modulus, sigma = self.contact, self.contact.reduced_modulus, self.surface.roughness
         # p ~ w^(1/2) of Hertz above the least pressure, and so that it still rises where there is no load
-        at_one = 0.25 * math.pi * max_pressure(1.0, contact.radius, modulus)
-        least = (LEAST_PRESSURE / at_one) ** (2.0 / 3.0)
+        least = self.least_root
         logs = math.log(LEAST_PRESSURE) + 1.5 * np.arcsinh(0.5 * root / least)
         by_root = 1.5 / np.sqrt(root**2 + 4.0 * least**2)
         # p_H = sqrt(w E'/(2 pi R))

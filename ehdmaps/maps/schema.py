@@ -286,6 +286,12 @@ NUMBERS = ("lubricant_verified", "structural_scaling")
 CHECKSUM = "content_sha256"
 """Attribute with the checksum of everything that a law or a reader of the map relies on; see `checksum`."""
 
+OIL_SUPPLY = "oil_supply"
+"""Attribute of a map whose job states the oil supply of its contacts, JSON: what its laws have by default.
+
+The points of a map are those of flooded films, whatever it says.
+"""
+
 SURFACE = "surface"
 """Attribute of a map whose job states rough surfaces, JSON: what its laws have by default.
 
@@ -300,6 +306,7 @@ TEXTS = (
     "solver_version",
     "openfoam_version",
     "openfoam_build",
+    OIL_SUPPLY,
     SURFACE,
     CHECKSUM,
 )

@@ -85,8 +85,13 @@ class OilSupply:
         return self.oil_layer == math.inf
 
     @property
+    def short(self) -> str:
+        """Shortest name, for legends: the kind of lubrication, or the layer."""
+        return self.lubrication or self.label
+
+    @property
     def label(self) -> str:
-        """Name for tables, legends and messages."""
+        """Name for tables and messages."""
         if self.flooded:
             return "flooded"
         layer = f"oil layer {1e6 * self.oil_layer:.3g} um"

@@ -23,7 +23,7 @@ from mbs.model.equilibrium import equilibrium
 from mbs.output.campbell_data import campbell_dataset
 from mbs.output.results import described
 from mbs.output.state_data import with_states
-from mbs.scene.assembly import Model, law_attributes
+from mbs.scene.assembly import Model, law_attributes, supply_attributes
 from mbs.scene.fields import HERTZ
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings, RunUp
@@ -155,7 +155,8 @@ def campbell(
     dataset = with_states(dataset, [states_of(entry.case.model) for entry in runs], ("law",))
     # The dataset says of each law what it is.
     laws = "; ".join(f"{entry.case.label}: {entry.case.model.law}" for entry in runs)
-    dataset = described(dataset, **{**law_attributes(runs[0].case.model), "law": laws})
+    supplies = supply_attributes([(entry.case.label, entry.case.model) for entry in runs])
+    dataset = described(dataset, **{**law_attributes(runs[0].case.model), "law": laws, **supplies})
     return CampbellResult(settings, sensor, course, tuple(orders), tuple(runs), tuple(failed), dataset)
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from ehdmaps.errors import InputError
 from ehdmaps.units import TEMPERATURE
 from mbs.scene.assembly import Model
+from mbs.scene.contact_laws import supply_words
 from mbs.scene.fields import MICROMETRE
 
 
@@ -79,6 +80,12 @@ def span(values: Sequence[float], unit: str) -> str:
     """
     low, high = f"{min(values):.4g}", f"{max(values):.4g}"
     return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
+
+
+def common_supply(models: Iterable[Model]) -> str:
+    """The oil supply of all models whose law has films, for titles; empty where they differ, and without films."""
+    found = {supply_words(model.supplies) for model in models if model.supplies}
+    return f"films {found.pop()}" if len(found) == 1 else ""
 
 
 def common_clearance(model: Model) -> float:

@@ -18,7 +18,7 @@ from mbs.linearised.sweep_result import Sweep
 from mbs.output.results import described
 from mbs.output.state_data import with_states
 from mbs.output.sweep_data import sweep_dataset
-from mbs.scene.assembly import Model, law_attributes
+from mbs.scene.assembly import Model, law_attributes, supply_attributes
 from mbs.settings import SweepRange
 
 
@@ -148,5 +148,6 @@ def _dataset(cases: Sequence[Case], found: Sequence[Sweep]) -> xr.Dataset:
         values = np.stack([both[part] for both in losses])
         attributes = {"units": unit, "long_name": f"{words}; none without a map with rolling forces"}
         dataset[name] = (("case", "speed", "bearing"), values, attributes)
+    supplies = supply_attributes([(case.label, case.model) for case in cases])
     dataset = with_states(dataset, [[states_of(there) for there in row] for row in models], ("case", "speed"))
-    return described(dataset, **{**law_attributes(cases[0].model), "law": "; ".join(named)})
+    return described(dataset, **{**law_attributes(cases[0].model), "law": "; ".join(named), **supplies})

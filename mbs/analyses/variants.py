@@ -24,7 +24,7 @@ from mbs.analyses.varied import VARIED, LawChoice, Subject, Value
 from mbs.model.elements import Sensor
 from mbs.output.results import described
 from mbs.output.variants_data import variants_dataset
-from mbs.scene.assembly import Model
+from mbs.scene.assembly import Model, supply_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings, RunUp
 from mbs.spectral.campbell import campbell
@@ -208,6 +208,7 @@ def variants(
         scene=scene.name,
         scene_toml=scene.text,
         law=f"{labels[0]}: {base[0].law}; {labels[1]}: {base[1].law}",
+        **supply_attributes(list(zip(labels, base, strict=True))),
     )
     course = runs[pairs[0][0]].course
     return VariantsResult(settings, course, base, labels, sensors, rows, len(outcomes), dataset)
@@ -259,11 +260,13 @@ def _planned(
 
 def _place(subject: Subject, settings: CampbellSettings, runs: list[_Run], places: dict[str, int]) -> int:
     """Where the run of a subject stands among all runs; it is appended where it is a new one."""
-    asked = f"{_law_content(subject)} {subject.law.films} {subject.clearance!r} {subject.scene!r}"
+    asked = (
+        f"{_law_content(subject)} {subject.law.films} {subject.law.supply!r} {subject.clearance!r} {subject.scene!r}"
+    )
     if asked not in places:
         model = subject.model()
-        # Films and clearance that were not named are those that the model has.
-        same = f"{_law_content(subject)} {model.memory} {model.scene!r}"
+        # Films, oil supply and clearance that were not named are those that the model has.
+        same = f"{_law_content(subject)} {model.memory} {model.supplies!r} {model.scene!r}"
         if same not in places:
             problems: list[str] = []
             course = run_course(subject.scene, settings.highest, problems)
@@ -282,7 +285,7 @@ def _place(subject: Subject, settings: CampbellSettings, runs: list[_Run], place
 
 
 def _law_content(subject: Subject) -> str:
-    """The law of a subject without its films, as a text: the same text, the same law."""
+    """The law of a subject without its films and their oil supply, as a text: the same text, the same law."""
     return f"{subject.law.name} {id(subject.law.emap)}"
 
 

@@ -12,7 +12,9 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.supply import supply_from_text
 from ehdmaps.maps.emap import EHDMap
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from ehdmaps.units import TEMPERATURE, Display, closest, quantity
 from mbs.model.relaxation import Films
@@ -47,12 +49,15 @@ class LawChoice:
         The map of the law `map`.
     films : {"slow", "memory"} or None
         Which films it is to have.
+    supply : OilSupply or None
+        Oil supply of all bearings; None for that of the scene, or of the map.
     """
 
     label: str
     name: str | None
     emap: EHDMap | None = None
     films: Films | None = None
+    supply: OilSupply | None = None
 
     @property
     def has_films(self) -> bool:
@@ -80,7 +85,8 @@ class Subject:
 
     def model(self) -> Model:
         """The model; see `mbs.scene.assembly.assemble`."""
-        return assemble(self.scene, self.law.name, self.law.emap, self.clearance, self.law.films)
+        law = self.law
+        return assemble(self.scene, law.name, law.emap, self.clearance, law.films, law.supply)
 
 
 @dataclass(frozen=True)
@@ -186,6 +192,18 @@ def _with_films(subject: Subject, value: Value) -> Subject:
     return dataclasses.replace(subject, law=dataclasses.replace(subject.law, films=films))
 
 
+def _supply(text: str) -> Value:
+    """Read an oil supply; the value is its text."""
+    supply_from_text(text)
+    return text
+
+
+def _with_supply(subject: Subject, value: Value) -> Subject:
+    """A subject with another oil supply of all bearings."""
+    law = dataclasses.replace(subject.law, supply=supply_from_text(str(value)))
+    return dataclasses.replace(subject, law=law)
+
+
 def _with_law(subject: Subject, value: Value) -> Subject:
     """A subject with another law, without a map."""
     return dataclasses.replace(subject, law=LawChoice(law_label(str(value)), str(value)))
@@ -227,6 +245,7 @@ VARIED = {
             _of_scene(changes.with_temperature),
         ),
         VariedKey("films", "slow", "films", _films, str, _with_films),
+        VariedKey("supply", "oil air", "films", _supply, str, _with_supply),
         VariedKey("housing-damping", "0.5", "both", _factor, _times, _of_scene(changes.with_housing_damping)),
         VariedKey(
             "ramp",

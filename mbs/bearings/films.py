@@ -171,8 +171,8 @@ class FormulaFilms:
     @property
     def words(self) -> str:
         """The formulas."""
-        words = f"films: Moes' formula (minimum: Dowson-Higginson, Martin) for {self.lubricant.name}"
-        return words if self.supply.flooded else f"{words}, {self.supply.label}"
+        formulas = "Moes' formula (minimum: Dowson-Higginson, Martin)"
+        return f"films: {formulas} for {self.lubricant.name}, {self.supply.label}"
 
     def state(self, side: int, load: FloatArray, entrainment_speed: float, temperature: float) -> ContactState:
         """Hertz' pressure and films by formula, zero at standstill; see `FilmSource.state`."""
@@ -213,8 +213,8 @@ class MapFilms:
     ----------
     emap : EHDMap
         Map of a bearing.
-    supply : OilSupply
-        Oil before each contact; flooded if left out.
+    supply : OilSupply, optional
+        Oil before each contact; what the job of the map states if left out.
 
     Raises
     ------
@@ -223,7 +223,7 @@ class MapFilms:
     """
 
     emap: EHDMap
-    supply: OilSupply = FLOODED
+    supply: OilSupply | None = None
     _formula: FormulaFilms = field(init=False)
 
     def __post_init__(self) -> None:
@@ -242,8 +242,12 @@ class MapFilms:
     @property
     def words(self) -> str:
         """The map."""
-        words = f"films of the map, {self.lubricant.name}"
-        return words if self.supply.flooded else f"{words}, {self.supply.label}"
+        return f"films of the map, {self.lubricant.name}, {self.in_force.label}"
+
+    @property
+    def in_force(self) -> OilSupply:
+        """The oil supply: what was given, else what the job of the map states."""
+        return self.supply or self.emap.supply
 
     @property
     def lubricant(self) -> Lubricant:
@@ -268,9 +272,9 @@ class MapFilms:
         central, minimum = (ratios[..., part] * plain.central_film for part in (1, 2))
         state = ContactState(plain.hertz_pressure, pressure, central, minimum, rolling)
         if found is None:
-            return on_supply(state, RIGID_FLOW * central, self.supply)
+            return on_supply(state, RIGID_FLOW * central, self.in_force)
         flow = found.flow(SIDES[side], np.maximum(load, 0.0), entrainment_speed, temperature)
-        return on_supply(state, flow, self.supply)
+        return on_supply(state, flow, self.in_force)
 
     def _ratios(self, side: int, load: FloatArray, speed: float, temperature: float) -> FloatArray:
         """Ratios (n, 3) at positive loads, held at the edges of the map."""

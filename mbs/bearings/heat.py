@@ -255,8 +255,8 @@ def _too_hot(name: str, slope: FloatArray, friction: float, left: float) -> Anal
     words = "thermal run-away" if np.linalg.eigvals(slope).real.min() <= 0.0 else "too hot"
     return AnalysisError(
         f"bearing {name!r}: {words}: no heat balance below {TEMPERATURE.text(HOTTEST)}, where its friction of "
-        f"{friction:.4g} W is {left:.4g} W more than its heat paths carry away; give it more conduction or oil, or more "
-        "clearance or looser fits if it loses its clearance as it warms"
+        f"{friction:.4g} W is {left:.4g} W more than its heat paths carry away; give it more conduction or oil, or "
+        "more clearance or looser fits if it loses its clearance as it warms"
     )
 
 

@@ -204,7 +204,7 @@ def formula(
     kind: LawKind = "series",
     outside: OutsidePolicy = "error",
     supply: OilSupply | None = None,
-    surface: Surface = SMOOTH,
+    surface: Surface | None = None,
 ) -> ContactLaw:
     """Law of a film formula over a range of loads, speeds and temperatures; takes some seconds.
 
@@ -218,10 +218,12 @@ def formula(
         Lowest and highest [N/m], [m/s], [K], as of a map.
     film_formula, structural_law
         See `ehdmaps.physics.closed_form.FormulaSolver` and `ehdmaps.physics.approach`.
-    kind, outside, surface
+    kind, outside
         See `ContactLaw`.
     supply : OilSupply, optional
         Oil before each contact; flooded if left out.
+    surface : Surface, optional
+        Roughness of the surfaces; smooth if left out.
 
     Raises
     ------
@@ -247,7 +249,7 @@ def formula(
     films = [_films(contact, lubricant, FormulaSolver(film_formula), loads, speeds, temperatures) for contact in chosen]
     offset, compliance, loss = (np.stack(part) for part in zip(*films, strict=True))
     field = GridField(chosen, lubricant, loads, speeds, temperatures, offset, compliance, loss)
-    return ContactLaw(kind, chosen, lubricant, field, outside, supply=supply or FLOODED, surface=surface)
+    return ContactLaw(kind, chosen, lubricant, field, outside, supply=supply or FLOODED, surface=surface or SMOOTH)
 
 
 def _films(

@@ -17,11 +17,13 @@ from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.opening import open_given
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.reader import LONGEST_FILE, read_job, shipped_jobs
+from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.table import Table
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
@@ -29,7 +31,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import SIDES, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.fits import Mounting, operating_clearance
 from mbs.bearings.state import BearingState
-from mbs.commands.cases import NO_MAP, read_clearance
+from mbs.commands.cases import NO_MAP, read_clearance, read_supplies
 from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, result_kind
 from mbs.scene.contact_laws import HERTZ_FORMS, geometry_problems, hertz_damper, structure_words
 from mbs.scene.fields import FORCE, MICROMETRE
@@ -61,6 +63,8 @@ class BearingRequest:
         The map.
     oil : Lubricant
         The oil.
+    supply : OilSupply
+        Oil supply of the contacts.
     films : FilmSource
         Pressures and films.
     loads : tuple of float
@@ -79,6 +83,7 @@ class BearingRequest:
     law: str
     emap: EHDMap | None
     oil: Lubricant
+    supply: OilSupply
     films: FilmSource
     loads: tuple[float, ...]
     direction: tuple[float, float]
@@ -95,11 +100,12 @@ class BearingRequest:
 
 @dataclass(frozen=True)
 class _Given:
-    """The bearing argument: geometry, material, and the oil where the file names one."""
+    """The bearing argument: geometry, material, and oil and oil supply where the file states them."""
 
     geometry: BearingGeometry
     material: Material
-    oil: Lubricant | None
+    oil: Lubricant | None = None
+    supply: OilSupply | None = None
 
 
 def read_request(arguments: argparse.Namespace) -> BearingRequest:
@@ -147,6 +153,7 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     if bearing is not None and emap is not None:
         problems += geometry_problems("the bearing", bearing.geometry, emap)
     oil = _oil(arguments, given, emap, temperature, problems)
+    supply = _supply(arguments.supply or [], given, emap, problems)
     outputs = (
         Output("-o", arguments.output, result_kind(arguments.output)),
         Output("--plot", arguments.plot, FIGURE),
@@ -155,12 +162,13 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     if problems or bearing is None or given is None or oil is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     contacts = bearing.geometry.contacts(given.material, "iso16281")
-    films = MapFilms(emap) if emap is not None else FormulaFilms(contacts, oil)
+    films = MapFilms(emap, supply) if emap is not None else FormulaFilms(contacts, oil, supply)
     return BearingRequest(
         bearing=bearing,
         law=law,
         emap=emap,
         oil=oil,
+        supply=supply,
         films=films,
         loads=loads,
         direction=direction,
@@ -170,7 +178,8 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
         description=BearingDescription(
             bearing=bearing,
             law=_law_words(law, emap, oil),
-            films=films.words + ("" if oil.verified else " (unverified data)"),
+            films=films.words + ("" if oil.verified else " (unverified data of the oil)"),
+            supply=supply,
             direction=math.degrees(math.atan2(direction[1], direction[0])),
             temperature=temperature,
             roughness=roughness,
@@ -210,7 +219,7 @@ def _law_words(law: str, emap: EHDMap | None, oil: Lubricant) -> str:
 def _bearing(source: str, problems: list[str]) -> _Given | None:
     """The bearing of a name, a shipped job or a file."""
     if source in BEARINGS:
-        return _Given(BEARINGS[source], STEEL, None)
+        return _Given(BEARINGS[source], STEEL)
     allowed = f"{', '.join(BEARINGS)}, or a TOML file with [bearing], such as a job"
     if source not in shipped_jobs() and not ("\0" not in source and os.path.isfile(source)):
         problems.append(f"BEARING: got {short(source)}{closest(source, tuple(BEARINGS))}; allowed: {allowed}")
@@ -223,7 +232,7 @@ def _bearing(source: str, problems: list[str]) -> _Given | None:
 
 
 def _from_file(source: str) -> _Given:
-    """The bearing of a job, or of a file that holds no more than the bearing, its material and its oil."""
+    """The bearing of a job, or of a file that holds no more than the bearing, its material, its oil and its supply."""
     if source not in shipped_jobs():
         alone = _alone(source)
         if alone is not None:
@@ -231,7 +240,7 @@ def _from_file(source: str) -> _Given:
     job = read_job(source)
     if job.bearing is None:
         raise InputError(f"{source}: is the job of a bare [contact]; allowed: one with [bearing]")
-    return _Given(job.bearing, job.contacts[0].material, job.lubricant)
+    return _Given(job.bearing, job.contacts[0].material, job.lubricant, job.supply)
 
 
 def _alone(source: str) -> _Given | None:
@@ -248,12 +257,16 @@ def _alone(source: str) -> _Given | None:
     geometry, contacts = read_contacts(top, "iso16281")
     section = top.table("lubricant", "[lubricant]")
     oil = read_lubricant(section) if section else None
-    top.close(others=("schema", "bearing", "material", "lubricant"))
+    own = top.table("supply", "[supply]")
+    supply = read_supply(own) if own else None
+    if own:
+        own.close()
+    top.close(others=("schema", "bearing", "material", "lubricant", "supply"))
     if geometry is None and not problems:
         problems.append("bearing file: has [contact]; allowed: [bearing] with a name or dimensions")
     if problems or geometry is None:
         raise InputError([f"{source}: {problem}" for problem in problems])
-    return _Given(geometry, contacts[0].material, oil)
+    return _Given(geometry, contacts[0].material, oil, supply)
 
 
 def _sliced(
@@ -338,6 +351,17 @@ def _oil(
         problems += [f"--temperature: {problem}" for problem in error.problems]
         return None
     return oil
+
+
+def _supply(texts: Sequence[str], given: _Given | None, emap: EHDMap | None, problems: list[str]) -> OilSupply:
+    """The oil supply: that of --supply, else of the file, else of the map, else flooded."""
+    if len(texts) > 1:
+        problems.append(f"--supply: got {len(texts)} of them; allowed: one; run the command again for another")
+    found = read_supplies(texts, problems)
+    if found:
+        return found[0]
+    stated = None if given is None else given.supply
+    return stated or (FLOODED if emap is None else emap.supply)
 
 
 def _direction(given: Sequence[str] | None, problems: list[str]) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.figures import typeset
 from ehdmaps.units import RPM
 from mbs.analyses.campbell import MODE_SPEEDS, CampbellResult, LawRun, campbell, campbell_problems
-from mbs.analyses.case import Case, clearance_text, temperature_text
+from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside, fade_of
 from mbs.commands.cases import load_cases
@@ -67,8 +67,8 @@ def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings]
         raise InputError((*problems, *error.problems)) from error
     if len(cases) > MOST_LAWS:
         problems.append(
-            f"--law, --map, --clearance, --load-factor: got {len(cases)} combinations; allowed: up to {MOST_LAWS} "
-            "side by side"
+            f"--law, --map, --films, --supply, --clearance, --load-factor: got {len(cases)} combinations; allowed: up "
+            f"to {MOST_LAWS} side by side"
         )
     scene = cases[0].model.scene
     settings = dataclasses.replace(
@@ -86,7 +86,7 @@ def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings]
 def _figure(found: CampbellResult) -> Figure:
     """The figure, with modes and with what is not valid marked."""
     return campbell_figure(
-        _title(found.runs[0].case.model, found.sensor),
+        _title([entry.case.model for entry in found.runs], found.sensor),
         [entry.case.label for entry in found.runs],
         [entry.spectra for entry in found.runs],
         Reference.of(found.sensor),
@@ -213,8 +213,10 @@ def _nearest(found: ComplexSweep, speeds: FloatArray, peak: OrderPeak) -> tuple[
     return float(frequency[best]), float(ratio[best])
 
 
-def _title(model: Model, sensor: Sensor) -> str:
+def _title(models: Sequence[Model], sensor: Sensor) -> str:
     """Heading of the figure."""
-    clearance, temperature = clearance_text(model), temperature_text(model)
-    at = temperature + (f", clearance {clearance}" if clearance else "")
+    model = models[0]
+    clearance, supply = clearance_text(model), common_supply(models)
+    parts = [temperature_text(model), f"clearance {clearance}" if clearance else "", supply]
+    at = ", ".join(part for part in parts if part)
     return f"{model.scene.title}\nsensor {sensor.name}; {typeset(at)}"

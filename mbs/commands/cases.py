@@ -1,7 +1,8 @@
 """What a command compares: contact laws and maps, clearances, load factors, in every combination.
 
-Each law of --law and each map of --map counts as one law; of laws with films, each kind of --films. The clearances of
---clearance, the factors of --load-factor and the angles of --start-angle may each be given more than once, too.
+Each law of --law and each map of --map counts as one law; of laws with films, each kind of --films and each oil supply
+of --supply. The clearances of --clearance, the factors of --load-factor and the angles of --start-angle may each be
+given more than once, too.
 """
 
 from __future__ import annotations
@@ -9,20 +10,22 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import itertools
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.jobs.opening import open_given
+from ehdmaps.jobs.supply import supply_from_text
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.units import closest
 from mbs.analyses.case import Case, common_clearance
 from mbs.analyses.varied import VARIED, LawChoice, Subject, Value
 from mbs.model.relaxation import DEFAULT_FILMS, Films
 from mbs.output.results import RESULT
 from mbs.scene.assembly import Model
-from mbs.scene.contact_laws import FILM_WORDS, law_label
+from mbs.scene.contact_laws import FILM_WORDS, ContactLaws, choose_law, law_label
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
@@ -55,14 +58,14 @@ def load_cases(
     Parameters
     ----------
     arguments : argparse.Namespace
-        Arguments with `scene`, `output`, `plot`, and `law`, `map`, `structure`, `films`, `clearance`,
+        Arguments with `scene`, `output`, `plot`, and `law`, `map`, `structure`, `films`, `supply`, `clearance`,
         `load_factor`, `start_angle`: each a text, a list of texts (but for `structure`), None, or left out.
     several : bool
         Whether laws and maps stand side by side; else a law goes before a map.
     kind : Kind
         Kind of file that -o writes.
     several_films : bool
-        Whether kinds of films stand side by side where laws and maps do not.
+        Whether kinds of films, and oil supplies, stand side by side where laws and maps do not.
 
     Raises
     ------
@@ -74,8 +77,8 @@ def load_cases(
     if not several:
         problems += [
             f"--{option}: got {len(given)} of them; allowed: one; `mbs sweep` and `mbs campbell` compare more"
-            for option in ("law", "map", "clearance", "films")
-            if len(given := _given(arguments, option)) > 1 and not (option == "films" and several_films)
+            for option in ("law", "map", "clearance", "films", "supply")
+            if len(given := _given(arguments, option)) > 1 and not (option in ("films", "supply") and several_films)
         ]
         laws = laws[:1] if _given(arguments, "law") else laws
     if hasattr(arguments, "films"):
@@ -83,6 +86,7 @@ def load_cases(
     else:
         # A command that does not ask for films has those of slow motion, whatever the default.
         laws = [dataclasses.replace(law, films="slow") for law in laws]
+    laws = _with_supplies(laws, _given(arguments, "supply"), scene, problems)
     clearances = [read_clearance(text, problems) for text in _given(arguments, "clearance")] or [None]
     factors = [_read("load-factor", text, problems) for text in _given(arguments, "load_factor")] or [None]
     angles = [_read("start-angle", text, problems) for text in _given(arguments, "start_angle")] or [None]
@@ -90,8 +94,8 @@ def load_cases(
     count = len(laws) * len(clearances) * len(factors) * len(angles)
     if count > MOST_CASES:
         problems.append(
-            f"--law, --map, --clearance, --load-factor, --start-angle: got {count} combinations; allowed: at most "
-            f"{MOST_CASES}"
+            f"--law, --map, --films, --supply, --clearance, --load-factor, --start-angle: got {count} combinations; "
+            f"allowed: at most {MOST_CASES}"
         )
     if scene is None or count > MOST_CASES:
         raise InputError(tuple(dict.fromkeys(problems)))
@@ -121,7 +125,7 @@ def load_cases(
 def read_compared(
     arguments: argparse.Namespace, problems: list[str], kind: Kind = RESULT
 ) -> tuple[Scene | None, list[LawChoice], float | None]:
-    """Read scene, laws with their films, and one clearance of a command that builds its models itself.
+    """Read scene, laws with their films and oil supplies, and one clearance of a command that builds its models itself.
 
     Parameters
     ----------
@@ -134,6 +138,7 @@ def read_compared(
     """
     scene = _read_scene(arguments, problems)
     laws = _with_films(_named_laws(arguments, problems), _given(arguments, "films"), problems)
+    laws = _with_supplies(laws, _given(arguments, "supply"), scene, problems)
     clearances = [read_clearance(text, problems) for text in _given(arguments, "clearance")]
     if len(clearances) > 1:
         problems.append(f"--clearance: got {len(clearances)} of them; allowed: one, and others by --vary clearance")
@@ -249,6 +254,62 @@ def _filmed(law: LawChoice, films: str, compared: bool) -> LawChoice:
     kind: Films = "memory" if films == "memory" else "slow"
     label = f"{law.label}, {FILM_WORDS[kind]}" if compared or kind != DEFAULT_FILMS else law.label
     return dataclasses.replace(law, label=label, films=kind)
+
+
+def _with_supplies(
+    laws: list[LawChoice], given: list[str], scene: Scene | None, problems: list[str]
+) -> list[LawChoice]:
+    """Each law that has films with the oil supplies that are meant; of scene and map where none is given."""
+    supplies = read_supplies(given, problems)
+    if given and not any(law.has_films for law in laws):
+        problems.append(
+            f"--supply: got {', '.join(given)} without a law that has films; allowed: with --map or --law formula"
+        )
+    if not given:
+        return [law if scene is None else _labelled(law, _stated_label(law, scene)) for law in laws]
+    found: list[LawChoice] = []
+    for law in laws:
+        if not law.has_films:
+            found.append(law)
+            continue
+        for supply in supplies:
+            words = f", {supply.short}" if len(given) > 1 or not supply.flooded else ""
+            found.append(dataclasses.replace(_labelled(law, words), supply=supply))
+    return found
+
+
+def read_supplies(given: Sequence[str], problems: list[str]) -> list[OilSupply]:
+    """Read what was given for --supply; what is wrong about it is noted, and left out.
+
+    Parameters
+    ----------
+    given : sequence of str
+        What was given.
+    problems : list of str
+        Appended to.
+    """
+    found: list[OilSupply] = []
+    for text in given:
+        try:
+            supply = supply_from_text(text)
+        except InputError as error:
+            problems += [f"--supply: {problem}" for problem in error.problems]
+            continue
+        if supply in found:
+            problems.append(f"--supply: got {text!r:.60} twice; allowed: each once")
+        else:
+            found.append(supply)
+    return found
+
+
+def _stated_label(law: LawChoice, scene: Scene) -> str:
+    """What the label of a law says of the oil supply that scene or map state."""
+    return ContactLaws(choose_law(law.name, law.emap), scene, law.emap).supply_label
+
+
+def _labelled(law: LawChoice, words: str) -> LawChoice:
+    """A law with more words in its label."""
+    return dataclasses.replace(law, label=law.label + words)
 
 
 def read_clearance(text: str, problems: list[str]) -> float | None:

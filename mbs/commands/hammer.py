@@ -36,9 +36,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     ]
     path = Path(arguments.output)
     films = FILM_WORDS[model.memory]
-    # The file stands alone: it says its films also where they are the default.
-    label = f"{model.label}, {films}" if found.errors and films not in model.label else model.label
-    title = f"{scene.name}, {label}: {test.hits} hits a place, simulated"
+    # The file stands alone: it says films and oil supply also where they are the default.
+    flooded = model.supplies and all(supply.flooded for supply in model.supplies.values())
+    parts = (films if found.errors else "", "flooded" if flooded else "")
+    label = ", ".join([model.label, *(part for part in parts if part and part not in model.label)])
+    title = f"{scene.name}, {label}: {test.hits} hits, simulated"
     write_uff(path, Measurement(title, hits))
     lines = [
         *heading(model, scene.speed),

@@ -23,7 +23,7 @@ from mbs.scene.assembly import Model
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Linearise, and compute the responses over the frequencies of the scene, with each kind of films."""
+    """Linearise, and compute the responses over the frequencies of the scene, with each kind of films and supply."""
     cases = _asked(arguments)
     found = [(case.label, lsa(case.model)) for case in cases]
     figure = None
@@ -50,18 +50,20 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
 
 def _asked(arguments: argparse.Namespace) -> list[Case]:
-    """A case for each kind of films; all problems at once."""
+    """A case for each kind of films and each oil supply; all problems at once."""
     problems: tuple[str, ...] = ()
     cases: list[Case] = []
     try:
         cases = load_cases(arguments, several=False, several_films=True)
     except InputError as error:
         problems = error.problems
-    if arguments.output and len(arguments.films or ()) > 1:
-        problems += (
-            f"-o: got {len(arguments.films)} kinds of films; allowed: one, as each has a state space of its own; write "
-            "a file for each, or leave -o out",
-        )
+    asked = (("films", "kinds of films"), ("supply", "oil supplies"))
+    problems += tuple(
+        f"-o: got {count} {words}; allowed: one, as each has a state space of its own; write a file for each, or leave "
+        "-o out"
+        for option, words in asked
+        if arguments.output and (count := len(getattr(arguments, option, None) or ())) > 1
+    )
     if problems:
         raise InputError(problems)
     return cases

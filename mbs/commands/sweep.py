@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM, quantity
-from mbs.analyses.case import Case, clearance_text, temperature_text
+from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import film_errors, notable_from
 from mbs.analyses.operating import operating
 from mbs.analyses.reach import axes_outside, fade_of
@@ -23,6 +23,7 @@ from mbs.linearised.crossings import exchanged
 from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Operation
+from mbs.output.bearing_text import flooded_note
 from mbs.output.state_text import state_lines
 from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import Model
@@ -50,6 +51,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_states(case.model, entry),
             *_films(case.model),
             *_bearings(entry, torque),
+            *(f"  {line}" for line in flooded_note(_largest(torque), case.model.supplies.values())),
             *_undamped(entry),
             *_complex(entry),
             *_exchanged(entry),
@@ -70,6 +72,7 @@ def _figure(cases: Sequence[Case], found: Sequence[Sweep]) -> Figure:
     clearances = {entry.geometry.diametral_clearance for case in cases for entry in case.model.scene.bearings}
     words = [
         f"law {cases[0].model.law}" if one_law else "laws side by side",
+        *([supply] if not one_law and (supply := common_supply(case.model for case in cases)) else []),
         temperature_text(cases[0].model),
         *([f"clearance {clearance_text(cases[0].model)}"] if len(clearances) == 1 else []),
         *([f"{cases[0].load_factor:g} x load"] if len(cases) == 1 and cases[0].load_factor != 1.0 else []),
@@ -179,9 +182,14 @@ def _bearings(result: Sweep, torque: FloatArray) -> list[str]:
         if np.all(np.isfinite(torque[:, index])):
             lines.append(
                 f"  {name}: rolling torque {1e3 * torque[0, index]:.4g} to {1e3 * torque[-1, index]:.4g} N mm "
-                "(flooded films only)"
+                "(films only)"
             )
     return lines
+
+
+def _largest(torque: FloatArray) -> float:
+    """Largest rolling torque of all speeds and bearings, 0 where none is known."""
+    return float(np.nan_to_num(torque).max(initial=0.0))
 
 
 def _undamped(result: Sweep) -> list[str]:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM, closest
-from mbs.analyses.case import clearance_text, temperature_text
+from mbs.analyses.case import clearance_text, common_supply, temperature_text
 from mbs.analyses.reach import axes_outside
 from mbs.analyses.variants import Variant, VariantsResult, Variation, variants
 from mbs.analyses.varied import VARIED, LawChoice
@@ -49,8 +49,8 @@ def _asked(
     if len(laws) != 2 and not problems:
         got = ", ".join(law.label for law in laws)
         problems.append(
-            f"--law, --map, --films: got {len(laws)} laws ({got}); allowed: two, the reference first, such as "
-            "--law hertz --map MAP.nc"
+            f"--law, --map, --films, --supply: got {len(laws)} laws ({got}); allowed: two, the reference first, such "
+            "as --law hertz --map MAP.nc"
         )
     if problems or scene is None:
         raise InputError(tuple(dict.fromkeys(problems)))
@@ -82,11 +82,11 @@ def _variations(given: Sequence[Sequence[str]], problems: list[str]) -> list[Var
 
 def _base(found: VariantsResult) -> str:
     """What the base is, in words."""
-    course = found.course
+    course, supply = found.course, common_supply(found.models)
     return (
         f"run-up from {RPM.text(course.speed.at(0.0)[0])} to {RPM.text(course.speed.at(course.duration)[0])} in "
         f"{course.duration:.4g} s, {temperature_text(found.models[1])}, clearance "
-        f"{clearance_text(found.models[1]) or 'none'}"
+        f"{clearance_text(found.models[1]) or 'none'}" + (f", {supply}" if supply else "")
     )
 
 

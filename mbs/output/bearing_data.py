@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.outputs import MARK, TABLE, Kind, write_text
+from ehdmaps.physics.oil_supply import OilSupply
 from mbs.analyses.bearing_point import BearingPoint
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import SIDES
@@ -36,6 +37,8 @@ class BearingDescription:
         Geometry with its clearance, profile, slices.
     law, films : str
         Law and films, in words.
+    supply : OilSupply
+        Oil supply of the contacts.
     direction : float
         Direction of the load, from y towards z [deg].
     temperature, roughness : float
@@ -49,6 +52,7 @@ class BearingDescription:
     bearing: Bearing
     law: str
     films: str
+    supply: OilSupply
     direction: float
     temperature: float
     roughness: float
@@ -157,6 +161,7 @@ def _attributes(description: BearingDescription, points: Points) -> dict[str, An
         "bearing": geometry.name,
         "bearing_law": description.law,
         "films": description.films,
+        "oil_supply": description.supply.label,
         "load_direction_deg": description.direction,
         "temperature_K": description.temperature,
         **_warm(description.state),

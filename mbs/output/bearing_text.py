@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.units import FILM, PRESSURE, RPM, TEMPERATURE
 from mbs.analyses.bearing_point import BearingPoint
 from mbs.bearings.films import SIDES
@@ -14,6 +15,12 @@ from mbs.bearings.rolling_loss import RollingLoss
 from mbs.output.bearing_data import BearingDescription, Points, bearing_row
 from mbs.output.state_text import state_words
 from mbs.scene.fields import FORCE, MICROMETRE
+
+FLOODED_NOTE = (
+    "note: all contacts are taken as flooded, so that idle rollers drag too; --supply gives them less oil, such as "
+    "--supply 'oil bath'"
+)
+"""What is said beside the rolling torque of flooded bearings."""
 
 REGIMES = ((1.0, "boundary: the surfaces touch"), (3.0, "mixed: asperities touch"), (math.inf, "full film"))
 """What is usually said of Lambda below these values."""
@@ -35,7 +42,8 @@ def bearing_text(description: BearingDescription, points: Points) -> list[str]:
         lines += _page(everything[0], description.roughness) + _rollers(everything[0])
     else:
         lines += _table(everything, description.roughness)
-    return lines + _warnings(everything)
+    torque = max((point.loss.torque for point in everything), default=math.nan)
+    return lines + flooded_note(torque, [description.supply]) + _warnings(everything)
 
 
 def bearing_heading(description: BearingDescription) -> list[str]:
@@ -88,7 +96,22 @@ def loss_words(loss: RollingLoss) -> str:
     words = f"rolling torque {1e3 * loss.torque:.4g} N mm, power {loss.total:.4g} W"
     if not loss.total:
         return words
-    return f"{words}, {loss.idle:.0%} of it in idle rollers (flooded films only: no flanges, cage, seals, churning)"
+    return f"{words}, {loss.idle:.0%} of it in idle rollers (films only: no flanges, cage, seals, churning)"
+
+
+def flooded_note(torque: float, supplies: Iterable[OilSupply]) -> list[str]:
+    """A line on the rolling torque of bearings that are flooded all round, and on what to do; else none.
+
+    Parameters
+    ----------
+    torque : float
+        The largest rolling torque that is shown [N m]; NaN where none is known.
+    supplies : iterable of OilSupply
+        Oil supplies of the bearings.
+    """
+    if not torque > 0.0 or not any(supply.flooded for supply in supplies):
+        return []
+    return [FLOODED_NOTE]
 
 
 def regime(film_parameter: float) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -45,6 +46,9 @@ _LIMIT_COLOUR = "#ff7f0e"
 
 _SHORT_LABEL = 18
 """Letters of a law's label of which two fit beside one another in the legend of the sum levels."""
+
+_LETTERS = 88
+"""Of the names of all laws beside one another, above their diagrams; longer ones are wrapped."""
 
 _LEAST_HEIGHT, _LEAST_WIDTH = 0.05, 0.12
 """Between two names of orders, as parts of a diagram."""
@@ -130,7 +134,7 @@ def campbell_figure(
             panel.plot(overlay.speeds * RPM, overlay.frequencies * factor, "--", color="w", lw=0.6, alpha=0.8)
         if index < len(reaches):
             _reach(panel, reaches[index], _unit(result)[0])
-        panel.set_title(law, fontsize=8)
+        panel.set_title(textwrap.fill(law, _LETTERS // len(laws)), fontsize=8)
         panel.set_xlabel("speed, rpm", fontsize=7)
         panel.tick_params(labelsize=7)
     panels[0].set_ylabel(f"frequency, {_unit(results[0])[1]}", fontsize=7)
@@ -153,8 +157,12 @@ def campbell_figure(
         right.plot(place[shown], spectrum[shown], dashes, color=colour, lw=0.8)
     left.set_xlabel("speed, rpm", fontsize=7)
     left.set_ylabel(f"sum level, {_reference(reference)}", fontsize=7)
-    side_by_side = len(laws) > 2 and max(map(len, laws)) <= _SHORT_LABEL
-    left.legend(fontsize=7, frameon=False, ncols=2 if side_by_side else 1)
+    short = max(map(len, laws)) <= _SHORT_LABEL
+    if short or len(laws) < MOST_LAWS:
+        left.legend(fontsize=7, frameon=False, ncols=2 if short and len(laws) > 2 else 1)
+    else:
+        # So many long names would lie on the lines.
+        lower.legend(handles=left.lines, loc="outside lower center", ncols=2, fontsize=7, frameon=False)
     right.set_xlabel("order (periods a turn)", fontsize=7)
     right.set_ylabel(f"mean level, {_reference(reference)}", fontsize=7)
     right.set_xlim(0.0, last)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.physics.oil_supply import OilSupply
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.films import FilmSource
 from mbs.bearings.state import BearingState
@@ -22,7 +23,7 @@ from mbs.model.relaxation import Films
 from mbs.model.system import System
 from mbs.scene import kinds
 from mbs.scene.bodies import build_bodies
-from mbs.scene.contact_laws import ContactLaws, choose_law
+from mbs.scene.contact_laws import ContactLaws, choose_law, supply_words
 from mbs.scene.kinds import ElementKind
 from mbs.scene.scene import Scene
 from mbs.scene.surroundings import Built, Surroundings
@@ -56,6 +57,8 @@ class Model:
         `mbs.analyses.operating`; empty before, and where no bearing has temperatures, heat or fits of its own.
     found : dict of float to Model
         The same model in operation, by speed, where it was asked for.
+    supplies : mapping of str to OilSupply
+        Oil supply of each bearing by its name; empty for laws without films.
     """
 
     scene: Scene
@@ -68,6 +71,7 @@ class Model:
     memory: Films = "slow"
     states: tuple[BearingState, ...] = ()
     found: dict[float, Model] = field(default_factory=dict, repr=False)
+    supplies: Mapping[str, OilSupply] = field(default_factory=dict)
 
     @property
     def operation(self) -> Operation:
@@ -81,6 +85,7 @@ def assemble(
     emap: EHDMap | str | Path | None = None,
     clearance: float | None = None,
     films: Films | None = None,
+    supply: OilSupply | None = None,
 ) -> Model:
     """Make a system from a scene.
 
@@ -98,6 +103,9 @@ def assemble(
         Whether films have the stiffness and damping of slow motion at any frequency, or relax, in linear analyses and
         in runs in time; `DEFAULT_FILMS` of `mbs.model.relaxation` if left out, where the law allows it. Statics do not
         change.
+    supply : OilSupply, optional
+        Oil supply of all bearings, in place of that of the scene and of its bearings; without either it is that which
+        the job of the map states, and flooded where it states none. Laws without films have none.
 
     Returns
     -------
@@ -129,7 +137,7 @@ def assemble(
     problems: list[str] = []
     if clearance is not None:
         scene = _with_clearance(scene, clearance, problems)
-    laws = ContactLaws(choose_law(law, emap), scene, emap, films)
+    laws = ContactLaws(choose_law(law, emap), scene, emap, films, supply)
     wrong_law = laws.problems()
     problems = [*wrong_law, *problems]
     try:
@@ -155,15 +163,35 @@ def assemble(
         law=laws.words,
         bearings=bearings,
         gears=tuple(_shown(built, "gears", GearMesh)),
-        films={entry.name: laws.films(entry.bearing) for entry in bearings},
+        films={
+            entry.name: laws.films(entry.bearing, laws.supply(spec))
+            for entry, spec in zip(bearings, scene.bearings, strict=True)
+        },
         label=laws.label,
         memory=laws.memory,
+        supplies=laws.supplies,
     )
 
 
 def law_attributes(model: Model) -> Mapping[str, str]:
     """Provenance of a result."""
-    return {"scene": model.scene.name, "scene_toml": model.scene.text, "law": model.law}
+    named = {"scene": model.scene.name, "scene_toml": model.scene.text, "law": model.law}
+    return {**named, **supply_attributes([(model.label, model)])}
+
+
+def supply_attributes(models: Sequence[tuple[str, Model]]) -> dict[str, str]:
+    """What a result says of the oil supplies of its models, each with a label where there is more than one.
+
+    Parameters
+    ----------
+    models : sequence of (str, Model)
+        Labels and models; those whose law has no films are left out.
+    """
+    found = [(label, supply_words(model.supplies)) for label, model in models if model.supplies]
+    if not found:
+        return {}
+    words = [f"{label}: {text}" for label, text in found] if len(models) > 1 else [found[0][1]]
+    return {"oil_supply": "; ".join(words)}
 
 
 def _with_clearance(scene: Scene, clearance: float, problems: list[str]) -> Scene:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ehdmaps.jobs.problem import read_contacts
+from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import short
 from mbs.scene import fields
@@ -42,6 +43,10 @@ def read_bearing(section: Table, name: str) -> BearingSpec | None:
     if "centrifugal" in section and not isinstance(centrifugal, bool):
         section.note("centrifugal", f"got {short(centrifugal)}; allowed: true, false")
     thermal, mounting = read_thermal(section), read_mounting(section)
+    own = section.table("supply", f"{section.where} supply")
+    supply = read_supply(own) if own else None
+    if own:
+        own.close()
     if inner is None or outer is None or geometry is None:
         return None
     return BearingSpec(
@@ -56,6 +61,7 @@ def read_bearing(section: Table, name: str) -> BearingSpec | None:
         centrifugal is True,
         thermal,
         mounting,
+        supply,
     )
 
 
@@ -102,7 +108,7 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
     from mbs.scene.surroundings import Built
 
     bearing = Bearing(spec.geometry, spec.profile, spec.slices)
-    laws = surroundings.laws.of(bearing)
+    laws = surroundings.laws.of(bearing, surroundings.laws.supply(spec))
     memory = surroundings.laws.memory == "memory"
     plain = (MemoryBearing if memory and not spec.rollers_as_bodies else BearingElement)(
         name=spec.name,

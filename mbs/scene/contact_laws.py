@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import get_args
@@ -12,6 +13,7 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import LawKind
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.units import closest, quantity
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
@@ -20,6 +22,7 @@ from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import DryLaw, Law
 from mbs.model.relaxation import DEFAULT_FILMS, Films
 from mbs.scene.scene import Scene
+from mbs.scene.specs import BearingSpec
 
 FILM_WORDS: dict[Films, str] = {"memory": "films with memory", "slow": "slow films"}
 """How people are told that films relax, or that they have stiffness and damping of slow motion at any frequency."""
@@ -58,6 +61,24 @@ def law_label(law: str, emap: EHDMap | None = None) -> str:
 def structure_words(emap: EHDMap) -> str:
     """The structural law of a map as the end of a sentence; nothing where it is that of the dry law, ISO 16281."""
     return "" if emap.structural_law == "iso16281" else f", structural law {emap.structural_law}"
+
+
+def supply_words(supplies: Mapping[str, OilSupply]) -> str:
+    """The oil supplies of the bearings of a scene, for people: one where all have the same.
+
+    Parameters
+    ----------
+    supplies : mapping of str to OilSupply
+        Supplies by the names of the bearings.
+
+    Examples
+    --------
+    >>> supply_words({"left": FLOODED, "right": OilSupply(5e-6)})
+    'left flooded, right oil layer 5 um'
+    """
+    if len(set(supplies.values())) <= 1:
+        return next((supply.label for supply in supplies.values()), "")
+    return ", ".join(f"{name} {supply.label}" for name, supply in supplies.items())
 
 
 @dataclass(frozen=True)
@@ -138,13 +159,16 @@ class ContactLaws:
         The map of the law `map`.
     asked : {"slow", "memory"} or None
         Which films linear analyses are to have; None for `DEFAULT_FILMS` of `mbs.model.relaxation`, where they can.
+    asked_supply : OilSupply or None
+        Oil supply of all bearings; None for that of each bearing, of the scene, or of the job of the map.
     """
 
     chosen: str
     scene: Scene
     emap: EHDMap | None
     asked: Films | None = None
-    _made: dict[BearingGeometry, BearingLaws] = field(default_factory=dict, repr=False)
+    asked_supply: OilSupply | None = None
+    _made: dict[tuple[BearingGeometry, OilSupply], BearingLaws] = field(default_factory=dict, repr=False)
 
     def problems(self) -> list[str]:
         """What is wrong about the choice of the law."""
@@ -192,19 +216,34 @@ class ContactLaws:
             return []
         return geometry_problems(f"bearing {name!r}", geometry, self.emap)
 
-    def of(self, bearing: Bearing) -> BearingLaws:
-        """The laws of the contacts of a bearing; those of the same contacts are made once."""
-        key = dataclasses.replace(bearing.geometry, diametral_clearance=0.0)
+    def supply(self, spec: BearingSpec) -> OilSupply:
+        """The oil supply of a bearing: what was asked for goes before that of the bearing, the scene, and the map."""
+        return self.asked_supply or spec.supply or self._common_supply
+
+    @property
+    def supplies(self) -> dict[str, OilSupply]:
+        """The oil supply of each bearing by its name; none for laws without films."""
+        return {spec.name: self.supply(spec) for spec in self.scene.bearings} if self._has_films else {}
+
+    @property
+    def _common_supply(self) -> OilSupply:
+        """The oil supply of bearings without one of their own."""
+        of_map = self.emap.supply if self.chosen == "map" and self.emap is not None else FLOODED
+        return self.asked_supply or self.scene.supply or of_map
+
+    def of(self, bearing: Bearing, supply: OilSupply) -> BearingLaws:
+        """The laws of the contacts of a bearing with an oil supply; those of the same contacts are made once."""
+        key = dataclasses.replace(bearing.geometry, diametral_clearance=0.0), supply
         if key not in self._made:
-            self._made[key] = BearingLaws(self, bearing)
+            self._made[key] = BearingLaws(self, bearing, supply)
         return self._made[key]
 
-    def films(self, bearing: Bearing) -> FilmSource:
-        """What knows the films of a bearing."""
+    def films(self, bearing: Bearing, supply: OilSupply) -> FilmSource:
+        """What knows the films of a bearing with an oil supply."""
         if self.chosen == "map" and self.emap is not None:
-            return MapFilms(self.emap)
+            return MapFilms(self.emap, supply)
         contacts = bearing.geometry.contacts(bearing.material, "iso16281")
-        return FormulaFilms(contacts, self.lubricant) if self.chosen == "formula" else DryContacts(contacts)
+        return FormulaFilms(contacts, self.lubricant, supply) if self.chosen == "formula" else DryContacts(contacts)
 
     @property
     def lubricant(self) -> Lubricant:
@@ -215,12 +254,22 @@ class ContactLaws:
     @property
     def label(self) -> str:
         """The law in a few words, as the legend of a figure has it; of its films only what is not the default."""
-        return law_label(self.chosen, self.emap) + (self._film_words if self.memory != DEFAULT_FILMS else "")
+        films = self._film_words if self.memory != DEFAULT_FILMS else ""
+        return law_label(self.chosen, self.emap) + films + self.supply_label
+
+    @property
+    def supply_label(self) -> str:
+        """What a legend adds of the oil supply: nothing where all bearings are flooded, or the law has no films."""
+        found = set(self.supplies.values())
+        if all(supply.flooded for supply in found):
+            return ""
+        return f", {found.pop().short}" if len(found) == 1 else ", supply by bearing"
 
     @property
     def words(self) -> str:
         """The law, for people."""
-        return self._law_words + self._film_words
+        supply = supply_words(self.supplies)
+        return self._law_words + (f", {supply}" if supply else "") + self._film_words
 
     @property
     def _film_words(self) -> str:
@@ -260,10 +309,13 @@ class BearingLaws:
         The choice.
     bearing : Bearing
         One with that geometry.
+    supply : OilSupply
+        Oil supply of its contacts, where they have films.
     """
 
     given: ContactLaws
     bearing: Bearing
+    supply: OilSupply
 
     @cached_property
     def series(self) -> Law:
@@ -285,8 +337,8 @@ class BearingLaws:
     def _of_kind(self, kind: LawKind) -> Law:
         """A law with films."""
         if self.given.chosen == "map" and self.given.emap is not None:
-            return self.given.emap.law(kind, outside="clamp")
-        return laws.formula(self.bearing, self.given.lubricant, kind=kind, outside="clamp")
+            return self.given.emap.law(kind, outside="clamp", supply=self.supply)
+        return laws.formula(self.bearing, self.given.lubricant, kind=kind, outside="clamp", supply=self.supply)
 
 
 def geometry_problems(where: str, geometry: BearingGeometry, emap: EHDMap) -> list[str]:

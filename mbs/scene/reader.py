@@ -15,6 +15,7 @@ from ehdmaps.inputs import read_text
 from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.axes import AxisRule, read_axis
 from ehdmaps.jobs.problem import read_lubricant
+from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, short
@@ -118,6 +119,10 @@ class _Reader:
             self._close(operation)
         section = top.table("lubricant", "[lubricant]")
         lubricant = read_lubricant(section) if section else None
+        section = top.table("supply", "[supply]")
+        supply = read_supply(section) if section else None
+        if section:
+            self._close(section)
         bodies: list[BodySpec] = [
             *self._all("bodies", self._body),
             *self._all("shafts", read_shaft),
@@ -154,6 +159,7 @@ class _Reader:
             speed=speed,
             temperature=temperature,
             lubricant=lubricant,
+            supply=supply,
             bodies=bodies,
             springs=springs,
             loads=loads,

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from mbs.gears.pair import GearPair
 from mbs.model.elements import Input, Load, Sensor, Spring
@@ -35,6 +36,8 @@ class Scene:
         Temperature of the raceways [K].
     lubricant : Lubricant or None
         Oil of the law `formula`, and of planned maps.
+    supply : OilSupply or None
+        Oil supply of the bearings that have none of their own; None for that which the job of the map states.
     bodies : tuple of RigidSpec, ShaftSpec, FlexibleSpec or Body
         All bodies, in the order of their coordinates.
     springs : tuple of Spring
@@ -79,6 +82,7 @@ class Scene:
     speed: float
     temperature: float
     lubricant: Lubricant | None = None
+    supply: OilSupply | None = None
     bodies: Sequence[BodySpec]
     springs: Sequence[Spring] = ()
     loads: Sequence[Load] = ()

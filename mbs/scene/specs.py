@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.oil_supply import OilSupply
 from mbs.bearings.fits import Mounting
 from mbs.bearings.heat import GivenTemperatures, HeatPaths
 from mbs.flexible.attached import Attached
@@ -211,6 +212,8 @@ class BearingSpec:
     mounting : Mounting or None
         Fits, and how it expands; None for the expansion of steel alone where it has `thermal`, else for a clearance
         that is the one in operation.
+    supply : OilSupply or None
+        Oil supply of this bearing; None for that of the scene.
     """
 
     name: str
@@ -224,6 +227,7 @@ class BearingSpec:
     centrifugal: bool = False
     thermal: GivenTemperatures | HeatPaths | None = None
     mounting: Mounting | None = None
+    supply: OilSupply | None = None
 
     @property
     def changes_in_operation(self) -> bool:

@@ -69,7 +69,7 @@ def test_a_map_gives_what_a_program_of_ones_own_gets_from_it(here, capsys, formu
     options = ("--map", formula_map, "--clearance", "20 um", "--temperature", "40 degC", "--direction", "800", "600")
     status, out, _ = run(capsys, "NU308", "--load", "1 kN", "--speed", "500 rpm", *options, "-o", "a.nc")
     assert status == 0
-    assert "law map of FVA3, solver formula; films of the map, FVA3" in out
+    assert "law map of FVA3, solver formula; films of the map, FVA3, flooded" in out
     bearing = Bearing.named("NU308", clearance=20e-6)
     speed = bearing.geometry.entrainment_speed(500.0 * math.pi / 30.0)
     force = BearingForce(bearing, ehdmaps.open_map(formula_map).law("series")).at(speed, 313.15)

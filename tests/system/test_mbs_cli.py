@@ -85,7 +85,7 @@ def test_sweep_of_films(here, capsys, formula_maps):
     assert (status, err) == (0, "")
     for words in ("formula map, slow films", "formula map, films with memory", "dry Hertz"):
         assert out.count(f"case: {words}\n") == 1
-    assert "law map of NU308, FVA3, solver formula, films with memory" in out
+    assert "law map of NU308, FVA3, solver formula, flooded, films with memory" in out
     assert out.count("warning: bearing_left: slow films; estimated error") == 1
     assert out.count("bearing_left: films with memory; estimated error") == 1
     with xr.open_dataset("s.nc") as data:
@@ -150,8 +150,8 @@ def test_a_hammer_test_says_which_films_it_had(here, capsys, formula_maps):
         found.append(re.findall(r"^ +\d+ +(\S+) Hz", out, re.MULTILINE))
     # the eigenvalues that are expected, and the records, are those of the films that were asked for
     assert found[0] != found[1]
-    assert "formula map, slow films: 1 hits" in (here / "slow.uff").read_text()
-    assert "formula map, films with memory: 1 hits" in (here / "memory.uff").read_text()
+    assert "formula map, slow films, flooded: 1 hits, simulated" in (here / "slow.uff").read_text()
+    assert "formula map, films with memory, flooded: 1 hits, simulated" in (here / "memory.uff").read_text()
 
 
 def test_linear_analysis_with_rollers_as_bodies(here, capsys, formula_maps):

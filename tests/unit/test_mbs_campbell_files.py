@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import importlib
+import itertools
 import types
 
 import numpy as np
@@ -142,6 +143,22 @@ def test_the_legend_of_the_laws_stays_in_its_panel(spectra, words):
     ((panel, legend),) = ((axes, axes.get_legend()) for axes in figure.axes if axes.get_legend() is not None)
     assert legend.get_window_extent().x0 >= panel.get_window_extent().x0
     assert legend.get_window_extent().x1 <= panel.get_window_extent().x1
+
+
+def test_four_long_names_stay_beside_one_another(spectra):
+    """Names over the diagrams do not touch, and the legend of the sum levels lies below its panel."""
+    names = [
+        "dry Hertz",
+        *(f"Reynolds map, films with memory, {supply}" for supply in ("flooded", "oil air", "grease")),
+    ]
+    figure = campbell_figure("title", names, [spectra] * 4, REFERENCE)
+    figure.draw_without_rendering()
+    boxes = [axes.title.get_window_extent() for axes in figure.axes if axes.get_title()]
+    assert len(boxes) == 4
+    assert all(one.x1 <= other.x0 for one, other in itertools.pairwise(boxes))
+    ((lower, legend),) = ((part, entry) for part in figure.subfigs for entry in part.legends)
+    assert [text.get_text() for text in legend.get_texts()] == names
+    assert legend.get_window_extent().y1 <= lower.axes[0].get_window_extent().y0
 
 
 def test_silence_can_be_drawn(tmp_path):

@@ -13,6 +13,7 @@ from ehdmaps.jobs.law_check import check_points
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.refinement import refinement
 from ehdmaps.jobs.report import AXES, span
+from ehdmaps.jobs.supply import supply_words
 from ehdmaps.jobs.surface import surface_words
 from ehdmaps.jobs.tasks import LineTask, line_tasks
 from ehdmaps.physics.sensitivity import film_change
@@ -48,6 +49,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"  {job.title}, {job.lubricant.title}, solver {job.solver}, structural law {job.contacts[0].structural_law}",
         *([f"  bearing: {job.bearing.estimated}"] if job.bearing and job.bearing.estimated else []),
         *oil_lines(job),
+        f"  supply  {supply_words(job.supply)}",
         f"  surfaces {surface_words(job.surface)}",
         f"  {'contact':20s} {len(job.contacts):6d}  {names}",
         *axes,

@@ -77,7 +77,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         found = [_solved(solver, contact, request) for contact in job.contacts]
     frequency = 0.0 if request.frequencies is None else float(request.frequencies[0])
     records = [
-        point_record(solution, contact, job.lubricant, point, frequency)
+        point_record(solution, contact, job, point, frequency)
         for solution, contact in zip(found, job.contacts, strict=True)
     ]
     text = _json(records) if arguments.json else point_table(job, records, point, request.length)
@@ -116,7 +116,7 @@ def _with_traction(
     assert isinstance(solver, ReynoldsSolver)
     solved = [solve_traction(solver, contact, job.lubricant, point, asked) for contact in job.contacts]
     records = [
-        point_record(contact_solution(film, contact, point), contact, job.lubricant, point, 0.0)
+        point_record(contact_solution(film, contact, point), contact, job, point, 0.0)
         for (film, _), contact in zip(solved, job.contacts, strict=True)
     ]
     if arguments.json:

@@ -1,0 +1,109 @@
+"""The oil supply of a bearing as people write it: a table [supply] of a job or a scene, or a text of a command line."""
+
+from __future__ import annotations
+
+from ehdmaps.errors import InputError
+from ehdmaps.jobs.table import Table
+from ehdmaps.physics.oil_supply import LAYERS, THICKEST, THINNEST, OilSupply
+from ehdmaps.units import FILM, closest, quantity, short
+
+KEYS = ("oil_layer", "lubrication")
+"""Keys of [supply]; a table has one of them."""
+
+_THICKNESSES = f"{FILM.text(THINNEST)} to {FILM.text(THICKEST)}"
+
+
+def supply_from_text(text: str) -> OilSupply:
+    """Read a supply from one text: a kind of lubrication, or the thickness of an oil layer.
+
+    Parameters
+    ----------
+    text : str
+        One of the names of `ehdmaps.physics.oil_supply.LAYERS`, or a length such as "5 um".
+
+    Raises
+    ------
+    InputError
+        With one problem, which does not say where: the caller knows that.
+
+    Examples
+    --------
+    >>> supply_from_text("oil air").label
+    'oil air (oil layer 2 um)'
+    >>> supply_from_text("5 um").oil_layer
+    5e-06
+    """
+    if text in LAYERS:
+        return OilSupply.named(text)
+    names = tuple(LAYERS)
+    wrong = (
+        f"got {short(text)}{closest(text, names)}; allowed: {', '.join(names)}, or the thickness of an oil layer of "
+        f"{_THICKNESSES}, such as '5 um'"
+    )
+    try:
+        layer = quantity(text, "m")
+    except InputError as error:
+        raise InputError(wrong) from error
+    if not THINNEST <= layer <= THICKEST:
+        raise InputError(wrong)
+    return OilSupply(layer)
+
+
+def read_supply(section: Table) -> OilSupply | None:
+    """Read a table with one of the keys of `KEYS`; the caller closes it.
+
+    Parameters
+    ----------
+    section : Table
+        The table [supply].
+
+    Returns
+    -------
+    OilSupply or None
+        None where a problem was noted.
+    """
+    layer = section.quantity("oil_layer", "m", THINNEST, THICKEST, FILM)
+    kind = section.choice("lubrication", tuple(LAYERS))
+    given = [key for key in KEYS if key in section]
+    if len(given) != 1:
+        got = "both" if given else "neither"
+        section.note(
+            "", f'got {got} of oil_layer and lubrication; allowed: one of the two, such as lubrication = "oil air"'
+        )
+        return None
+    if kind is not None:
+        return OilSupply.named(kind)
+    return None if layer is None else OilSupply(layer)
+
+
+def supply_words(supply: OilSupply | None) -> str:
+    """Say which oil supply the contact laws of a map have by default.
+
+    Parameters
+    ----------
+    supply : OilSupply or None
+        What the job states; None where it states nothing.
+    """
+    if supply is None:
+        return "flooded (none stated)"
+    if supply.flooded:
+        return supply.label
+    return f"{supply.label}: contact laws cap the films by it, the points are those of flooded films"
+
+
+def supply_keys(supply: OilSupply) -> dict[str, str]:
+    """Return the keys of [supply] for a supply: the way back from `read_supply`.
+
+    Parameters
+    ----------
+    supply : OilSupply
+        The supply.
+
+    Examples
+    --------
+    >>> supply_keys(OilSupply.named("grease"))
+    {'lubrication': 'grease'}
+    """
+    if supply.flooded or supply.oil_layer == LAYERS.get(supply.lubrication):
+        return {"lubrication": "flooded" if supply.flooded else supply.lubrication}
+    return {"oil_layer": f"{supply.oil_layer!r} m"}
