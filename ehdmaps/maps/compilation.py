@@ -27,7 +27,7 @@ from ehdmaps.errors import MapError
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.low_loads import valley_loads
-from ehdmaps.maps.oil_layer import end_of_film, oil_layer
+from ehdmaps.maps.oil_layer import oil_layer
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.maps.splines import hermite, spline_coefficients
@@ -138,8 +138,9 @@ def compile_table(
     sharing = [RoughLayer(surface, contact, lubricant, slowest) for contact in rough]
     root, curve = _sampled(field, contacts, us, temperatures, held_load, resolution, layer, rolling, sharing)
     offset = _approach_at(np.cbrt(loads), root, curve)
+    least = 0.0 if surface.smooth else _FOOT
     if layer < math.inf:  # the lift-off from a layer is at one s
-        distance = offset + sum(end_of_film(contact, layer) for contact in contacts)
+        distance = np.maximum(offset - float(np.min(curve.approach[root >= least])), scale)
         scale = distance * float(np.min(scale / distance))
 
     stretched = np.arcsinh((curve.approach - offset) / scale)
@@ -162,7 +163,7 @@ def compile_table(
             )
         samples, within = (line, root[:, i, j], root_slope[:, i, j], logs[:, i, j]), nodes
         if not supply.flooded:
-            foot = lifted if surface.smooth else int(np.searchsorted(root[:, i, j], _FOOT))
+            foot = int(np.searchsorted(root[:, i, j], least))
             samples = _lifted_off(*samples, foot, resolution.approach)
             within = np.maximum(nodes, samples[0][0])
         line, roots, slopes, ratios = samples

@@ -35,28 +35,14 @@ from scipy.interpolate import CubicSpline, PPoly
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.contact_curve import FilmSamples, dry_slope
 from ehdmaps.maps.rolling_film import RollingFilm
-from ehdmaps.maps.tail import FADE_RATIO, THICK_FILM, Tail
+from ehdmaps.maps.tail import Tail
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.starved import CORNER, RIGID_FLOW, compliance_ratio, damping_ratio, film_ratio, passing
+from ehdmaps.physics.starved import CORNER, RIGID_FLOW, compliance_ratio, damping_ratio, film_ratio
 
 ROUNDED = 0.2
 """Cube root of the flow ratio r below which sqrt(r) is rounded."""
 
 _FADING = 1.5
-
-
-def end_of_film(contact: LineContact, layer: float) -> float:
-    """Film at which a contact loses its load [m]: the layer, or the end of the fade of a flooded one, rounded.
-
-    Parameters
-    ----------
-    contact : LineContact
-        The contact.
-    layer : float
-        Oil layer [m].
-    """
-    faded = FADE_RATIO * THICK_FILM * contact.radius
-    return float(faded * passing(faded, layer))
 
 
 def oil_layer(
