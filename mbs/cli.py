@@ -207,7 +207,12 @@ def _bearing(commands: Any) -> None:
     command.add_argument("--clearance", metavar="LENGTH", help='diametral, such as "20 um"; default: the file\'s, none')
     command.add_argument("--profile", metavar="PROFILE", default="iso", help="iso | straight, of the rollers (iso)")
     command.add_argument("--slices", metavar="N", default="41", help="of a roller (41)")
-    command.add_argument("--roughness", metavar="LENGTH", help='combined rms roughness, for Lambda ("0.3 um")')
+    command.add_argument(
+        "--roughness",
+        metavar="LENGTH",
+        help='combined rms roughness, such as "0.2 um": film and asperities share the load; default: [surface] of the '
+        "file, else of the job of the map, else smooth contacts, with 0.3 um for Lambda",
+    )
     command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF, or a row a point as .csv")
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
 

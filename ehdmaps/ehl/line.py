@@ -480,7 +480,9 @@ def assembled(
     by_response = SECOND if starved else response_share(M, L, fine.spike is not None)
     inlet = 0.0 if starved else 1.0 / resolution.inlet_length**2
     central, minimum = films_of(fine)
-    central_error, minimum_error = _film_errors(fine, coarse, by_offset)
+    # the coarse grid of a starved contact has the same part of its own flooded flow; films go with the layer
+    scale = fine.mass_flow / coarse.mass_flow if starved else 1.0
+    central_error, minimum_error = _film_errors(fine, coarse, scale, by_offset)
 
     def error(value: float, rough_value: float, share: float, lost: float, least: float = 0.0) -> float:
         """Relative, > 0 where refinement lowers the value; what the inlet's end loses is added in magnitude.
@@ -493,8 +495,6 @@ def assembled(
     # parts of one complex number: where a spike between two nodes hides the error of the loss, the compliance shows it
     hidden = rough.compliance - response.compliance if fine.spike is not None or starved else 0.0
     hidden_too = rough.loss - response.loss if starved else 0.0
-    # both grids of a starved contact have the same part of their own flooded flow
-    flow = fine.film_offset * (coarse.mass_flow / fine.mass_flow - 1.0) if starved else 0.0
     return GroupSolution(
         outcome=CONVERGED,
         profile=fine,
@@ -509,7 +509,7 @@ def assembled(
         max_pressure=float(np.max(fine.pressure)),
         rolling_force=fine.rolling_force,
         mass_flow=fine.mass_flow,
-        film_offset_error=error(fine.film_offset, coarse.film_offset, by_offset, 3.0, flow),
+        film_offset_error=error(fine.film_offset, scale * coarse.film_offset, by_offset, 3.0),
         film_compliance_error=error(response.compliance, rough.compliance, by_response, 6.0, hidden_too),
         loss_error=error(response.loss, rough.loss, by_response, 6.0, hidden),
         central_film_error=central_error + 3.0 * inlet,
@@ -525,14 +525,16 @@ FIRST_ORDER = 1.5
 """Share of the difference between both grids that is left where the order is one, half as much again for safety."""
 
 
-def _film_errors(fine: Profile, coarse: Profile, share: float) -> tuple[float, float]:
+def _film_errors(fine: Profile, coarse: Profile, scale: float, share: float) -> tuple[float, float]:
     """Relative errors of the central and the smallest film; `share` is that of the film offset.
+
+    Films of the coarse grid count `scale` times.
 
     Behind a spike the smallest film follows the spike's place, which is found to first order, and it moves with the
     whole film, to second order.
     """
     (central, minimum), (rough, rough_minimum) = films_of(fine), films_of(coarse)
-    moved_by, narrowed = abs(rough / central - 1.0), abs(rough_minimum / minimum - 1.0)
+    moved_by, narrowed = abs(scale * rough / central - 1.0), abs(scale * rough_minimum / minimum - 1.0)
     if fine.spike is None:
         return share * moved_by, share * narrowed
     return share * moved_by, FIRST_ORDER * narrowed + 0.5 * moved_by

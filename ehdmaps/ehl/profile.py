@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.elastic import DRY_DATUM
@@ -157,10 +156,31 @@ def starved_start(profile: Profile, grid: Grid) -> FloatArray:
     """
     if profile.spike is not None:
         return moved(profile, grid, by_index=False)
-    curve = PchipInterpolator(profile.grid.x, profile.pressure)
-    pressure = curve(np.maximum(grid.x, profile.grid.x[0]))
+    pressure = _monotone(profile.grid.x, profile.pressure, np.maximum(grid.x, profile.grid.x[0]))
     pressure -= pressure[0] * (grid.x / grid.x[0]) ** 3
     return np.concatenate([np.maximum(pressure[1:-1], 0.0), profile.unknowns[-3:]])
+
+
+def _monotone(x: FloatArray, y: FloatArray, at: FloatArray) -> FloatArray:
+    """Cubics that rise and fall no more than the points do, level at the last one.
+
+    Slopes are harmonic means of those of both sides (F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5, 1984,
+    300-304). scipy has the same, and takes long to import.
+    """
+    step = np.diff(x)
+    rise = np.diff(y) / step
+    slope = np.zeros_like(y)
+    slope[0] = rise[0]
+    before, after = 2.0 * step[1:] + step[:-1], step[1:] + 2.0 * step[:-1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = (before + after) / (before / rise[:-1] + after / rise[1:])
+    slope[1:-1] = np.where(rise[:-1] * rise[1:] > 0.0, mean, 0.0)
+    cell = np.clip(np.searchsorted(x, at, side="right") - 1, 0, step.size - 1)
+    width, part = step[cell], (at - x[cell]) / step[cell]
+    rest = 1.0 - part
+    bent = width * (slope[cell] * rest - slope[cell + 1] * part)
+    curve: FloatArray = rest * rest * (1.0 + 2.0 * part) * y[cell] + part * part * (3.0 - 2.0 * part) * y[cell + 1]
+    return curve + part * rest * bent
 
 
 def refined(coarse: Profile, grid: Grid) -> FloatArray:

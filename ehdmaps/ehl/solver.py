@@ -21,7 +21,7 @@ from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.film_limits import THIN_FILM_LIMIT, too_thick
+from ehdmaps.physics.film_limits import THICKEST_FILM, THIN_FILM_LIMIT, too_thick
 from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups
@@ -97,6 +97,8 @@ class ReynoldsSolver(ContactSolverDefaults):
         Length of the inlet in units of sqrt(2 h R).
     tolerance : float
         Newton tolerance on the last (quadratic) step.
+    thickest_film : float
+        Largest h/R that is no refusal; infinite for lines that stand for their groups only.
 
     Raises
     ------
@@ -107,6 +109,7 @@ class ReynoldsSolver(ContactSolverDefaults):
     density: float = 6.5
     inlet_length: float = 300.0
     tolerance: float = 1e-6
+    thickest_film: float = THICKEST_FILM
 
     def __post_init__(self) -> None:
         problems = [
@@ -149,6 +152,7 @@ class ReynoldsSolver(ContactSolverDefaults):
             "inlet_length": self.inlet_length,
             "tolerance": self.tolerance,
             "grid_shape": f"{shape}",
+            **({} if self.thickest_film == THICKEST_FILM else {"thickest_film": self.thickest_film}),
         }
 
     def solve_line(
@@ -264,7 +268,8 @@ class ReynoldsSolver(ContactSolverDefaults):
         """
         state = lubricant.at(point.temperature)
         film, flooded = self._solve(contact, state, point, None)
-        if flooded is None or not film.status.usable:
+        # a flooded film that is refused for its thickness still says how much oil it takes
+        if flooded is None or flooded.outcome != CONVERGED:
             return SuppliedFilm(film)
         half = float(half_width(point.load, contact.radius, contact.reduced_modulus))
         peak = float(max_pressure(point.load, contact.radius, contact.reduced_modulus))
@@ -315,7 +320,13 @@ class ReynoldsSolver(ContactSolverDefaults):
             reason = f"Newton {word} at M = {M:.4g}, L = {L:.4g} on every grid tried"
             return FilmSolution(status, reason, iterations=groups.steps, solve_seconds=seconds), groups
         half = float(half_width(load, contact.radius, contact.reduced_modulus))
-        return _in_si(groups, contact, state, half, peak, speed, seconds), groups
+        film = _in_si(groups, contact, state, half, peak, speed, seconds)
+        refused = too_thick(film.film_offset, contact.radius, self.thickest_film)
+        if refused:
+            film = FilmSolution(
+                Status.OUTSIDE_VALIDITY, refused, iterations=film.iterations, solve_seconds=film.solve_seconds
+            )
+        return film, groups
 
 
 def line_problem(
@@ -403,9 +414,6 @@ def _in_si(
     """Scale films by b^2/R, the compliance by b/(p_H R), the loss by b^2/(p_H R u), the rolling force by p_H b^2/R."""
     film = half * half / contact.radius
     compliance = half / (peak * contact.radius)
-    refused = too_thick(groups.film_offset * film, contact.radius)
-    if refused:
-        return FilmSolution(Status.OUTSIDE_VALIDITY, refused, iterations=groups.steps, solve_seconds=seconds)
     status, notes = Status.CONVERGED, []
     thickness = groups.film_offset * film / contact.radius
     if thickness > THIN_FILM_LIMIT:

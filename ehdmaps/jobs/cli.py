@@ -86,6 +86,12 @@ def parser() -> argparse.ArgumentParser:
     )
     solve.add_argument("--eyring-stress", metavar="STRESS", help='for --slide-to-roll; default: "6 MPa"')
     solve.add_argument("--limiting-ratio", metavar="RATIO", help="limiting stress over pressure; default: 0.05")
+    solve.add_argument(
+        "--supply",
+        metavar="SUPPLY",
+        help='reynolds: oil layer before each contact, such as "5 um", or flooded | oil bath | oil air | grease; '
+        "with the place of the meniscus; default: flooded",
+    )
     solve.add_argument("--solver", metavar="NAME", help=_SOLVER)
     solve.add_argument("--json", action="store_true", help="one object a contact, SI, per unit length")
     solve.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)

@@ -65,8 +65,9 @@ REFUSED, HALVED = "law_refused", "law_lines_halved_along"
 
 STANDS_ON_LINES = (
     "these laws are made from refinement lines, whose steps are halved where the films between them miss, three times "
-    "at most; other axes of [grid] do not bring them closer to their bars; the quantiles of their errors stand above; "
-    "`ehdmaps solve` gives a single point without a law"
+    "at most; what misses then is the table of the law, or lines that would take too many points; other axes of [grid] "
+    "do not bring them closer to their bars; the quantiles of their errors stand above; `ehdmaps solve` gives a single "
+    "point without a law"
 )
 STANDS_ON_POINTS = "these laws are made from the points of the map: more temperatures, speeds or loads help"
 """What can be done where a bar is unmet; for the lines see `coarse_axis`."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
+from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import SPECTRUM_FIELDS, LineTask, with_later_fields
@@ -49,6 +51,8 @@ def refinement(job: Job, solver: ContactSolver, steps: Steps = STEPS) -> Refinem
     plan = plan_backbone(job.contacts, job.lubricant, job.loads, job.entrainment_speeds, job.temperatures, steps)
     if plan is None:
         return None
+    # these lines stand for their groups: how thick their own film is does not matter
+    of_groups = replace(solver, thickest_film=math.inf) if isinstance(solver, ReynoldsSolver) else solver
     tasks = tuple(
         LineTask(
             contact=plan.contact,
@@ -56,7 +60,7 @@ def refinement(job: Job, solver: ContactSolver, steps: Steps = STEPS) -> Refinem
             loads=line.loads,
             entrainment_speed=line.speed,
             temperature=line.temperature,
-            solver=solver,
+            solver=of_groups,
             natural_frequencies=solver.natural_frequencies,
         )
         for line in plan.lines

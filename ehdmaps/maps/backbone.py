@@ -38,7 +38,7 @@ from ehdmaps.maps.low_loads import first_loads, known_from
 from ehdmaps.maps.mixing import mix_lines
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
-from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_number
 
 HEAVY = 2.5
@@ -167,6 +167,7 @@ class BackboneField:
         self.dry = False
         self._contacts = {c.name: c for c in contacts}
         self._lubricant = lubricant
+        self._states: dict[float, LubricantState] = {}
         self._reference = reference
         self._solids = replace(contacts[0], radius=reference.radius)
         self._log_speeds = np.log(np.asarray(group["reference_speed"].values, dtype=float))
@@ -232,7 +233,9 @@ class BackboneField:
 
     def _scales(self, contact: LineContact, speed: float, temperature: float) -> tuple[float, float, float]:
         """Moes' M per N/m, M at the valley, and the film whose Moes number is one [m]."""
-        state = self._lubricant.at(temperature)
+        state = self._states.get(temperature)
+        if state is None:
+            state = self._states[temperature] = self._lubricant.at(temperature)
         radius, modulus = contact.radius, contact.reduced_modulus
         alpha = state.pressure_viscosity.pressure_viscosity
         unit, L = moes_groups(1.0, speed, state.viscosity, alpha, radius, modulus)

@@ -138,8 +138,8 @@ def compile_table(
     sharing = [RoughLayer(surface, contact, lubricant, slowest) for contact in rough]
     root, curve = _sampled(field, contacts, us, temperatures, held_load, resolution, layer, rolling, sharing)
     offset = _approach_at(np.cbrt(loads), root, curve)
-    least = 0.0 if surface.smooth else _FOOT
     if layer < math.inf:  # the lift-off from a layer is at one s
+        least = 0.0 if surface.smooth else _FOOT
         distance = np.maximum(offset - float(np.min(curve.approach[root >= least])), scale)
         scale = distance * float(np.min(scale / distance))
 
@@ -161,12 +161,16 @@ def compile_table(
                 f"load at {math.exp(log_speeds[i]):.4g} m/s, {temperatures[j]:.2f} K; a law needs that; "
                 "look at that part of the map, solve it again with a finer grid"
             )
-        samples, within = (line, root[:, i, j], root_slope[:, i, j], logs[:, i, j]), nodes
+        roots, slopes, ratios, within = root[:, i, j], root_slope[:, i, j], logs[:, i, j], nodes
         if not supply.flooded:
-            foot = int(np.searchsorted(root[:, i, j], least))
-            samples = _lifted_off(*samples, foot, resolution.approach)
-            within = np.maximum(nodes, samples[0][0])
-        line, roots, slopes, ratios = samples
+            foot = lifted if surface.smooth else int(np.searchsorted(roots, _FOOT))
+            line, roots, slopes, ratios = line[foot:], roots[foot:], slopes[foot:], ratios[foot:]
+            within = np.maximum(nodes, line[0])
+            if surface.smooth:
+                slopes = _slackened(line, roots, slopes, resolution.approach)
+            else:
+                line, roots, slopes = _without_foot(line, roots, slopes, resolution.approach)
+                ratios = np.concatenate((np.full(2, ratios[0]), ratios))
         values[i, j, :, 0] = _continued_root(line, roots, slopes, nodes)
         values[i, j, :, 1] = _continued_log(line, ratios, within)
 
@@ -312,20 +316,30 @@ def _summed(curves: Sequence[Curve]) -> Curve:
     return total
 
 
-def _lifted_off(
-    line: FloatArray, root: FloatArray, slope: FloatArray, log_ratio: FloatArray, lifted: int, step: float
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Samples of s, g, dg/ds and ln(c/w) of a contact on a layer, from its lift-off on.
+def _slackened(line: FloatArray, root: FloatArray, slope: FloatArray, step: float) -> FloatArray:
+    """Slopes dg/ds of samples from lift-off, g = 0, the first one no steeper than over two nodes of a table.
 
-    There, g[lifted] is 0, or what is left of a foot.
-
-    Where a layer ends, g rises with an almost vertical tangent, which no table resolves: below, it goes on with the
-    slope that it has over two nodes. So goes the foot that asperities give it, of less than a thousandth of 1 N/m.
+    Where a layer ends, g rises with an almost vertical tangent, which no table resolves.
     """
-    line, root, slope, log_ratio = (values[lifted:] for values in (line, root, slope, log_ratio))
-    steepest = float(np.interp(line[0] + 2.0 * step, line, root)) / (2.0 * step)
-    least = min(float(slope[0]), steepest) if root[0] == 0.0 else steepest
-    return line, root, np.concatenate(([least], slope[1:])), log_ratio
+    over_two = float(np.interp(line[0] + 2.0 * step, line, root)) / (2.0 * step)
+    return np.concatenate(([min(float(slope[0]), over_two)], slope[1:]))
+
+
+def _without_foot(
+    line: FloatArray, root: FloatArray, slope: FloatArray, step: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Samples of s, g and dg/ds, from two nodes below the first one with the slope that g has over the next two.
+
+    On a layer, asperities give g a foot of less than a thousandth of 1 N/m, with a knee at its end that no table
+    resolves.
+    """
+    over_two = (float(np.interp(line[0] + 2.0 * step, line, root)) - float(root[0])) / (2.0 * step)
+    below = -step * np.array([2.0, 1.0])
+    return (
+        np.concatenate((line[0] + below, line)),
+        np.concatenate((root[0] + over_two * below, root)),
+        np.concatenate((np.full(2, over_two), slope)),
+    )
 
 
 def _continued_root(line: FloatArray, root: FloatArray, slope: FloatArray, nodes: FloatArray) -> FloatArray:

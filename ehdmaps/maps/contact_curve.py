@@ -132,7 +132,7 @@ class ContactCurve:
         self._speeds = speeds
         self._temperatures = temperatures
         first = field.first_loads(speeds, temperatures)
-        low, self._high = self._edge(first, 1.0), self._edge(np.full_like(first, field.load_range[1]), -1.0)
+        low, self._high = self._edges(first, np.full_like(first, field.load_range[1]))
         self._tail = Tail(
             first, low.film_offset, low.film_compliance, low.damping, low.damping_exponent, contact.radius
         )
@@ -200,11 +200,15 @@ class ContactCurve:
                 )
         return curve
 
-    def _edge(self, load: FloatArray, direction: float) -> _Edge:
-        """Film and damping at an end of the range; the exponent of c from inside it, to second order."""
-        loads = load * np.exp(direction * _SMALL_STEP * np.arange(3.0))[:, None, None]
+    def _edges(self, low: FloatArray, high: FloatArray) -> tuple[_Edge, _Edge]:
+        """Film and damping at both ends of the range; the exponents of c from inside it, to second order."""
+        steps = np.exp(_SMALL_STEP * np.arange(3.0))[:, None, None]
+        loads = np.concatenate((low * steps, high / steps))  # read at once: a reading costs more than its loads
         film, film_compliance, loss = self._field.films(self._contact.name, loads, self._speeds, self._temperatures)
         damping = loss / (self._contact.structural_compliance(loads) + film_compliance) ** 2
         logs = np.log(damping)
-        exponent = direction * (-1.5 * logs[0] + 2.0 * logs[1] - 0.5 * logs[2]) / _SMALL_STEP
-        return _Edge(load, film[0], film_compliance[0], damping[0], exponent)
+        edges = []
+        for load, at, direction in ((low, 0, 1.0), (high, 3, -1.0)):
+            exponent = direction * (-1.5 * logs[at] + 2.0 * logs[at + 1] - 0.5 * logs[at + 2]) / _SMALL_STEP
+            edges.append(_Edge(load, film[at], film_compliance[at], damping[at], exponent))
+        return edges[0], edges[1]

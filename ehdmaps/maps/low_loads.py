@@ -16,7 +16,7 @@ import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups, valley_load_number
 from ehdmaps.units import LOAD
 
@@ -99,10 +99,7 @@ def load_at(contact: LineContact, lubricant: Lubricant, zeta: float, speed: floa
     speed, temperature : float
         u [m/s], > 0, and T [K].
     """
-    state = lubricant.at(temperature)
-    alpha = state.pressure_viscosity.pressure_viscosity
-    unit, L = moes_groups(1.0, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
-    return math.exp(zeta) * float(valley_load_number(L)) / float(unit)
+    return _load(contact, lubricant.at(temperature), zeta, speed)
 
 
 def first_loads(
@@ -215,5 +212,16 @@ def _loads_at(
     contacts: Sequence[LineContact], lubricant: Lubricant, zeta: float, speeds: FloatArray, temperatures: FloatArray
 ) -> FloatArray:
     """Smallest load of some contacts at a zeta [N/m], (n_u, n_T)."""
-    places = [[(float(u), float(T)) for T in temperatures] for u in speeds]
-    return np.array([[min(load_at(c, lubricant, zeta, *place) for c in contacts) for place in row] for row in places])
+    loads = np.empty((len(speeds), len(temperatures)))
+    for k, temperature in enumerate(temperatures):
+        state = lubricant.at(float(temperature))  # the same for all speeds, and most of the time that this takes
+        for j, speed in enumerate(speeds):
+            loads[j, k] = min(_load(contact, state, zeta, float(speed)) for contact in contacts)
+    return loads
+
+
+def _load(contact: LineContact, state: LubricantState, zeta: float, speed: float) -> float:
+    """Load of a contact at a zeta [N/m]."""
+    alpha = state.pressure_viscosity.pressure_viscosity
+    unit, L = moes_groups(1.0, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
+    return math.exp(zeta) * float(valley_load_number(L)) / float(unit)

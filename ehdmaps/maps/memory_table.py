@@ -67,7 +67,7 @@ class MemoryTable(NamedTuple):
     centre, inverse_scale : float
         Centre and inverse scale of the cells [m], [1/m].
     lift_off : float
-        Highest xi without load [m].
+        Highest end of a cell without load [m]: below it nothing changes, load and slopes are zero there.
     """
 
     cells: FloatArray
@@ -113,6 +113,7 @@ def fill_memory(
     size = 2 * rows + 1
     # a faded film takes its part of the offset, and of the approach of lift-off
     centre, inverse = point.film * point.own.offset, point.own.inverse_scale
+    lift_off = point.film * point.lift_off
     z, xi = np.empty(size), np.empty(size)
     p, k, c = np.zeros(size), np.zeros(size), np.zeros(size)
     y, sum_g, by_y, by_c = np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size)
@@ -122,7 +123,10 @@ def fill_memory(
         xi[i] = centre + z[i] / inverse
         p[i], k[i], c[i] = evaluate_at(point, xi[i], 0.0, counts)
         y[i], by_y[i] = xi[i], 1.0
-        if p[i] > 0.0:
+        if p[i] <= 0.0:
+            # Higher up in the cell that begins here its cubics have some load: the law lifts off within the cell.
+            lift_off = xi[i]
+        else:
             dry, compliance = structural_state(point.structure, 0.0, p[i])
             c[i] = max(c[i], _LEAST_DAMPING * k[i])
             factor = factor_at(factors, p[i])
@@ -148,7 +152,7 @@ def fill_memory(
             _cubic(y[near], y[far], by_y[near] / inverse, by_y[far] / inverse, h, out[4:8])
             _cubic(sum_g[near], sum_g[far], by_c[near] / inverse, by_c[far] / inverse, h, out[8:12])
     _fill_loads(point, p, beyond, slope_beyond, load_nodes, load_cells)
-    return MemoryTable(cells, load_cells, centre, inverse, point.film * point.lift_off)
+    return MemoryTable(cells, load_cells, centre, inverse, lift_off)
 
 
 @njit(cache=True, error_model="numpy")

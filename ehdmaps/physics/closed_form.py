@@ -17,7 +17,7 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.damping import rolling_film_damping
-from ehdmaps.physics.film_limits import THIN_FILM_LIMIT, too_thick
+from ehdmaps.physics.film_limits import THICKEST_FILM, THIN_FILM_LIMIT, too_thick
 from ehdmaps.physics.films import (
     dowson_higginson_minimum,
     dowson_toyoda_central,
@@ -72,6 +72,8 @@ class FormulaSolver(ContactSolverDefaults):
     ----------
     film_formula : {"moes", "dowson-toyoda", "pan-hamrock"}
         `moes` covers all regimes; the other two are for M >= 2 in the piezoviscous-elastic regime.
+    thickest_film : float
+        Largest h/R that is no refusal; infinite for lines that stand for their groups only.
 
     Raises
     ------
@@ -80,6 +82,7 @@ class FormulaSolver(ContactSolverDefaults):
     """
 
     film_formula: FilmFormula = "moes"
+    thickest_film: float = THICKEST_FILM
 
     def __post_init__(self) -> None:
         if self.film_formula not in FILM_FORMULAS:
@@ -107,7 +110,8 @@ class FormulaSolver(ContactSolverDefaults):
 
     def settings(self) -> dict[str, float | int | str]:
         """The formula."""
-        return {"film_formula": self.film_formula}
+        thickest = {} if self.thickest_film == THICKEST_FILM else {"thickest_film": self.thickest_film}
+        return {"film_formula": self.film_formula, **thickest}
 
     def _solve(self, contact: LineContact, state: LubricantState, load: float, speed: float) -> FilmSolution:
         """One point."""
@@ -126,7 +130,7 @@ class FormulaSolver(ContactSolverDefaults):
                 status=Status.OUTSIDE_VALIDITY,
                 reason=f"the film formula {self.film_formula} gives no finite, positive film here",
             )
-        refused = too_thick(film, contact.radius)
+        refused = too_thick(film, contact.radius, self.thickest_film)
         if refused:
             return FilmSolution(status=Status.OUTSIDE_VALIDITY, reason=refused)
         status, reason = Status.CONVERGED, ""

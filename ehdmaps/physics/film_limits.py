@@ -25,8 +25,11 @@ NO_CONTINUUM, BELOW_ROUGHNESS = "film below 1 nm: no continuum", "film below the
 """What is said of films that are too thin for their solution to be taken as it is."""
 
 
-def too_thick(film: float, radius: float) -> str:
+def too_thick(film: float, radius: float, thickest: float = THICKEST_FILM) -> str:
     """Why a film is refused; empty where it is not.
+
+    Lines that stand for their groups only, from which contact laws are made, have no thickness of their own: for them
+    the limit is infinite.
 
     Parameters
     ----------
@@ -34,11 +37,13 @@ def too_thick(film: float, radius: float) -> str:
         Film offset h [m].
     radius : float
         Reduced radius R [m].
+    thickest : float
+        Largest h/R that is taken.
     """
-    if not film > THICKEST_FILM * radius:
+    if not film > thickest * radius:
         return ""
     return (
-        f"film h/R = {film / radius:.3g} above {THICKEST_FILM:g}: neither thin-film theory nor a parabolic gap holds; "
+        f"film h/R = {film / radius:.3g} above {thickest:g}: neither thin-film theory nor a parabolic gap holds; "
         "take a higher load, a lower speed or a thinner oil"
     )
 

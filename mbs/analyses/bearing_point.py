@@ -7,6 +7,7 @@ so that it is found from any load and clearance. The rollers' centrifugal load i
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -14,6 +15,10 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.maps.rough_films import LEAST_SPEED, film_share
+from ehdmaps.maps.rough_layer import RoughLayer
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import reduced_modulus
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
@@ -117,6 +122,32 @@ class BearingPoint:
     def film_parameter(self, roughness: float) -> float:
         """Lambda: smallest film of all contacts over the combined rms roughness [m]; NaN where no film is known."""
         return float(np.min(self.contacts.minimum_film)) / roughness
+
+    def film_share(self, surface: Surface, lubricant: Lubricant) -> float:
+        """Share of the film in the load of the most loaded roller, of the contact where it is less; NaN without films.
+
+        By its central films; 1 between smooth surfaces.
+
+        Parameters
+        ----------
+        surface : Surface
+            Surfaces of the contacts.
+        lubricant : Lubricant
+            The oil.
+        """
+        if surface.smooth:
+            return 1.0
+        loads = self.rollers.load_per_length[self.most_loaded]
+        loaded = loads > 0.0
+        contacts = self.bearing.geometry.contacts(self.bearing.material, "iso16281")
+        place = loads[loaded], np.array([self.entrainment_speed]), np.array([self.temperature])
+        shares = []
+        for contact, side in zip(contacts, self.contacts.sides, strict=True):
+            film = side.central_film[self.most_loaded][loaded][:, None, None]
+            layer = RoughLayer(surface, contact, lubricant, max(self.entrainment_speed, LEAST_SPEED))
+            part = film_share(layer, film, *place)[:, 0, 0]
+            shares.append(float(np.sum(part * loads[loaded]) / np.sum(loads)) if loaded.any() else math.nan)
+        return min(shares)
 
 
 def bearing_points(

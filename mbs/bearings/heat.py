@@ -241,7 +241,8 @@ def steady_temperatures(
         temperatures = temperatures + steps
         hot = int(np.argmax(temperatures.max(axis=1)))
         if temperatures[hot].max() > HOTTEST:
-            raise _too_hot(names[hot], conductances[hot] - slopes[hot], float(given[hot].sum()), float(left[hot].sum()))
+            slope = conductances[hot] - slopes[hot]
+            raise _too_hot(names[hot], slope, float(given[hot].sum()), float(left[hot].sum()))
         if float(np.abs(steps).max()) < _SHORTEST_STEP:
             return temperatures
     raise AnalysisError(

@@ -246,7 +246,9 @@ def formula(
     loads = _axis(load, 0.25)
     speeds = _axis(entrainment_speed, 0.25)
     temperatures = np.linspace(*temperature, max(4, math.ceil((temperature[1] - temperature[0]) / 8.0) + 1))
-    films = [_films(contact, lubricant, FormulaSolver(film_formula), loads, speeds, temperatures) for contact in chosen]
+    # a law has corners of cold oil and light loads that no bearing comes to: its films fade there
+    solver = FormulaSolver(film_formula, math.inf)
+    films = [_films(contact, lubricant, solver, loads, speeds, temperatures) for contact in chosen]
     offset, compliance, loss = (np.stack(part) for part in zip(*films, strict=True))
     field = GridField(chosen, lubricant, loads, speeds, temperatures, offset, compliance, loss)
     return ContactLaw(kind, chosen, lubricant, field, outside, supply=supply or FLOODED, surface=surface or SMOOTH)

@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 def _law(request: BearingRequest) -> Law:
     """The law of a roller between both raceways, over what is asked of it."""
     if request.law == "map" and request.emap is not None:
-        return request.emap.law("series", outside="clamp", supply=request.supply)
+        return request.emap.law("series", outside="clamp", supply=request.supply, surface=request.surface)
     if request.law == "formula":
         turning = [speed for speed in request.speeds if speed > 0.0] or [1.0]
         u = [request.bearing.geometry.entrainment_speed(speed) for speed in (min(turning), max(turning))]
@@ -57,6 +57,7 @@ def _law(request: BearingRequest) -> Law:
             temperature=(request.temperature, request.temperature + 2.0),
             outside="clamp",
             supply=request.supply,
+            surface=request.surface,
         )
     damper = hertz_damper(request.law) or Damper()
     return laws.hertz(request.bearing, damper.constant, damper.time)

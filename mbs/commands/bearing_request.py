@@ -18,6 +18,7 @@ from ehdmaps.jobs.opening import open_given
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.reader import LONGEST_FILE, read_job, shipped_jobs
 from ehdmaps.jobs.supply import read_supply
+from ehdmaps.jobs.surface import read_surface
 from ehdmaps.jobs.table import Table
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import FIGURE, Output, output_problems
@@ -25,6 +26,7 @@ from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES
+from ehdmaps.physics.roughness import FINEST, ROUGHEST, SMOOTH, Surface
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
 from mbs.bearings.bearing import Bearing
@@ -46,7 +48,7 @@ MOST_SLICES_IN_ALL = 5_000_000
 """Of all rollers at all points: half a gigabyte."""
 
 _LOADS, _SPEEDS = (1e-3, 1e7), (0.0, 1e5 * math.pi / 30.0)
-_ROUGHNESSES = (1e-9, 1e-4)
+_ROUGHNESSES = (FINEST, ROUGHEST)
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +67,8 @@ class BearingRequest:
         The oil.
     supply : OilSupply
         Oil supply of the contacts.
+    surface : Surface
+        Surfaces of the contacts, smooth where the roughness is only assumed.
     films : FilmSource
         Pressures and films.
     loads : tuple of float
@@ -84,6 +88,7 @@ class BearingRequest:
     emap: EHDMap | None
     oil: Lubricant
     supply: OilSupply
+    surface: Surface
     films: FilmSource
     loads: tuple[float, ...]
     direction: tuple[float, float]
@@ -100,12 +105,13 @@ class BearingRequest:
 
 @dataclass(frozen=True)
 class _Given:
-    """The bearing argument: geometry, material, and oil and oil supply where the file states them."""
+    """The bearing argument: geometry, material, and oil, oil supply and surfaces where the file states them."""
 
     geometry: BearingGeometry
     material: Material
     oil: Lubricant | None = None
     supply: OilSupply | None = None
+    surface: Surface | None = None
 
 
 def read_request(arguments: argparse.Namespace) -> BearingRequest:
@@ -140,7 +146,10 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
             f"--temperature: got {short(arguments.temperature)} with --inner-ring and --outer-ring; allowed: two of "
             "the three; it is the temperature of a ring that has none of its own"
         )
-    roughness = _one("--roughness", arguments.roughness, "m", _ROUGHNESSES, MICROMETRE, ROUGHNESS, problems)
+    stated = _surface(given, emap)
+    assumed = ROUGHNESS if stated.smooth else stated.roughness
+    roughness = _one("--roughness", arguments.roughness, "m", _ROUGHNESSES, MICROMETRE, assumed, problems)
+    surface = stated if arguments.roughness is None else dataclasses.replace(stated, roughness=roughness)
     direction = _direction(arguments.direction, problems)
     clearance = None if arguments.clearance is None else read_clearance(arguments.clearance, problems)
     bearing = _sliced(given, clearance, arguments, problems)
@@ -169,6 +178,7 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
         emap=emap,
         oil=oil,
         supply=supply,
+        surface=surface,
         films=films,
         loads=loads,
         direction=direction,
@@ -180,10 +190,12 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
             law=_law_words(law, emap, oil),
             films=films.words + ("" if oil.verified else " (unverified data of the oil)"),
             supply=supply,
+            surface=surface if law in ("map", "formula") else SMOOTH,
+            oil=oil,
             direction=math.degrees(math.atan2(direction[1], direction[0])),
             temperature=temperature,
             roughness=roughness,
-            assumed=_assumed(arguments, given, emap),
+            assumed=_assumed(arguments, given, emap, surface),
             state=state,
         ),
     )
@@ -194,13 +206,20 @@ def _all_slices(given: _Given | None, slices: str) -> int:
     return given.geometry.rollers * int(slices) if given is not None and slices.isdecimal() and len(slices) < 10 else 0
 
 
-def _assumed(arguments: argparse.Namespace, given: _Given, emap: EHDMap | None) -> tuple[str, ...]:
+def _surface(given: _Given | None, emap: EHDMap | None) -> Surface:
+    """What file or map state of the surfaces, the file first."""
+    if given is not None and given.surface is not None:
+        return given.surface
+    return SMOOTH if emap is None else emap.surface
+
+
+def _assumed(arguments: argparse.Namespace, given: _Given, emap: EHDMap | None, surface: Surface) -> tuple[str, ...]:
     """What was not given, in words."""
     found = []
     if arguments.temperature is None and None in (arguments.inner_ring, arguments.outer_ring):
         found.append(f"temperature {TEMPERATURE.text(CELSIUS_40)}")
-    if arguments.roughness is None:
-        found.append(f"combined rms roughness {MICROMETRE.text(ROUGHNESS)}")
+    if surface.smooth:
+        found.append(f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)")
     if arguments.clearance is None and given.geometry.diametral_clearance == 0.0:
         found.append("no clearance")
     if arguments.oil is None and given.oil is None and emap is None:
@@ -232,7 +251,7 @@ def _bearing(source: str, problems: list[str]) -> _Given | None:
 
 
 def _from_file(source: str) -> _Given:
-    """The bearing of a job, or of a file that holds no more than the bearing, its material, its oil and its supply."""
+    """The bearing of a job, or of a file that holds no more than the bearing, material, oil, supply and surfaces."""
     if source not in shipped_jobs():
         alone = _alone(source)
         if alone is not None:
@@ -240,7 +259,7 @@ def _from_file(source: str) -> _Given:
     job = read_job(source)
     if job.bearing is None:
         raise InputError(f"{source}: is the job of a bare [contact]; allowed: one with [bearing]")
-    return _Given(job.bearing, job.contacts[0].material, job.lubricant, job.supply)
+    return _Given(job.bearing, job.contacts[0].material, job.lubricant, job.supply, job.surface)
 
 
 def _alone(source: str) -> _Given | None:
@@ -261,12 +280,16 @@ def _alone(source: str) -> _Given | None:
     supply = read_supply(own) if own else None
     if own:
         own.close()
-    top.close(others=("schema", "bearing", "material", "lubricant", "supply"))
+    rough = top.table("surface", "[surface]")
+    surface = read_surface(rough) if rough else None
+    if rough:
+        rough.close()
+    top.close(others=("schema", "bearing", "material", "lubricant", "supply", "surface"))
     if geometry is None and not problems:
         problems.append("bearing file: has [contact]; allowed: [bearing] with a name or dimensions")
     if problems or geometry is None:
         raise InputError([f"{source}: {problem}" for problem in problems])
-    return _Given(geometry, contacts[0].material, oil, supply)
+    return _Given(geometry, contacts[0].material, oil, supply, surface)
 
 
 def _sliced(

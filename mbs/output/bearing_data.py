@@ -13,12 +13,15 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.outputs import MARK, TABLE, Kind, write_text
+from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.roughness import Surface
 from mbs.analyses.bearing_point import BearingPoint
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import SIDES
 from mbs.bearings.state import BearingState
 from mbs.output.results import RESULT, described
+from mbs.scene.contact_laws import surface_label
 
 WIDE_RANGE = 20.0
 """A range of loads whose end is further above its beginning is spaced, and drawn, in the logarithm."""
@@ -39,6 +42,10 @@ class BearingDescription:
         Law and films, in words.
     supply : OilSupply
         Oil supply of the contacts.
+    surface : Surface
+        Surfaces of the contacts, whose load film and asperities share where they are rough.
+    oil : Lubricant
+        The oil.
     direction : float
         Direction of the load, from y towards z [deg].
     temperature, roughness : float
@@ -53,6 +60,8 @@ class BearingDescription:
     law: str
     films: str
     supply: OilSupply
+    surface: Surface
+    oil: Lubricant
     direction: float
     temperature: float
     roughness: float
@@ -123,6 +132,12 @@ def bearing_dataset(description: BearingDescription, points: Points) -> xr.Datas
         name: (dims, np.array([[row[name] for row in line] for line in rows]), {"units": unit, "long_name": words})
         for name, unit, words in _ROW
     }
+    shares = [[point.film_share(description.surface, description.oil) for point in line] for line in points]
+    variables["film_share"] = (
+        dims,
+        np.array(shares),
+        {"units": "1", "long_name": "share of the film in the load of the most loaded roller; 1 for smooth surfaces"},
+    )
     for name, unit, words in _SIDE:
         values = np.array([[getattr(point.contacts, name) for point in line] for line in points])
         variables[name] = ((*dims, "contact"), values, {"units": unit, "long_name": f"{words} of the contact"})
@@ -162,6 +177,7 @@ def _attributes(description: BearingDescription, points: Points) -> dict[str, An
         "bearing_law": description.law,
         "films": description.films,
         "oil_supply": description.supply.label,
+        "surface": surface_label(description.surface),
         "load_direction_deg": description.direction,
         "temperature_K": description.temperature,
         **_warm(description.state),

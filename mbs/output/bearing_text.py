@@ -14,6 +14,7 @@ from mbs.bearings.films import SIDES
 from mbs.bearings.rolling_loss import RollingLoss
 from mbs.output.bearing_data import BearingDescription, Points, bearing_row
 from mbs.output.state_text import state_words
+from mbs.scene.contact_laws import surface_label
 from mbs.scene.fields import FORCE, MICROMETRE
 
 FLOODED_NOTE = (
@@ -39,9 +40,9 @@ def bearing_text(description: BearingDescription, points: Points) -> list[str]:
     everything = [point for line in points for point in line]
     lines = bearing_heading(description)
     if len(everything) == 1:
-        lines += _page(everything[0], description.roughness) + _rollers(everything[0])
+        lines += _page(everything[0], description) + _rollers(everything[0])
     else:
-        lines += _table(everything, description.roughness)
+        lines += _table(everything, description)
     torque = max((point.loss.torque for point in everything), default=math.nan)
     return lines + flooded_note(torque, [description.supply]) + _warnings(everything)
 
@@ -54,14 +55,14 @@ def bearing_heading(description: BearingDescription) -> list[str]:
     return [
         f"{bearing.geometry.name}: law {description.law}; {description.films}",
         f"  {TEMPERATURE.text(description.temperature)}, {state}, profile {bearing.profile}, {bearing.slices} slices, "
-        f"load at {description.direction:.4g} deg from y (a roller) towards z",
+        f"load at {description.direction:.4g} deg from y (a roller) towards z, {surface_label(description.surface)}",
         f"  assumed: {', '.join(description.assumed) or 'nothing'}",
     ]
 
 
-def _page(point: BearingPoint, roughness: float) -> list[str]:
+def _page(point: BearingPoint, description: BearingDescription) -> list[str]:
     """The numbers of one point."""
-    row = bearing_row(point, roughness)
+    row, roughness = bearing_row(point, description.roughness), MICROMETRE.text(description.roughness)
     contacts = point.contacts
 
     def pair(label: str, unit: str, along: float, across: float) -> str:
@@ -83,10 +84,18 @@ def _page(point: BearingPoint, roughness: float) -> list[str]:
         ),
         _sides("smallest central film", FILM.unit, 1e6 * contacts.central_film),
         _sides("smallest film", FILM.unit, 1e6 * contacts.minimum_film),
-        f"  Lambda {row['film_parameter']:.3g} (smallest film over {MICROMETRE.text(roughness)} of roughness; "
-        f"{regime(row['film_parameter'])})",
+        f"  Lambda {row['film_parameter']:.3g} (smallest film over {roughness} of roughness; "
+        f"{regime(row['film_parameter'])})" + _share_words(point, description),
         f"  {loss_words(point.loss)}",
     ]
+
+
+def _share_words(point: BearingPoint, description: BearingDescription) -> str:
+    """What the film carries of the load of the most loaded roller; nothing for smooth surfaces."""
+    if description.surface.smooth:
+        return ""
+    share = point.film_share(description.surface, description.oil)
+    return f"; the film carries {share:.0%} of the load of the most loaded roller" if not math.isnan(share) else ""
 
 
 def loss_words(loss: RollingLoss) -> str:
@@ -154,22 +163,24 @@ def _rollers(point: BearingPoint) -> list[str]:
     return [line.rstrip() for line in lines]
 
 
-def _table(points: list[BearingPoint], roughness: float) -> list[str]:
+def _table(points: list[BearingPoint], description: BearingDescription) -> list[str]:
     """A line for each point."""
+    rough = not description.surface.smooth
     lines = [
         f"{'load':>10s} {'speed':>8s} {'K along':>9s} {'across':>9s} {'c along':>9s} {'rollers':>7s} {'highest':>9s} "
-        f"{'Hertz':>7s} {'smallest':>9s} {'Lambda':>7s} {'rolling':>8s}",
+        f"{'Hertz':>7s} {'smallest':>9s} {'Lambda':>7s} {'rolling':>8s}" + (f" {'film':>6s}" if rough else ""),
         f"{'N':>10s} {'rpm':>8s} {'N/um':>9s} {'N/um':>9s} {'N s/mm':>9s} {'loaded':>7s} {'N':>9s} "
-        f"{'GPa':>7s} {'film, um':>9s} {'':>7s} {'N mm':>8s}",
+        f"{'GPa':>7s} {'film, um':>9s} {'':>7s} {'N mm':>8s}" + (f" {'share':>6s}" if rough else ""),
     ]
     for point in points:
-        row = bearing_row(point, roughness)
+        row = bearing_row(point, description.roughness)
+        share = f" {point.film_share(description.surface, description.oil):6.3f}" if rough else ""
         lines.append(
             f"{point.size:10.5g} {RPM.value(point.speed):8.5g} {1e-6 * row['stiffness_along']:9.4g} "
             f"{1e-6 * row['stiffness_across']:9.4g} {1e-3 * row['damping_along']:9.4g} {point.loaded:7d} "
             f"{row['highest_roller_load']:9.5g} {1e-9 * float(point.contacts.hertz_pressure.max()):7.4g} "
             f"{_shown(1e6 * float(np.min(point.contacts.minimum_film)), 4):>9s} {_shown(row['film_parameter'], 3):>7s} "
-            f"{_shown(1e3 * row['rolling_torque'], 4):>8s}{' !' if point.problems else ''}"
+            f"{_shown(1e3 * row['rolling_torque'], 4):>8s}{share}{' !' if point.problems else ''}"
         )
     return lines
 

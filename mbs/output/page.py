@@ -61,7 +61,9 @@ def headed(model: Model, words: str, size: tuple[float, float] = _SIZE, law: str
         *([f"clearance {typeset(clearance)}"] if clearance else []),
     ]
     figure = Figure(figsize=size, layout="constrained")
-    figure.suptitle(f"{model.scene.title}\n{law or model.law}; {', '.join(at)}", fontsize=10)
+    # What a bearing is in operation takes a line of its own.
+    end = "\n" if model.states else "; "
+    figure.suptitle(f"{model.scene.title}\n{law or model.law}{end}{', '.join(at)}", fontsize=10)
     return figure
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.roughness import Surface
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.films import FilmSource
 from mbs.bearings.state import BearingState
@@ -23,7 +24,7 @@ from mbs.model.relaxation import Films
 from mbs.model.system import System
 from mbs.scene import kinds
 from mbs.scene.bodies import build_bodies
-from mbs.scene.contact_laws import ContactLaws, choose_law, supply_words
+from mbs.scene.contact_laws import ContactLaws, choose_law, supply_words, surface_label
 from mbs.scene.kinds import ElementKind
 from mbs.scene.scene import Scene
 from mbs.scene.surroundings import Built, Surroundings
@@ -59,6 +60,8 @@ class Model:
         The same model in operation, by speed, where it was asked for.
     supplies : mapping of str to OilSupply
         Oil supply of each bearing by its name; empty for laws without films.
+    surface : Surface or None
+        Surfaces of the contacts; None for laws without films.
     """
 
     scene: Scene
@@ -72,6 +75,7 @@ class Model:
     states: tuple[BearingState, ...] = ()
     found: dict[float, Model] = field(default_factory=dict, repr=False)
     supplies: Mapping[str, OilSupply] = field(default_factory=dict)
+    surface: Surface | None = None
 
     @property
     def operation(self) -> Operation:
@@ -170,13 +174,15 @@ def assemble(
         label=laws.label,
         memory=laws.memory,
         supplies=laws.supplies,
+        surface=laws.surface,
     )
 
 
 def law_attributes(model: Model) -> Mapping[str, str]:
     """Provenance of a result."""
     named = {"scene": model.scene.name, "scene_toml": model.scene.text, "law": model.law}
-    return {**named, **supply_attributes([(model.label, model)])}
+    surface = {} if model.surface is None else {"surface": surface_label(model.surface)}
+    return {**named, **supply_attributes([(model.label, model)]), **surface}
 
 
 def supply_attributes(models: Sequence[tuple[str, Model]]) -> dict[str, str]:

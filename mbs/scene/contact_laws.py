@@ -14,6 +14,7 @@ from ehdmaps.maps.law import LawKind
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.roughness import SMOOTH, Surface
 from ehdmaps.units import closest, quantity
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
@@ -79,6 +80,17 @@ def supply_words(supplies: Mapping[str, OilSupply]) -> str:
     if len(set(supplies.values())) <= 1:
         return next((supply.label for supply in supplies.values()), "")
     return ", ".join(f"{name} {supply.label}" for name, supply in supplies.items())
+
+
+def surface_label(surface: Surface) -> str:
+    """What a result says of its surfaces.
+
+    Examples
+    --------
+    >>> surface_label(SMOOTH), surface_label(Surface(2e-7))
+    ('smooth surfaces', 'roughness 0.2 um')
+    """
+    return "smooth surfaces" if surface.smooth else surface.label
 
 
 @dataclass(frozen=True)
@@ -231,6 +243,14 @@ class ContactLaws:
         of_map = self.emap.supply if self.chosen == "map" and self.emap is not None else FLOODED
         return self.asked_supply or self.scene.supply or of_map
 
+    @property
+    def surface(self) -> Surface | None:
+        """Surfaces of all contacts: those of the scene go before those of the map; None for laws without films."""
+        if not self._has_films:
+            return None
+        of_map = self.emap.surface if self.chosen == "map" and self.emap is not None else SMOOTH
+        return self.scene.surface or of_map
+
     def of(self, bearing: Bearing, supply: OilSupply) -> BearingLaws:
         """The laws of the contacts of a bearing with an oil supply; those of the same contacts are made once."""
         key = dataclasses.replace(bearing.geometry, diametral_clearance=0.0), supply
@@ -255,7 +275,8 @@ class ContactLaws:
     def label(self) -> str:
         """The law in a few words, as the legend of a figure has it; of its films only what is not the default."""
         films = self._film_words if self.memory != DEFAULT_FILMS else ""
-        return law_label(self.chosen, self.emap) + films + self.supply_label
+        rough = "" if self.surface is None or self.surface.smooth else f", {self.surface.label}"
+        return law_label(self.chosen, self.emap) + films + self.supply_label + rough
 
     @property
     def supply_label(self) -> str:
@@ -269,7 +290,8 @@ class ContactLaws:
     def words(self) -> str:
         """The law, for people."""
         supply = supply_words(self.supplies)
-        return self._law_words + (f", {supply}" if supply else "") + self._film_words
+        surface = "" if self.surface is None else f", {surface_label(self.surface)}"
+        return self._law_words + (f", {supply}" if supply else "") + surface + self._film_words
 
     @property
     def _film_words(self) -> str:
@@ -336,9 +358,11 @@ class BearingLaws:
 
     def _of_kind(self, kind: LawKind) -> Law:
         """A law with films."""
+        surface = self.given.surface
         if self.given.chosen == "map" and self.given.emap is not None:
-            return self.given.emap.law(kind, outside="clamp", supply=self.supply)
-        return laws.formula(self.bearing, self.given.lubricant, kind=kind, outside="clamp", supply=self.supply)
+            return self.given.emap.law(kind, outside="clamp", supply=self.supply, surface=surface)
+        oil = self.given.lubricant
+        return laws.formula(self.bearing, oil, kind=kind, outside="clamp", supply=self.supply, surface=surface)
 
 
 def geometry_problems(where: str, geometry: BearingGeometry, emap: EHDMap) -> list[str]:

@@ -16,6 +16,7 @@ from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.axes import AxisRule, read_axis
 from ehdmaps.jobs.problem import read_lubricant
 from ehdmaps.jobs.supply import read_supply
+from ehdmaps.jobs.surface import read_surface
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, short
@@ -123,6 +124,10 @@ class _Reader:
         supply = read_supply(section) if section else None
         if section:
             self._close(section)
+        section = top.table("surface", "[surface]")
+        surface = read_surface(section) if section else None
+        if section:
+            self._close(section)
         bodies: list[BodySpec] = [
             *self._all("bodies", self._body),
             *self._all("shafts", read_shaft),
@@ -160,6 +165,7 @@ class _Reader:
             temperature=temperature,
             lubricant=lubricant,
             supply=supply,
+            surface=surface,
             bodies=bodies,
             springs=springs,
             loads=loads,

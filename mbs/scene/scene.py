@@ -12,6 +12,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES
+from ehdmaps.physics.roughness import Surface
 from mbs.gears.pair import GearPair
 from mbs.model.elements import Input, Load, Sensor, Spring
 from mbs.scene.specs import BearingSpec, BodySpec, ElementSpec, FlexibleSpec
@@ -38,6 +39,8 @@ class Scene:
         Oil of the law `formula`, and of planned maps.
     supply : OilSupply or None
         Oil supply of the bearings that have none of their own; None for that which the job of the map states.
+    surface : Surface or None
+        Surfaces of the contacts; None for those that the job of the map states.
     bodies : tuple of RigidSpec, ShaftSpec, FlexibleSpec or Body
         All bodies, in the order of their coordinates.
     springs : tuple of Spring
@@ -83,6 +86,7 @@ class Scene:
     temperature: float
     lubricant: Lubricant | None = None
     supply: OilSupply | None = None
+    surface: Surface | None = None
     bodies: Sequence[BodySpec]
     springs: Sequence[Spring] = ()
     loads: Sequence[Load] = ()

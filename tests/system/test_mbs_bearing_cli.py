@@ -50,7 +50,7 @@ def test_a_named_bearing_needs_a_load_and_a_speed(here, capsys, name):
     assert (status, err) == (0, "")
     for words in (
         f"{name}: law dry Hertz, ISO 16281; films: Moes' formula (minimum: Dowson-Higginson, Martin) for FVA3",
-        "assumed: temperature 40 degC, combined rms roughness 0.3 um, no clearance, oil FVA3",
+        "assumed: temperature 40 degC, combined rms roughness 0.3 um (for Lambda only), no clearance, oil FVA3",
         "5000 N on the inner ring at 1500 rpm: entrainment speed",
         "(smallest film over 0.3 um of roughness; mixed: asperities touch)",
         "rollers carry more than 1 % of the highest load",
@@ -130,11 +130,11 @@ def test_a_bearing_of_ones_own(here, capsys):
         OWN + '[material]\nyoungs_modulus = "100 GPa"\n[lubricant]\nname = "Spirax MA 80W"\n'
     )
     soft = run(capsys, "oil.toml", "--load", "5 kN", "--speed", "1500 rpm")[1]
-    assert "for Spirax MA 80W (unverified data)" in soft and "oil FVA3" not in soft
+    assert "for Spirax MA 80W, flooded (unverified data of the oil)" in soft and "oil FVA3" not in soft
     assert value(soft, "Hertz pressure") < 0.8 * value(out, "Hertz pressure")
     assert value(soft, "stiffness") < 0.6 * value(out, "stiffness")
     shipped = run(capsys, "nu308", "--load", "5 kN", "--speed", "1500 rpm")[1]
-    assert "assumed: temperature 40 degC, combined rms roughness 0.3 um, no clearance\n" in shipped
+    assert "assumed: temperature 40 degC, combined rms roughness 0.3 um (for Lambda only), no clearance\n" in shipped
 
 
 def test_overload_and_what_is_outside_the_map_make_status_1(here, capsys, formula_map):
@@ -164,7 +164,7 @@ BAD = (
     ("NU308", ["--speed", "-1 rpm"], "--speed: got '-1 rpm'; allowed: 0 rpm to 1e+05 rpm"),
     ("NU308", ["--temperature", "-20 degC"], "--temperature: lubricant 'FVA3', temperature: got -20 degC"),
     ("NU308", ["--temperature", "400 degC"], "--temperature: got '400 degC'; allowed: -60 degC to 300 degC"),
-    ("NU308", ["--roughness", "0 um"], "--roughness: got '0 um'; allowed: 0.001 um to 100 um"),
+    ("NU308", ["--roughness", "0 um"], "--roughness: got '0 um'; allowed: 0.001 um to 10 um"),
     ("NU308", ["--direction", "0", "0"], "--direction: got '0 0'; allowed: an angle from y towards z"),
     ("NU308", ["--direction", "1", "2", "3"], "--direction: got '1 2 3'; allowed: an angle"),
     ("NU308", ["--direction", "nan"], "--direction: got 'nan'; allowed: an angle"),

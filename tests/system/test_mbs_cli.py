@@ -85,7 +85,7 @@ def test_sweep_of_films(here, capsys, formula_maps):
     assert (status, err) == (0, "")
     for words in ("formula map, slow films", "formula map, films with memory", "dry Hertz"):
         assert out.count(f"case: {words}\n") == 1
-    assert "law map of NU308, FVA3, solver formula, flooded, films with memory" in out
+    assert "law map of NU308, FVA3, solver formula, flooded, smooth surfaces, films with memory" in out
     assert out.count("warning: bearing_left: slow films; estimated error") == 1
     assert out.count("bearing_left: films with memory; estimated error") == 1
     with xr.open_dataset("s.nc") as data:

@@ -5,14 +5,17 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ehdmaps.jobs import generate as story
+from ehdmaps.jobs import solvers
 from ehdmaps.jobs.generate import Generated, generate_in_memory
 from ehdmaps.jobs.law_check import HALVED, met, unmet
-from ehdmaps.jobs.reader import parse_job
+from ehdmaps.jobs.reader import parse_job, read_job
+from ehdmaps.jobs.refinement import refinement
 from ehdmaps.maps.backbone_plan import STEPS, Steps, plan_backbone
 from ehdmaps.physics.closed_form import FormulaSolver
 from tests.cases.jobs import LINE
@@ -97,3 +100,13 @@ def test_half_a_step_is_half_a_step() -> None:
     assert np.max(np.diff(temperatures.temperatures)) <= 0.5 * STEPS.temperature < np.max(np.diff(coarse.temperatures))
     assert np.max(np.diff(np.log(speeds.speeds))) <= 0.5 * STEPS.entrainment_speed
     assert np.min(np.diff(loads.zeta)) == pytest.approx(0.5 * STEPS.load)
+
+
+def test_the_job_of_a_cold_thick_oil_begins_with_the_same_lines() -> None:
+    """What it costs: 3900 points of lines, with the steps that every job begins with."""
+    job = read_job(str(Path(__file__).parents[2] / "docs" / "vg320.toml"))
+    lines = refinement(job, solvers.build(job.solver, job.solver_options))
+    assert lines is not None
+    assert lines.steps == STEPS
+    assert lines.points < 4200
+    assert job.law_check == 500

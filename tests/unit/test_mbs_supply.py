@@ -85,15 +85,16 @@ def test_films_of_a_map_have_the_supply_that_its_job_states(emaps):
 
 def test_a_supply_is_said_with_the_law(emaps):
     plain, _ = emaps
-    words = "map of NU308, FVA3, solver formula"
+    words, mixed = "map of NU308, FVA3, solver formula", "bearing_left grease (oil layer 0.7 um), bearing_right flooded"
+    rest = "smooth surfaces, films with memory"
     for given, asked, law, label in (
-        (scene(), None, f"{words}, flooded, films with memory", "formula map"),
-        (scene(), AIR, f"{words}, oil air (oil layer 2 um), films with memory", "formula map, oil air"),
-        (scene(), LAYER, f"{words}, oil layer 5 um, films with memory", "formula map, oil layer 5 um"),
+        (scene(), None, f"{words}, flooded, {rest}", "formula map"),
+        (scene(), AIR, f"{words}, oil air (oil layer 2 um), {rest}", "formula map, oil air"),
+        (scene(), LAYER, f"{words}, oil layer 5 um, {rest}", "formula map, oil layer 5 um"),
         (
             scene(of_bearing='{ lubrication = "grease" }'),
             None,
-            f"{words}, bearing_left grease (oil layer 0.7 um), bearing_right flooded, films with memory",
+            f"{words}, {mixed}, {rest}",
             "formula map, supply by bearing",
         ),
     ):

@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import pickle
+import re
 from dataclasses import fields
 
 import numpy as np
@@ -89,12 +90,13 @@ def test_film_compliance_is_the_derivative_of_the_film(formula, load, speed):
 @pytest.mark.parametrize("formula", FILM_FORMULAS)
 @given(load=loads, speed=speeds, celsius=st.floats(0.0, 120.0))
 def test_films_are_ordered_and_physical(formula, load, speed, celsius):
-    film = solve(FormulaSolver(formula), load, speed, 273.15 + celsius)
+    solver = FormulaSolver(formula, thickest_film=math.inf)
+    film = solve(solver, load, speed, 273.15 + celsius)
     assert film.status.usable
     assert film.film_compliance > 0
     assert film.loss_compliance > 0
     assert 0 < film.minimum_film <= film.central_film == film.film_offset
-    faster = solve(FormulaSolver(formula), load, 1.5 * speed, 273.15 + celsius)
+    faster = solve(solver, load, 1.5 * speed, 273.15 + celsius)
     assert faster.central_film > film.central_film
 
 
@@ -120,10 +122,13 @@ def test_at_rest_the_contact_is_dry_and_says_so():
 
 
 def test_thick_films_are_a_stated_limit():
-    film = solve(FormulaSolver(), load=1.0, speed=10.0, temperature=273.15)
+    film = solve(FormulaSolver(), load=1000.0, speed=10.0, temperature=273.15)
     assert film.status is Status.ASYMPTOTE
     assert "above 0.01: outside thin-film theory" in film.reason
     assert film.film_offset > 0.01 * INNER.radius
+    refused = solve(FormulaSolver(), load=1.0, speed=10.0, temperature=273.15)
+    assert refused.status is Status.OUTSIDE_VALIDITY
+    assert re.match("film h/R = [0-9.]+ above 0.3: neither thin-film theory nor", refused.reason)
 
 
 def test_extrapolated_viscosity_is_flagged():

@@ -14,6 +14,7 @@ from ehdmaps.jobs.reader import parse_job
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.low_loads import RIGID, known_from, load_at
+from ehdmaps.physics.solution import Status
 from tests.cases.laws import CONTACTS, OIL, dataset_of
 
 SPEED, KELVIN = 1.0, 313.15
@@ -109,6 +110,41 @@ def test_a_law_says_where_it_guesses() -> None:
     law.reset_counts()
     law.at(SPEED, KELVIN)(-1.0, 0.0)  # no load at all
     assert law.excursions == ()
+
+
+def _without(emap: EHDMap, places: slice | int) -> EHDMap:
+    """The same map with some points of its line unsolved."""
+    assert emap.backbone is not None
+    group = emap.backbone.copy(deep=True)
+    group["status"].values[places] = int(Status.STAGNATED)
+    for name, values in group.data_vars.items():
+        if name != "status":
+            values.values[places] = np.nan
+    return EHDMap(emap.dataset, group)
+
+
+def test_one_unsolved_point_of_a_line_is_bridged_and_told() -> None:
+    """0.2 % of w and k, 3 % of c: a cubic over twice the step, in the middle of the valley."""
+    whole, emap = _map(50), _without(_map(50), 40)
+    loads = tuple(np.geomspace(200.0, 4e4, 15))
+    ratios = _ratios(emap.law("line"), loads) / _ratios(whole.law("line"), loads)
+    assert ratios[:2] == pytest.approx(1.0, abs=2e-3)
+    assert ratios[2] == pytest.approx(1.0, abs=0.03)
+    assert "1 of them without a solution: single ones are bridged" in describe(emap, "low.nc")
+    assert "without a solution: single" not in describe(whole, "low.nc")
+
+
+def test_where_the_lowest_points_are_unsolved_the_film_is_a_guess() -> None:
+    """The law begins where the line does: right from there on, and told below."""
+    emap = _without(_map(50), slice(0, 8))
+    law = emap.law("line")
+    assert law.low_loads is not None and law.low_loads.guessed == 1.0
+    first = law.guessed_below(SPEED, KELVIN)
+    assert first < 5e4
+    assert _ratios(law, (1.05 * first, 3e4)) == pytest.approx(1.0, abs=0.01)
+    assert law.excursions == ()
+    law(-3e-6, 0.0, SPEED, KELVIN)
+    assert [(one.axis, one.side) for one in law.excursions] == [("load", "below")]
 
 
 def test_where_a_backbone_begins() -> None:

@@ -17,6 +17,7 @@ from ehdmaps.maps.rough_layer import RoughLayer, _moes, scaled_film
 from ehdmaps.physics.films import moes_central_and_slope
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.moes import moes_groups
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import Surface, asperity_pressure, mean_gap
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
@@ -195,6 +196,19 @@ def test_law_rises_without_a_jump_down_to_standstill(kind):
         last = w
     zero, slow = (found.at(speed, CELSIUS_60)(delta, 0.0)[0] for speed in (0.0, 2e-4))
     assert np.array_equal(zero, slow)
+
+
+@pytest.mark.parametrize("layer", [0.7e-6, 2e-6])
+def test_a_rough_contact_on_an_oil_layer_rises_and_is_the_dry_one_at_rest(layer):
+    """The film is capped by the layer first, then shares the load: asperities stand out of thin layers."""
+    found = ContactLaw("series", CONTACTS, OIL, SMALL_FIELD, "clamp", supply=OilSupply(layer), surface=ROUGH)
+    delta = np.linspace(-6e-6, 2e-5, 2001)
+    for speed in (0.0, 1e-3, 0.03, 0.3, 3.0):
+        w, k, c = found.at(speed, CELSIUS_60)(delta, 0.0)
+        assert np.all(np.diff(w) >= 0.0) and np.all(k >= 0.0) and np.all(c >= 0.0)
+    flooded = law(ROUGH, "series").at(0.0, CELSIUS_60)(delta, 0.0)[0]
+    # 2e-3: finer steps of the table on a layer; below 1 N/m both are tails
+    np.testing.assert_allclose(found.at(0.0, CELSIUS_60)(delta, 0.0)[0], flooded, rtol=2e-3, atol=1.0)
 
 
 def test_films_with_memory_share_their_load_and_give_no_energy():
