@@ -27,7 +27,7 @@ from ehdmaps.errors import MapError
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.low_loads import valley_loads
-from ehdmaps.maps.oil_layer import end_of_film, oil_layer
+from ehdmaps.maps.oil_layer import oil_layer
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.maps.splines import hermite, spline_coefficients
@@ -139,7 +139,8 @@ def compile_table(
     root, curve = _sampled(field, contacts, us, temperatures, held_load, resolution, layer, rolling, sharing)
     offset = _approach_at(np.cbrt(loads), root, curve)
     if layer < math.inf:  # the lift-off from a layer is at one s
-        distance = offset + sum(end_of_film(contact, layer) for contact in contacts)
+        least = 0.0 if surface.smooth else _FOOT
+        distance = np.maximum(offset - float(np.min(curve.approach[root >= least])), scale)
         scale = distance * float(np.min(scale / distance))
 
     stretched = np.arcsinh((curve.approach - offset) / scale)

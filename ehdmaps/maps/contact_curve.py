@@ -139,7 +139,7 @@ class ContactCurve:
 
     @property
     def tail(self) -> Tail:
-        """Film below the lowest mapped load."""
+        """Film below the first known load."""
         return self._tail
 
     @property

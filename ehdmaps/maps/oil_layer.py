@@ -17,7 +17,7 @@ to nothing. A gap wider than the layer is dry.
   than 1 % where they differ by a third.
 - s = sqrt(r), in which F and G are smooth, is rounded below r = `ROUNDED`^3, so that the load goes to zero as the cube
   of the approach, as the table of a law wants it.
-- Below the lowest mapped load the film does not fade at 0.005 R: the hyperbola w (h - hs) = A feeds the layer. Its flow
+- Below the first known load the film does not fade at 0.005 R: the hyperbola w (h - hs) = A feeds the layer. Its flow
   is that of the film, m/h going over into 1.2257 of the rigid contact. Layers thicker than those 0.005 R
   fade into the law of the flooded contact: 1/h^8 is that of the layer and that of the fade, less that of the
   hyperbola.
@@ -35,28 +35,14 @@ from scipy.interpolate import CubicSpline, PPoly
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.contact_curve import FilmSamples, dry_slope
 from ehdmaps.maps.rolling_film import RollingFilm
-from ehdmaps.maps.tail import FADE_RATIO, THICK_FILM, Tail
+from ehdmaps.maps.tail import Tail
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.starved import CORNER, RIGID_FLOW, compliance_ratio, damping_ratio, film_ratio, passing
+from ehdmaps.physics.starved import CORNER, RIGID_FLOW, compliance_ratio, damping_ratio, film_ratio
 
 ROUNDED = 0.2
 """Cube root of the flow ratio r below which sqrt(r) is rounded."""
 
 _FADING = 1.5
-
-
-def end_of_film(contact: LineContact, layer: float) -> float:
-    """Film at which a contact loses its load [m]: the layer, or the end of the fade of a flooded one, rounded.
-
-    Parameters
-    ----------
-    contact : LineContact
-        The contact.
-    layer : float
-        Oil layer [m].
-    """
-    faded = FADE_RATIO * THICK_FILM * contact.radius
-    return float(faded * passing(faded, layer))
 
 
 def oil_layer(

@@ -24,9 +24,7 @@ from ehdmaps.arrays import FloatArray
 THICK_FILM = 0.005
 """h/R at which the fade begins, unless the map itself reaches thicker films."""
 
-FADE_RATIO = 4.0
-"""Film at which the fade ends, over that at which it begins."""
-
+_FADE_RATIO = 4.0
 _LEAST_COMPLIANCE = 1e-3
 _JOIN_POWER = 3.0
 _NEWTON_STEPS = 60
@@ -108,11 +106,11 @@ class Tail:
         faded = np.nonzero(~unfaded)
         lines = faded[1:]
         start = fade[lines]
-        span, reach = (FADE_RATIO - 1.0) * start, FADE_RATIO * start - pole[lines]
+        span, reach = (_FADE_RATIO - 1.0) * start, _FADE_RATIO * start - pole[lines]
         unit = np.cbrt(strength[lines])
         tau = _faded_place(root[faded] / unit, span, reach)
         _, tau_slope = _faded_root(tau, span, reach)
-        film[faded] = FADE_RATIO * start - span * tau
+        film[faded] = _FADE_RATIO * start - span * tau
         slope[faded] = -span / (unit * tau_slope)
 
         part = self.load * self._compliance / (film - pole)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import functools
+import math
 
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ehdmaps.maps.law import ContactLaw
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import SMOOTH, Surface
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
@@ -16,16 +18,18 @@ speeds = st.floats(0.0, 3.0)
 temperatures = st.floats(*SMALL_FIELD.temperature_range)
 centrifugal = st.sampled_from([0.0, 0.0, 1.0, 800.0])
 surfaces = st.sampled_from([SMOOTH, Surface(3e-7)])
+layers = st.sampled_from([math.inf, math.inf, 2e-6])
 
 
 @functools.cache
-def law(surface=SMOOTH):
-    return ContactLaw("series", CONTACTS, OIL, SMALL_FIELD, "clamp", surface=surface)
+def law(surface=SMOOTH, layer=math.inf):
+    return ContactLaw("series", CONTACTS, OIL, SMALL_FIELD, "clamp", supply=OilSupply(layer), surface=surface)
 
 
 @settings(max_examples=60, deadline=None)
 @given(
     surface=surfaces,
+    layer=layers,
     speed=speeds,
     temperature=temperatures,
     q=centrifugal,
@@ -33,14 +37,14 @@ def law(surface=SMOOTH):
     amplitudes=st.lists(st.floats(-8e-6, 8e-6), min_size=2, max_size=8),
     frequency=st.floats(1.0, 1e5),
 )
-def test_closed_cycles_create_no_energy(surface, speed, temperature, q, mean, amplitudes, frequency):
+def test_closed_cycles_create_no_energy(surface, layer, speed, temperature, q, mean, amplitudes, frequency):
     phase = np.linspace(0.0, 2.0 * np.pi, 4001)
     order = 1 + np.arange(len(amplitudes)) // 2
     shift = 0.5 * np.pi * (np.arange(len(amplitudes)) % 2)
     angles = phase[:, None] * order + shift
     delta = mean + np.cos(angles) @ np.array(amplitudes)
     rate = -frequency * (np.sin(angles) * order) @ np.array(amplitudes)
-    w, _, c = law(surface).at(speed, temperature, q)(delta, rate)
+    w, _, c = law(surface, layer).at(speed, temperature, q)(delta, rate)
     assert np.all(w >= 0.0)
     assert np.all(c >= 0.0)
     power = w * rate / frequency
@@ -52,6 +56,7 @@ def test_closed_cycles_create_no_energy(surface, speed, temperature, q, mean, am
 @settings(max_examples=100, deadline=None)
 @given(
     surface=surfaces,
+    layer=layers,
     speed=speeds,
     temperature=temperatures,
     q=centrifugal,
@@ -60,8 +65,8 @@ def test_closed_cycles_create_no_energy(surface, speed, temperature, q, mean, am
     rate=st.floats(-10.0, 10.0),
     more=st.floats(0.0, 10.0),
 )
-def test_load_rises_with_approach_at_rest_and_with_rate(surface, speed, temperature, q, delta, step, rate, more):
-    point = law(surface).at(speed, temperature, q)
+def test_load_rises_with_approach_at_rest_and_with_rate(surface, layer, speed, temperature, q, delta, step, rate, more):
+    point = law(surface, layer).at(speed, temperature, q)
     w, k, _ = point([delta, delta + step], 0.0)
     assert w[1] >= w[0] * (1.0 - 1e-12)
     assert np.all(k >= 0.0)

@@ -12,7 +12,10 @@ from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solids import STEEL
+from mbs.bearings import laws
+from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import DryContacts, FormulaFilms, MapFilms
 
 ROUND_OFF = 1e-12
@@ -123,3 +126,26 @@ def test_the_shipped_jobs_have_the_steps_of_the_test():
     steps = [np.diff(np.log(axis)) for axis in (job.loads, job.entrainment_speeds)]
     assert np.max(steps[0]) == pytest.approx(np.log(215.4435 / 46.4159) / 4, rel=0.01)  # digits of the job above
     assert np.max(steps[1]) == pytest.approx(np.log(3.4284 / 1.31) / 2, rel=0.01)
+
+
+def test_formula_films_on_a_layer():
+    """Light contacts have the layer, loaded ones their film; nothing without load, pressures up to that of Hertz."""
+    supply = OilSupply(1e-6)
+    loads = np.array([0.0, 1.0, 1e3, 1e6])
+    flooded, layered = (FormulaFilms(CONTACTS, OIL, given).state(0, loads, 2.0, 313.15) for given in (FLOODED, supply))
+    assert np.isnan(layered.central_film[0]) and layered.max_pressure[0] == 0.0
+    assert layered.central_film[1] == pytest.approx(1e-6, rel=0.05) and flooded.central_film[1] > 1e-4
+    # 0.67 um needs 0.82 um of oil: 2.5 % less by the rounded corner.
+    assert layered.central_film[3] == pytest.approx(flooded.central_film[3], rel=0.03)
+    assert np.all(layered.max_pressure <= flooded.hertz_pressure)
+    assert np.all(FormulaFilms(CONTACTS, OIL, supply).state(0, loads, 0.0, 313.15).central_film[1:] == 0.0)
+    assert FormulaFilms(CONTACTS, OIL, supply).words.endswith("oil layer 1 um")
+
+
+def test_formula_law_on_a_layer_ends_where_the_gap_is_wider():
+    ranges = {"load": (1e3, 1e5), "entrainment_speed": (1.0, 2.0), "temperature": (310.0, 320.0)}
+    supply = OilSupply(2e-6)
+    it = laws.formula(Bearing.named("NU308"), OIL, **ranges, supply=supply)
+    assert it.supply is supply
+    w = it.at(1.5, 315.0)([-4.1e-6, -3.5e-6], [0.0, 0.0])[0]
+    assert w[0] == 0.0 < w[1]
