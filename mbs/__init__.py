@@ -53,6 +53,8 @@ if TYPE_CHECKING:
     from mbs.analyses.varied import LawChoice
     from mbs.bearings.bearing import Bearing
     from mbs.bearings.bearing_force import BearingForce
+    from mbs.bearings.fits import Mounting, Seat
+    from mbs.bearings.heat import GivenTemperatures, HeatPaths
     from mbs.flexible.attached import Attached
     from mbs.flexible.plan import ReductionPlan
     from mbs.flexible.shaft_parts import Disc, Section
@@ -77,19 +79,23 @@ __all__ = [
     "Disc",
     "FlexibleSpec",
     "GearPair",
+    "GivenTemperatures",
     "HammerSettings",
+    "HeatPaths",
     "Inertia",
     "Input",
     "LawChoice",
     "Load",
     "LsaSettings",
     "Model",
+    "Mounting",
     "Operation",
     "PlanSettings",
     "ReductionPlan",
     "RigidSpec",
     "RunUp",
     "Scene",
+    "Seat",
     "Section",
     "Sensor",
     "Settings",
@@ -124,19 +130,23 @@ _HOMES = {
     "Disc": "flexible.shaft_parts",
     "FlexibleSpec": "scene.specs",
     "GearPair": "gears.pair",
+    "GivenTemperatures": "bearings.heat",
     "HammerSettings": "analyses.hammer",
+    "HeatPaths": "bearings.heat",
     "Inertia": "model.body",
     "Input": "model.elements",
     "LawChoice": "analyses.varied",
     "Load": "model.elements",
     "LsaSettings": "analyses.lsa",
     "Model": "scene.assembly",
+    "Mounting": "bearings.fits",
     "Operation": "model.elements",
     "PlanSettings": "analyses.plan",
     "ReductionPlan": "flexible.plan",
     "RigidSpec": "scene.specs",
     "RunUp": "settings",
     "Scene": "scene.scene",
+    "Seat": "bearings.fits",
     "Section": "flexible.shaft_parts",
     "Sensor": "model.elements",
     "Settings": "settings",

@@ -184,7 +184,14 @@ def _bearing(commands: Any) -> None:
         metavar="ANGLE",
         help='of the load from y, where a roller is, towards z, such as "15 deg"; or its parts along y and z (0 deg)',
     )
-    command.add_argument("--temperature", metavar="TEMPERATURE", help='of the oil, such as "60 degC" (40 degC)')
+    command.add_argument("--temperature", metavar="TEMPERATURE", help='of the raceways, such as "60 degC" (40 degC)')
+    for side in ("inner", "outer"):
+        command.add_argument(
+            f"--{side}-ring",
+            metavar="TEMPERATURE",
+            help=f"of the {side} ring alone, such as '60 degC'; it changes the clearance; the law takes the mean of "
+            "both",
+        )
     command.add_argument("--map", metavar="MAP.nc", help="made by `ehdmaps generate` for this bearing")
     command.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
     command.add_argument(

@@ -10,6 +10,7 @@
 | `linearisation` | the equations to first order, on a grid that follows the spike; response to slow motion |
 | `spectrum` | response at many frequencies from one Krylov space |
 | `line` | the story of one solve: coarse grid, place of the spike, fine grid, response, error estimate |
+| `meniscus` | a starved contact: the place of the inlet's meniscus behind a given oil layer |
 | `frequency` | film compliance over frequency, with its error from both grids |
 | `transient` | the film in time under a load that moves: the check of the linear response |
 | `limits` | allowed settings of the solver |

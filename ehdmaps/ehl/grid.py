@@ -109,6 +109,8 @@ class Layout:
         Start of the Hertz zone, length over which its term is rounded [b], and its weight.
     terms : ndarray, shape (3, k)
         Centres [b], widths [b] and weights of the asinh terms.
+    starved : bool
+        Whether the inlet ends at a meniscus, before which there is no film.
     """
 
     film: float
@@ -117,6 +119,7 @@ class Layout:
     blur: float
     core: float
     terms: FloatArray
+    starved: bool = False
 
     @property
     def span(self) -> float:
@@ -130,7 +133,13 @@ class Layout:
         return Grid(x=x[::2].copy(), step=2.0 * step[::2], face=x[1::2].copy(), face_step=2.0 * step[1::2])
 
 
-def lay_out(film: float, inlet_length: float, shape: GridShape = GridShape(), spike: Spike | None = None) -> Layout:
+def lay_out(
+    film: float,
+    inlet_length: float,
+    shape: GridShape = GridShape(),
+    spike: Spike | None = None,
+    length: float | None = None,
+) -> Layout:
     """Layout for a contact whose film is about `film`.
 
     Parameters
@@ -141,6 +150,8 @@ def lay_out(film: float, inlet_length: float, shape: GridShape = GridShape(), sp
         Length of the inlet in units of sqrt(2 H).
     shape, spike
         Weights of the terms, and the pressure spike if there is one.
+    length : float, optional
+        Distance from the meniscus of a starved contact to the exit [b], instead of the length of a flooded inlet.
     """
     film_length = math.sqrt(2.0 * film)
     zone = zone_width(film)
@@ -156,11 +167,12 @@ def lay_out(film: float, inlet_length: float, shape: GridShape = GridShape(), sp
         weights.append(shape.spike)
     return Layout(
         film=film,
-        length=-inlet_edge + LEAST_INLET + inlet_length * film_length,
+        length=-inlet_edge + LEAST_INLET + inlet_length * film_length if length is None else length,
         inlet_edge=inlet_edge,
         blur=BLUR * math.sqrt(1.0 + film_length**2),
         core=shape.core / edge,
         terms=np.array([centres, widths, weights]),
+        starved=length is not None,
     )
 
 

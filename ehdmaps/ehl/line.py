@@ -13,9 +13,9 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid, GridShape, Layout, Spike, lay_out, thick_film_exit, zone_width
-from ehdmaps.ehl.linearisation import Linearisation, Neighbour, Response, linearised
-from ehdmaps.ehl.newton import CONVERGED, hertz_start, newton
-from ehdmaps.ehl.profile import Profile, films_of, front, front_cell, front_node, moved, refined
+from ehdmaps.ehl.linearisation import GridShift, Linearisation, Neighbour, linearised
+from ehdmaps.ehl.newton import CONVERGED, DIVERGED, hertz_start, newton
+from ehdmaps.ehl.profile import Profile, films_of, front, front_cell, front_node, moved, refined, starved_start
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.isotherm import log_viscosity
@@ -30,6 +30,13 @@ MOST_STEPS = 60
 
 SPIKE_SHIFT = 1e-4
 """Shift of the spike, in its widths, over which the effect of the grid's motion is differenced."""
+
+LENGTH_SHIFT = 1e-5
+"""Change of a starved inlet's length over which the effect of its end is differenced, relative to the length, or to the
+film where that is less: nodes that move by more change the gap of a thin film."""
+
+LEAST_SPAN = 8.0
+"""e-folds of distance for which a starved film gets cells at least: it can be short beside the gap's own length."""
 
 MOST_MOVES = 6
 """Coarse grids laid in search of the spike."""
@@ -206,32 +213,31 @@ def _solve_once(
     coarse, steps, outcome = _coarse(problem, M, L, resolution, previous)
     if coarse is None:
         return GroupSolution(outcome=outcome, profile=None, steps=steps)
-    fine, more, outcome = _finer(coarse, resolution.tolerance)
+    fine, more, outcome = on_fine_grid(coarse, resolution.tolerance)
     steps += more
     if fine is None:
         return GroupSolution(outcome=outcome, profile=None, steps=steps)
-    linear, rough = linearised_profile(fine, resolution), linearised_profile(coarse, resolution)
-    solution = _assembled(M, L, fine, coarse, linear.slow_response(), rough.slow_response(), resolution, steps)
-    return replace(solution, linear=linear, rough_linear=rough)
+    return assembled(M, L, fine, coarse, resolution, steps)
 
 
-def _finer(coarse: Profile, tolerance: float) -> tuple[Profile | None, int, int]:
+def on_fine_grid(coarse: Profile, tolerance: float) -> tuple[Profile | None, int, int]:
     """Newton on the grid with twice the cells, by way of one with half as many more if need be."""
     problem, layout, spike = coarse.problem, coarse.layout, coarse.spike
     grid = layout.grid(2 * coarse.cells)
-    fine, total, outcome = _converged(problem, layout, grid, refined(coarse, grid), spike, tolerance)
+    start = starved_start(coarse, grid) if layout.starved else refined(coarse, grid)
+    fine, total, outcome = converged(problem, layout, grid, start, spike, tolerance)
     if fine is None:
         halfway = layout.grid(3 * coarse.cells // 2)
         start = moved(coarse, halfway, by_index=False)
-        between, steps, _ = _converged(problem, layout, halfway, start, spike, tolerance)
+        between, steps, _ = converged(problem, layout, halfway, start, spike, tolerance)
         total += steps
         if between is not None:
-            fine, steps, outcome = _converged(problem, layout, grid, moved(between, grid, False), spike, tolerance)
+            fine, steps, outcome = converged(problem, layout, grid, moved(between, grid, False), spike, tolerance)
             total += steps
     return fine, total, outcome
 
 
-def _converged(
+def converged(
     problem: LineProblem,
     layout: Layout,
     grid: Grid,
@@ -239,12 +245,29 @@ def _converged(
     spike: Spike | None,
     tolerance: float,
 ) -> tuple[Profile | None, int, int]:
-    """Newton on one grid, from `start` or from Hertz: profile (None unless converged), steps, outcome."""
+    """Newton on one grid: profile (None unless converged), steps, outcome.
+
+    Parameters
+    ----------
+    problem : LineProblem
+        The groups that enter the equations.
+    layout, grid
+        Grid, and the layout that it was made of.
+    start : ndarray, shape (n + 2,), or None
+        Unknowns to start from; None for a start from Hertz' pressure.
+    spike : Spike or None
+        Spike for which the grid is laid.
+    tolerance : float
+        Newton tolerance.
+    """
     kernel = log_kernel(grid.x, grid.step)
     if start is None:
         guess = layout.film
         start = hertz_start(grid.x, grid.step, kernel, guess, thick_film_exit(guess), LOAD)
-    result = newton(problem, grid.x, grid.step, grid.face_step, kernel, start, LOAD, tolerance, MOST_STEPS)
+    try:
+        result = newton(problem, grid.x, grid.step, grid.face_step, kernel, start, LOAD, tolerance, MOST_STEPS)
+    except np.linalg.LinAlgError:  # a start that is too far away
+        return None, 0, DIVERGED
     if result.outcome != CONVERGED:
         return None, result.steps, result.outcome
     return Profile(problem, layout, grid, kernel, result.unknowns, spike), result.steps, CONVERGED
@@ -262,7 +285,7 @@ def _coarse(
         density *= growth
         for widening in (1.0, growth * growth):
             finer = replace(finer, density=density, spike_width=widening * finer.spike_width)
-            trial, steps, outcome = _with_spike(problem, expected_film(M, L), finer, found)
+            trial, steps, outcome = on_coarse_grid(problem, expected_film(M, L), finer, found)
             total += steps
             if trial is not None:
                 break
@@ -279,10 +302,10 @@ def _first(
     warm = previous if M >= COLD_START_BELOW else None
     found: Profile | None = None
     if warm is not None:
-        found, steps, outcome = _with_spike(problem, guess, resolution, warm)
+        found, steps, outcome = on_coarse_grid(problem, guess, resolution, warm)
         total += steps
     if found is None and M < 20.0:
-        found, steps, outcome = _with_spike(problem, guess, resolution, None)
+        found, steps, outcome = on_coarse_grid(problem, guess, resolution, None)
         total += steps
     if found is None:
         found, steps, outcome = _climb(problem, M, L, resolution)
@@ -312,7 +335,7 @@ def _climb_from(
     for k in range(rungs + 1):
         factor = (foot / M) ** (1.0 - k / rungs)
         rung_film = expected_film(M * factor, L)
-        rung, steps, outcome = _with_spike(at_load(problem, factor), rung_film, resolution, rung)
+        rung, steps, outcome = on_coarse_grid(at_load(problem, factor), rung_film, resolution, rung)
         total += steps
         if rung is None:
             break
@@ -330,14 +353,38 @@ def at_load(problem: LineProblem, factor: float) -> LineProblem:
     return LineProblem(problem.wedge / (factor * factor), problem.isotherm.scaled(root))
 
 
-def _with_spike(
-    problem: LineProblem, guess: float, resolution: Resolution, previous: Profile | None
+def on_coarse_grid(
+    problem: LineProblem,
+    guess: float,
+    resolution: Resolution,
+    previous: Profile | None,
+    length: float | None = None,
 ) -> tuple[Profile | None, int, int]:
     """Solve on one coarse grid after another, loosely at first, until the spike stands where the grid expects it.
 
     From a neighbouring load the spike is expected where it was, times the ratio of loads to the power of -0.7 (seen
     over L = 10 to 50), and the start is carried over by index, so that the front moves with its cells: Newton moves it
     by one cell a step only.
+
+    Parameters
+    ----------
+    problem : LineProblem
+        The groups that enter the equations.
+    guess : float
+        Film about which the grid is laid [b^2/R].
+    resolution : Resolution
+        Accuracy and cost.
+    previous : Profile or None
+        Solution nearby to start from; None for a start from Hertz' pressure.
+    length : float, optional
+        Distance from the meniscus of a starved contact to the exit [b]; left out where it is flooded.
+
+    Returns
+    -------
+    profile : Profile or None
+        Solution on the last grid; None where Newton found none.
+    steps, outcome : int
+        Newton steps, all grids together, and how the last of them ended.
     """
     total = 0
     zone = zone_width(guess)
@@ -350,11 +397,17 @@ def _with_spike(
         spike = Spike(place * ratio**-0.7, finest)
     solution = previous
     for attempt in range(MOST_MOVES):
-        layout = lay_out(guess, resolution.inlet_length, resolution.shape, spike)
-        grid = layout.grid(math.ceil(0.5 * resolution.density * layout.span))
-        unknowns = None if solution is None else moved(solution, grid, by_index=attempt == 0 and same_share)
+        layout = lay_out(guess, resolution.inlet_length, resolution.shape, spike, length)
+        span = layout.span if length is None else max(layout.span, LEAST_SPAN)
+        grid = layout.grid(math.ceil(0.5 * resolution.density * span))
+        if solution is None:
+            unknowns = None
+        elif length is None:
+            unknowns = moved(solution, grid, by_index=attempt == 0 and same_share)
+        else:
+            unknowns = starved_start(solution, grid)
         for tolerance in (LOOSE_TOLERANCE, resolution.tolerance):
-            solution, steps, outcome = _converged(problem, layout, grid, unknowns, spike, tolerance)
+            solution, steps, outcome = converged(problem, layout, grid, unknowns, spike, tolerance)
             total += steps
             if solution is None:
                 return None, total, outcome
@@ -375,6 +428,8 @@ def _with_spike(
 def linearised_profile(profile: Profile, resolution: Resolution) -> Linearisation:
     """The equations to first order about a profile, its grid following the spike where there is one.
 
+    The meniscus of a starved contact is held where it is.
+
     Parameters
     ----------
     profile : Profile
@@ -382,32 +437,52 @@ def linearised_profile(profile: Profile, resolution: Resolution) -> Linearisatio
     resolution : Resolution
         Settings of the solve that gave it.
     """
-    neighbour = None
-    spike = profile.spike
+    neighbour, longer = None, None
+    spike, laid = profile.spike, profile.layout
     if spike is not None:
         shift = SPIKE_SHIFT * spike.width
         moved_spike = Spike(spike.position + shift, spike.width)
-        layout = lay_out(profile.layout.film, resolution.inlet_length, resolution.shape, moved_spike)
+        length = laid.length if laid.starved else None
+        layout = lay_out(laid.film, resolution.inlet_length, resolution.shape, moved_spike, length)
         neighbour = Neighbour(layout.grid(profile.cells), shift, front_node(profile))
-    return linearised(profile.problem, profile.grid, profile.kernel, profile.unknowns, LOAD, neighbour)
+    if laid.starved:
+        shift = LENGTH_SHIFT * min(laid.length, laid.film)
+        longer = GridShift(replace(laid, length=laid.length + shift).grid(profile.cells), shift)
+    return linearised(profile.problem, profile.grid, profile.kernel, profile.unknowns, LOAD, neighbour, longer)
 
 
-def _assembled(
+def assembled(
     M: float,
     L: float,
     fine: Profile,
     coarse: Profile,
-    response: Response,
-    rough: Response,
     resolution: Resolution,
     steps: int,
 ) -> GroupSolution:
-    """Numbers and error estimates from the fine and the coarse solution."""
-    by_offset = _offset_share(M, fine.spike is not None)
-    by_response = response_share(M, L, fine.spike is not None)
-    inlet = 1.0 / resolution.inlet_length**2
+    """Response, numbers and error estimates from the fine and the coarse solution.
+
+    Parameters
+    ----------
+    M, L : float
+        Moes' load and lubricant parameters of the point.
+    fine, coarse : Profile
+        Converged solutions, one with twice the cells of the other.
+    resolution : Resolution
+        Settings of the solve that gave them.
+    steps : int
+        Newton steps that they took.
+    """
+    linear, rough_linear = linearised_profile(fine, resolution), linearised_profile(coarse, resolution)
+    response, rough = linear.slow_response(), rough_linear.slow_response()
+    starved = fine.layout.starved
+    # the pressure rises from a meniscus with a kink, where sums are of second order
+    by_offset = SECOND if starved else _offset_share(M, fine.spike is not None)
+    by_response = SECOND if starved else response_share(M, L, fine.spike is not None)
+    inlet = 0.0 if starved else 1.0 / resolution.inlet_length**2
     central, minimum = films_of(fine)
-    central_error, minimum_error = _film_errors(fine, coarse, by_offset)
+    # the coarse grid of a starved contact has the same part of its own flooded flow; films go with the layer
+    scale = fine.mass_flow / coarse.mass_flow if starved else 1.0
+    central_error, minimum_error = _film_errors(fine, coarse, scale, by_offset)
 
     def error(value: float, rough_value: float, share: float, lost: float, least: float = 0.0) -> float:
         """Relative, > 0 where refinement lowers the value; what the inlet's end loses is added in magnitude.
@@ -418,11 +493,14 @@ def _assembled(
         return math.copysign(max(abs(grid), abs(least * share / value)) + lost * inlet, grid)
 
     # parts of one complex number: where a spike between two nodes hides the error of the loss, the compliance shows it
-    hidden = rough.compliance - response.compliance if fine.spike is not None else 0.0
+    hidden = rough.compliance - response.compliance if fine.spike is not None or starved else 0.0
+    hidden_too = rough.loss - response.loss if starved else 0.0
     return GroupSolution(
         outcome=CONVERGED,
         profile=fine,
         rough=coarse,
+        linear=linear,
+        rough_linear=rough_linear,
         film_offset=fine.film_offset,
         film_compliance=response.compliance,
         loss=response.loss,
@@ -431,14 +509,14 @@ def _assembled(
         max_pressure=float(np.max(fine.pressure)),
         rolling_force=fine.rolling_force,
         mass_flow=fine.mass_flow,
-        film_offset_error=error(fine.film_offset, coarse.film_offset, by_offset, 3.0),
-        film_compliance_error=error(response.compliance, rough.compliance, by_response, 6.0),
+        film_offset_error=error(fine.film_offset, scale * coarse.film_offset, by_offset, 3.0),
+        film_compliance_error=error(response.compliance, rough.compliance, by_response, 6.0, hidden_too),
         loss_error=error(response.loss, rough.loss, by_response, 6.0, hidden),
         central_film_error=central_error + 3.0 * inlet,
         minimum_film_error=minimum_error + 3.0 * inlet,
         max_pressure_error=_peak_error(fine, coarse),
         rolling_force_error=_rolling_error(fine, coarse) + inlet,
-        mass_flow_error=FOURTH * abs(coarse.mass_flow / fine.mass_flow - 1.0) + 3.0 * inlet,
+        mass_flow_error=0.0 if starved else FOURTH * abs(coarse.mass_flow / fine.mass_flow - 1.0) + 3.0 * inlet,
         steps=steps,
     )
 
@@ -447,14 +525,16 @@ FIRST_ORDER = 1.5
 """Share of the difference between both grids that is left where the order is one, half as much again for safety."""
 
 
-def _film_errors(fine: Profile, coarse: Profile, share: float) -> tuple[float, float]:
+def _film_errors(fine: Profile, coarse: Profile, scale: float, share: float) -> tuple[float, float]:
     """Relative errors of the central and the smallest film; `share` is that of the film offset.
+
+    Films of the coarse grid count `scale` times.
 
     Behind a spike the smallest film follows the spike's place, which is found to first order, and it moves with the
     whole film, to second order.
     """
     (central, minimum), (rough, rough_minimum) = films_of(fine), films_of(coarse)
-    moved_by, narrowed = abs(rough / central - 1.0), abs(rough_minimum / minimum - 1.0)
+    moved_by, narrowed = abs(scale * rough / central - 1.0), abs(scale * rough_minimum / minimum - 1.0)
     if fine.spike is None:
         return share * moved_by, share * narrowed
     return share * moved_by, FIRST_ORDER * narrowed + 0.5 * moved_by
@@ -507,10 +587,11 @@ def _rolling_error(fine: Profile, coarse: Profile) -> float:
     """Relative error of the rolling force.
 
     Order four; behind a spike the film falls where the pressure does, within few cells and to first order only: there a
-    tenth of what the terms of fourth order change comes to it.
+    tenth of what the terms of fourth order change comes to it. At a meniscus the pressure rises where the film is
+    thickest, which is as rough.
     """
     moved_by = abs(coarse.rolling_force / fine.rolling_force - 1.0)
-    if fine.spike is None:
+    if fine.spike is None and not fine.layout.starved:
         return FOURTH * moved_by
     return FIRST_ORDER * moved_by + 0.1 * fine.fourth_order_share
 

@@ -34,6 +34,28 @@ class Neighbour(NamedTuple):
     node: int  # the node whose isobar the grid follows
 
 
+class GridShift(NamedTuple):
+    """A grid that differs from the solution's grid in its length only, by `shift` [b]."""
+
+    grid: Grid
+    shift: float
+
+
+class Inlet(NamedTuple):
+    """What the distance of a meniscus from the exit does, with the exit where it is.
+
+    Attributes
+    ----------
+    residual : ndarray, shape (n + 2,)
+        Derivative of the steady equations.
+    mass : ndarray, shape (n + 1,)
+        Derivative of the stored mass, as faces see it that move with the grid.
+    """
+
+    residual: FloatArray
+    mass: FloatArray
+
+
 class Response(NamedTuple):
     """Film compliance a - ln(2)/pi and loss b, dimensionless, of slow motion."""
 
@@ -128,6 +150,8 @@ class Linearisation:
         Derivative of the steady equations; size is n + 2, or n + 3 where the grid follows the spike.
     grid_mass : ndarray, shape (n + 1,), or None
         Stored mass per shift of the spike.
+    inlet : Inlet or None
+        What the place of the meniscus adds, of a starved contact. In the matrix the meniscus is held.
     """
 
     problem: LineProblem
@@ -136,6 +160,7 @@ class Linearisation:
     unknowns: FloatArray
     matrix: FloatArray
     grid_mass: FloatArray | None
+    inlet: Inlet | None = None
 
     @property
     def size(self) -> int:
@@ -161,6 +186,9 @@ class Linearisation:
         scale = 1.0 / np.max(np.abs(self.matrix), axis=1)
         factors, swaps = lu_factor(self.matrix * scale[:, None], overwrite_a=True, check_finite=False)
         order = np.arange(self.size)
+        carried = stored_mass(self.problem, grid.x, grid.step, self.kernel, self.unknowns)[1]
+        if self.inlet is not None:  # the length grows as the exit moves away from the held meniscus
+            carried = carried - self.inlet.mass
         for row, other in enumerate(swaps):
             order[row], order[other] = order[other], order[row]
         return Arrays(
@@ -171,7 +199,7 @@ class Linearisation:
             kernel=self.kernel,
             exit_at=float(self.unknowns[n]),
             stored=stored_oil(self.problem, grid.x, grid.step, self.kernel, self.unknowns),
-            carried=stored_mass(self.problem, grid.x, grid.step, self.kernel, self.unknowns)[1],
+            carried=carried,
             grid_mass=np.zeros(n + 1) if self.grid_mass is None else self.grid_mass,
         )
 
@@ -189,6 +217,26 @@ class Linearisation:
         slow = self.solve(-self.storage(static))
         return Response(compliance=-float(static[self.height]) - DRY_COMPLIANCE, loss=float(slow[self.height]))
 
+    def supplied_compliance(self) -> float:
+        """Film compliance of a starved contact whose meniscus follows until it takes the layer again.
+
+        It is the slope of the film over the load at a given layer: what a slow load would feel, after a time that grows
+        without bound towards the flooded contact. With the meniscus held see `slow_response`.
+
+        Raises
+        ------
+        ValueError
+            If there is no meniscus.
+        """
+        if self.inlet is None:
+            raise ValueError("supplied_compliance: the contact is flooded, it has no meniscus")
+        flow = self.height - 2
+        right = np.zeros(self.size)
+        right[: self.inlet.residual.size] = self.inlet.residual
+        held, moved = self.solve(self.unit), self.solve(right)
+        static = held[self.height] - moved[self.height] * held[flow] / moved[flow]
+        return -float(static) - DRY_COMPLIANCE
+
 
 def linearised(
     problem: LineProblem,
@@ -197,6 +245,7 @@ def linearised(
     unknowns: FloatArray,
     load: float,
     neighbour: Neighbour | None = None,
+    longer: GridShift | None = None,
 ) -> Linearisation:
     """The transient equations to first order about a converged solution.
 
@@ -214,6 +263,8 @@ def linearised(
         Integral of the dimensionless pressure.
     neighbour : Neighbour, optional
         Needed where the grid has a spike term: the grid then follows the spike.
+    longer : GridShift, optional
+        Needed where the grid begins at a meniscus, which is then held.
     """
     size = unknowns.size
     total = size + (neighbour is not None)
@@ -224,10 +275,14 @@ def linearised(
     matrix[:size, :size] = jacobian
     grid_mass: FloatArray | None = None
     if neighbour is not None:
-        by_grid, grid_mass = _by_grid(problem, grid, kernel, unknowns, load, out, neighbour)
+        by_grid, grid_mass = _by_grid(problem, grid, kernel, unknowns, load, out, neighbour.grid, neighbour.shift)
         matrix[:size, size] = by_grid
         matrix[size, neighbour.node - 1] = 1.0
-    return Linearisation(problem, grid, kernel, unknowns, matrix, grid_mass)
+    inlet: Inlet | None = None
+    if longer is not None:
+        inlet = Inlet(*_by_grid(problem, grid, kernel, unknowns, load, out, longer.grid, longer.shift))
+        matrix[:size, size - 2] += inlet.residual  # the exit's column: the length is the exit less the held meniscus
+    return Linearisation(problem, grid, kernel, unknowns, matrix, grid_mass, inlet)
 
 
 def _by_grid(
@@ -237,10 +292,10 @@ def _by_grid(
     unknowns: FloatArray,
     load: float,
     here: FloatArray,
-    neighbour: Neighbour,
+    moved: Grid,
+    shift: float,
 ) -> tuple[FloatArray, FloatArray]:
-    """Derivatives of the residual and of the stored mass (as moving faces see it) with respect to the spike's place."""
-    moved, shift = neighbour.grid, neighbour.shift
+    """Derivatives of the residual and of the stored mass (as moving faces see it) with respect to a shift of nodes."""
     moved_kernel = log_kernel(moved.x, moved.step)
     there = np.empty(unknowns.size)
     scratch = np.empty((1, unknowns.size))

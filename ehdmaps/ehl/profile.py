@@ -56,11 +56,14 @@ class Profile:
 
     @property
     def rolling_force(self) -> float:
-        """Int H dP, that of the inlet before the grid included [b^2/R p_H]."""
+        """Int H dP, that of a flooded inlet before the grid included [b^2/R p_H]."""
+        inside = film_times_rise(self.film, self.pressure)
+        if self.layout.starved:
+            return inside
         before = rolling_force_of_inlet(
             -float(self.position[0]), float(self.film[0]), self.mass_flow, self.problem.wedge, radius=1.0
         )
-        return film_times_rise(self.film, self.pressure) + before
+        return inside + before
 
     @property
     def fourth_order_share(self) -> float:
@@ -135,6 +138,49 @@ def moved(profile: Profile, grid: Grid, by_index: bool) -> FloatArray:
         excess = np.interp(grid.x, profile.grid.x, excess)
     pressure = excess + _hertz(grid.x + exit_at)
     return np.concatenate([np.maximum(pressure[1:-1], 0.0), profile.unknowns[-3:]])
+
+
+def starved_start(profile: Profile, grid: Grid) -> FloatArray:
+    """Start on a starved grid at the same places.
+
+    Without a spike by monotone cubics: a kink of the pressure spoils the derivative of the flow by the film, and Newton
+    misses a thick film for it. The pressure that the profile has where the grid begins is taken away in the shape of a
+    cubic that ends at the exit.
+
+    Parameters
+    ----------
+    profile : Profile
+        Solution nearby, on its own grid.
+    grid : Grid
+        Grid of the start.
+    """
+    if profile.spike is not None:
+        return moved(profile, grid, by_index=False)
+    pressure = _monotone(profile.grid.x, profile.pressure, np.maximum(grid.x, profile.grid.x[0]))
+    pressure -= pressure[0] * (grid.x / grid.x[0]) ** 3
+    return np.concatenate([np.maximum(pressure[1:-1], 0.0), profile.unknowns[-3:]])
+
+
+def _monotone(x: FloatArray, y: FloatArray, at: FloatArray) -> FloatArray:
+    """Cubics that rise and fall no more than the points do, level at the last one.
+
+    Slopes are harmonic means of those of both sides (F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5, 1984,
+    300-304). scipy has the same, and takes long to import.
+    """
+    step = np.diff(x)
+    rise = np.diff(y) / step
+    slope = np.zeros_like(y)
+    slope[0] = rise[0]
+    before, after = 2.0 * step[1:] + step[:-1], step[1:] + 2.0 * step[:-1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = (before + after) / (before / rise[:-1] + after / rise[1:])
+    slope[1:-1] = np.where(rise[:-1] * rise[1:] > 0.0, mean, 0.0)
+    cell = np.clip(np.searchsorted(x, at, side="right") - 1, 0, step.size - 1)
+    width, part = step[cell], (at - x[cell]) / step[cell]
+    rest = 1.0 - part
+    bent = width * (slope[cell] * rest - slope[cell + 1] * part)
+    curve: FloatArray = rest * rest * (1.0 + 2.0 * part) * y[cell] + part * part * (3.0 - 2.0 * part) * y[cell + 1]
+    return curve + part * rest * bent
 
 
 def refined(coarse: Profile, grid: Grid) -> FloatArray:

@@ -15,6 +15,7 @@ from ehdmaps.ehl.frequency import group_spectrum
 from ehdmaps.ehl.grid import GridShape
 from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.ehl.line import GroupSolution, Resolution, solve_groups
+from ehdmaps.ehl.meniscus import starved_groups
 from ehdmaps.ehl.newton import CONVERGED, DIVERGED
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import LineProblem
@@ -24,6 +25,7 @@ from ehdmaps.physics.film_limits import THICKEST_FILM, THIN_FILM_LIMIT, too_thic
 from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import (
     ContactSolverDefaults,
@@ -48,11 +50,44 @@ LARGEST_OIL_NUMBER = 150.0
 """Moes' L above which no solve is tried."""
 
 
+THINNEST_LAYER = 1e-6
+"""Oil layer [b^2/R] below which the place of the meniscus, and the film, are below round-off of the deflection."""
+
+
+@dataclass(frozen=True)
+class SuppliedFilm:
+    """The film of a contact that gets its oil from a layer, see `ReynoldsSolver.supplied_film`.
+
+    Attributes
+    ----------
+    film : FilmSolution
+        The film; film compliance and loss compliance are those with the meniscus held where it is.
+    flow_ratio : float
+        Oil that goes through the contact over what the flooded one takes; 1 where the layer brings enough, NaN where
+        nothing flows or the flooded film has no solution.
+    meniscus : float
+        Distance of the meniscus before the contact centre [m], below zero behind it; inf where the contact is flooded,
+        NaN where there is no solution.
+    supplied_compliance : float
+        Film compliance at a given layer [m2/N], the meniscus following until all of the layer goes through again; NaN
+        where the contact is flooded or has no solution. It may be negative.
+    profile : FilmProfile or None
+        Pressure and film along the contact, from the meniscus on; None where there is no film or no solution.
+    """
+
+    film: FilmSolution
+    flow_ratio: float = math.nan
+    meniscus: float = math.nan
+    supplied_compliance: float = math.nan
+    profile: FilmProfile | None = None
+
+
 @dataclass(frozen=True)
 class ReynoldsSolver(ContactSolverDefaults):
     """Finite-difference solver of the steady line contact and of its linear response.
 
-    Isothermal, Newtonian, piezoviscous, compressible, fully flooded, with Reynolds' cavitation condition at the exit.
+    Isothermal, Newtonian, piezoviscous, compressible, with Reynolds' cavitation condition at the exit; fully flooded,
+    but for `supplied_film`, which takes an oil layer before the contact.
 
     Attributes
     ----------
@@ -210,13 +245,58 @@ class ReynoldsSolver(ContactSolverDefaults):
             Load, speed and temperature.
         """
         film, groups = self._solve(contact, lubricant.at(point.temperature), point, None)
-        profile = None if groups is None else groups.profile
-        if profile is None or not film.status.usable:
-            return film, None
+        return film, _profile_in_si(film, groups, contact, point.load)
+
+    def supplied_film(
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, supply: OilSupply
+    ) -> SuppliedFilm:
+        """Solve one point behind an oil layer; where the layer brings enough, the film is that of `solve_line`.
+
+        Where it does not, all of the layer goes through the contact, and the place of the inlet's meniscus follows from
+        that. There is no side flow.
+
+        Parameters
+        ----------
+        contact : LineContact
+            The contact.
+        lubricant : Lubricant
+            The oil.
+        point : OperatingPoint
+            Load, speed and temperature.
+        supply : OilSupply
+            Oil layer before the contact.
+        """
+        state = lubricant.at(point.temperature)
+        film, flooded = self._solve(contact, state, point, None)
+        # a flooded film that is refused for its thickness still says how much oil it takes
+        if flooded is None or flooded.outcome != CONVERGED:
+            return SuppliedFilm(film)
         half = float(half_width(point.load, contact.radius, contact.reduced_modulus))
         peak = float(max_pressure(point.load, contact.radius, contact.reduced_modulus))
-        return film, FilmProfile(
-            half * profile.position, peak * profile.pressure, half**2 / contact.radius * profile.film
+        layer = supply.oil_layer * contact.radius / half**2
+        ratio = layer / flooded.mass_flow
+        if ratio >= 1.0:
+            profile = _profile_in_si(film, flooded, contact, point.load)
+            return SuppliedFilm(film, flow_ratio=1.0, meniscus=math.inf, profile=profile)
+        if layer < THINNEST_LAYER:
+            reason = f"{supply.label}: {layer:.3g} b^2/R, below {THINNEST_LAYER:g} it is lost in round-off"
+            return SuppliedFilm(FilmSolution(Status.OUTSIDE_VALIDITY, reason), ratio)
+        _, M, L = line_problem(contact, state, point.load, point.entrainment_speed)
+        started = time.perf_counter()
+        starved = starved_groups(M, L, self.resolution, layer, flooded)
+        seconds = film.solve_seconds + time.perf_counter() - started
+        groups = starved.solution
+        if groups.outcome != CONVERGED:
+            reason = f"{supply.label}, {ratio:.3g} of the flooded flow: no place found for the meniscus"
+            lost = FilmSolution(Status.STAGNATED, reason, iterations=groups.steps, solve_seconds=seconds)
+            return SuppliedFilm(lost, ratio)
+        film = _in_si(groups, contact, state, half, peak, point.entrainment_speed, seconds)
+        return SuppliedFilm(
+            film,
+            flow_ratio=ratio,
+            meniscus=-half * starved.meniscus,
+            supplied_compliance=starved.supplied_compliance * half / (peak * contact.radius),
+            profile=_profile_in_si(film, groups, contact, point.load),
         )
 
     def _solve(
@@ -293,6 +373,18 @@ def dry_film(peak: float, reason: str) -> FilmSolution:
         rolling_force_error=0.0,
         mass_flow_error=0.0,
     )
+
+
+def _profile_in_si(
+    film: FilmSolution, groups: GroupSolution | None, contact: LineContact, load: float
+) -> FilmProfile | None:
+    """Pressure and film along a contact; None where there is no film or no solution."""
+    profile = None if groups is None else groups.profile
+    if profile is None or not film.status.usable:
+        return None
+    half = float(half_width(load, contact.radius, contact.reduced_modulus))
+    peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
+    return FilmProfile(half * profile.position, peak * profile.pressure, half**2 / contact.radius * profile.film)
 
 
 def _beyond_reach(peak: float, M: float, L: float) -> str:

@@ -34,6 +34,7 @@ plot         what a map file holds, on one page
 plot_curves  one panel of that page
 film_output  files with the film itself, beside the numbers of one point
 traction     traction of one point over the slide-to-roll ratio
+supplied     one point behind an oil layer: flow ratio and place of the meniscus
 film_plot    pressure, film and velocities of one point, on one page
 compare      differences between two maps
 tradeoff     speed against accuracy, measured

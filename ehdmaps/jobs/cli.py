@@ -70,7 +70,7 @@ def parser() -> argparse.ArgumentParser:
     solve.add_argument(
         "--speed", required=True, help='entrainment speed, such as "1.7 m/s", or of the inner ring, "500 rpm"'
     )
-    solve.add_argument("--temperature", required=True, help='of the oil, such as "40 degC"')
+    solve.add_argument("--temperature", required=True, help='of the raceways, such as "40 degC"')
     solve.add_argument("--frequency", help='of small oscillations, such as "1 kHz"; default: the low-frequency limit')
     solve.add_argument(
         "--frequencies",
@@ -86,6 +86,12 @@ def parser() -> argparse.ArgumentParser:
     )
     solve.add_argument("--eyring-stress", metavar="STRESS", help='for --slide-to-roll; default: "6 MPa"')
     solve.add_argument("--limiting-ratio", metavar="RATIO", help="limiting stress over pressure; default: 0.05")
+    solve.add_argument(
+        "--supply",
+        metavar="SUPPLY",
+        help='reynolds: oil layer before each contact, such as "5 um", or flooded | oil bath | oil air | grease; '
+        "with the place of the meniscus; default: flooded",
+    )
     solve.add_argument("--solver", metavar="NAME", help=_SOLVER)
     solve.add_argument("--json", action="store_true", help="one object a contact, SI, per unit length")
     solve.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
@@ -102,7 +108,7 @@ def parser() -> argparse.ArgumentParser:
     export.add_argument("map", metavar="MAP.nc")
     export.add_argument("-o", "--output", metavar="CURVES.csv", help="default: the map's name with .csv")
     export.add_argument("--speed", help='entrainment speed, such as "1.7 m/s"; default: all of the map')
-    export.add_argument("--temperature", help='of the oil, such as "40 degC"; default: all of the map')
+    export.add_argument("--temperature", help='of the raceways, such as "40 degC"; default: all of the map')
     export.add_argument(
         "--contact", metavar="NAME", help="series | inner | outer | line; default: series, of a bare contact line"
     )

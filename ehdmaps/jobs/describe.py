@@ -29,6 +29,7 @@ from ehdmaps.maps.records import record_from_json
 from ehdmaps.maps.rough_films import BOUNDARY, FILM_PARAMETER, FILM_SHARE, MIXED, rough_variables
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.solution import Status
 from ehdmaps.units import FILM, LENGTH, PRESSURE, TEMPERATURE, Display
 
 SHOWN_TEMPERATURES = (313.15, 373.15)
@@ -72,7 +73,8 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     yield f"axes ({dataset['status'].size} points)"
     yield f"  {'contact':20s} {dataset.sizes['contact']:5d}  {', '.join(map(str, dataset['contact'].values))}"
     for axis, display in AXES:
-        yield f"  {axis:20s} {dataset.sizes[axis]:5d}  {span(dataset[axis].values, display)}"
+        whose = ", of the raceways" if axis == "temperature" else ""
+        yield f"  {axis:20s} {dataset.sizes[axis]:5d}  {span(dataset[axis].values, display)}{whose}"
     yield ""
     yield "values (per unit length of contact)"
     yield from value_lines(dataset)
@@ -89,6 +91,9 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     if law:
         yield ""
         yield from law
+    if emap.low_loads is not None:
+        yield ""
+        yield f"contact laws at low loads: {emap.low_loads.text}"
     if emap.backbone is not None:
         yield ""
         yield from _backbone_lines(emap.backbone)
@@ -171,8 +176,12 @@ def _backbone_lines(backbone: xr.Dataset) -> Iterator[str]:
     """Yield the size of the group of refinement lines."""
     sizes = [backbone.sizes[name] for name in schema.BACKBONE_DIMS]
     yield "refinement lines of the contact law (group backbone)"
-    solved = int((backbone["status"].values != schema.NOT_NEEDED).sum())
+    status = backbone["status"].values
+    solved = int((status != schema.NOT_NEEDED).sum())
     yield f"  {solved} points: {sizes[0]} loads about the damping valley, {sizes[1]} speeds, {sizes[2]} temperatures"
+    bridged = solved - int(np.isin(status, [int(known) for known in Status if known.usable]).sum())
+    if bridged:
+        yield f"  {bridged} of them without a solution: single ones are bridged along their lines"
     if schema.NATURAL not in backbone.variables:
         yield "  response over frequency: none; films in time lock by a closed formula"
         return

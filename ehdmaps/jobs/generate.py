@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import xarray as xr
@@ -12,7 +13,7 @@ import xarray as xr
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.assemble import assemble
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.law_check import LawCheck, checked_laws, plan_check
+from ehdmaps.jobs.law_check import HALVED, REFUSED, LawCheck, checked_laws, coarse_axis, met, plan_check
 from ehdmaps.jobs.refinement import Refinement, backbone_group, refinement
 from ehdmaps.jobs.status import StatusFile
 from ehdmaps.jobs.store import NoStore, Store, store_path
@@ -20,10 +21,17 @@ from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
 from ehdmaps.jobs.tasks import LineTask, line_tasks
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
+from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.maps.checksum import content_sha256
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.validation import validate
 from ehdmaps.physics.solution import ContactSolver
+
+MOST_HALVINGS = 3
+"""How often the steps of the lines of a law are halved, each time along one axis."""
+
+MOST_LINE_POINTS = 40_000
+"""Points of these lines that are not exceeded by halving a step: minutes on one core."""
 
 
 @dataclass(frozen=True)
@@ -77,13 +85,20 @@ def generate(
         With what to do; everything solved is kept.
     """
     planned = _plan(job, solvers.complete(solver or solvers.build(job.solver, job.solver_options)))
-    everything, total = planned.everything, planned.points
+    total = planned.points
     processes = workers or available_cores()
     with Store(store_path(output), fresh) as store, StatusFile(output, job, total, processes) as status:
-        told = progress(total) if progress else None
-        result = sweep(everything, store, processes, told, [status])
-        status.write()
-        dataset, group = _finished(planned, result, str(output))
+
+        def solve(tasks: Sequence[LineTask], more: bool) -> SweepResult:
+            points = sum(task.points for task in tasks)
+            if more:
+                status.more(points)
+            swept = sweep(tasks, store, processes, progress(points) if progress else None, [status])
+            status.write()
+            return swept
+
+        result = solve(planned.everything, False)
+        dataset, group = _refined(planned, result, str(output), partial(solve, more=True))
         write_map(dataset, output, {schema.BACKBONE: group} if group is not None else None)
     return Generated(dataset, group, result)
 
@@ -99,21 +114,29 @@ def generate_in_memory(
     Arguments and errors as of `generate`.
     """
     planned = _plan(job, solvers.complete(solver or solvers.build(job.solver, job.solver_options)))
-    told = progress(planned.points) if progress else None
-    result = sweep(planned.everything, NoStore(), workers or available_cores(), told)
-    dataset, group = _finished(planned, result, job.name)
+
+    def solve(tasks: Sequence[LineTask]) -> SweepResult:
+        points = sum(task.points for task in tasks)
+        return sweep(tasks, NoStore(), workers or available_cores(), progress(points) if progress else None)
+
+    result = solve(planned.everything)
+    dataset, group = _refined(planned, result, job.name, solve)
     return Generated(dataset, group, result)
 
 
 @dataclass(frozen=True)
 class _Plan:
-    """All that is solved for a map: its points, the lines of a contact law, and the check of the laws."""
+    """All that is solved for a map: its points, the lines of a contact law, and the check of the laws.
+
+    `halved` are the axes along which the steps of the lines were halved, in turn.
+    """
 
     job: Job
     solver: ContactSolver
     tasks: tuple[LineTask, ...]
     refined: Refinement | None
     check: LawCheck | None
+    halved: tuple[Axis, ...] = ()
 
     @property
     def everything(self) -> tuple[LineTask, ...]:
@@ -132,6 +155,31 @@ def _plan(job: Job, solver: ContactSolver) -> _Plan:
     return _Plan(job, solver, line_tasks(job, solver), refinement(job, solver), plan_check(job, solver))
 
 
+def _refined(
+    planned: _Plan, result: SweepResult, where: str, solve: Callable[[Sequence[LineTask]], SweepResult]
+) -> tuple[xr.Dataset, xr.Dataset | None]:
+    """Finish a map, with lines that are laid more closely as long as its laws miss their bars between them."""
+    dataset, group = _finished(planned, result, where)
+    while len(planned.halved) < MOST_HALVINGS and (finer := _finer(planned, dataset, group, result)) is not None:
+        planned = finer
+        result.add(solve(finer.refined.tasks if finer.refined else ()))
+        dataset, group = _finished(planned, result, where)
+    return dataset, group
+
+
+def _finer(planned: _Plan, dataset: xr.Dataset, group: xr.Dataset | None, result: SweepResult) -> _Plan | None:
+    """The plan with half the step along one axis of its lines; None where that would not help, or be too much."""
+    if planned.check is None or planned.refined is None or met(dataset.attrs) or REFUSED in dataset.attrs:
+        return None
+    axis = coarse_axis(planned.check, EHDMap(dataset, group), result.arrays)
+    if axis is None:
+        return None
+    lines = refinement(planned.job, planned.solver, planned.refined.steps.finer(axis))
+    if lines is None or lines.points > MOST_LINE_POINTS:
+        return None
+    return replace(planned, refined=lines, halved=(*planned.halved, axis))
+
+
 def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Dataset, xr.Dataset | None]:
     """Put results together, with the check of the laws and a checksum: the map and its backbone."""
     dataset = assemble(planned.job, planned.solver, planned.tasks, result.arrays)
@@ -139,6 +187,8 @@ def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Datas
     group = backbone_group(planned.refined, result.arrays) if planned.refined else None
     if planned.check:
         dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), result.arrays))
+    if planned.halved:
+        dataset.attrs[HALVED] = ", ".join(planned.halved)
     dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, group)
     return dataset, group
 

@@ -1,9 +1,11 @@
-"""The contact laws of a map against fresh solves at random points: how good the law is between its nodes."""
+"""The contact laws of a map against fresh solves at random points: how good they are between nodes and just outside."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -13,8 +15,12 @@ from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
+from ehdmaps.maps.backbone import BackboneField
+from ehdmaps.maps.backbone_plan import Axis
+from ehdmaps.maps.compilation import highest_structural_load
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.law import ContactLaw
+from ehdmaps.maps.law import ContactLaw, OutsidePolicy
+from ehdmaps.maps.tail import THICK_FILM
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.moes import moes_groups, valley_load_number
@@ -31,6 +37,20 @@ VALLEY_SHARE = 0.2
 VALLEY_WIDTH = (-0.6, 0.8)
 """Range of ln(M/M_valley) from which they are drawn."""
 
+INSIDE = ("", "valley")
+"""Regions within the map, whose points are held to the bars."""
+
+OUTSIDE: Mapping[str, tuple[float, float]] = {
+    "above_load": (1.0, 2.0),
+    "above_speed": (1.0, 2.0),
+    "below_load": (1.0 / 30.0, 1.0),
+}
+"""Regions just outside the map, as multiples of the end of its axis: what the policy `asymptote` and the continuation
+of films to lower loads are worth there is told, and held to no bar."""
+
+OUTSIDE_SHARE = 0.1
+"""Points in each of these regions, as a share of those within the map."""
+
 COMPLIANCE_BARS, DAMPING_BARS = (0.01, 1e-4), (0.05, 1e-3)
 """An error is within its bar where it is below a share of the film compliance or of 1/k; of c or of k b/u."""
 
@@ -40,26 +60,46 @@ SHARES = {"law_": 0.99, "law_valley_": 0.95}
 MOST_TRIES = 10
 """Draws per point in the valley: a map may hold a part of it, or none."""
 
+REFUSED, HALVED = "law_refused", "law_lines_halved_along"
+"""Attributes of the map: why it makes no law, and the axes along which the steps of its lines were halved."""
+
 STANDS_ON_LINES = (
-    "these laws are made from refinement lines whose steps are fixed: other axes of [grid] do not bring them closer to "
-    "their bars; the quantiles of their errors stand above; `ehdmaps solve` gives a single point without a law"
+    "these laws are made from refinement lines, whose steps are halved where the films between them miss, three times "
+    "at most; what misses then is the table of the law, or lines that would take too many points; other axes of [grid] "
+    "do not bring them closer to their bars; the quantiles of their errors stand above; `ehdmaps solve` gives a single "
+    "point without a law"
 )
 STANDS_ON_POINTS = "these laws are made from the points of the map: more temperatures, speeds or loads help"
-"""What can be done where a bar is unmet: the steps of a backbone are constants of `ehdmaps.maps.backbone_plan`."""
+"""What can be done where a bar is unmet; for the lines see `coarse_axis`."""
 
 NOTHING = {"film_compliance": "none: no film to relate to", "damping": "none: no damping above zero to relate to"}
 """What stands in place of quantiles where no point has one."""
+
+_WORTH: Mapping[Axis, float] = {"load": 0.25}
+"""Weight of an axis in `coarse_axis`, where it is not 1."""
+
+_Point = tuple[LineContact, float, float, float]
+"""Contact, load [N/m], speed [m/s] and temperature [K]."""
 
 QUANTILES = (0.5, 0.95, 0.99, 1.0)
 
 
 @dataclass(frozen=True)
 class LawCheck:
-    """Random points of a map: the first `general` over its whole range, the others in the valley."""
+    """Random points: within the map, in its valley, and in each region of `OUTSIDE`; `regions` says which is which."""
 
     contacts: tuple[LineContact, ...]
     tasks: tuple[LineTask, ...]
-    general: int
+    regions: tuple[str, ...]
+
+    def inside(self, task: int) -> bool:
+        """Whether a task lies within the map."""
+        return self.regions[task] in INSIDE
+
+
+def check_points(count: int) -> int:
+    """How many points are solved for a check of so many points within the map, at most."""
+    return count + len(OUTSIDE) * round(OUTSIDE_SHARE * count)
 
 
 def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
@@ -70,13 +110,30 @@ def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
         return None
     rng = np.random.default_rng(SEED)
     valley = round(VALLEY_SHARE * count)
-    general = [_draw(job, rng) for _ in range(count - valley)]
-    inside = [drawn for _ in range(MOST_TRIES * valley) if (drawn := _draw_in_valley(job, rng)) is not None][:valley]
-    tasks = tuple(LineTask(contact, job.lubricant, (w,), u, T, solver) for contact, w, u, T in (*general, *inside))
-    return LawCheck(job.contacts, tasks, len(general))
+    drawn = [("", _draw(job, rng)) for _ in range(count - valley)]
+    inside = [point for _ in range(MOST_TRIES * valley) if (point := _draw_in_valley(job, rng)) is not None][:valley]
+    drawn += [("valley", point) for point in inside]
+    if len(job.loads) > 1:
+        drawn += [
+            (region, _moved(job, _draw(job, rng), region, _log_uniform(rng, *factors)))
+            for region, factors in OUTSIDE.items()
+            for _ in range(round(OUTSIDE_SHARE * count))
+        ]
+    tasks = tuple(LineTask(contact, job.lubricant, (w,), u, T, solver) for _, (contact, w, u, T) in drawn)
+    return LawCheck(job.contacts, tasks, tuple(region for region, _ in drawn))
 
 
-def _draw(job: Job, rng: np.random.Generator) -> tuple[LineContact, float, float, float]:
+def _moved(job: Job, point: _Point, region: str, factor: float) -> _Point:
+    """A point of the map, moved along one axis to a multiple of its end."""
+    contact, load, speed, temperature = point
+    if region == "above_speed":
+        return contact, load, factor * max(job.entrainment_speeds), temperature
+    if region == "below_load":
+        return contact, factor * min(job.loads), speed, temperature
+    return contact, min(factor * max(job.loads), highest_structural_load(contact)), speed, temperature
+
+
+def _draw(job: Job, rng: np.random.Generator) -> _Point:
     """Contact, load, speed and temperature of a random point."""
     contact = job.contacts[rng.integers(len(job.contacts))]
     speeds = [u for u in job.entrainment_speeds if u > 0.0]
@@ -85,7 +142,7 @@ def _draw(job: Job, rng: np.random.Generator) -> tuple[LineContact, float, float
     return contact, _log_uniform(rng, min(job.loads), max(job.loads)), speed, temperature
 
 
-def _draw_in_valley(job: Job, rng: np.random.Generator) -> tuple[LineContact, float, float, float] | None:
+def _draw_in_valley(job: Job, rng: np.random.Generator) -> _Point | None:
     """The same with a load in the damping valley; None where the map's loads do not reach it."""
     contact, _, speed, temperature = _draw(job, rng)
     load = _valley_load(job, contact, speed, temperature) * float(np.exp(rng.uniform(*VALLEY_WIDTH)))
@@ -120,7 +177,7 @@ def checked_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -
     try:
         return check_laws(check, emap, results)
     except MapError as error:
-        return {"law_check_points": len(check.tasks), "law_refused": str(error)}
+        return {"law_check_points": sum(map(check.inside, range(len(check.tasks)))), REFUSED: str(error)}
 
 
 def unmet(dataset: xr.Dataset, with_backbone: bool) -> list[str]:
@@ -134,20 +191,84 @@ def unmet(dataset: xr.Dataset, with_backbone: bool) -> list[str]:
         Whether its laws are made from a backbone, and not from its own points.
     """
     missed = []
-    if "law_refused" in dataset.attrs:
-        missed.append(f"no contact law: {dataset.attrs['law_refused']}")
-    for prefix, share in SHARES.items():
-        for name in ("film_compliance", "damping"):
-            found = dataset.attrs.get(f"{prefix}{name}_within_bar")
-            if found is not None and found < share:
-                where = "in the damping valley" if "valley" in prefix else "over the map"
-                missed.append(
-                    f"unmet: {name.replace('_', ' ')} of the contact laws is within its bar at {found:.1%} of the "
-                    f"points {where}; wanted {share:.0%}"
-                )
+    if REFUSED in dataset.attrs:
+        missed.append(f"no contact law: {dataset.attrs[REFUSED]}")
+    for prefix, name, found, share in _shares(dataset.attrs):
+        if found < share:
+            where = "in the damping valley" if "valley" in prefix else "over the map"
+            missed.append(
+                f"unmet: {name.replace('_', ' ')} of the contact laws is within its bar at {found:.1%} of the "
+                f"points {where}; wanted {share:.0%}"
+            )
     if any(line.startswith("unmet") for line in missed):
         missed.append(STANDS_ON_LINES if with_backbone else STANDS_ON_POINTS)
     return missed
+
+
+def met(attributes: Mapping[str, Any]) -> bool:
+    """Whether the laws of a map are within their bars at as many of the checked points as they should be.
+
+    Parameters
+    ----------
+    attributes : mapping
+        What `checked_laws` found, of a map that makes laws.
+    """
+    return not any(found < share for *_, found, share in _shares(attributes))
+
+
+def _shares(attributes: Mapping[str, Any]) -> Iterator[tuple[str, str, float, float]]:
+    """Yield prefix, name, share found and share wanted of points within each bar that was checked."""
+    for prefix, share in SHARES.items():
+        for name in ("film_compliance", "damping"):
+            found = attributes.get(f"{prefix}{name}_within_bar")
+            if found is not None:
+                yield prefix, name, float(found), share
+
+
+def coarse_axis(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> Axis | None:
+    """Along which axis the lines of a backbone are too far apart; None where that is not what laws miss their bars by.
+
+    Only points count at which the films between the lines, without the table of a law, miss the bars of compliance or
+    damping. The axis is the one along which reading fewer points changes the loss most, at most of these points; every
+    second point of a cubic line changes it sixteen times as much as its own step is worth, four lines instead of six
+    less, so that the loads get a quarter of their say.
+
+    Parameters
+    ----------
+    check : LawCheck
+        The points.
+    emap : EHDMap
+        The finished map.
+    results : mapping
+        Arrays by key of the tasks.
+    """
+    votes: Counter[Axis] = Counter()
+    for contact in check.contacts:
+        field = emap.film_field((contact.name,))
+        if not isinstance(field, BackboneField):
+            return None
+        for i, task in enumerate(check.tasks):
+            arrays = results[task.key]
+            if task.contact != contact or not check.inside(i) or not Status(int(arrays["status"][0])).usable:
+                continue
+            if _missed_between(field, task, _solution(task, arrays)):
+                changes = field.changes(contact.name, task.loads[0], task.entrainment_speed, task.temperature)
+                votes[max(changes, key=lambda axis: changes[axis] * _WORTH.get(axis, 1.0))] += 1
+    return votes.most_common(1)[0][0] if votes else None
+
+
+def _missed_between(field: BackboneField, task: LineTask, fresh: ContactSolution) -> bool:
+    """Whether films between the lines miss a bar."""
+    (load,), u, T, contact = task.loads, task.entrainment_speed, task.temperature, task.contact
+    films = field.films(contact.name, np.array([[[load]]]), np.array([u]), np.array([T]))
+    _, compliance, loss = (float(values[0, 0, 0]) for values in films)
+    stiffness = 1.0 / (contact.structural_compliance(load) + compliance)
+    wrong, solved_c = abs(1.0 / stiffness - 1.0 / fresh.stiffness), max(fresh.damping, 0.0)
+    wrong_c = abs(loss * stiffness**2 - solved_c)
+    unit = fresh.stiffness * float(half_width(load, contact.radius, contact.reduced_modulus)) / u
+    return wrong > max(COMPLIANCE_BARS[0] * abs(fresh.film_compliance), COMPLIANCE_BARS[1] / fresh.stiffness) or (
+        wrong_c > max(DAMPING_BARS[0] * solved_c, DAMPING_BARS[1] * unit)
+    )
 
 
 def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> dict[str, float | int | str]:
@@ -168,36 +289,46 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
         Quantiles of the relative error in film compliance and damping of each contact's law, and the shares of the
         points that are within the bars. A law has no damping below zero: where the solved one is, the law is held
         against zero by the second bar, and the quantiles leave the point out. Where there is no film, only the second
-        bars count.
+        bars count. The same just outside the map, see `OUTSIDE`, by the law of the policy `asymptote`; below it, points
+        with a film so thick that a law lets it fade are left out.
     """
-    errors, within, valley = [], [], []
+    rows: list[FloatArray] = []
+    regions: list[str] = []
     for contact in check.contacts:
-        chosen = [i for i, task in enumerate(check.tasks) if task.contact == contact]
-        usable = [i for i in chosen if Status(int(results[check.tasks[i].key]["status"][0])).usable]
-        if not usable:
-            continue
-        # Fresh solves are those of flooded films between smooth surfaces, whatever the job states.
-        law = emap.law(contact.name, supply=FLOODED, surface=SMOOTH)  # type: ignore[arg-type]
-        rows = _errors(law, [(check.tasks[i], results[check.tasks[i].key]) for i in usable])
-        errors.append(rows[:, :2])
-        within.append(rows[:, 2:])
-        valley.append(np.array(usable) >= check.general)
+        for inside in (True, False):
+            wanted = [i for i, task in enumerate(check.tasks) if task.contact == contact and check.inside(i) == inside]
+            chosen = [i for i in wanted if _known(check.tasks[i], results[check.tasks[i].key], check.regions[i])]
+            if chosen:
+                # Fresh solves are those of flooded films between smooth surfaces, whatever the job states.
+                policy: OutsidePolicy = "error" if inside else "asymptote"
+                law = emap.law(contact.name, policy, supply=FLOODED, surface=SMOOTH)  # type: ignore[arg-type]
+                rows.append(_errors(law, [(check.tasks[i], results[check.tasks[i].key]) for i in chosen]))
+                regions += [check.regions[i] for i in chosen]
+    counted = [region in INSIDE for region in check.regions]
     record: dict[str, float | int | str] = {
         "law_check_seed": SEED,
-        "law_check_points": len(check.tasks),
-        "law_check_usable": sum(len(rows) for rows in errors),
+        "law_check_points": sum(counted),
+        "law_check_usable": sum(region in INSIDE for region in regions),
     }
-    if not errors:
+    if not rows:
         return record
-    table, passed, inside = np.concatenate(errors), np.concatenate(within), np.concatenate(valley)
-    for where, mask in (("", ~inside), ("_valley", inside)):
+    table = np.concatenate(rows)
+    for region in (*INSIDE, *OUTSIDE):
+        mask = np.array([found == region for found in regions])
         if not np.any(mask):
             continue
+        where = f"_{region}" if region else ""
         for column, name in enumerate(("film_compliance", "damping")):
             known = table[mask, column][np.isfinite(table[mask, column])]
             record[f"law{where}_{name}_error"] = _quantiles(known) if known.size else NOTHING[name]
-            record[f"law{where}_{name}_within_bar"] = float(np.mean(passed[mask, column]))
+            record[f"law{where}_{name}_within_bar"] = float(np.mean(table[mask, column + 2]))
     return record
+
+
+def _known(task: LineTask, arrays: Arrays, region: str) -> bool:
+    """Whether a fresh solve is usable, and its film, below the map, not so thick that a law lets it fade."""
+    fading = region == "below_load" and float(arrays["film_offset"][0]) > THICK_FILM * task.contact.radius
+    return Status(int(arrays["status"][0])).usable and not fading
 
 
 def _quantiles(errors: FloatArray) -> str:

@@ -185,7 +185,7 @@ def _small_multiples(figure: Figure, sheet: Sheet, temperatures: list[int], top:
     figure.text(
         0.057,
         top - 0.012,
-        f"{contact_words(first)}, over temperature of the oil",
+        f"{contact_words(first)}, over temperature of the raceways",
         fontsize=8.5,
         fontweight="bold",
     )
@@ -219,7 +219,7 @@ def _heading(figure: Figure, emap: EHDMap, shown: int) -> None:
         f"Per unit length of contact, at {at} over load and entrainment speed.  "
         f"Solver {plain(attributes['solver'])}, structural law {plain(attributes['structural_law'])}{rough}.  "
         f"Mapped: {span(dataset['load'].values, LOAD)}, {span(dataset['entrainment_speed'].values, SPEED)}, "
-        f"{typeset(span(dataset['temperature'].values, TEMPERATURE))}.",
+        f"{typeset(span(dataset['temperature'].values, TEMPERATURE))} of the raceways.",
         8,
     )
 

@@ -15,16 +15,17 @@ from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import SPECTRUM_FIELDS, LineTask, with_later_fields
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, FILMS, IMAGINARY, REAL
-from ehdmaps.maps.backbone_plan import BackbonePlan, plan_backbone
+from ehdmaps.maps.backbone_plan import STEPS, BackbonePlan, Steps, plan_backbone
 from ehdmaps.maps.rolling_film import NAMES as ROLLING
 from ehdmaps.physics.solution import ContactSolver, Status
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """Plan of a backbone and its tasks, one a line and in the plan's order."""
+    """Plan of a backbone, the steps that it was made with, and its tasks, one a line and in the plan's order."""
 
     plan: BackbonePlan
+    steps: Steps
     tasks: tuple[LineTask, ...]
 
     @property
@@ -33,11 +34,21 @@ class Refinement:
         return sum(task.points for task in self.tasks)
 
 
-def refinement(job: Job, solver: ContactSolver) -> Refinement | None:
-    """Plan the backbone of a job; None where the solver does not ask for one or the job declines it."""
+def refinement(job: Job, solver: ContactSolver, steps: Steps = STEPS) -> Refinement | None:
+    """Plan the backbone of a job; None where the solver does not ask for one or the job declines it.
+
+    Parameters
+    ----------
+    job : Job
+        What to make.
+    solver : ContactSolver
+        What solves it.
+    steps : Steps
+        Largest steps of the backbone.
+    """
     if not solver.wants_backbone or job.backbone == "none":
         return None
-    plan = plan_backbone(job.contacts, job.lubricant, job.loads, job.entrainment_speeds, job.temperatures)
+    plan = plan_backbone(job.contacts, job.lubricant, job.loads, job.entrainment_speeds, job.temperatures, steps)
     if plan is None:
         return None
     # these lines stand for their groups: how thick their own film is does not matter
@@ -54,7 +65,7 @@ def refinement(job: Job, solver: ContactSolver) -> Refinement | None:
         )
         for line in plan.lines
     )
-    return Refinement(plan, tasks)
+    return Refinement(plan, steps, tasks)
 
 
 def backbone_group(refined: Refinement, results: Mapping[str, Arrays]) -> xr.Dataset:

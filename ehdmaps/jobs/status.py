@@ -131,6 +131,12 @@ class StatusFile:
         if self._held is not None:
             os.close(self._held)
 
+    def more(self, points: int) -> None:
+        """There are so many more points to solve than was said."""
+        self._pace.total += points
+        self._about["total"] = self._pace.total
+        self.write()
+
     def found(self, task: Task, arrays: Arrays, now: bool) -> None:
         """Count a result, and write now and then.
 

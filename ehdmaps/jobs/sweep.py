@@ -122,6 +122,14 @@ class SweepResult:
     wall_seconds: float = 0.0
     damaged: int = 0
 
+    def add(self, later: SweepResult) -> None:
+        """Take in what a later sweep over the same store found."""
+        self.arrays |= later.arrays
+        self.taken_over += later.taken_over
+        self.solved += later.solved
+        self.wall_seconds += later.wall_seconds
+        self.damaged = max(self.damaged, later.damaged)
+
 
 def sweep(
     tasks: Sequence[Task],

@@ -13,12 +13,13 @@ emap           `EHDMap`, `open_map`: a map file as a value
 usable         whether a law can be made from a map
 film_field     `FilmField`: film of each contact at any load, speed and temperature
 grid_field     the film field of the map's own grid
+low_loads      down to which load films are known, and where the tail is right
 backbone_plan  which lines are solved for a contact law besides the map
 backbone       the film field of those lines
 mixing         the compiled inner loop of the backbone
 rolling_film   rolling force and mass flow of each contact at any load, speed and temperature
 dry            stand-in for the film of a dry map
-tail           film below the lowest mapped load
+tail           film below the lowest known load
 contact_curve  approach and damping of one contact over load
 oil_layer      the film of a contact on an oil layer, from that of the flooded one
 rough_layer    load sharing of film and asperities, between the film and the structure

@@ -30,14 +30,15 @@ from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
-from ehdmaps.maps.backbone_plan import NEIGHBOURS, VALLEY
+from ehdmaps.maps.backbone_plan import NEIGHBOURS, VALLEY, Axis
 from ehdmaps.maps.film_field import lifted_loss
 from ehdmaps.maps.locked_film import film_of
 from ehdmaps.maps.locked_fit import MOST, fitted_factor, response_error
+from ehdmaps.maps.low_loads import first_loads, known_from
 from ehdmaps.maps.mixing import mix_lines
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
-from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_number
 
 HEAVY = 2.5
@@ -53,6 +54,9 @@ valley it runs through zero, where a logarithm has no slope to follow."""
 
 LATTICE_STEP = 0.02
 """Step of zeta to which lines are refined for reading."""
+
+_FEWER = 4
+"""Lines in each direction, to tell what an interpolation is worth."""
 
 FILMS = ("film_offset", "film_compliance", "loss_compliance")
 """Variables of the group that a law is made from."""
@@ -163,6 +167,7 @@ class BackboneField:
         self.dry = False
         self._contacts = {c.name: c for c in contacts}
         self._lubricant = lubricant
+        self._states: dict[float, LubricantState] = {}
         self._reference = reference
         self._solids = replace(contacts[0], radius=reference.radius)
         self._log_speeds = np.log(np.asarray(group["reference_speed"].values, dtype=float))
@@ -173,32 +178,45 @@ class BackboneField:
         offset, compliance, loss = (np.asarray(group[name].values, dtype=float) for name in FILMS)
         self._responses = _Responses.of(group)
         self._zeta, self._films = zeta, (offset, compliance, loss)
-        self._lattice = np.array(
-            [
-                self._line(nodes, zeta, offset[:, j, k], compliance[:, j, k], loss[:, j, k], j, k)
-                for j in range(self._log_speeds.size)
-                for k in range(self._temperatures.size)
-            ]
+        self._start = known_from(zeta, np.isfinite(offset) & np.isfinite(compliance) & np.isfinite(loss))
+        self._nodes = nodes
+        self._check_lines()
+        self._lattice = self._lines(slice(None))
+
+    def _lines(self, which: slice) -> FloatArray:
+        """All lines on the common lattice, through some of their points, (lines, nodes, 5)."""
+        return np.array(
+            [self._line(which, j, k) for j in range(self._log_speeds.size) for k in range(self._temperatures.size)]
         )
 
-    def _line(
-        self, nodes: int, zeta: FloatArray, offset: FloatArray, compliance: FloatArray, loss: FloatArray, j: int, k: int
-    ) -> FloatArray:
+    def _check_lines(self) -> None:
+        """Refuse lines that cannot be read."""
+        offset, compliance, loss = self._films
+        solved = np.isfinite(offset) & np.isfinite(compliance) & np.isfinite(loss) & (offset > 0.0)
+        counts = np.count_nonzero(solved, axis=0)
+        for j, k in np.argwhere(counts < FEWEST_NODES)[:1]:
+            raise MapError(
+                f"backbone: {counts[j, k]} solved points at reference speed {math.exp(self._log_speeds[j]):.4g} m/s "
+                f"and {self._temperatures[k]:.2f} K; at least {FEWEST_NODES} are needed; generate the map again"
+            )
+
+    @cached_property
+    def _coarse_lattice(self) -> FloatArray:
+        """Lines through every second one of their points."""
+        return self._lines(slice(None, None, 2))
+
+    def _line(self, which: slice, j: int, k: int) -> FloatArray:
         """One line on the common lattice, shape (nodes, 5), linear beyond the line's own ends."""
+        zeta, (offset, compliance, loss) = self._zeta[which], (values[which, j, k] for values in self._films)
         speed, temperature = math.exp(self._log_speeds[j]), float(self._temperatures[k])
         solved = np.isfinite(offset) & np.isfinite(compliance) & np.isfinite(loss) & (offset > 0.0)
-        if np.count_nonzero(solved) < FEWEST_NODES:
-            raise MapError(
-                f"backbone: {np.count_nonzero(solved)} solved points at reference speed {speed:.4g} m/s and "
-                f"{temperature:.2f} K; at least {FEWEST_NODES} are needed; generate the map again"
-            )
         z, h, s, b = zeta[solved], offset[solved], compliance[solved], loss[solved]
         unit, valley, scale = self._scales(self._reference, speed, temperature)
         loads = np.exp(z) * valley / unit
         share = b * speed * loads / (h * half_width(loads, self._reference.radius, self._reference.reduced_modulus))
         film = _OffsetLine.through(z, np.log(h / scale), -s * loads / h)
         damping = CubicSpline(z, np.arcsinh(share / LOSS_SCALE))
-        places = self._first + LATTICE_STEP * np.arange(nodes)
+        places = self._first + LATTICE_STEP * np.arange(self._nodes)
         inside = np.clip(places, z[0], z[-1])
         beyond = places - inside
         within = (beyond == 0.0).astype(float)
@@ -215,7 +233,9 @@ class BackboneField:
 
     def _scales(self, contact: LineContact, speed: float, temperature: float) -> tuple[float, float, float]:
         """Moes' M per N/m, M at the valley, and the film whose Moes number is one [m]."""
-        state = self._lubricant.at(temperature)
+        state = self._states.get(temperature)
+        if state is None:
+            state = self._states[temperature] = self._lubricant.at(temperature)
         radius, modulus = contact.radius, contact.reduced_modulus
         alpha = state.pressure_viscosity.pressure_viscosity
         unit, L = moes_groups(1.0, speed, state.viscosity, alpha, radius, modulus)
@@ -248,6 +268,48 @@ class BackboneField:
                 weights = np.outer(row_weights, column_weights).ravel()
                 results[:, :, m, n] = self._at(chosen, loads[:, m, n], float(u), float(T), lines, weights)
         return results[0], results[1], results[2]
+
+    def changes(self, contact: str, load: float, speed: float, temperature: float) -> dict[Axis, float]:
+        """What the loss changes by, relatively, if it is read from fewer points along an axis.
+
+        From four lines instead of six along speed and temperature, from every second point along the loads.
+
+        Parameters
+        ----------
+        contact : str
+            Name of a contact.
+        load, speed, temperature : float
+            [N/m], [m/s] and [K].
+        """
+        chosen = self._contacts[contact]
+        at = math.log(speed * self._reference.radius / chosen.radius)
+
+        def loss(by_speed: int = NEIGHBOURS, by_temperature: int = NEIGHBOURS, coarse: bool = False) -> float:
+            rows, row_weights = lagrange(self._log_speeds, at, by_speed)
+            columns, column_weights = lagrange(self._temperatures, temperature, by_temperature)
+            lines = (rows[:, None] * self._temperatures.size + columns).ravel()
+            weights = np.outer(row_weights, column_weights).ravel()
+            lattice = self._coarse_lattice if coarse else self._lattice
+            return float(self._at(chosen, np.array([load]), speed, temperature, lines, weights, lattice)[2, 0])
+
+        full = loss()
+        fewer: dict[Axis, float] = {
+            "load": loss(coarse=True),
+            "entrainment_speed": loss(by_speed=_FEWER),
+            "temperature": loss(by_temperature=_FEWER),
+        }
+        return {axis: abs(value / full - 1.0) for axis, value in fewer.items()}
+
+    def first_loads(self, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
+        """Loads from which on the backbone is read [N/m], (n_u, n_T); see `FilmField.first_loads`.
+
+        Parameters
+        ----------
+        speeds, temperatures : array (n_u,), (n_T,)
+            [m/s], > 0, and [K].
+        """
+        contacts = list(self._contacts.values())
+        return first_loads(contacts, self._lubricant, self.load_range[0], self._start, speeds, temperatures)
 
     def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> FloatArray | None:
         """Factors of the closed formula of the locked film; see `FilmField.locked_factors`."""
@@ -289,7 +351,7 @@ class BackboneField:
         unit, valley, _ = self._scales(self._reference, speed, temperature)
         loads = np.exp(self._zeta) * valley / unit
         # the backbone reaches beyond the loads of the map, where a structural law need not hold
-        solids = self._solids.structural_compliance(np.clip(loads, *self.load_range))
+        solids = self._solids.structural_compliance(np.minimum(loads, self.load_range[1]))
         width = half_width(loads, self._reference.radius, self._reference.reduced_modulus)
         lifted = lifted_loss(loss, width, speed, solids + compliance)
         error = response_error(solids, response, errors)
@@ -312,12 +374,13 @@ class BackboneField:
         temperature: float,
         lines: IntArray,
         weights: FloatArray,
+        lattice: FloatArray | None = None,
     ) -> FloatArray:
         """Films along loads at one speed and temperature, shape (3, n)."""
         unit, valley, scale = self._scales(contact, speed, temperature)
         mixed = np.empty((3, loads.size))
         zeta = np.log(loads * unit / valley)
-        mix_lines(self._lattice, self._first, LATTICE_STEP, lines, weights, zeta, mixed)
+        mix_lines(self._lattice if lattice is None else lattice, self._first, LATTICE_STEP, lines, weights, zeta, mixed)
         offset = scale * np.exp(mixed[0])
         compliance = -mixed[1] * offset / loads
         width = half_width(loads, contact.radius, contact.reduced_modulus)
@@ -326,9 +389,19 @@ class BackboneField:
         return np.stack([offset, compliance, lifted_loss(loss, width, speed, total)])
 
 
-def lagrange(nodes: FloatArray, at: float) -> tuple[IntArray, FloatArray]:
-    """Indices and Lagrange weights of the nodes around `at`; linear through the end nodes beyond them."""
-    count = min(NEIGHBOURS, nodes.size)
+def lagrange(nodes: FloatArray, at: float, most: int = NEIGHBOURS) -> tuple[IntArray, FloatArray]:
+    """Indices and Lagrange weights of the nodes around `at`; linear through the end nodes beyond them.
+
+    Parameters
+    ----------
+    nodes : array (n,)
+        Places of the nodes, rising.
+    at : float
+        Place that is read.
+    most : int
+        Largest number of nodes.
+    """
+    count = min(most, nodes.size)
     if not nodes[0] <= at <= nodes[-1]:
         count = min(2, nodes.size)
     first = int(np.searchsorted(nodes, at)) - count // 2

@@ -5,30 +5,61 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
+from ehdmaps.maps.low_loads import RIGID
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, valley_load_number
 
-VALLEY_STEP, OUTER_STEP = 0.06, 0.45
-"""Steps of zeta inside and outside the valley."""
+OUTER_STEP = 0.45
+"""Step of zeta outside the valley."""
 
 VALLEY = (-1.1, 1.5)
 """zeta of the valley: from where film compliance and loss begin to fall to where they have recovered."""
 
-SPEED_STEP = 0.66
-"""Largest step of ln(reference speed)."""
-
-TEMPERATURE_STEP = 17.0
-"""Largest step of temperature [K]."""
+Axis = Literal["load", "entrainment_speed", "temperature"]
 
 NEIGHBOURS = 6
 """Lines in each direction that the interpolation between lines uses."""
 
 NAME = "backbone"
 """Name of the reference contact."""
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Largest steps of a backbone.
+
+    Attributes
+    ----------
+    load : float
+        Step of zeta in the valley.
+    entrainment_speed : float
+        Step of ln(reference speed).
+    temperature : float
+        Step of the temperature [K].
+    """
+
+    load: float = 0.06
+    entrainment_speed: float = 0.66
+    temperature: float = 17.0
+
+    def finer(self, axis: Axis) -> Steps:
+        """Half of the step along one axis.
+
+        Parameters
+        ----------
+        axis : {"load", "entrainment_speed", "temperature"}
+            Which one.
+        """
+        return replace(self, **{axis: 0.5 * getattr(self, axis)})
+
+
+STEPS = Steps()
+"""Where every backbone begins."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +109,7 @@ def plan_backbone(
     loads: Sequence[float],
     speeds: Sequence[float],
     temperatures: Sequence[float],
+    steps: Steps = STEPS,
 ) -> BackbonePlan | None:
     """Backbone that covers the axes of a map for all its contacts; None where no speed is positive.
 
@@ -89,6 +121,8 @@ def plan_backbone(
         The oil.
     loads, speeds, temperatures : sequence of float
         Axes of the map [N/m], [m/s], [K].
+    steps : Steps
+        Largest steps of the backbone.
     """
     positive = [u for u in speeds if u > 0.0]
     if not positive:
@@ -96,14 +130,14 @@ def plan_backbone(
     reference = replace(contacts[0], name=NAME)
     # the same L needs u/R equal
     ratios = [reference.radius / c.radius for c in contacts]
-    speed_axis = _log_axis(min(positive) * min(ratios), max(positive) * max(ratios), SPEED_STEP)
-    temperature_axis = _linear_axis(min(temperatures), max(temperatures), TEMPERATURE_STEP)
-    span = {
-        (j, k): zeta_span(contacts, lubricant, reference, loads, u, T)
-        for j, u in enumerate(speed_axis)
-        for k, T in enumerate(temperature_axis)
-    }
-    zeta = _zeta_axis(min(low for low, _ in span.values()), max(high for _, high in span.values()))
+    speed_axis = _log_axis(min(positive) * min(ratios), max(positive) * max(ratios), steps.entrainment_speed)
+    temperature_axis = _linear_axis(min(temperatures), max(temperatures), steps.temperature)
+    span = {}
+    for j, u in enumerate(speed_axis):
+        for k, T in enumerate(temperature_axis):
+            low, high = zeta_span(contacts, lubricant, reference, loads, u, T)
+            span[j, k] = min(low, RIGID), high
+    zeta = _zeta_axis(min(low for low, _ in span.values()), max(high for _, high in span.values()), steps.load)
     reach = NEIGHBOURS // 2
     lines = []
     for k, T in enumerate(temperature_axis):
@@ -194,9 +228,9 @@ def _linear_axis(low: float, high: float, step: float) -> tuple[float, ...]:
     return tuple(float(v) for v in np.linspace(low, high, count))
 
 
-def _zeta_axis(low: float, high: float) -> tuple[float, ...]:
+def _zeta_axis(low: float, high: float, step: float) -> tuple[float, ...]:
     """Fine steps in the valley, coarse ones outside."""
-    axis = list(np.arange(VALLEY[0], VALLEY[1] + 0.5 * VALLEY_STEP, VALLEY_STEP))
+    axis = list(np.arange(VALLEY[0], VALLEY[1] + 0.5 * step, step))
     while axis[0] > low:
         axis.insert(0, axis[0] - min(OUTER_STEP, 1.25 * (axis[1] - axis[0])))
     while axis[-1] < high:

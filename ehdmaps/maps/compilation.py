@@ -3,7 +3,7 @@
 Three choices make a small table exact enough:
 
 - The approach axis is stretched and aligned: s = asinh((delta - offset)/scale), with an offset and a scale that
-  follow the film over speed and temperature in closed form: approach, and its change with load, at the bottom of the
+  follow the film over speed and temperature: approach, and the dry contact's change with load, at the bottom of the
   damping valley. The valley stays at nearly constant s, and s is finest there.
 - The load is held as its cube root g: it fades out as the cube of the approach, so that g goes straight through
   zero, and w = max(g, 0)^3 is smooth and never negative.
@@ -26,18 +26,16 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
 from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.low_loads import valley_loads
 from ehdmaps.maps.oil_layer import end_of_film, oil_layer
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.maps.splines import hermite, spline_coefficients
 from ehdmaps.maps.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import film_from_moes, moes_groups, valley_load_number
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.roughness import SMOOTH, Surface
-from ehdmaps.physics.starved import RIGID_FLOW, passing
 
 _SCALE = 0.25
 _LAYERED_STEP, _ROOT_STEP = 0.02, 0.1
@@ -135,10 +133,14 @@ def compile_table(
     colds = _axis(high, low, 1e-3 * resolution.temperature)
     temperatures = COLDEST + 1.0 / colds
     us, layer = np.exp(log_speeds), supply.oil_layer
-    offset, scale = _alignment(contacts, lubricant, us, temperatures, layer, surface.roughness)
+    loads, scale = _alignment(contacts, lubricant, us, temperatures, surface.roughness)
     slowest, rough = field.speed_range[0], () if surface.smooth else contacts
     sharing = [RoughLayer(surface, contact, lubricant, slowest) for contact in rough]
     root, curve = _sampled(field, contacts, us, temperatures, held_load, resolution, layer, rolling, sharing)
+    offset = _approach_at(np.cbrt(loads), root, curve)
+    if layer < math.inf:  # the lift-off from a layer is at one s
+        distance = offset + sum(end_of_film(contact, layer) for contact in contacts)
+        scale = distance * float(np.min(scale / distance))
 
     stretched = np.arcsinh((curve.approach - offset) / scale)
     root_slope = scale * np.sqrt(1.0 + ((curve.approach - offset) / scale) ** 2) / curve.slope
@@ -206,37 +208,29 @@ def _alignment(
     lubricant: Lubricant,
     speeds: FloatArray,
     temperatures: FloatArray,
-    layer: float = math.inf,
-    roughness: float = 0.0,
+    roughness: float,
 ) -> tuple[FloatArray, FloatArray]:
-    """Offset and scale of the stretched approach [m], (n_u, n_T); the lift-off from a layer is at one s.
+    """Load at the bottom of the valley [N/m], and scale of the stretched approach there [m]; (n_u, n_T) each.
 
     Where films are thinner than the roughness, that sets the scale.
     """
     most = min(highest_structural_load(contact) for contact in contacts)
-    offset, scale = np.empty((2, speeds.size, temperatures.size))
-    states = [lubricant.at(float(temperature)) for temperature in temperatures]
-    for i, j in np.ndindex(speeds.size, temperatures.size):
-        state, speed = states[j], float(speeds[i])
-        alpha = state.pressure_viscosity.pressure_viscosity
-        logs, films = [], []
-        for contact in contacts:
-            oil = (speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
-            unit_load_number, oil_number = moes_groups(1.0, *oil)
-            load_number = float(valley_load_number(oil_number))
-            logs.append(math.log(load_number / unit_load_number))
-            film_number = moes_central(load_number, oil_number)
-            films.append(film_from_moes(film_number, speed, state.viscosity, contact.radius, contact.reduced_modulus))
-        load = min(math.exp(sum(logs) / len(logs)), most)
-        passed = sum(float(passing(RIGID_FLOW * film, layer)) * film for film in films)
-        offset[i, j] = sum(contact.structural_approach(load) for contact in contacts) - passed
-        scale[i, j] = _SCALE * load * sum(contact.structural_compliance(load) for contact in contacts)
-    if roughness > 0.0:
-        scale = np.hypot(scale, len(contacts) * roughness)
-    if layer < math.inf:
-        distance = offset + sum(end_of_film(contact, layer) for contact in contacts)
-        scale = distance * float(np.min(scale / distance))
-    return offset, scale
+    valleys = [valley_loads(contact, lubricant, speeds, temperatures) for contact in contacts]
+    loads = np.minimum(np.exp(np.mean(np.log(valleys), axis=0)), most)
+    compliance = sum(np.asarray(contact.structural_compliance(loads)) for contact in contacts)
+    return loads, np.hypot(_SCALE * loads * compliance, len(contacts) * roughness)
+
+
+def _approach_at(wanted: FloatArray, root: FloatArray, curve: Curve) -> FloatArray:
+    """Approach at one root g of each pair of speed and temperature, (n_u, n_T); held beyond the samples.
+
+    A closed form of the film would miss the valley by some per cent of the film, and by other per cents elsewhere: then
+    the valley wanders over s from node to node of speed and temperature, where it is narrower than it wanders.
+    """
+    offset = np.empty_like(wanted)
+    for place in np.ndindex(offset.shape):
+        offset[place] = np.interp(wanted[place], root[:, *place], curve.approach[:, *place])
+    return offset
 
 
 def _sampled(
@@ -253,7 +247,8 @@ def _sampled(
     """Samples of g and of the summed curve, from below lift-off to beyond the held load."""
     curves = [ContactCurve(field, contact, speeds, temperatures) for contact in contacts]
     lowest, highest = field.load_range
-    first = np.cbrt(lowest)
+    begins = field.first_loads(speeds, temperatures)
+    first = np.cbrt(begins)
     faded = 0.7 * np.cbrt(np.min([curve.fade_load for curve in curves], axis=0))
     linear = np.linspace(-0.6, 1.0, 97)[:, None, None] * faded
     if sharing:
@@ -263,6 +258,7 @@ def _sampled(
     part = np.linspace(0.0, 1.0, count + 1)[1:-1, None, None]
     tail = np.concatenate((linear, faded * (first / faded) ** part))
 
+    low_loads = _log_lines(begins, lowest, resolution.log_load)[:-1]
     mapped = _log_range(lowest, highest, resolution.log_load)
     most = min(highest_structural_load(contact) for contact in contacts)
     beyond = _log_range(highest, min(_BEYOND * held_load, most), resolution.log_load)[1:]
@@ -270,7 +266,8 @@ def _sampled(
     mapped_loads, beyond_loads = (
         np.broadcast_to(loads[:, None, None], (loads.size, *shape)).copy() for loads in (mapped, beyond)
     )
-    films = [curve.film(tail, mapped_loads, beyond_loads) for curve in curves]
+    known = np.concatenate((low_loads, mapped_loads))
+    films = [curve.film(tail, known, beyond_loads) for curve in curves]
     if layer < math.inf:
         films = [
             oil_layer(contact, layer, curve.tail, rolling, speeds, temperatures)(film)
@@ -298,6 +295,15 @@ def _log_range(low: float, high: float, step: float) -> FloatArray:
     """Values from low to high, uniform in their logarithm; the ends exactly."""
     values = np.geomspace(low, high, max(2, math.ceil(math.log(high / low) / step) + 1))
     values[0], values[-1] = low, high
+    return values
+
+
+def _log_lines(lows: FloatArray, high: float, step: float) -> FloatArray:
+    """Values from each low (n_u, n_T) to high, uniform in their logarithm, as many for each; high alone if all are."""
+    reach = float(np.max(np.log(high / lows)))
+    if not reach > 0.0:
+        return np.full((1, *lows.shape), high)
+    values: FloatArray = np.geomspace(lows, np.full_like(lows, high), max(2, math.ceil(reach / step) + 1))
     return values
 
 

@@ -101,7 +101,7 @@ def dry_slope(contact: LineContact, root: FloatArray) -> FloatArray:
 class _Edge:
     """Film at one end of the load range: offset h, compliance s, damping c, n = d ln c/d ln w; (n_u, n_T) each."""
 
-    load: float
+    load: FloatArray
     film_offset: FloatArray
     film_compliance: FloatArray
     damping: FloatArray
@@ -131,10 +131,10 @@ class ContactCurve:
         self._contact = contact
         self._speeds = speeds
         self._temperatures = temperatures
-        lowest, highest = field.load_range
-        low, self._high = self._edge(lowest, 1.0), self._edge(highest, -1.0)
+        first = field.first_loads(speeds, temperatures)
+        low, self._high = self._edges(first, np.full_like(first, field.load_range[1]))
         self._tail = Tail(
-            lowest, low.film_offset, low.film_compliance, low.damping, low.damping_exponent, contact.radius
+            first, low.film_offset, low.film_compliance, low.damping, low.damping_exponent, contact.radius
         )
 
     @property
@@ -147,25 +147,25 @@ class ContactCurve:
         """Load below which the tail fades out [N/m], (n_u, n_T)."""
         return self._tail.fade_load
 
-    def film(self, root: FloatArray, mapped: FloatArray, above: FloatArray) -> FilmSamples:
-        """Film from the tail to above the map.
+    def film(self, root: FloatArray, known: FloatArray, above: FloatArray) -> FilmSamples:
+        """Film below, within and above the loads that are known.
 
         Parameters
         ----------
         root : array (., n_u, n_T)
-            Roots g of the tail, as of `below`.
-        mapped, above : array (., n_u, n_T)
-            Loads within the map, and above it [N/m].
+            g of the tail.
+        known, above : array (., n_u, n_T)
+            Loads from the first known one to the highest of the map, and above [N/m].
         """
-        return self.below(root).then(self.mapped(mapped)).then(self.above(above))
+        return self.below(root).then(self.mapped(known)).then(self.above(above))
 
     def below(self, root: FloatArray) -> FilmSamples:
-        """Tail: film at and below the lowest mapped load; `root` is g (n, n_u, n_T)."""
+        """Tail: film at and below the first known load; `root` is g (n, n_u, n_T)."""
         offset, slope, log_ratio = self._tail.films(root)
         return FilmSamples(root, offset, slope, np.exp(log_ratio) * (dry_slope(self._contact, root) - slope) ** 2)
 
     def mapped(self, load: FloatArray) -> FilmSamples:
-        """Film within the mapped loads [N/m], (n, n_u, n_T)."""
+        """Film from the first known load to the highest of the map [N/m], (n, n_u, n_T)."""
         offset, compliance, loss = self._field.films(self._contact.name, load, self._speeds, self._temperatures)
         root = np.cbrt(load)
         return FilmSamples(root, offset, -3.0 * root**2 * compliance, 9.0 * root * loss)
@@ -200,12 +200,15 @@ class ContactCurve:
                 )
         return curve
 
-    def _edge(self, load: float, direction: float) -> _Edge:
-        """Film and damping at an end of the range; the exponent of c from inside it, to second order."""
-        steps = load * np.exp(direction * _SMALL_STEP * np.arange(3.0))
-        loads = np.broadcast_to(steps[:, None, None], (3, self._speeds.size, self._temperatures.size)).copy()
+    def _edges(self, low: FloatArray, high: FloatArray) -> tuple[_Edge, _Edge]:
+        """Film and damping at both ends of the range; the exponents of c from inside it, to second order."""
+        steps = np.exp(_SMALL_STEP * np.arange(3.0))[:, None, None]
+        loads = np.concatenate((low * steps, high / steps))  # read at once: a reading costs more than its loads
         film, film_compliance, loss = self._field.films(self._contact.name, loads, self._speeds, self._temperatures)
         damping = loss / (self._contact.structural_compliance(loads) + film_compliance) ** 2
         logs = np.log(damping)
-        exponent = direction * (-1.5 * logs[0] + 2.0 * logs[1] - 0.5 * logs[2]) / _SMALL_STEP
-        return _Edge(load, film[0], film_compliance[0], damping[0], exponent)
+        edges = []
+        for load, at, direction in ((low, 0, 1.0), (high, 3, -1.0)):
+            exponent = direction * (-1.5 * logs[at] + 2.0 * logs[at + 1] - 0.5 * logs[at + 2]) / _SMALL_STEP
+            edges.append(_Edge(load, film[at], film_compliance[at], damping[at], exponent))
+        return edges[0], edges[1]

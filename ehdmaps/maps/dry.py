@@ -8,6 +8,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.low_loads import same_load
 
 _FILM, _THIN_FILM = 1e-6, 1e-12
 
@@ -61,6 +62,10 @@ class DryField:
         """h ~ w1/w, its compliance and some loss; see `FilmField.films`."""
         film = (_THIN_FILM if self.rough else _FILM) * self.load_range[0] / loads
         return film, film / loads, np.asarray(1e-3 * film / loads)
+
+    def first_loads(self, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
+        """The lowest load everywhere; see `FilmField.first_loads`."""
+        return same_load(self.load_range[0], speeds, temperatures)
 
     def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> None:
         """Nothing is known of films that oscillate; see `FilmField.locked_factors`."""

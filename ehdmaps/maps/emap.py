@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from os import PathLike, fspath
 from typing import get_args
 
@@ -17,6 +17,7 @@ from ehdmaps.maps.checksum import check_content, content_sha256
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
+from ehdmaps.maps.low_loads import FirstLoads, LowLoads, first_loads, known_from, low_loads, same_load
 from ehdmaps.maps.reading import read_map
 from ehdmaps.maps.records import (
     bearing_from_json,
@@ -249,6 +250,23 @@ class EHDMap:
         """
         reference = None if self.backbone is None else self._reference(self.backbone)
         return rolling_film(self.dataset, self.backbone, reference, self.contacts, self.lubricant)
+
+    @cached_property
+    def low_loads(self) -> LowLoads | None:
+        """Where the laws take films as those of rigid contacts, and whether that is right; None without any film."""
+        moving = self.dataset["entrainment_speed"].values > 0.0
+        if not np.any(moving) or not np.any(self.dataset["film_offset"].values > 0.0):
+            return None
+        temperatures = self.dataset["temperature"].values.astype(np.float64)
+        (lowest, _), speeds = self._range("load"), self._range("entrainment_speed")
+        first: FirstLoads = partial(same_load, lowest)
+        if self.backbone is not None:
+            group = self.backbone.transpose(*schema.BACKBONE_DIMS, ...)
+            solved = np.all([np.isfinite(group[name].values) for name in FILMS], axis=0)
+            start = known_from(group[schema.BACKBONE_DIMS[0]].values, solved)
+            first = partial(first_loads, self.contacts, self.lubricant, lowest, start)
+        ends = float(temperatures[0]), float(temperatures[-1])
+        return low_loads(first, self.contacts, self.lubricant, lowest, speeds, ends)
 
     def check_usable(self, contacts: tuple[str, ...] | None = None) -> None:
         """Refuse a map of whose films no law of these contacts can be made; only what the law reads is looked at.

@@ -24,7 +24,8 @@ class Excursion:
     ----------
     axis : {"load", "entrainment_speed", "temperature"}
     side : {"above", "below"}
-        Only temperatures can be below: films of lower loads and speeds are part of the law.
+        Speeds are never below: films of lower ones are part of the law. Loads are where the film there is a guess, see
+        `ehdmaps.maps.low_loads`.
     calls : int
         How many points.
     extreme : float
@@ -53,7 +54,7 @@ class Excursion:
 
 @dataclass(frozen=True)
 class Range:
-    """What is mapped along an axis; `low` is -inf where nothing can be below."""
+    """What is known along an axis; `low` is -inf where nothing can be below."""
 
     axis: Axis
     low: float
@@ -64,7 +65,8 @@ class Range:
         tolerance = LOAD_TOLERANCE if self.axis == "load" else EDGE_TOLERANCE
         values = np.abs(values) if self.axis == "entrainment_speed" else values
         above = values[values > self.high * (1.0 + tolerance)]
-        below = values[values < self.low * (1.0 - tolerance)] if self.low > 0.0 else values[:0]
+        # no load at all is no question of films
+        below = values[(values < self.low * (1.0 - tolerance)) & (values > 0.0)] if self.low > 0.0 else values[:0]
         found = []
         if above.size:
             found.append(Excursion(self.axis, "above", int(above.size), float(np.max(above)), self.high))

@@ -88,6 +88,18 @@ class FilmField(Protocol):
         """
         ...
 
+    def first_loads(self, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
+        """Loads from which on the film of every contact is known [N/m], (n_u, n_T): that of `load_range` or lower.
+
+        Parameters
+        ----------
+        speeds : array (n_u,)
+            Entrainment speeds [m/s], > 0.
+        temperatures : array (n_T,)
+            [K].
+        """
+        ...
+
     def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> FloatArray | None:
         """Factors of the closed formula of the locked film, see `ehdmaps.maps.locked_fit`.
 

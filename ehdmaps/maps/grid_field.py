@@ -20,6 +20,7 @@ from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from ehdmaps.arrays import FloatArray, IndexArray
 from ehdmaps.maps.film_field import lifted_loss
+from ehdmaps.maps.low_loads import same_load
 from ehdmaps.maps.splines import hermite, spline_weights
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
@@ -105,6 +106,10 @@ class GridField:
     def dry(self) -> bool:
         """Whether there is no film anywhere."""
         return not np.any(self.film_offset)
+
+    def first_loads(self, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
+        """The lowest load everywhere; see `FilmField.first_loads`."""
+        return same_load(self.load_range[0], speeds, temperatures)
 
     def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> None:
         """Nothing is known of films that oscillate; see `FilmField.locked_factors`."""

@@ -30,7 +30,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.contact_curve import FilmSamples, dry_slope
@@ -76,13 +76,14 @@ def oil_layer(
     thickness : float
         Layer, of both surfaces together [m], finite.
     tail : Tail
-        Film of the contact below the lowest mapped load.
+        Film of the contact below the first known load.
     rolling : RollingFilm or None
         Mass flow of the flooded contact; None where it is not known.
     speeds, temperatures : array (n_u,), (n_T,)
         Entrainment speeds [m/s], > 0, and temperatures [K].
     """
-    flow = None if rolling is None else rolling.flow_film(contact.name, speeds, temperatures)
+    lowest = float(np.min(tail.load))
+    flow = None if rolling is None else rolling.flow_film(contact.name, lowest, speeds, temperatures)
     return OilLayer(contact, thickness, tail, flow)
 
 
@@ -97,10 +98,10 @@ class OilLayer:
     thickness : float
         Layer before it, of both surfaces together [m].
     tail : Tail
-        Film of the contact below the lowest mapped load.
+        Film of the contact below the first known load.
     flow : CubicSpline, optional
-        ln of the flooded contact's mass flow over density at rest and speed [m], over ln(w) within the map, values
-        (n_u, n_T); it goes on straight above. None where the map holds none.
+        ln of the flooded contact's mass flow over density at rest and speed [m], over ln(w) from the first known load
+        on, values (n_u, n_T); it goes on straight above. None where the map holds none.
     """
 
     contact: LineContact
@@ -114,15 +115,15 @@ class OilLayer:
         Parameters
         ----------
         film : FilmSamples
-            Film of the flooded contact, at loads whose part within the map is the same at all speeds and temperatures.
+            Film of the flooded contact, with as many loads below the first known one at all speeds and temperatures.
         """
-        first = np.cbrt(self.tail.load) * (1.0 - 1e-12)
+        first = np.cbrt(self.tail.load[0, 0]) * (1.0 - 1e-12)
         rows = int(np.count_nonzero(film.root[:, 0, 0] < first))
         below, above = _rows(film, slice(None, rows)), _rows(film, slice(rows, None))
         return self._below(below).then(self._above(above))
 
     def _above(self, film: FilmSamples) -> FilmSamples:
-        """Film at and above the lowest mapped load."""
+        """Film at and above the first known load."""
         log_slope = film.slope / film.offset
         ratio, ratio_slope = self._flow_per_film(film)
         layered = self._layered(film.root, film.load * film.offset, 3.0 / film.root + log_slope, ratio, ratio_slope)
@@ -138,7 +139,7 @@ class OilLayer:
         return FilmSamples(film.root, layered.offset, slope, film.loss * raised**2)
 
     def _below(self, film: FilmSamples) -> FilmSamples:
-        """Film below the lowest mapped load."""
+        """Film below the first known load."""
         tail, root, load = self.tail, film.root, film.load
         strength = tail.strength + tail.pole * load
         log_strength_slope = 3.0 * tail.pole * np.maximum(root, 0.0) ** 2 / strength
@@ -178,10 +179,10 @@ class OilLayer:
         return raised
 
     def _flow_per_film(self, film: FilmSamples) -> tuple[FloatArray, FloatArray]:
-        """m/h at and above the lowest mapped load, and its logarithm's derivative by g."""
+        """m/h at and above the first known load, and its logarithm's derivative by g."""
         if self.flow is None:
             return np.full_like(film.root, RIGID_FLOW), np.zeros_like(film.root)
-        logs, slopes = _flow_at(self.flow, np.log(film.load[:, 0, 0]))
+        logs, slopes = _flow_at(self.flow, np.log(film.load))
         return np.exp(logs) / film.offset, 3.0 * slopes / film.root - film.slope / film.offset
 
     def _flow_per_tail(self, root: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -192,7 +193,7 @@ class OilLayer:
         if self.flow is None:
             return np.full_like(root, RIGID_FLOW), np.zeros_like(root)
         tail = self.tail
-        logs, slopes = _flow_at(self.flow, np.array([np.log(tail.load)]))
+        logs, slopes = _flow_at(self.flow, np.log(tail.load)[None])
         excess = logs[0] - np.log(tail.film_offset * RIGID_FLOW)
         exponent = slopes[0] + 1.0 - tail.pole / tail.film_offset
         held = np.maximum(root, 1e-30) / np.cbrt(tail.load)
@@ -238,10 +239,13 @@ class _Layered:
 
 
 def _flow_at(flow: CubicSpline, log_load: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """ln(m) and its derivative by ln(w), (n, n_u, n_T); straight above the map."""
+    """ln(m) and its derivative by ln(w) at loads (n, n_u, n_T), of the same shape; straight above the map."""
     held = np.minimum(log_load, flow.x[-1])
-    slopes = flow(held, 1)
-    return flow(held) + slopes * (log_load - held)[:, None, None], slopes
+    logs, slopes = np.empty((2, *held.shape))
+    for place in np.ndindex(held.shape[1:]):
+        line = PPoly(flow.c[:, :, *place], flow.x)
+        logs[:, *place], slopes[:, *place] = line(held[:, *place]), line(held[:, *place], 1)
+    return logs + slopes * (log_load - held), slopes
 
 
 def _rows(film: FilmSamples, rows: slice) -> FilmSamples:

@@ -7,9 +7,10 @@ In Moes' groups both depend on M and L alone, as the film does: with the speed n
 What a map holds of them is read as ln f and ln g: of its backbone at constant zeta = ln(M/M_valley(L)), as the films of
 a contact law are, or of its own grid at constant load where it has no backbone.
 
-- Below the lowest mapped load both go over into the film between rigid surfaces, f = 2.941 M^(1/2) and g = 3/M, which
-  the piezoviscous effect leaves as the pressure does, like M^(3/2). Where the lowest load is far from that regime the
-  way there is a guess.
+- A backbone is read also below the lowest mapped load, down to where the contact is rigid, see
+  `ehdmaps.maps.low_loads`. Below that, or below the lowest mapped load, both go over into the film between rigid
+  surfaces, f = 2.941 M^(1/2) and g = 3/M, which the piezoviscous effect leaves as the pressure does, like M^(3/2).
+  Where no backbone reaches the rigid regime the way there is a guess.
 - Above the highest load they go on with their last exponent.
 - Beyond the speeds of the map too they go on with their last exponents. Temperatures are held at the edge.
 """
@@ -26,6 +27,7 @@ from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.backbone import FEWEST_NODES, LATTICE_STEP, lagrange
+from ehdmaps.maps.low_loads import known_from, load_at
 from ehdmaps.maps.mixing import mix_lines
 from ehdmaps.maps.schema import BACKBONE_DIMS, DIMS
 from ehdmaps.maps.splines import spline_weights
@@ -47,7 +49,7 @@ _STEP = 1e-3
 _FLOW_STEP = 0.1
 
 _Reader = Callable[[LineContact, FloatArray, float, float], FloatArray]
-"""From contact, loads (n,) within the map, speed and temperature to ln f and ln g, shape (2, n)."""
+"""From contact, loads (n,) from the first known to the highest one, speed and temperature to ln f and ln g, (2, n)."""
 
 
 class RollingFilm:
@@ -63,6 +65,8 @@ class RollingFilm:
         What reads ln f and ln g within the map.
     load_range, temperature_range : tuple of float
         Range of the map's axes [N/m], [K].
+    start : float
+        zeta from which on the reader holds also below the lowest load; inf where it does not.
     """
 
     def __init__(
@@ -72,7 +76,9 @@ class RollingFilm:
         reader: _Reader,
         load_range: tuple[float, float],
         temperature_range: tuple[float, float],
+        start: float = math.inf,
     ) -> None:
+        self._start = start
         self._contacts = {contact.name: contact for contact in contacts}
         self._lubricant = lubricant
         self._reader = reader
@@ -130,17 +136,19 @@ class RollingFilm:
         T = float(np.clip(temperature, *self._temperatures))
         return mass / (self._lubricant.at(T).density * abs(entrainment_speed))
 
-    def flow_film(self, contact: str, speeds: FloatArray, temperatures: FloatArray) -> CubicSpline:
-        """Mass flow over density at rest and speed, as ln of it [m] over ln(w), for the loads of the map.
+    def flow_film(self, contact: str, lowest_load: float, speeds: FloatArray, temperatures: FloatArray) -> CubicSpline:
+        """Mass flow over density at rest and speed, as ln of it [m] over ln(w), up to the highest load of the map.
 
         Parameters
         ----------
         contact : str
             Name of a contact of the map.
+        lowest_load : float
+            Load at which the spline begins [N/m], > 0.
         speeds, temperatures : array (n_u,), (n_T,)
             Entrainment speeds [m/s], > 0, and temperatures [K]; values of the spline are (n_u, n_T).
         """
-        line, (low, high) = self._contacts[contact], self._loads
+        line, low, high = self._contacts[contact], lowest_load, self._loads[1]
         loads = np.geomspace(low, high, 4 + math.ceil(math.log(high / low) / _FLOW_STEP))
         logs = np.empty((loads.size, speeds.size, temperatures.size))
         for j, speed in enumerate(speeds.tolist()):
@@ -169,6 +177,8 @@ class RollingFilm:
     def _logarithms(self, contact: LineContact, loads: FloatArray, speed: float, T: float) -> FloatArray:
         """Logarithms of f and g at loads (n,) > 0, shape (2, n), at a temperature within the map."""
         low, high = self._loads
+        if math.isfinite(self._start):
+            low = min(low, load_at(contact, self._lubricant, self._start, speed, T))
         found = self._reader(contact, np.clip(loads, low, high), speed, T)
         below, above = loads < low, loads > high
         if np.any(below):
@@ -220,12 +230,16 @@ def rolling_film(
         return None
     axes = [moving[name].values.astype(np.float64) for name in DIMS[1:]]
     reader: _Reader | None = None
+    start = math.inf
     if backbone is not None and reference is not None and all(name in backbone for name in NAMES):
-        reader = _backbone_reader(backbone.transpose(*BACKBONE_DIMS, ...), reference, lubricant)
+        group = backbone.transpose(*BACKBONE_DIMS, ...)
+        reader = _backbone_reader(group, reference, lubricant)
+        solved = [np.isfinite(group[name].values) for name in NAMES]
+        start = known_from(group[BACKBONE_DIMS[0]].values, np.all(solved, axis=0))
     if reader is None:
-        reader = _grid_reader(values, axes, contacts, lubricant)
+        reader, start = _grid_reader(values, axes, contacts, lubricant), math.inf
     load_range, _, temperature_range = ((float(axis[0]), float(axis[-1])) for axis in axes)
-    return RollingFilm(contacts, lubricant, reader, load_range, temperature_range)
+    return RollingFilm(contacts, lubricant, reader, load_range, temperature_range, start)
 
 
 def _backbone_reader(group: xr.Dataset, reference: LineContact, lubricant: Lubricant) -> _Reader | None:

@@ -1,10 +1,10 @@
-"""The film below the lowest mapped load: rigid and isoviscous, w ~ 1/h, faded to nothing at a thick film.
+"""The film at the lowest loads: rigid and isoviscous, w ~ 1/h, faded to nothing at a thick film.
 
-With the film offset h1 and the film compliance s1 at the lowest mapped load w1,
+With the film offset h1 and the film compliance s1 at the lowest known load w1, see `ehdmaps.maps.low_loads`,
 
     w = Q(h) A/(h - hs),    A = w1^2 s1,    hs = h1 - w1 s1,
 
-which joins the map with equal value and slope. Q is the quintic that falls from 1 at ha = max(0.005 R, h1) to
+which joins what is known with equal value and slope. Q is the quintic that falls from 1 at ha = max(0.005 R, h1) to
 0 at 4 ha. The damping of the contact follows
 
     c = Q(h) c1 v^1.5 exp((n1 - 1.5)(v^3 - 1)/3),    v = w1 s1/(h - hs),
@@ -35,11 +35,11 @@ _CLOSE = 1e-9
 
 @dataclass(frozen=True)
 class Tail:
-    """Film below the lowest mapped load, for every pair of speed and temperature.
+    """Film below the lowest known load, for every pair of speed and temperature.
 
     Attributes
     ----------
-    load : float
+    load : array (n_u, n_T)
         w1 [N/m].
     film_offset, film_compliance : array (n_u, n_T)
         h1 [m] and s1 [m2/N] at w1.
@@ -49,7 +49,7 @@ class Tail:
         R [m].
     """
 
-    load: float
+    load: FloatArray
     film_offset: FloatArray
     film_compliance: FloatArray
     damping: FloatArray

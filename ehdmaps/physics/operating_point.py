@@ -23,7 +23,7 @@ class OperatingPoint:
     entrainment_speed : float
         Mean u of the two surface speeds [m/s], >= 0 (the contact does not care about the sign).
     temperature : float
-        Oil temperature [K], > 0.
+        Temperature of both surfaces, and so of the oil between them [K], > 0.
 
     Raises
     ------

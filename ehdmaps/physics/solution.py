@@ -245,7 +245,7 @@ class ContactSolver(Protocol):
         entrainment_speed : float
             u [m/s].
         temperature : float
-            Temperature of the oil supply [K].
+            Temperature of both surfaces [K].
         """
         ...
 

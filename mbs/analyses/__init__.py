@@ -19,6 +19,8 @@ coverage       whether a map covers what is needed
 case           the models that an analysis compares, with their labels
 varied         what comparisons vary, one row a key
 progress       how an analysis tells how far it is
+operating      a model as it is in operation: temperatures, heat and clearances of its bearings at a speed
+rings          how the rings of the bearings move
 reach          where the films of a law begin, and calls outside its map
 losses         what contacts feel at an equilibrium, and what rolling costs there
 film_errors    how wrong the films are estimated to be over frequency

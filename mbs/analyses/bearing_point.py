@@ -28,6 +28,7 @@ from mbs.bearings.contact_report import (
     bearing_contacts,
     extrapolated,
     fading,
+    guessed,
     heated,
     outside_map,
     overload,
@@ -172,7 +173,7 @@ def bearing_points(
     speeds : sequence of float
         Speeds of the inner ring [rad/s].
     temperature : float
-        Temperature of the oil [K].
+        Temperature of the raceways [K].
 
     Returns
     -------
@@ -217,6 +218,7 @@ def bearing_point(
     notes = [
         extrapolated(contacts, films.lubricant),
         fading(force.law, u),
+        guessed(force.law, rollers.load_per_length, u, temperature),
         heated(contacts, films.lubricant, modulus, u, temperature),
         _loose(stiffness, given),
     ]

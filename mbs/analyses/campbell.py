@@ -14,6 +14,7 @@ import xarray as xr
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import closest
 from mbs.analyses.case import Case, as_cases
+from mbs.analyses.operating import held, states_of
 from mbs.analyses.progress import Progress, silent
 from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_result import Sweep
@@ -21,6 +22,7 @@ from mbs.model.elements import Operation, Sensor
 from mbs.model.equilibrium import equilibrium
 from mbs.output.campbell_data import campbell_dataset
 from mbs.output.results import described
+from mbs.output.state_data import with_states
 from mbs.scene.assembly import Model, law_attributes, supply_attributes
 from mbs.scene.fields import HERTZ
 from mbs.scene.scene import Scene
@@ -142,6 +144,7 @@ def campbell(
     if problems or sensor is None or course is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     orders = followed_orders(cases[0].model, settings, course)
+    cases = tuple(dataclasses.replace(case, model=held(case.model)) for case in cases)
     _rehearse(settings, course, orders)
     runs, failed = _runs(cases, settings, sensor, course, orders, progress or silent, with_modes, keep_partial)
     if not runs:
@@ -149,6 +152,7 @@ def campbell(
     dataset = campbell_dataset(
         [entry.case.label for entry in runs], [entry.spectra for entry in runs], Reference.of(sensor), sensor.name
     )
+    dataset = with_states(dataset, [states_of(entry.case.model) for entry in runs], ("law",))
     # The dataset says of each law what it is.
     laws = "; ".join(f"{entry.case.label}: {entry.case.model.law}" for entry in runs)
     supplies = supply_attributes([(entry.case.label, entry.case.model) for entry in runs])

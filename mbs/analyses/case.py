@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from ehdmaps.errors import InputError
+from ehdmaps.units import TEMPERATURE
 from mbs.scene.assembly import Model
 from mbs.scene.contact_laws import supply_words
 from mbs.scene.fields import MICROMETRE
@@ -38,9 +39,47 @@ class Case:
 
 
 def clearance_text(model: Model) -> str:
-    """The diametral clearances of all bearings in words, such as ``20 um``; empty without bearings."""
+    """The diametral clearances of all bearings in words, such as ``20 um``; empty without bearings.
+
+    Parameters
+    ----------
+    model : Model
+        Those of a model in operation are its own, else those that the scene states.
+    """
+    if model.states:
+        return span([1e6 * state.clearance.operating for state in model.states], MICROMETRE.unit)
     clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
-    return ", ".join(MICROMETRE.text(value) for value in clearances)
+    words = " stated" if any(entry.changes_in_operation for entry in model.scene.bearings) else ""
+    return ", ".join(MICROMETRE.text(value) for value in clearances) + words
+
+
+def temperature_text(model: Model) -> str:
+    """The temperatures of the raceways of all bearings in words, such as ``40 degC``.
+
+    Parameters
+    ----------
+    model : Model
+        Those of a model in operation are its own, else that of the scene.
+    """
+    if model.states:
+        raceways = [TEMPERATURE.value(kelvin) for state in model.states for kelvin in (state.inner, state.outer)]
+        return f"raceways at {span(raceways, TEMPERATURE.unit)}"
+    words = " around the bearings" if any(entry.changes_in_operation for entry in model.scene.bearings) else ""
+    return TEMPERATURE.text(model.scene.temperature) + words
+
+
+def span(values: Sequence[float], unit: str) -> str:
+    """The range of some values, such as "20 to 30 um".
+
+    Parameters
+    ----------
+    values : sequence of float
+        The values, in the unit.
+    unit : str
+        Unit as it is written.
+    """
+    low, high = f"{min(values):.4g}", f"{max(values):.4g}"
+    return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
 
 
 def common_supply(models: Iterable[Model]) -> str:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from mbs.bearings.bearing_element import BearingElement, RingElement
+from mbs.analyses.operating import operating
+from mbs.bearings.bearing_element import RingElement
 from mbs.bearings.roller_element import ring_following
 from mbs.linearised.validity import FilmError
 from mbs.model.elements import Operation
@@ -62,11 +63,6 @@ def film_errors(
     return found
 
 
-def ring_motions(model: Model, displacement: FloatArray) -> list[tuple[BearingElement, FloatArray]]:
-    """Each bearing with the displacement (6,) of its inner ring against the outer one."""
-    return [(bearing, model.system.relative(bearing.inner, bearing.outer) @ displacement) for bearing in model.bearings]
-
-
 def notable_from(model: Model, speeds: FloatArray, displacements: FloatArray | None = None) -> FloatArray:
     """Frequency [Hz] from which on the films of one of the bearings are more than 5 % wrong, shape (speeds,).
 
@@ -86,9 +82,9 @@ def notable_from(model: Model, speeds: FloatArray, displacements: FloatArray | N
     """
     found = np.full(speeds.size, np.nan)
     for index, speed in enumerate(speeds.tolist()):
-        operation = Operation(speed)
-        place = equilibrium(model.system, operation).displacement if displacements is None else displacements[index]
-        errors = film_errors(model, place, operation)
+        there, operation = operating(model, speed), Operation(speed)
+        place = equilibrium(there.system, operation).displacement if displacements is None else displacements[index]
+        errors = film_errors(there, place, operation)
         if not errors:
             break
         found[index] = min(entry.frequency for entry in errors)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ehdmaps.errors import InputError
 from mbs.analyses.film_errors import film_errors
+from mbs.analyses.operating import operating
 from mbs.analyses.progress import Progress, silent
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.steady import steady_system
@@ -118,6 +119,7 @@ def hammer(model: Model, settings: HammerSettings | None = None, progress: Progr
     ]
     if missing:
         raise InputError(missing)
+    model = operating(model, model.operation.speed)
     balance = equilibrium(steady_system(model.system), model.operation)
     found = modes(balance)
     highest = settings.highest or (scene.frequencies[-1] if scene.frequencies else HIGHEST)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.solids import STEEL
-from mbs.analyses.film_errors import ring_motions
+from mbs.analyses.rings import ring_motions
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.contact_report import BearingContacts, bearing_contacts
 from mbs.bearings.films import DryContacts, FilmSource
@@ -36,22 +38,24 @@ def contacts_and_losses(
     ]
 
 
-def losses_over_speed(model: Model, speeds: FloatArray, displacements: FloatArray) -> tuple[FloatArray, FloatArray]:
+def losses_over_speed(
+    models: Sequence[Model], speeds: FloatArray, displacements: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Rolling torque [N m] and power [W] of each bearing over speed, each of shape (speeds, bearings).
 
     NaN for films without rolling forces.
 
     Parameters
     ----------
-    model : Model
-        Scene with its law.
+    models : sequence of Model
+        Scene with its law, as it is at each speed.
     speeds : array, shape (speeds,)
         [rad/s].
     displacements : array, shape (speeds, n)
         Displacements of the system at the equilibria.
     """
-    found = np.full((2, speeds.size, len(model.bearings)), np.nan)
-    for index, speed in enumerate(speeds.tolist()):
+    found = np.full((2, speeds.size, len(models[0].bearings)), np.nan)
+    for index, (model, speed) in enumerate(zip(models, speeds.tolist(), strict=True)):
         losses = [loss for _, loss in contacts_and_losses(model, displacements[index], Operation(speed))]
         found[:, index] = [[loss.torque for loss in losses], [loss.total for loss in losses]]
         if np.all(np.isnan(found[:, index])):  # no film of this model knows any, at whatever speed

@@ -10,6 +10,7 @@ import xarray as xr
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
 from mbs.analyses.film_errors import film_errors
+from mbs.analyses.operating import operating, states_of
 from mbs.linearised.linear import StateSpace, frequency_response, state_space, with_peaks
 from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
@@ -17,6 +18,7 @@ from mbs.linearised.validity import DynamicLoad, FilmError, dynamic_loads
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import described, linear_dataset
+from mbs.output.state_data import with_states
 from mbs.scene.assembly import Model, law_attributes
 
 
@@ -112,7 +114,9 @@ def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
     ]
     if missing:
         raise InputError(missing)
-    balance = equilibrium(steady_system(model.system), settings.operation or model.operation)
+    operation = settings.operation or model.operation
+    model = operating(model, operation.speed)
+    balance = equilibrium(steady_system(model.system), operation)
     frequencies = with_peaks(np.array(asked), modes(balance).eigenvalues)
     responses = frequency_response(balance, scene.inputs, scene.sensors, frequencies)
     space = state_space(balance, scene.inputs, scene.sensors)
@@ -127,5 +131,5 @@ def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
         responses=responses,
         errors=tuple(film_errors(model, balance.displacement, balance.operation)),
         lifting=lifting,
-        dataset=described(dataset, **law_attributes(model)),
+        dataset=described(with_states(dataset, states_of(model)), **law_attributes(model)),
     )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import xarray as xr
 
 from mbs.analyses.film_errors import film_errors
+from mbs.analyses.operating import operating, states_of
 from mbs.linearised.modes import Modes
 from mbs.linearised.modes import modes as modes_at
 from mbs.linearised.steady import steady_system
@@ -14,6 +15,7 @@ from mbs.linearised.validity import FilmError
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import described, modes_dataset
+from mbs.output.state_data import with_states
 from mbs.scene.assembly import Model, law_attributes
 
 
@@ -64,8 +66,10 @@ def modes(model: Model, operation: Operation | None = None) -> ModesResult:
     >>> found.dataset["frequency"].attrs["units"]
     'Hz'
     """
-    balance = equilibrium(steady_system(model.system), operation or model.operation)
+    operation = operation or model.operation
+    model = operating(model, operation.speed)
+    balance = equilibrium(steady_system(model.system), operation)
     found = modes_at(balance)
-    dataset = described(modes_dataset(found, balance), **law_attributes(model))
+    dataset = described(with_states(modes_dataset(found, balance), states_of(model)), **law_attributes(model))
     errors = tuple(film_errors(model, balance.displacement, balance.operation))
     return ModesResult(model, balance, found, errors, dataset)

@@ -13,6 +13,7 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import RPM, SPEED
 from mbs.analyses import planning
+from mbs.analyses.operating import held
 from mbs.analyses.planned_job import planned_job
 from mbs.analyses.planning import Needed
 from mbs.scene.assembly import Model, assemble
@@ -153,6 +154,11 @@ def dry_model(scene: Scene, settings: PlanSettings, emap: EHDMap | None = None, 
             problems += geometry_problems(f"bearing {entry.name!r}", entry.geometry, emap)
     if not scene.bearings:
         problems.append("got no bearing; allowed: at least one [[bearings]], which is what a map is for")
+    if warm := [entry.name for entry in scene.bearings if entry.thermal is not None]:
+        problems.append(
+            f"got thermal in {', '.join(warm)}; allowed: one temperature for all, that of [operation]; leave thermal "
+            "out of a copy of the scene, or take a map over many temperatures, such as that of the shipped job nu308"
+        )
     if scene.lubricant is None and emap is None and not mapped:
         problems.append(
             'got no [lubricant], which a map is made for; add the table to the scene, such as name = "FVA3"'
@@ -217,7 +223,8 @@ def _needed(
             f"{scene.name}: its highest speed {RPM.text(speeds[1])} is an entrainment speed of "
             f"{SPEED.text(max(fastest))}; allowed: up to {SPEED.text(SPEED_AXIS.high)}, the limit of a map; check units"
         )
-    dry = planning.largest_loads(model.system, model.bearings, speeds[1])
+    mounted = held(model)
+    dry = planning.largest_loads(mounted.system, mounted.bearings, speeds[1])
     # An unloaded bearing has films, too: those of a light load.
     rooms = tuple(
         planning.film_room(entry.bearing.geometry, oil, max(load, planning.LIGHT), speed, scene.temperature)
@@ -225,7 +232,7 @@ def _needed(
         else 0.0
         for entry, load, speed in zip(model.bearings, dry, fastest, strict=True)
     )
-    filled = assemble(_dry_scene(model.scene, rooms), settings.law)
+    filled = held(assemble(_dry_scene(model.scene, rooms), settings.law))
     preloaded = planning.largest_loads(filled.system, filled.bearings, speeds[1])
     centrifugal = [
         entry.bearing.centrifugal_load(entry.inner_spin, entry.outer_spin) * speeds[1] ** 2

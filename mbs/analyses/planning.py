@@ -67,7 +67,7 @@ class Needed:
     entrainment_speed : (float, float)
         Lowest and highest [m/s].
     temperature : float
-        Temperature of the oil [K].
+        Temperature of the raceways [K].
     static_load : float
         Largest load of a slice at rest, centrifugal load included [N/m].
     film_room : float

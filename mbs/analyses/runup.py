@@ -9,10 +9,12 @@ from dataclasses import dataclass
 import xarray as xr
 
 from ehdmaps.errors import InputError
+from mbs.analyses.operating import held, states_of
 from mbs.analyses.progress import Progress, silent
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.output.results import described, run_dataset
+from mbs.output.state_data import with_states
 from mbs.scene.assembly import Model, law_attributes
 from mbs.settings import RunUp
 from mbs.transient.run import WITH_STATES, Recording
@@ -75,7 +77,7 @@ def runup(model: Model, settings: RunUp | None = None, progress: Progress | None
     course = settings or model.scene.run_up
     if course is None:
         raise InputError(f"{model.scene.name}: [runup] missing; a run needs from, to, duration and step")
-    tell = progress or silent
+    tell, model = progress or silent, held(model)
     start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
     steps = course.settings.steps_per_sample
     total = math.ceil(course.duration / course.settings.sample - 1e-9) * steps
@@ -91,5 +93,6 @@ def runup(model: Model, settings: RunUp | None = None, progress: Progress | None
         options=WITH_STATES,
     )
     seconds = time.perf_counter() - begin
-    dataset = described(run_dataset(model.system, record), **law_attributes(model))
+    dataset = with_states(run_dataset(model.system, record), states_of(model))
+    dataset = described(dataset, **law_attributes(model))
     return RunUpResult(model, course, record, seconds, dataset)

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 import xarray as xr
 
 from mbs.analyses.losses import contacts_and_losses
+from mbs.analyses.operating import operating, states_of
 from mbs.bearings.contact_report import BearingContacts, overload
 from mbs.bearings.rolling_loss import RollingLoss
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.free_motion import free_lines, free_motions
 from mbs.output.results import described, statics_dataset
+from mbs.output.state_data import with_states
 from mbs.scene.assembly import Model, law_attributes
 
 
@@ -69,7 +71,9 @@ def statics(model: Model, operation: Operation | None = None) -> StaticsResult:
     >>> float(found.dataset["bearing_force"].sel(bearing="bearing_left")[1].round(1))
     -100.0
     """
-    balance = equilibrium(model.system, operation or model.operation)
+    operation = operation or model.operation
+    model = operating(model, operation.speed)
+    balance = equilibrium(model.system, operation)
     free = tuple(free_lines(free_motions(balance)))
     found = contacts_and_losses(model, balance.displacement, balance.operation)
     contacts, losses = tuple(state for state, _ in found), tuple(loss for _, loss in found)
@@ -78,5 +82,6 @@ def statics(model: Model, operation: Operation | None = None) -> StaticsResult:
         for bearing, state in zip(model.bearings, contacts, strict=True)
         if (sentence := overload(state))
     )
-    dataset = described(statics_dataset(balance, contacts, losses, (*overloads, *free)), **law_attributes(model))
+    dataset = with_states(statics_dataset(balance, contacts, losses, (*overloads, *free)), states_of(model))
+    dataset = described(dataset, **law_attributes(model))
     return StaticsResult(model, balance, contacts, losses, overloads, free, dataset)

@@ -11,10 +11,12 @@ import xarray as xr
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.analyses.case import Case, as_cases
 from mbs.analyses.losses import losses_over_speed
+from mbs.analyses.operating import operating, states_of
 from mbs.analyses.progress import Progress, silent
 from mbs.linearised.sweep import sweep as sweep_system
 from mbs.linearised.sweep_result import Sweep
 from mbs.output.results import described
+from mbs.output.state_data import with_states
 from mbs.output.sweep_data import sweep_dataset
 from mbs.scene.assembly import Model, law_attributes, supply_attributes
 from mbs.settings import SweepRange
@@ -113,7 +115,13 @@ def _one(case: Case, speeds: SweepRange, cage_angles: int) -> Sweep:
     scene = case.model.scene
     try:
         return sweep_system(
-            case.model.system, speeds.speeds, 0.0, scene.inputs, scene.sensors, np.array(scene.frequencies), cage_angles
+            lambda speed: operating(case.model, speed).system,
+            speeds.speeds,
+            0.0,
+            scene.inputs,
+            scene.sensors,
+            np.array(scene.frequencies),
+            cage_angles,
         )
     except AnalysisError as error:
         raise AnalysisError(f"{case.label}: {error}") from error
@@ -129,9 +137,9 @@ def _dataset(cases: Sequence[Case], found: Sequence[Sweep]) -> xr.Dataset:
         [case.load_factor for case in cases],
     )
     named = [f"{case.label}: {case.model.law}" for case in cases] if len(cases) > 1 else [cases[0].model.law]
+    models = [[operating(case.model, speed) for speed in found[0].speeds.tolist()] for case in cases]
     losses = [
-        losses_over_speed(case.model, entry.speeds, entry.displacement)
-        for case, entry in zip(cases, found, strict=True)
+        losses_over_speed(there, entry.speeds, entry.displacement) for there, entry in zip(models, found, strict=True)
     ]
     for name, unit, words, part in (
         ("rolling_torque", "N m", "torque that rolling takes", 0),
@@ -141,4 +149,5 @@ def _dataset(cases: Sequence[Case], found: Sequence[Sweep]) -> xr.Dataset:
         attributes = {"units": unit, "long_name": f"{words}; none without a map with rolling forces"}
         dataset[name] = (("case", "speed", "bearing"), values, attributes)
     supplies = supply_attributes([(case.label, case.model) for case in cases])
+    dataset = with_states(dataset, [[states_of(there) for there in row] for row in models], ("case", "speed"))
     return described(dataset, **{**law_attributes(cases[0].model), "law": "; ".join(named), **supplies})

@@ -7,6 +7,7 @@ change does not concern are not made again: a dry law knows no temperature.
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,6 +18,7 @@ import xarray as xr
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.analyses.campbell import followed_orders, recorded_run, run_course, silent_run
+from mbs.analyses.operating import held
 from mbs.analyses.progress import Progress, silent
 from mbs.analyses.varied import VARIED, LawChoice, Subject, Value
 from mbs.model.elements import Sensor
@@ -198,7 +200,8 @@ def variants(
     rows = tuple(_variant(change, pair, outcomes) for change, pair in zip([None, *variations], pairs, strict=True))
     if not any(row.differences for row in rows):
         raise AnalysisError("\n".join(f"warning: {row.words}: {row.problem}" for row in rows))
-    base = runs[pairs[0][0]].model, runs[pairs[0][1]].model
+    first, second = (runs[place].model for place in pairs[0])
+    base = (held(first), held(second)) if rows[0].differences else (first, second)
     labels = laws[0].label, laws[1].label
     dataset = described(
         variants_dataset(rows, sensors),
@@ -272,6 +275,9 @@ def _place(subject: Subject, settings: CampbellSettings, runs: list[_Run], place
             order = max((order for order, _ in followed_orders(model, settings, course)), default=None)
             if not any(run.course == course and run.highest_order == order for run in runs):
                 campbell(silent_run(course), 1.0, settings.highest, settings.window, order)
+            # Bad input is said before anything runs; a bearing that runs away is said in its row.
+            with contextlib.suppress(AnalysisError):
+                held(model)
             places[same] = len(runs)
             runs.append(_Run(model, course, order))
         places[asked] = places[same]
@@ -297,7 +303,7 @@ def _made(
     found: list[_Outcome] = []
     for run in runs:
         try:
-            record = recorded_run(run.model, run.course, sensors, told)
+            record = recorded_run(held(run.model), run.course, sensors, told)
             levels = []
             for column, sensor in enumerate(sensors):
                 signal = RunSignal(record.time, record.speed, record.angle, record.signals[:, column])

@@ -85,7 +85,7 @@ class BearingElement(RingElement):
     force : RingForce
         The force.
     temperature : float
-        Temperature of the oil [K].
+        Temperature of the raceways [K].
     inner_spin, outer_spin : float
         Speeds of the rings as multiples of the system's.
     start_angle : float

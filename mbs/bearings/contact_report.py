@@ -165,6 +165,29 @@ def fading(law: Law, entrainment_speed: float) -> str:
     )
 
 
+def guessed(law: Law, loads: FloatArray, entrainment_speed: float, temperature: float) -> str:
+    """A sentence where loaded slices lie below the loads whose films are known; empty otherwise.
+
+    Parameters
+    ----------
+    law : Law
+        The law of a contact.
+    loads : array
+        Loads of the slices [N/m].
+    entrainment_speed, temperature : float
+        u [m/s], T [K].
+    """
+    limit = law.guessed_below(entrainment_speed, temperature) if isinstance(law, ContactLaw) else 0.0
+    low = (loads > 0.0) & (loads < limit)
+    if not np.any(low):
+        return ""
+    return (
+        f"{np.count_nonzero(low)} of {loads.size} slices carry less than {LOAD.text(limit)}, down to "
+        f"{LOAD.text(float(loads[low].min()))}: their film is a guess, that of a rigid contact; make a map with a "
+        "backbone, or with lower loads"
+    )
+
+
 def heated(
     contacts: BearingContacts, oil: Lubricant | None, modulus: float, entrainment_speed: float, temperature: float
 ) -> str:

@@ -30,7 +30,9 @@ from ehdmaps.physics.roughness import FINEST, ROUGHEST, SMOOTH, Surface
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.films import FilmSource, FormulaFilms, MapFilms
+from mbs.bearings.films import SIDES, FilmSource, FormulaFilms, MapFilms
+from mbs.bearings.fits import Mounting, operating_clearance
+from mbs.bearings.state import BearingState
 from mbs.commands.cases import NO_MAP, read_clearance, read_supplies
 from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, result_kind
 from mbs.scene.contact_laws import HERTZ_FORMS, geometry_problems, hertz_damper, structure_words
@@ -39,7 +41,7 @@ from mbs.scene.fields import FORCE, MICROMETRE
 LAWS = ("hertz", "formula", "map")
 PROFILES = ("iso", "straight")
 OIL, CELSIUS_40, ROUGHNESS = "FVA3", 313.15, 0.3e-6
-"""Assumed where nothing is given: the oil, its temperature [K], the combined rms roughness [m]."""
+"""Assumed where nothing is given: the oil, the temperature of the raceways [K], the combined rms roughness [m]."""
 
 MOST_POINTS, MOST_SLICES = 500, 1000
 MOST_SLICES_IN_ALL = 5_000_000
@@ -76,7 +78,7 @@ class BearingRequest:
     speeds : tuple of float
         Speeds of the inner ring [rad/s].
     temperature, roughness : float
-        [K], [m].
+        Mean temperature of both raceways, which the law takes [K]; [m].
     description : BearingDescription
         The same in words.
     """
@@ -133,7 +135,17 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
             f"--slices: got {short(arguments.slices)} for all rollers at {len(loads) * len(speeds)} points; allowed: "
             f"{MOST_SLICES_IN_ALL} slices in all; take fewer slices or points"
         )
-    temperature = _one("--temperature", arguments.temperature, "K", OIL_TEMPERATURES, TEMPERATURE, CELSIUS_40, problems)
+    around = _one("--temperature", arguments.temperature, "K", OIL_TEMPERATURES, TEMPERATURE, CELSIUS_40, problems)
+    inner, outer = (
+        _one(f"--{side}-ring", getattr(arguments, f"{side}_ring"), "K", OIL_TEMPERATURES, TEMPERATURE, around, problems)
+        for side in SIDES
+    )
+    temperature = 0.5 * (inner + outer)
+    if None not in (arguments.temperature, arguments.inner_ring, arguments.outer_ring):
+        problems.append(
+            f"--temperature: got {short(arguments.temperature)} with --inner-ring and --outer-ring; allowed: two of "
+            "the three; it is the temperature of a ring that has none of its own"
+        )
     stated = _surface(given, emap)
     assumed = ROUGHNESS if stated.smooth else stated.roughness
     roughness = _one("--roughness", arguments.roughness, "m", _ROUGHNESSES, MICROMETRE, assumed, problems)
@@ -141,6 +153,12 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     direction = _direction(arguments.direction, problems)
     clearance = None if arguments.clearance is None else read_clearance(arguments.clearance, problems)
     bearing = _sliced(given, clearance, arguments, problems)
+    state = None
+    if bearing is not None and (arguments.inner_ring, arguments.outer_ring) != (None, None):
+        warm = operating_clearance(bearing.geometry, Mounting(), inner, outer, bearing.material)
+        state = BearingState("bearing", inner, outer, warm)
+        geometry = dataclasses.replace(bearing.geometry, diametral_clearance=warm.operating)
+        bearing = dataclasses.replace(bearing, geometry=geometry)
     if bearing is not None and emap is not None:
         problems += geometry_problems("the bearing", bearing.geometry, emap)
     oil = _oil(arguments, given, emap, temperature, problems)
@@ -178,6 +196,7 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
             temperature=temperature,
             roughness=roughness,
             assumed=_assumed(arguments, given, emap, surface),
+            state=state,
         ),
     )
 
@@ -197,7 +216,7 @@ def _surface(given: _Given | None, emap: EHDMap | None) -> Surface:
 def _assumed(arguments: argparse.Namespace, given: _Given, emap: EHDMap | None, surface: Surface) -> tuple[str, ...]:
     """What was not given, in words."""
     found = []
-    if arguments.temperature is None:
+    if arguments.temperature is None and None in (arguments.inner_ring, arguments.outer_ring):
         found.append(f"temperature {TEMPERATURE.text(CELSIUS_40)}")
     if surface.smooth:
         found.append(f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)")

@@ -12,13 +12,13 @@ from matplotlib.figure import Figure
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.figures import typeset
-from ehdmaps.units import RPM, TEMPERATURE
+from ehdmaps.units import RPM
 from mbs.analyses.campbell import MODE_SPEEDS, CampbellResult, LawRun, campbell, campbell_problems
-from mbs.analyses.case import Case, clearance_text, common_supply
+from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside, fade_of
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Told, film_course, heading, read_option, write
+from mbs.commands.common import Told, film_course, heading, held_lines, read_option, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
@@ -141,6 +141,7 @@ def _report(entry: LawRun) -> list[str]:
     lines = [
         f"{entry.case.label}: {entry.case.model.law}",
         *heading(entry.case.model)[1:],
+        *held_lines(entry.case.model),
         f"  {record.steps} steps, {record.halved} taken back, {1e6 * entry.seconds / max(record.steps, 1):.3g} us a "
         f"step, {entry.seconds:.3g} s",
         f"  highest sum level {found.sum_level[at]:.1f} dB at {RPM.text(float(found.speeds[at]))}"
@@ -216,6 +217,6 @@ def _title(models: Sequence[Model], sensor: Sensor) -> str:
     """Heading of the figure."""
     model = models[0]
     clearance, supply = clearance_text(model), common_supply(models)
-    parts = [TEMPERATURE.text(model.scene.temperature), f"clearance {clearance}" if clearance else "", supply]
+    parts = [temperature_text(model), f"clearance {clearance}" if clearance else "", supply]
     at = ", ".join(part for part in parts if part)
     return f"{model.scene.title}\nsensor {sensor.name}; {typeset(at)}"

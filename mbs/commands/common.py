@@ -15,15 +15,18 @@ from matplotlib.text import Text
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import Bar, Lines, progress
 from ehdmaps.outputs import write_figure
-from ehdmaps.units import RPM, TEMPERATURE, Display, quantity
-from mbs.analyses.case import clearance_text
-from mbs.analyses.film_errors import notable_from, ring_motions
+from ehdmaps.units import RPM, Display, quantity
+from mbs.analyses.case import clearance_text, temperature_text
+from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside
+from mbs.analyses.rings import ring_motions
 from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.heat import HeatPaths
 from mbs.commands.reach import outside_lines
 from mbs.linearised.validity import NOTABLE, FilmError
 from mbs.model.equilibrium import Equilibrium
 from mbs.output.results import write_dataset
+from mbs.output.state_text import state_lines
 from mbs.scene.assembly import Model
 from mbs.scene.contact_laws import FILM_WORDS
 
@@ -59,9 +62,23 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
     at = "" if speed is None else f"{RPM.text(speed)}, "
     return [
         f"{model.scene.title}: law {model.law}",
-        f"  {at}{TEMPERATURE.text(model.scene.temperature)}, clearance {clearance_text(model) or 'none'}; assumed: "
+        f"  {at}{temperature_text(model)}, clearance {clearance_text(model) or 'none'}; assumed: "
         + (f"{len(model.scene.assumed)} keys of the scene, marked there" if model.scene.assumed else "nothing"),
+        *state_lines(model.states),
     ]
+
+
+def held_lines(model: Model) -> list[str]:
+    """A line on the temperatures of a run in time, where they follow from heat.
+
+    Parameters
+    ----------
+    model : Model
+        The model of the run.
+    """
+    if not any(isinstance(bearing.thermal, HeatPaths) for bearing in model.scene.bearings):
+        return []
+    return [f"  temperatures and clearances are held at those of {RPM.text(model.scene.speed)}, of [operation]"]
 
 
 def film_lines(errors: Sequence[FilmError], frequencies: Iterable[float], words: str = "") -> list[str]:

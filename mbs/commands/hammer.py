@@ -28,6 +28,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     model = load_model(arguments, UFF)
     settings = HammerSettings(highest, duration, arguments.hits, arguments.noise, arguments.seed, arguments.nonlinear)
     found = hammer(model, settings, Told("hit"))
+    model = found.model
     scene, test, hits = model.scene, found.test, found.hits
     outside = [
         *outside_at(model, found.balance),

@@ -33,7 +33,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Find the modes."""
     model, highest = _asked(arguments)
     result = modes(model)
-    found = result.modes
+    model, found = result.model, result.modes
     free, overdamped, swinging = _kinds(found)
     shown = swinging[found.frequency[swinging] <= highest]
     above = swinging[found.frequency[swinging] > highest]

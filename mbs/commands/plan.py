@@ -13,6 +13,7 @@ from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.commands.check import estimated_time
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.law_check import check_points
 from ehdmaps.jobs.reader import read_job, shipped_jobs
 from ehdmaps.jobs.refinement import refinement
 from ehdmaps.maps.emap import EHDMap, open_map
@@ -188,7 +189,7 @@ def _span(ends: tuple[float, float], display: Display) -> str:
 def _points(job: Job) -> int:
     """Points that a job solves in all."""
     refined = refinement(job, solvers.build(job.solver, job.solver_options))
-    return job.points + (refined.points if refined else 0) + job.law_check
+    return job.points + (refined.points if refined else 0) + check_points(job.law_check)
 
 
 def _written(job: Job, path: Path) -> str:

@@ -12,7 +12,7 @@ from ehdmaps.units import RPM
 from mbs.analyses.reach import Fade, axes_outside, fade_of
 from mbs.analyses.runup import runup
 from mbs.commands.cases import load_model
-from mbs.commands.common import Told, film_course, heading, write
+from mbs.commands.common import Told, film_course, heading, held_lines, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.output.run_plot import run_figure
 from mbs.scene.assembly import Model
@@ -28,6 +28,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     first, last = (RPM.text(float(speed)) for speed in (result.speed[0], result.speed[-1]))
     lines = [
         *heading(model),
+        *held_lines(model),
         f"from {first} to {last} in {found.course.duration:.4g} s: {result.steps} steps, {result.halved} taken back, "
         f"{result.iterations / max(result.steps, 1):.3g} Newton iterations a step, "
         f"{1e6 * found.seconds / max(result.steps, 1):.0f} us a step",

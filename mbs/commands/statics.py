@@ -10,7 +10,8 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import FILM, PRESSURE
-from mbs.analyses.film_errors import film_errors, ring_motions
+from mbs.analyses.film_errors import film_errors
+from mbs.analyses.rings import ring_motions
 from mbs.analyses.statics import statics
 from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.roller_element import ring_matrices
@@ -34,6 +35,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if arguments.plot and not model.bearings:
         raise InputError(f"--plot: {model.scene.name} has no bearing whose rollers could be drawn; leave it out")
     found = statics(model)
+    model = found.model
     balance, contacts = found.balance, found.contacts
     figure = statics_figure(model, balance, contacts, found.overloads) if arguments.plot else None
     lines = [

@@ -10,9 +10,10 @@ from matplotlib.figure import Figure
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.units import RPM, TEMPERATURE, quantity
-from mbs.analyses.case import Case, common_supply
+from ehdmaps.units import RPM, quantity
+from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import film_errors, notable_from
+from mbs.analyses.operating import operating
 from mbs.analyses.reach import axes_outside, fade_of
 from mbs.analyses.sweep import SweepSettings, sweep
 from mbs.commands.cases import load_cases
@@ -23,9 +24,9 @@ from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Operation
 from mbs.output.bearing_text import flooded_note
+from mbs.output.state_text import state_lines
 from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import Model
-from mbs.scene.fields import MICROMETRE
 from mbs.settings import MOST_SPEEDS, SweepRange
 
 _LEAST_SHARE = 0.05
@@ -47,6 +48,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *heading(case.model),
             *([f"  case: {case.label}"] if len(cases) > 1 else []),
             *_course(entry),
+            *_states(case.model, entry),
             *_films(case.model),
             *_bearings(entry, torque),
             *(f"  {line}" for line in flooded_note(_largest(torque), case.model.supplies.values())),
@@ -71,8 +73,8 @@ def _figure(cases: Sequence[Case], found: Sequence[Sweep]) -> Figure:
     words = [
         f"law {cases[0].model.law}" if one_law else "laws side by side",
         *([supply] if not one_law and (supply := common_supply(case.model for case in cases)) else []),
-        TEMPERATURE.text(scene.temperature),
-        *([f"clearance {MICROMETRE.text(clearances.pop())}"] if len(clearances) == 1 else []),
+        temperature_text(cases[0].model),
+        *([f"clearance {clearance_text(cases[0].model)}"] if len(clearances) == 1 else []),
         *([f"{cases[0].load_factor:g} x load"] if len(cases) == 1 and cases[0].load_factor != 1.0 else []),
         "cages held",
     ]
@@ -151,6 +153,15 @@ def _films(model: Model) -> list[str]:
         "  k and c of bearings and undamped modes are those of slow motion; complex modes and responses have films of "
         "their own frequency"
     ]
+
+
+def _states(model: Model, result: Sweep) -> list[str]:
+    """Lines on bearings whose temperatures and clearances are those of the speed, at the first and the last one."""
+    lines = []
+    for speed in (float(result.speeds[0]), float(result.speeds[-1])):
+        found = state_lines(operating(model, speed).states)
+        lines += [f"  at {RPM.text(speed)}:", *(f"  {line}" for line in found)] if found else []
+    return lines
 
 
 def _bearings(result: Sweep, torque: FloatArray) -> list[str]:
@@ -265,7 +276,8 @@ def _unsure(result: Sweep) -> list[str]:
 def _outside(case: Case, result: Sweep, calls: Mapping[str, int]) -> list[str]:
     """Lines on bearings whose equilibria lie outside the map."""
     words = f"lies outside the map at {{}} of {result.speeds.size} speeds"
-    return outside_lines(calls, words, axes_outside(case.model, float(np.abs(result.speeds).max())), case.label)
+    fastest = float(np.abs(result.speeds).max())
+    return outside_lines(calls, words, axes_outside(operating(case.model, fastest), fastest), case.label)
 
 
 def _film_errors(model: Model, result: Sweep) -> list[str]:
@@ -275,7 +287,7 @@ def _film_errors(model: Model, result: Sweep) -> list[str]:
     for index, speed in enumerate(result.speeds.tolist()):
         inside = found.frequency[index][found.bearing_share[index] >= _LEAST_SHARE]
         highest = float(inside.max(initial=0.0))
-        for entry in film_errors(model, result.displacement[index], Operation(speed)):
+        for entry in film_errors(operating(model, speed), result.displacement[index], Operation(speed)):
             error = entry.at(highest)
             if not entry.at_rest and error > worst.get(entry.bearing, (-1.0,))[0]:
                 worst[entry.bearing] = error, film_lines([entry], [highest], f" and {RPM.text(speed)}")

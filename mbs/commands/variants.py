@@ -7,13 +7,13 @@ import dataclasses
 from collections.abc import Sequence
 
 from ehdmaps.errors import InputError
-from ehdmaps.units import RPM, TEMPERATURE, closest
-from mbs.analyses.case import clearance_text, common_supply
+from ehdmaps.units import RPM, closest
+from mbs.analyses.case import clearance_text, common_supply, temperature_text
 from mbs.analyses.reach import axes_outside
 from mbs.analyses.variants import Variant, VariantsResult, Variation, variants
 from mbs.analyses.varied import VARIED, LawChoice
 from mbs.commands.cases import read_compared
-from mbs.commands.common import Told, read_option, write
+from mbs.commands.common import Told, held_lines, read_option, write
 from mbs.commands.reach import outside_lines
 from mbs.output.variants_plot import variants_figure
 from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
@@ -82,10 +82,10 @@ def _variations(given: Sequence[Sequence[str]], problems: list[str]) -> list[Var
 
 def _base(found: VariantsResult) -> str:
     """What the base is, in words."""
-    scene, course, supply = found.models[1].scene, found.course, common_supply(found.models)
+    course, supply = found.course, common_supply(found.models)
     return (
         f"run-up from {RPM.text(course.speed.at(0.0)[0])} to {RPM.text(course.speed.at(course.duration)[0])} in "
-        f"{course.duration:.4g} s, {TEMPERATURE.text(scene.temperature)}, clearance "
+        f"{course.duration:.4g} s, {temperature_text(found.models[1])}, clearance "
         f"{clearance_text(found.models[1]) or 'none'}" + (f", {supply}" if supply else "")
     )
 
@@ -97,6 +97,7 @@ def _heading(found: VariantsResult) -> list[str]:
         f"{scene.title}: {_base(found)}",
         f"  first law: {found.models[0].law}",
         f"  second law: {found.models[1].law}",
+        *held_lines(found.models[1]),
         f"  {len(found.variants) - 1} changes, one at a time, {found.runs} runs; sum level up to "
         f"{HERTZ.text(found.settings.highest)} of the second law minus that of the first, dB: at the same speed, of "
         "the mean energies, of the highest of each at any speed",

@@ -10,7 +10,7 @@ for the following only. Where damped modes cross, undamped ones are followed str
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,7 +41,7 @@ MOST_RESPONSES = 10_000_000
 
 
 def sweep(
-    system: System,
+    system: System | Callable[[float], System],
     speeds: FloatArray,
     angle: float = 0.0,
     inputs: Sequence[Input] = (),
@@ -53,8 +53,8 @@ def sweep(
 
     Parameters
     ----------
-    system : System
-        Bodies, springs, loads, elements.
+    system : System, or callable
+        Bodies, springs, loads, elements; or the system at a speed [rad/s], all with the same coordinates.
     speeds : array, shape (speeds,)
         [rad/s], at least one.
     angle : float
@@ -77,11 +77,13 @@ def sweep(
     speeds = np.atleast_1d(np.asarray(speeds, dtype=np.float64))
     frequencies = np.asarray(frequencies, dtype=np.float64)
     _check(speeds, frequencies, len(inputs) * len(sensors), cage_angles)
-    system = steady_system(system)
+    fixed = steady_system(system) if isinstance(system, System) else None
 
     def at(speed: float, start: FloatArray | None) -> Point:
+        there = fixed if isinstance(system, System) else steady_system(system(speed))
+        assert there is not None
         try:
-            return solve_modes(equilibrium(system, Operation(speed, angle), start))
+            return solve_modes(equilibrium(there, Operation(speed, angle), start))
         except AnalysisError as error:
             raise AnalysisError(f"at {speed:.6g} rad/s: {error}") from error
 

@@ -167,6 +167,14 @@ class System:
         loaded._varying = (*self._varying, (load, profile))
         return loaded
 
+    def with_elements(self, elements: Sequence[Element]) -> System:
+        """The system with other elements, each on the ports of the one in its place."""
+        changed = copy.copy(self)
+        changed.elements = tuple(
+            Connected(element, connected.transform) for element, connected in zip(elements, self.elements, strict=True)
+        )
+        return changed
+
     def loads(self, time: float) -> FloatArray:
         """Generalised loads at a time [s], shape (n,) [N or N m]."""
         total = self._steady.copy()

@@ -19,6 +19,7 @@ from ehdmaps.physics.roughness import Surface
 from mbs.analyses.bearing_point import BearingPoint
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import SIDES
+from mbs.bearings.state import BearingState
 from mbs.output.results import RESULT, described
 from mbs.scene.contact_laws import surface_label
 
@@ -51,6 +52,8 @@ class BearingDescription:
         [K], [m].
     assumed : tuple of str
         What was not given.
+    state : BearingState or None
+        Temperatures of the raceways, and what they make of the clearance; None where both have `temperature`.
     """
 
     bearing: Bearing
@@ -63,6 +66,7 @@ class BearingDescription:
     temperature: float
     roughness: float
     assumed: tuple[str, ...]
+    state: BearingState | None = None
 
 
 def result_kind(path: str | None) -> Kind:
@@ -176,12 +180,24 @@ def _attributes(description: BearingDescription, points: Points) -> dict[str, An
         "surface": surface_label(description.surface),
         "load_direction_deg": description.direction,
         "temperature_K": description.temperature,
+        **_warm(description.state),
         "diametral_clearance_m": geometry.diametral_clearance,
         "roughness_m": description.roughness,
         "profile": str(bearing.profile),
         "slices": bearing.slices,
         "assumed": "; ".join(description.assumed),
         "warnings": "\n".join(dict.fromkeys(line for point in everything for line in (*point.problems, *point.notes))),
+    }
+
+
+def _warm(state: BearingState | None) -> dict[str, float]:
+    """Attributes of a bearing whose rings have temperatures of their own."""
+    if state is None:
+        return {}
+    return {
+        "inner_raceway_temperature_K": state.inner,
+        "outer_raceway_temperature_K": state.outer,
+        "stated_clearance_m": state.clearance.stated,
     }
 
 

@@ -13,6 +13,7 @@ from mbs.analyses.bearing_point import BearingPoint
 from mbs.bearings.films import SIDES
 from mbs.bearings.rolling_loss import RollingLoss
 from mbs.output.bearing_data import BearingDescription, Points, bearing_row
+from mbs.output.state_text import state_words
 from mbs.scene.contact_laws import surface_label
 from mbs.scene.fields import FORCE, MICROMETRE
 
@@ -49,10 +50,11 @@ def bearing_text(description: BearingDescription, points: Points) -> list[str]:
 def bearing_heading(description: BearingDescription) -> list[str]:
     """What was computed, and what of it was assumed."""
     bearing = description.bearing
+    clearance = f"clearance {MICROMETRE.text(bearing.geometry.diametral_clearance)}"
+    state = clearance if description.state is None else state_words(description.state)
     return [
         f"{bearing.geometry.name}: law {description.law}; {description.films}",
-        f"  {TEMPERATURE.text(description.temperature)}, clearance "
-        f"{MICROMETRE.text(bearing.geometry.diametral_clearance)}, profile {bearing.profile}, {bearing.slices} slices, "
+        f"  {TEMPERATURE.text(description.temperature)}, {state}, profile {bearing.profile}, {bearing.slices} slices, "
         f"load at {description.direction:.4g} deg from y (a roller) towards z, {surface_label(description.surface)}",
         f"  assumed: {', '.join(description.assumed) or 'nothing'}",
     ]

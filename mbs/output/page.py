@@ -10,8 +10,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import ScalarFormatter
 
 from ehdmaps.figures import SHADE, SHADE_ALPHA, typeset
-from ehdmaps.units import TEMPERATURE
-from mbs.analyses.case import clearance_text
+from mbs.analyses.case import clearance_text, temperature_text
 from mbs.linearised.validity import NOTABLE
 from mbs.scene.assembly import Model
 
@@ -58,11 +57,13 @@ def headed(model: Model, words: str, size: tuple[float, float] = _SIZE, law: str
     clearance = clearance_text(model)
     at = [
         *([words] if words else []),
-        typeset(TEMPERATURE.text(model.scene.temperature)),
+        typeset(temperature_text(model)),
         *([f"clearance {typeset(clearance)}"] if clearance else []),
     ]
     figure = Figure(figsize=size, layout="constrained")
-    figure.suptitle(f"{model.scene.title}\n{law or model.law}; {', '.join(at)}", fontsize=10)
+    # What a bearing is in operation takes a line of its own.
+    end = "\n" if model.states else "; "
+    figure.suptitle(f"{model.scene.title}\n{law or model.law}{end}{', '.join(at)}", fontsize=10)
     return figure
 
 

@@ -16,6 +16,7 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import Surface
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.films import FilmSource
+from mbs.bearings.state import BearingState
 from mbs.gears.gear import GearMesh
 from mbs.model.elements import Operation
 from mbs.model.places import Places
@@ -52,6 +53,11 @@ class Model:
     memory : {"slow", "memory"}
         Whether films relax, or have the stiffness and damping of slow motion at any frequency, as laws without films
         always have.
+    states : tuple of BearingState
+        Temperatures, clearance and heat of each bearing, of a model that is in operation at some speed, see
+        `mbs.analyses.operating`; empty before, and where no bearing has temperatures, heat or fits of its own.
+    found : dict of float to Model
+        The same model in operation, by speed, where it was asked for.
     supplies : mapping of str to OilSupply
         Oil supply of each bearing by its name; empty for laws without films.
     surface : Surface or None
@@ -66,6 +72,8 @@ class Model:
     films: Mapping[str, FilmSource]
     label: str
     memory: Films = "slow"
+    states: tuple[BearingState, ...] = ()
+    found: dict[float, Model] = field(default_factory=dict, repr=False)
     supplies: Mapping[str, OilSupply] = field(default_factory=dict)
     surface: Surface | None = None
 

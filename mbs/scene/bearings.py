@@ -11,6 +11,7 @@ from ehdmaps.units import short
 from mbs.scene import fields
 from mbs.scene.fields import DEGREE
 from mbs.scene.specs import BearingSpec
+from mbs.scene.thermal import read_mounting, read_thermal
 
 if TYPE_CHECKING:
     from mbs.scene.surroundings import Built, Surroundings
@@ -41,14 +42,27 @@ def read_bearing(section: Table, name: str) -> BearingSpec | None:
     centrifugal = section.get("centrifugal")
     if "centrifugal" in section and not isinstance(centrifugal, bool):
         section.note("centrifugal", f"got {short(centrifugal)}; allowed: true, false")
+    thermal, mounting = read_thermal(section), read_mounting(section)
     own = section.table("supply", f"{section.where} supply")
     supply = read_supply(own) if own else None
     if own:
         own.close()
     if inner is None or outer is None or geometry is None:
         return None
-    bodies = rollers == "bodies"
-    return BearingSpec(name, inner, outer, geometry, profile, slices, angle, bodies, centrifugal is True, supply)
+    return BearingSpec(
+        name,
+        inner,
+        outer,
+        geometry,
+        profile,
+        slices,
+        angle,
+        rollers == "bodies",
+        centrifugal is True,
+        thermal,
+        mounting,
+        supply,
+    )
 
 
 def bearing_problems(spec: BearingSpec, surroundings: Surroundings) -> list[str]:
@@ -64,6 +78,8 @@ def bearing_problems(spec: BearingSpec, surroundings: Surroundings) -> list[str]
     problems = surroundings.laws.bearing_problems(spec.name, spec.geometry)
     if spec.inner.partition(":")[0] == spec.outer.partition(":")[0]:
         problems.append(f"bearing {spec.name!r}: got {spec.inner} and {spec.outer}; allowed: rings on two bodies")
+    if spec.mounting is not None:
+        problems += [f"bearing {spec.name!r}, {found}" for found in spec.mounting.problems(spec.geometry)]
     return problems
 
 

@@ -28,7 +28,7 @@ def with_slices(scene: Scene, slices: int) -> Scene:
 
 
 def with_temperature(scene: Scene, temperature: float) -> Scene:
-    """The scene with oil of another temperature [K]."""
+    """The scene with raceways of another temperature [K]."""
     return dataclasses.replace(scene, temperature=temperature)
 
 

@@ -34,7 +34,7 @@ class Scene:
     speed : float
         Operating speed of the system [rad/s].
     temperature : float
-        Temperature of the oil [K].
+        Temperature of the raceways [K].
     lubricant : Lubricant or None
         Oil of the law `formula`, and of planned maps.
     supply : OilSupply or None

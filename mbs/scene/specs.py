@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Protocol
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.oil_supply import OilSupply
+from mbs.bearings.fits import Mounting
+from mbs.bearings.heat import GivenTemperatures, HeatPaths
 from mbs.flexible.attached import Attached
 from mbs.flexible.plan import ReductionPlan
 from mbs.flexible.shaft_layout import shaft_problems
@@ -205,6 +207,11 @@ class BearingSpec:
         Whether each roller has a radial freedom, between two contacts with a law each.
     centrifugal : bool
         Whether the centrifugal load of the rollers is taken into account.
+    thermal : GivenTemperatures, HeatPaths or None
+        Temperatures of its raceways, or where its heat goes; None for the temperature of the scene, and no heat.
+    mounting : Mounting or None
+        Fits, and how it expands; None for the expansion of steel alone where it has `thermal`, else for a clearance
+        that is the one in operation.
     supply : OilSupply or None
         Oil supply of this bearing; None for that of the scene.
     """
@@ -218,7 +225,14 @@ class BearingSpec:
     start_angle: float = 0.0
     rollers_as_bodies: bool = False
     centrifugal: bool = False
+    thermal: GivenTemperatures | HeatPaths | None = None
+    mounting: Mounting | None = None
     supply: OilSupply | None = None
+
+    @property
+    def changes_in_operation(self) -> bool:
+        """Whether its temperatures and its clearance in operation are others than the scene states."""
+        return self.thermal is not None or self.mounting is not None
 
 
 def _freeze(spec: object, *names: str) -> None:

@@ -24,7 +24,7 @@ class Surroundings:
     laws : ContactLaws
         Contact laws in force.
     temperature : float
-        Temperature of the oil [K].
+        Temperature of the raceways [K].
     """
 
     places: Places

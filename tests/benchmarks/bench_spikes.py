@@ -21,7 +21,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ehdmaps.ehl.grid import Spike, lay_out
-from ehdmaps.ehl.line import LOOSE_TOLERANCE, GroupSolution, Resolution, _converged, solve_groups
+from ehdmaps.ehl.line import LOOSE_TOLERANCE, GroupSolution, Resolution, converged, solve_groups
 from ehdmaps.ehl.newton import CONVERGED
 from ehdmaps.ehl.profile import Profile, front, moved
 from ehdmaps.ehl.reynolds import LineProblem
@@ -136,7 +136,7 @@ def narrowed(profile: Profile, density: float, width: float) -> Profile | None:
         grid = layout.grid(math.ceil(0.5 * density * layout.span))
         start = moved(profile, grid, by_index=False)
         for tolerance in (LOOSE_TOLERANCE, Resolution().tolerance):
-            trial, *_ = _converged(profile.problem, layout, grid, start, spike, tolerance)
+            trial, *_ = converged(profile.problem, layout, grid, start, spike, tolerance)
             if trial is None:
                 return None
             profile, start = trial, trial.unknowns

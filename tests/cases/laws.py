@@ -46,6 +46,10 @@ class ValleyField:
     def contacts(self):
         return tuple(contact.name for contact in self.line_contacts)
 
+    def first_loads(self, speeds, temperatures):
+        """The lowest load everywhere; see `FilmField.first_loads`."""
+        return np.full((len(speeds), len(temperatures)), self.load_range[0])
+
     def locked_factors(self, contact, loads, speed, temperature):
         """Nothing is known of films that oscillate; see `FilmField.locked_factors`."""
 

@@ -270,6 +270,28 @@ def test_solve_over_the_slide_to_roll_ratio(capsys):
     assert status == 0 and out.splitlines()[-1].split() == ["1", *"------"]
 
 
+def test_solve_behind_an_oil_layer(capsys):
+    asked = ["solve", "nu308", "--load", "5 N/mm", "--temperature", "60 degC", "--speed", "2 m/s", "--supply"]
+    status, out, _ = run(capsys, *asked, "0.5 um")
+    assert status == 0 and "oil supply: oil layer 0.5 um" in out
+    inner, outer = (line.split() for line in out.splitlines()[-2:])
+    assert inner[0] == "inner" and outer[0] == "outer" and float(outer[1]) < float(inner[1]) < 1.0
+    status, out, _ = run(capsys, *asked, "0.5 um", "--json")
+    record = json.loads(out)[0]
+    assert record["oil_layer"] == 5e-7 and record["flow_ratio"] == pytest.approx(float(inner[1]), rel=1e-3)
+    assert record["meniscus"] == pytest.approx(1e-6 * float(inner[2]), rel=1e-3)
+    assert record["central_film"] < 5e-7 and record["film_compliance"] > 0.0 > record["supplied_compliance"]
+    status, out, _ = run(capsys, *asked, "flooded", "--json")
+    record = json.loads(out)[0]
+    assert record["flow_ratio"] == 1.0 and record["meniscus"] is None and record["oil_layer"] is None
+    del asked[-1]
+    assert record["film_offset"] == json.loads(run(capsys, *asked, "--json")[1])[0]["film_offset"]
+    status, out, _ = run(capsys, *asked, "--speed", "0 m/s", "--supply", "grease")
+    assert status == 0 and out.splitlines()[-1].split() == ["outer", "-", "-"]
+    status, _, err = run(capsys, *asked, "--supply", "much", "--solver", "formula", "--frequency", "1 Hz")
+    assert status == 2 and "knows no meniscus" in err and "stands beside --frequency" in err and "'much'" in err
+
+
 def test_solve_over_frequency_without_a_solution(capsys):
     point = ["--load", "10000 N/mm", "--speed", "1e-8 m/s", "--temperature", "40 degC"]
     status, out, _ = run(capsys, "solve", "nu308", *point, "--frequencies", "10 Hz", "20 kHz", "5")

@@ -9,6 +9,7 @@ import pytest
 
 import ehdmaps
 from ehdmaps.jobs.generate import Generated, generate
+from ehdmaps.jobs.law_check import check_points
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.summary import summary
 from ehdmaps.maps.schema import BACKBONE
@@ -30,7 +31,8 @@ def test_map_has_its_backbone(made: tuple[Generated, Path]) -> None:
     emap = ehdmaps.open_map(path)
     assert emap.backbone is not None
     assert {"film_offset", "film_compliance", "loss_compliance", "status"} <= set(emap.backbone.data_vars)
-    assert generated.sweep.solved == emap.dataset["status"].size + int((emap.backbone["status"] >= 0).sum()) + 40
+    lines = int((emap.backbone["status"] >= 0).sum())
+    assert generated.sweep.solved == emap.dataset["status"].size + lines + check_points(40)
 
 
 def test_laws_are_checked_against_fresh_solves(made: tuple[Generated, Path]) -> None:
@@ -42,6 +44,11 @@ def test_laws_are_checked_against_fresh_solves(made: tuple[Generated, Path]) -> 
     assert attributes["law_damping_within_bar"] >= 30 / 32
     for name in ("film_compliance", "damping"):
         assert attributes.get(f"law_valley_{name}_within_bar", 1.0) >= 7 / 8
+    for region in ("above_load", "above_speed", "below_load"):  # told, and held to no bar
+        assert "median" in attributes[f"law_{region}_film_compliance_error"]
+        assert attributes[f"law_{region}_damping_within_bar"] <= 1.0
+    # 1.0: the film below the lowest load, which the lines hold too, is as good as that within the map
+    assert attributes["law_below_load_film_compliance_within_bar"] == 1.0
     assert "accuracy of the contact laws" in summary(generated, path)
 
 

@@ -392,7 +392,7 @@ def test_describe_says_what_is_in_the_map():
     for part in (
         "axes (84 points)",
         "load                     7  1 to 1000 N/mm",
-        "temperature              2  20 to 40 degC",
+        "temperature              2  20 to 40 degC, of the raceways",
         "stagnated               8    9.52 %",
         "8 x step 1000 too small (numbers differ)",
         "inner and outer, 1 to 31.62 N/mm, 1 m/s, 20 to 40 degC",

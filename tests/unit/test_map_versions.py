@@ -23,9 +23,10 @@ OLD, OLD_2 = DATA / "schema1.nc", DATA / "schema2.nc"
 """NU308 by the solver reynolds, with a standstill and a backbone, as `ehdmaps generate` wrote it in schema 1 and 2."""
 
 RECORDED = {path: json.loads(path.with_suffix(".json").read_text()) for path in (OLD, OLD_2)}
-"""Values of their laws by the code that made them: points (approach, rate, speed, temperature) and (w, dw/ddelta,
-dw/drate) of the laws of the backbone, and of those of the grid alone; of schema 2 also loads and tangents of a course
-in time with films that have a memory."""
+"""Values of their laws, recorded when tables were laid along the solved valley, which moved them by the error of a
+table from the code that made the maps, 3e-6 of w, 7e-4 of k, 2e-3 of c at most: points (approach, rate, speed,
+temperature) and (w, dw/ddelta, dw/drate) of the laws of the backbone, and of those of the grid alone; of schema 2
+also loads and tangents of a course in time with films that have a memory."""
 
 NEXT = schema.SCHEMA_VERSION + 1
 

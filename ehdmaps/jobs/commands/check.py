@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.generate import available_cores
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.law_check import check_points
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.refinement import refinement
 from ehdmaps.jobs.report import AXES, span
@@ -42,7 +43,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     ]
     names = ", ".join(contact.name for contact in job.contacts)
     refined = refinement(job, solver)
-    extra = (refined.points if refined else 0) + job.law_check
+    extra = (refined.points if refined else 0) + check_points(job.law_check)
     lines = [
         f"{arguments.job}: no problems",
         f"  {job.title}, {job.lubricant.title}, solver {job.solver}, structural law {job.contacts[0].structural_law}",

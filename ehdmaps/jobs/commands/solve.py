@@ -23,6 +23,8 @@ from ehdmaps.jobs.point_report import point_place, point_record, point_table
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.spectrum import spectrum_dataset
 from ehdmaps.jobs.spectrum_report import spectrum_record, spectrum_table
+from ehdmaps.jobs.supplied import supplied_record, supplied_table
+from ehdmaps.jobs.supply import supply_from_text
 from ehdmaps.jobs.traction import (
     LEAST_SLIP,
     MOST_SLIP,
@@ -34,6 +36,7 @@ from ehdmaps.jobs.traction import (
 )
 from ehdmaps.outputs import FIGURE, Output, check_outputs
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES, OperatingPoint
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, Status, contact_solution
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES, contact_spectrum
@@ -49,13 +52,14 @@ _Reader = Callable[[str, str, str, float, float, Display], "float | None"]
 
 @dataclass(frozen=True)
 class _Request:
-    """What is asked for; length [m], frequencies [Hz] and slips are None where they are not given."""
+    """What is asked for; length [m], frequencies [Hz], slips and supply are None where they are not given."""
 
     job: Job
     point: OperatingPoint
     length: float | None
     frequencies: FloatArray | None
     traction: TractionRequest | None
+    supply: OilSupply | None
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -73,6 +77,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         found = [contact_solution(film, contact, point) for film, contact in zip(films, job.contacts, strict=True)]
     elif request.traction is not None:
         return _with_traction(arguments, solver, request, request.traction)
+    elif request.supply is not None:
+        return _with_supply(arguments, solver, request, request.supply)
     else:
         found = [_solved(solver, contact, request) for contact in job.contacts]
     frequency = 0.0 if request.frequencies is None else float(request.frequencies[0])
@@ -125,6 +131,24 @@ def _with_traction(
     else:
         found = {contact.name: found for contact, (_, found) in zip(job.contacts, solved, strict=True)}
         text = point_table(job, records, point, request.length) + "\n" + traction_table(asked, found)
+    return text, _exit_status(records)
+
+
+def _with_supply(
+    arguments: argparse.Namespace, solver: ContactSolver, request: _Request, supply: OilSupply
+) -> tuple[str, int]:
+    """Solve each contact behind an oil layer."""
+    job, point = request.job, request.point
+    assert isinstance(solver, ReynoldsSolver)
+    found = {contact.name: solver.supplied_film(contact, job.lubricant, point, supply) for contact in job.contacts}
+    records = [
+        point_record(contact_solution(found[contact.name].film, contact, point), contact, job, point, 0.0)
+        for contact in job.contacts
+    ]
+    if arguments.json:
+        text = _json([{**record, **supplied_record(supply, found[record["contact"]])} for record in records])
+    else:
+        text = point_table(job, records, point, request.length) + "\n" + supplied_table(supply, found)
     return text, _exit_status(records)
 
 
@@ -210,6 +234,7 @@ def _read(arguments: argparse.Namespace) -> _Request:
     elif arguments.frequency is not None:
         frequencies = _one_frequency(arguments, read, problems)
     traction = _traction(arguments, job, problems)
+    supply = _supply(arguments, job, problems)
     if job is not None and temperature is not None:
         try:
             job.lubricant.at(temperature)
@@ -217,7 +242,7 @@ def _read(arguments: argparse.Namespace) -> _Request:
             problems.extend(f"--temperature: {problem}" for problem in error.problems)
     if problems or job is None or load is None or speed is None or temperature is None:
         raise InputError(problems)
-    return _Request(job, OperatingPoint(load, speed, temperature), length, frequencies, traction)
+    return _Request(job, OperatingPoint(load, speed, temperature), length, frequencies, traction, supply)
 
 
 def _one_frequency(arguments: argparse.Namespace, read: _Reader, problems: list[str]) -> FloatArray | None:
@@ -291,6 +316,23 @@ def _traction(arguments: argparse.Namespace, job: Job | None, problems: list[str
     if len(problems) > before or first is None or last is None or ratio is None:
         return None
     return TractionRequest(np.geomspace(first, last, points), eyring, ratio)
+
+
+def _supply(arguments: argparse.Namespace, job: Job | None, problems: list[str]) -> OilSupply | None:
+    """Supply of --supply; None where there is none, or a problem was noted."""
+    if arguments.supply is None:
+        return None
+    if job is not None and job.solver != "reynolds":
+        problems.append(f"--supply: the solver {job.solver!r} knows no meniscus; allowed: with --solver reynolds")
+    for other in ("frequency", "frequencies", "slide_to_roll", "fields", "plot"):
+        if getattr(arguments, other) is not None:
+            option = other.replace("_", "-")
+            problems.append(f"--supply: stands beside --{option}; allowed: one of the two; delete one")
+    try:
+        return supply_from_text(arguments.supply)
+    except InputError as error:
+        problems.extend(f"--supply: {problem}" for problem in error.problems)
+        return None
 
 
 def _plain_number(option: str, text: str, low: float, high: float, problems: list[str]) -> float | None:

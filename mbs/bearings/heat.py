@@ -1,0 +1,291 @@
+"""The heat balance of a bearing: where the heat of its friction goes, and how warm its raceways are.
+
+Half of the heat of each contact goes into its raceway, half into the roller, which hands it on to both raceways evenly;
+what is added to the friction of the films goes into both raceways evenly. From there it flows
+
+    from the inner raceway to the shaft      G_s (T_i - T_s)
+    from the outer raceway to the housing    G_h (T_o - T_h)
+    from each raceway into the oil           G_f (T_i - T_f) and G_f (T_o - T_f)
+    between the raceways, over the rollers   G_b (T_i - T_o)
+
+and the oil, well mixed inside the bearing, carries W (T_f - T_in) away, W = rho c_p Q with its flow Q. All conductances
+are stated [W/K]; none is known here. Temperatures are steady.
+
+Films that get warmer lose viscosity and with it friction, so that the balance has one solution. It may have none where
+a bearing loses its clearance as it warms: preload and friction then grow faster than heat is carried away.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.units import TEMPERATURE
+
+HOTTEST = 473.15
+"""Highest temperature of a raceway [K]: 200 degC, where bearing steel loses its hardness."""
+
+RESIDUAL = 1e-10
+"""Heat that is left of a balance that counts as closed, as a part of the friction."""
+
+_LONGEST_STEP = 10.0
+_SHORTEST_STEP = 1e-9
+_PROBE = 0.05
+_ROUNDS = 100
+_QUICK = 0.1
+_ROUND_OFF = 1e-13
+_TEMPERATURES = ("shaft_temperature", "housing_temperature", "oil_inlet")
+
+
+@dataclass(frozen=True)
+class GivenTemperatures:
+    """Temperatures of the raceways that are known.
+
+    Attributes
+    ----------
+    inner, outer : float or None
+        Temperatures of the inner and of the outer raceway [K]; None for that of the operation.
+    """
+
+    inner: float | None = None
+    outer: float | None = None
+
+
+@dataclass(frozen=True)
+class HeatPaths:
+    """Where the heat of a bearing goes, and what friction it has.
+
+    Attributes
+    ----------
+    shaft, housing : float
+        Conductances from the inner raceway to the shaft and from the outer one to the housing [W/K].
+    shaft_temperature, housing_temperature, oil_inlet : float or None
+        Temperatures of shaft, of housing, and of the oil that comes in [K]; None for that of the operation.
+    oil_flow : float
+        W = rho c_p Q of the oil that flows through the bearing [W/K].
+    raceways_to_oil : float
+        Conductance from each raceway to the oil [W/K].
+    between_raceways : float
+        Conductance between the raceways [W/K].
+    load_friction : float
+        f1 of a torque f1 F d_m that is added, with the radial force F and the mean diameter d_m.
+    constant_power : float
+        Friction that is added at any speed but rest [W].
+    palmgren : float or None
+        f0 of Palmgren's viscous torque, which takes the place of the rolling of the films; None for the films.
+
+    Raises
+    ------
+    InputError
+        With every value that is not possible, and for a raceway without any path.
+    """
+
+    shaft: float = 0.0
+    housing: float = 0.0
+    shaft_temperature: float | None = None
+    housing_temperature: float | None = None
+    oil_flow: float = 0.0
+    oil_inlet: float | None = None
+    raceways_to_oil: float = 0.0
+    between_raceways: float = 0.0
+    load_friction: float = 0.0
+    constant_power: float = 0.0
+    palmgren: float | None = None
+
+    def __post_init__(self) -> None:
+        problems = [
+            f"{entry.name}: got {value!r}; allowed: a finite number >= 0"
+            for entry in dataclasses.fields(self)
+            if (value := getattr(self, entry.name)) is not None and not (math.isfinite(value) and value >= 0.0)
+        ]
+        if not problems:
+            problems = self._path_problems()
+        if problems:
+            raise InputError(problems)
+
+    def _path_problems(self) -> list[str]:
+        """Paths that lead nowhere."""
+        if (self.oil_flow > 0.0) != (self.raceways_to_oil > 0.0):
+            return [
+                f"oil_flow, raceways_to_oil: got {self.oil_flow:g} and {self.raceways_to_oil:g} W/K; allowed: both or "
+                "neither: what the oil carries away, and how well it takes heat from a raceway"
+            ]
+        both = self.shaft > 0.0 and self.housing > 0.0
+        either = self.between_raceways > 0.0 and self.shaft + self.housing > 0.0
+        if not (self.oil_flow or both or either):
+            return [
+                "got a raceway from which no heat can flow; allowed: shaft and housing; or oil_flow with "
+                "raceways_to_oil; or one of shaft and housing with between_raceways; all above 0 W/K"
+            ]
+        return []
+
+    def within(self, temperature: float) -> HeatPaths:
+        """The same where shaft, housing and oil without a temperature of their own have this one [K]."""
+        missing = {name: temperature for name in _TEMPERATURES if getattr(self, name) is None}
+        return dataclasses.replace(self, **missing)
+
+    @property
+    def network(self) -> tuple[FloatArray, FloatArray]:
+        """G (2, 2) [W/K] and s (2,) [W] of Q = G T - s: heat into the raceways at their temperatures T, oil included.
+
+        Raises
+        ------
+        InputError
+            If shaft, housing or oil have no temperature.
+        """
+        shaft, housing, inlet = self._around
+        oil = self.oil_flow + 2.0 * self.raceways_to_oil
+        shared = self.raceways_to_oil**2 / oil if oil else 0.0
+        between = self.between_raceways + shared
+        own = self.raceways_to_oil + self.between_raceways - shared
+        conductance = np.array([[self.shaft + own, -between], [-between, self.housing + own]])
+        from_oil = self.raceways_to_oil * self.oil_flow * inlet / oil if oil else 0.0
+        return conductance, np.array([self.shaft * shaft + from_oil, self.housing * housing + from_oil])
+
+    @property
+    def _around(self) -> tuple[float, float, float]:
+        """Temperatures of shaft, housing and of the oil that comes in [K]."""
+        shaft, housing, inlet = self.shaft_temperature, self.housing_temperature, self.oil_inlet
+        if shaft is None or housing is None or inlet is None:
+            raise InputError("heat paths, temperatures: got none of shaft, housing or oil; allowed: after within(T)")
+        return shaft, housing, inlet
+
+    def oil_temperature(self, raceways: FloatArray) -> float:
+        """Temperature of the oil in the bearing [K], between raceways (2,) [K]; NaN without a flow.
+
+        Parameters
+        ----------
+        raceways : array, shape (2,)
+            Inner and outer [K].
+        """
+        if not self.oil_flow:
+            return math.nan
+        taken = self.raceways_to_oil * float(raceways.sum())
+        return (self.oil_flow * self._around[2] + taken) / (self.oil_flow + 2.0 * self.raceways_to_oil)
+
+    def flows(self, raceways: FloatArray) -> tuple[float, float, float]:
+        """Heat to the shaft, to the housing, and away with the oil [W].
+
+        Parameters
+        ----------
+        raceways : array, shape (2,)
+            Inner and outer [K].
+        """
+        shaft, housing, inlet = self._around
+        warmer = self.oil_temperature(raceways) - inlet if self.oil_flow else 0.0
+        inner, outer = raceways.tolist()
+        return self.shaft * (inner - shaft), self.housing * (outer - housing), self.oil_flow * warmer
+
+
+def heat_of_contacts(inner: float, outer: float, added: float) -> FloatArray:
+    """Heat into inner and outer raceway (2,) [W].
+
+    Parameters
+    ----------
+    inner, outer : float
+        Heat of the contacts with the inner and with the outer raceway [W].
+    added : float
+        Further heat [W].
+    """
+    rollers = 0.25 * (inner + outer) + 0.5 * added
+    return np.array([0.5 * inner + rollers, 0.5 * outer + rollers])
+
+
+def steady_temperatures(
+    names: Sequence[str], paths: Sequence[HeatPaths], heat: Callable[[FloatArray], FloatArray]
+) -> FloatArray:
+    """Temperatures of the raceways at which all heat is carried away, shape (bearings, 2) [K].
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names of the bearings, for messages.
+    paths : sequence of HeatPaths
+        Heat paths of each bearing, with all temperatures.
+    heat : callable
+        Heat into the raceways (bearings, 2) [W] at their temperatures (bearings, 2) [K].
+
+    Raises
+    ------
+    AnalysisError
+        For a bearing that runs away, and where the balance does not settle.
+
+    Notes
+    -----
+    Newton, beginning without friction. How the heat of a bearing follows both of its temperatures is found by two
+    probes, with all bearings at once; their small influence on each other is left to the iteration. Where Newton's step
+    is too long, or leads uphill because friction grows faster than its heat is carried away, it is an implicit step in
+    time instead, in which the heat that is left warms the raceways. So a bearing warms up to its first balance, or on
+    until it is too hot.
+    """
+    conductances, sources = (np.array(part) for part in zip(*(entry.network for entry in paths), strict=True))
+    temperatures: FloatArray = _solved(conductances, sources)
+    slopes, before = np.zeros_like(conductances), math.inf
+    for _ in range(_ROUNDS):
+        given = heat(temperatures)
+        left = given + sources - np.einsum("bij,bj->bi", conductances, temperatures)
+        closed = RESIDUAL * np.abs(given).sum(axis=1) + _ROUND_OFF * np.abs(sources).sum(axis=1)
+        worst = float(np.max(np.abs(left) / closed[:, None]))
+        if worst <= 1.0:
+            return temperatures
+        if worst > _QUICK * before or not math.isfinite(before):
+            slopes = _slopes(heat, temperatures, given)
+        before = worst
+        steps: FloatArray = np.array([_step(*pair) for pair in zip(conductances - slopes, left, strict=True)])
+        temperatures = temperatures + steps
+        hot = int(np.argmax(temperatures.max(axis=1)))
+        if temperatures[hot].max() > HOTTEST:
+            slope = conductances[hot] - slopes[hot]
+            raise _too_hot(names[hot], slope, float(given[hot].sum()), float(left[hot].sum()))
+        if float(np.abs(steps).max()) < _SHORTEST_STEP:
+            return temperatures
+    raise AnalysisError(
+        f"bearing {names[int(np.argmax(np.abs(left).max(axis=1)))]!r}: its heat balance does not settle: "
+        f"{np.abs(left).max():.3g} W are left after {_ROUNDS} steps; check its heat paths, or give its temperatures"
+    )
+
+
+def _too_hot(name: str, slope: FloatArray, friction: float, left: float) -> AnalysisError:
+    """What is said of a bearing without a balance: whether it runs away, or heat has too narrow a way out."""
+    words = "thermal run-away" if np.linalg.eigvals(slope).real.min() <= 0.0 else "too hot"
+    return AnalysisError(
+        f"bearing {name!r}: {words}: no heat balance below {TEMPERATURE.text(HOTTEST)}, where its friction of "
+        f"{friction:.4g} W is {left:.4g} W more than its heat paths carry away; give it more conduction or oil, or "
+        "more clearance or looser fits if it loses its clearance as it warms"
+    )
+
+
+def _solved(matrices: FloatArray, right: FloatArray) -> FloatArray:
+    """Solutions (bearings, 2) of systems of two equations each."""
+    return np.asarray(np.linalg.solve(matrices, right[..., None])[..., 0])
+
+
+def _slopes(heat: Callable[[FloatArray], FloatArray], temperatures: FloatArray, here: FloatArray) -> FloatArray:
+    """How the heat of each bearing follows its own temperatures, shape (bearings, 2, 2) [W/K]."""
+    columns = []
+    for side in range(2):
+        probe = temperatures.copy()
+        probe[:, side] += _PROBE
+        columns.append((heat(probe) - here) / _PROBE)
+    return np.stack(columns, axis=2)
+
+
+def _step(slope: FloatArray, left: FloatArray) -> FloatArray:
+    """Step (2,) [K]: Newton's, or as far as heat that is left would warm the raceways in a time, both limited.
+
+    (slope + sigma) step = left is an implicit step in time, with a heat capacity over sigma; Newton's without it.
+    """
+    least = float(np.linalg.eigvals(slope).real.min())
+    sigma = 0.0 if least > 0.0 else -2.0 * least + 1e-3 * float(np.abs(slope).max())
+    while True:
+        step = np.linalg.solve(slope + sigma * np.eye(2), left)
+        longest = float(np.abs(step).max())
+        if longest <= _LONGEST_STEP:
+            return np.asarray(step)
+        sigma = max(2.0 * sigma, 0.1 * float(np.abs(slope).max()))
