@@ -70,7 +70,7 @@ def _page(sheet: Sheet) -> Figure:
     parameter = f"Λ: minimum film between smooth surfaces over it; {_below(sheet)}."
     write_line(figure, 0.934, f"Combined rms roughness of both surfaces. {parameter}", 8)
     share = "film and asperities in balance (Johnson, Greenwood and Poon; asperities of Greenwood and Tripp)"
-    write_line(figure, 0.914, f"Share of the load: {share}; it does not take part in Λ.", 8)
+    write_line(figure, 0.914, f"Share of the load: {share}.", 8)
     grid = figure.add_gridspec(
         2 * contacts, len(temperatures), left=0.062, right=0.92, top=0.875, bottom=0.105, wspace=0.08, hspace=0.12
     )
