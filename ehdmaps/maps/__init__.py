@@ -22,6 +22,7 @@ dry            stand-in for the film of a dry map
 tail           film below the lowest known load
 contact_curve  approach and damping of one contact over load
 oil_layer      the film of a contact on an oil layer, from that of the flooded one
+asperities     pressure of asperities, and the mean gap between rough surfaces
 rough_layer    load sharing of film and asperities, between the film and the structure
 splines        cubic splines on uniform axes
 compilation    curves -> table over approach, speed and temperature

@@ -20,7 +20,7 @@ points with FVA 3, M 0.1 to 200, L 3 to 35, to g = 0.1: 4 %; with the textbooks'
 References
 ----------
 K. L. Johnson, J. A. Greenwood, S. Y. Poon, "A simple theory of asperity contact in elastohydrodynamic lubrication",
-Wear 19, 1972, 91. `ehdmaps.physics.roughness` for the asperities, `ehdmaps.physics.films` for the film.
+Wear 19, 1972, 91. `ehdmaps.maps.asperities` for the asperities, `ehdmaps.physics.films` for the film.
 """
 
 from __future__ import annotations
@@ -34,12 +34,13 @@ from numba import njit
 from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.maps.asperities import asperity_pressure, mean_gap
 from ehdmaps.maps.contact_curve import FilmSamples
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
-from ehdmaps.physics.roughness import Surface, asperity_pressure, mean_gap
+from ehdmaps.physics.roughness import Surface
 
 OIL_EXPONENT, FULL_FROM = 0.12, 3.0
 """n of the scaled film where it is elastic, and the load number M where half of it is reached."""

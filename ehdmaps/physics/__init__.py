@@ -26,7 +26,7 @@ traction            traction over the slide-to-roll ratio by laws of shear stres
 peak                what the largest of sampled pressures lacks to the peak
 oil_supply          `OilSupply`: flooded, or an oil layer before the contact
 starved             the starved contact between rigid surfaces: film, damping, rolling force, pressure
-roughness           `Surface`: asperities of rough surfaces, and the mean gap between them
+roughness           `Surface`: roughness of both surfaces, and their asperities
 film_limits         how thick and how thin a film may be
 wall_stress         shear stress at the walls over pressure: where no oil is Newtonian
 thermal             reduction of the film by inlet shear heating

@@ -9,7 +9,8 @@ import pytest
 from scipy.integrate import quad
 
 from ehdmaps.errors import InputError
-from ehdmaps.physics.roughness import SMOOTH, Surface, asperity_integral, asperity_pressure, mean_gap
+from ehdmaps.maps.asperities import asperity_integral, asperity_pressure, mean_gap
+from ehdmaps.physics.roughness import SMOOTH, Surface
 
 MODULUS = 230.77e9
 

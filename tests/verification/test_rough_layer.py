@@ -11,6 +11,7 @@ import pytest
 from scipy.optimize import brentq
 
 from ehdmaps.ehl.solver import ReynoldsSolver
+from ehdmaps.maps.asperities import asperity_pressure, mean_gap
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.rough_layer import RoughLayer, _moes, scaled_film
@@ -18,7 +19,7 @@ from ehdmaps.physics.films import moes_central_and_slope
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.roughness import Surface, asperity_pressure, mean_gap
+from ehdmaps.physics.roughness import Surface
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
 INNER = CONTACTS[0]
