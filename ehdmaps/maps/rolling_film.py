@@ -36,7 +36,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_number
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rolling import RIGID_ROLLING_CONSTANT
-from ehdmaps.physics.starved import passing, rolling_ratio
+from ehdmaps.physics.starved import rolling_ratio
 
 NAMES = ("rolling_force", "mass_flow")
 """Variables of the map and of its backbone."""
@@ -103,14 +103,18 @@ class RollingFilm:
         entrainment_speed, temperature : float
             u [m/s], of either sign, and T [K].
         supply : OilSupply, optional
-            Oil before the contact. On a layer the force is less by the factor of the starved contact between rigid
-            surfaces, see `ehdmaps.physics.starved`.
+            Oil before the contact. On a layer the force is less, see `ehdmaps.physics.starved.rolling_ratio`.
         """
         force = self._found(0, contact, load, entrainment_speed, temperature)
         if supply.flooded:
             return force
-        flow = self.flow(contact, load, entrainment_speed, temperature)
-        return force * rolling_ratio(np.sqrt(passing(flow, supply.oil_layer)))
+        loads = np.asarray(load, dtype=np.float64)
+        at = entrainment_speed, temperature
+        flow, heavier = (self.flow(contact, part * loads, *at) for part in (1.0, 1.0 + _STEP))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            exponent = np.nan_to_num(np.clip(np.log(flow / heavier) / math.log1p(_STEP), 0.0, 1.0), nan=1.0)
+            passed = np.minimum(supply.oil_layer / flow, 1.0)  # a force that nothing rests on needs no rounded corner
+        return force * rolling_ratio(np.sqrt(passed), exponent)
 
     def mass_flow(self, contact: str, load: npt.ArrayLike, entrainment_speed: float, temperature: float) -> FloatArray:
         """Mass flow through the contact [kg/(m s)], inf without load, zero without speed; arguments as before.

@@ -28,7 +28,7 @@ from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.starved import RIGID_FLOW, film_ratio, passing, pressure_ratio, rolling_ratio
+from ehdmaps.physics.starved import RIGID_FLOW, film_ratio, passing, pressure_ratio
 
 SIDES = ("inner", "outer")
 """The contacts of a roller, in the order of all arrays."""
@@ -92,8 +92,8 @@ class FilmSource(Protocol):
 def on_supply(state: ContactState, flow: FloatArray, supply: OilSupply) -> ContactState:
     """Contacts on an oil layer, from those that are flooded; see `ehdmaps.physics.starved`.
 
-    Film and rolling force have the ratios of the starved contact between rigid surfaces. So has the largest pressure,
-    up to that of Hertz; a spike above it is left as it is.
+    The film has the ratio of the starved contact between rigid surfaces. So has the largest pressure, up to that of
+    Hertz; a spike above it is left as it is. The rolling force is left alone.
 
     Parameters
     ----------
@@ -116,7 +116,6 @@ def on_supply(state: ContactState, flow: FloatArray, supply: OilSupply) -> Conta
         max_pressure=np.minimum(risen, np.maximum(state.max_pressure, state.hertz_pressure)),
         central_film=film * state.central_film,
         minimum_film=film * state.minimum_film,
-        rolling_force=rolling_ratio(root) * state.rolling_force,
     )
 
 
@@ -263,7 +262,8 @@ class MapFilms:
         found = self.emap.rolling_film
         rolling = plain.rolling_force
         if found is not None:
-            rolling = found.rolling_force(SIDES[side], np.maximum(load, 0.0), entrainment_speed, temperature)
+            at = SIDES[side], np.maximum(load, 0.0), entrainment_speed, temperature
+            rolling = found.rolling_force(*at, self.in_force)
         if entrainment_speed == 0.0 or not np.any(loaded):
             return replace(plain, rolling_force=rolling)
         ratios = np.full((*load.shape, len(_VARIABLES)), np.nan)

@@ -1,17 +1,19 @@
-"""Bearing NU308 of the gearbox on oil layers beside flooded and dry, against a program of its own.
+"""Bearing NU308 on oil layers, flooded and dry: stiffness, damping, preload, and torque beside a catalogue.
 
-Run: python -m tests.benchmarks.bench_supply map.nc
+Run: python -m tests.benchmarks.bench_supply map.nc [--beside]
 
-The map is that of the job nu308 (`ehdmaps generate nu308 --out map.nc`). 923 N on the inner ring, 40 degC. The program
-beside (`REFERENCE`) has films, statics and sums of its own, and took the film as r times that of the flooded contact,
-which loads the last fifth of a layer without any change of the gap: below 2 um it states its own stiffness to 5 %.
+The map is that of the job nu308 (`ehdmaps generate nu308`). 923 N on the inner ring, 40 degC. Preload is the load of
+the rollers against that load at 2500 rpm. The last row is the rolling moment of SKF's catalogue formula.
+
+With --beside the numbers of another program stand at the end of the rows. It has films, statics and sums of its own,
+and took the film as r times that of the flooded contact, which loads the last fifth of a layer without any change of
+the gap: below 2 um it states its own stiffness to 5 %.
 """
 
 from __future__ import annotations
 
+import argparse
 import math
-import sys
-import time
 
 import numpy as np
 
@@ -21,10 +23,11 @@ from mbs.analyses.bearing_point import BearingPoint, bearing_points
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import MapFilms
 from mbs.bearings.laws import hertz
+from tests.cases.catalogue import skf_rolling_moment
 
 LOAD, WARM, RPM = 923.0, 313.15, math.pi / 30.0
 SPEEDS = (500.0, 1500.0, 2500.0)
-LAYERS = (10e-6, 5e-6, 2e-6, 1e-6, 0.5e-6)
+LAYERS = (10e-6, 5e-6, 2e-6, 1e-6, 0.7e-6, 0.5e-6)
 
 REFERENCE = {
     (0.0, "dry"): "359/195 359/195 0",
@@ -60,25 +63,51 @@ def preload(point: BearingPoint) -> float:
 
 def main() -> None:
     """Print the table."""
-    emap = open_map(sys.argv[1])
-    print("clearance  supply             K along/across at 500, 2500 rpm [N/um]  C at 2500   preload   torque [N mm]")
+    parser = argparse.ArgumentParser(prog="python -m tests.benchmarks.bench_supply")
+    parser.add_argument("map", help="map of NU308 by the job nu308")
+    parser.add_argument("--beside", action="store_true", help="the numbers of another program too")
+    arguments = parser.parse_args()
+    emap = open_map(arguments.map)
+    head = (
+        "clearance, supply",
+        "K at 500",
+        "at 2500 rpm",
+        "change",
+        "C at 2500",
+        "preload",
+        "torque at 500, 1500, 2500",
+    )
+    units = ("", "N/um", "N/um", "%", "N s/mm", "N", "N mm")
+    print(_row(*head), _row(*units), sep="\n")
     for clearance in (0.0, 30e-6):
         bearing = Bearing.named("NU308", clearance=clearance)
         for supply in (None, FLOODED, *(OilSupply(layer) for layer in LAYERS)):
             label = "dry" if supply is None else supply.label
-            start = time.process_time()
             found = points(emap, bearing, supply)
-            spent = time.process_time() - start
-            k = [1e-6 * point.along_across(point.stiffness) for point in found]
+            first, last = (1e-6 * point.along_across(point.stiffness) for point in (found[0], found[-1]))
             c = 1e-3 * found[-1].along_across(found[-1].damping)
-            torque = " ".join(f"{1e3 * point.loss.torque:4.0f}" for point in found) if supply else "   -    -    -"
-            stiff = "   ".join(f"{along:4.0f}/{across:3.0f}" for along, across in (k[0], k[-1]))
-            print(
-                f"{1e6 * clearance:4.0f} um    {label:17s}  {stiff}   {100.0 * (k[-1][0] / k[0][0] - 1.0):+6.1f} %   "
-                f"{c[0]:5.2f}/{c[1]:4.2f}   {abs(preload(found[-1])):5.0f}   {torque}   "
-                f"reference: {REFERENCE.get((clearance, label), '')}   ({spent:.1f} s)",
-                flush=True,
+            change = 100.0 * (last[0] / first[0] - 1.0)
+            row = _row(
+                f"{1e6 * clearance:g} um, {label}",
+                f"{first[0]:.0f}/{first[1]:.0f}",
+                f"{last[0]:.0f}/{last[1]:.0f}",
+                f"{change:+.1f}" if abs(change) >= 0.05 else "0",
+                f"{c[0]:.2f}/{c[1]:.2f}" if supply else "0",
+                f"{abs(preload(found[-1])):.0f}",
+                " ".join(f"{1e3 * point.loss.torque:5.0f}" for point in found) if supply else "-",
             )
+            print(row + (f"   {REFERENCE.get((clearance, label), '')}" if arguments.beside else ""), flush=True)
+    state = emap.lubricant.at(WARM)
+    moments = (skf_rolling_moment(n, 1e6 * state.viscosity / state.density, LOAD) for n in SPEEDS)
+    print(_row("catalogue formula", "", "", "", "", "", " ".join(f"{moment:5.0f}" for moment in moments)))
+
+
+def _row(*cells: str) -> str:
+    """Line of the table."""
+    widths = (24, 10, 13, 8, 13, 9, 27)
+    return cells[0].ljust(widths[0]) + "".join(
+        cell.rjust(width) for cell, width in zip(cells[1:], widths[1:], strict=True)
+    )
 
 
 if __name__ == "__main__":

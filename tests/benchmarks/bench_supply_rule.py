@@ -159,11 +159,17 @@ def compared(
             heights[0] / full.film_offset,
             1.0 / (dry + slope) / full_stiffness,
             held_damping(full, dry, point.load, root) / full_damping,
-            float(rolling_ratio(root)),
+            float(rolling_ratio(root, flow_exponent(flooded, point.load))),
         ),
         film.film_compliance / full.film_compliance,
         film.loss_compliance / full.loss_compliance,
     )
+
+
+def flow_exponent(flooded: list[FilmSolution], load: float) -> float:
+    """-d ln(m)/d ln(w) of the flooded contact, 0 to 1; of its films at a load, a little less, and more."""
+    _, less, more = flooded
+    return min(max(math.log(less.mass_flow / more.mass_flow) / math.log((1.0 + STEP) / (1.0 - STEP)), 0.0), 1.0)
 
 
 def held_damping(flooded: FilmSolution, dry: float, load: float, root: FloatArray) -> float:

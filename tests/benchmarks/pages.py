@@ -37,6 +37,7 @@ from tests.benchmarks.page_recipes import TIMES, Output, compared, rewritten
 ROOT = Path(__file__).parents[2]
 PAGES = (
     "README.md",
+    "FILMS.md",
     "docs/accuracy.md",
     "docs/python.md",
     "ehdmaps/GLOSSARY.md",
@@ -47,6 +48,7 @@ MADE = {
     "nu308.nc": "ehdmaps generate nu308 -o nu308.nc",
     "n1014.nc": "ehdmaps generate n1014 -o n1014.nc",
     "cfd.nc": "ehdmaps generate nu308_openfoam -o cfd.nc",
+    "vg320.nc": "ehdmaps generate docs/vg320.toml -o vg320.nc",
     "h12.nc": 'python -m examples.housings gearbox_housing --cutoff "12 kHz" -o h12.nc',
     "hits.uff": "mbs hammer n1014_testrig --map n1014.nc -o hits.uff",
 }
@@ -111,7 +113,7 @@ class Runner:
         if self.reuse and kept.is_file():
             return kept.read_text(encoding="utf-8").partition("\n")[2]
         program, *words = shlex.split(command)
-        words = [str(ROOT / word) if word.startswith("tests/") else word for word in words]
+        words = [str(ROOT / word) if word.startswith(("tests/", "docs/")) else word for word in words]
         environment = {**os.environ, "PYTHONPATH": str(self.tree), "MPLBACKEND": "Agg"}
         environment |= {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
         print(f"  {command}", file=sys.stderr, flush=True)

@@ -128,3 +128,29 @@ def test_passing_flow():
     assert passing(1e-6, np.inf) == 1.0
     assert passing(1e-6, 1e-6) == pytest.approx(0.917, abs=1e-3)
     assert passing(0.66e-6, 1e-6) > 0.99 and passing(1.5e-6, 1e-6) > 0.99 / 1.5
+
+
+@pytest.mark.parametrize("meniscus", [0.3, 1.0, 4.0, 30.0])
+def test_rolling_force_of_a_loaded_contact_is_that_of_grubins_inlet(meniscus):
+    """By adaptive quadrature of the inlet with its pressure; 1e-3 bounds the table and its last place."""
+
+    def inlet(x):
+        return quad(lambda t: 2.0 * t**4 / (1.0 + t**3) ** 3, 0.0, math.sqrt(x), epsabs=0.0)[0]
+
+    def force(end):  # Int (h - m) dp, dp = dq/(1 - alpha q)
+        return quad(lambda t: 2.0 * t**7 / (1.0 + t**3) ** 3 * inlet(end) / inlet(t * t), 0.0, math.sqrt(end))[0]
+
+    far = 1e7
+    ratio = (inlet(meniscus) / inlet(far)) ** 0.75
+    expected = ratio ** (-1.0 / 3.0) * force(meniscus) / force(far)
+    found = rolling_ratio(np.array([math.sqrt(ratio)]), 0.0)
+    assert found == pytest.approx(expected, rel=1e-3)
+
+
+def test_rolling_force_between_both_limits():
+    """Exponent 1 is rigid, 0 loaded; between them it is between them, and it falls with the oil."""
+    s = np.sqrt(np.linspace(0.01, 1.0, 50))
+    rigid, loaded = rolling_ratio(s), rolling_ratio(s, 0.0)
+    between = rolling_ratio(s, np.full(s.size, 0.4))
+    assert np.all(loaded <= between + 1e-12) and np.all(between <= rigid + 1e-12)
+    assert np.all(np.diff(between) > 0.0) and between[-1] == pytest.approx(1.0, abs=1e-9)

@@ -17,21 +17,10 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import FormulaFilms, MapFilms
 from mbs.bearings.laws import hertz
 from mbs.model.elements import Operation
+from tests.cases.catalogue import skf_rolling_moment
 
 WARM, LOAD, SPEEDS = 313.15, 923.0, (500.0, 1500.0, 2500.0)
 RPM = math.pi / 30.0
-
-
-def skf_rolling_moment(speed_rpm: float, viscosity: float, load: float) -> float:
-    """SKF's M_rr of an NU bearing of series 3 with d 40 and D 90 mm, in an oil bath of low level [N mm].
-
-    M_rr = phi_ish phi_rs R1 dm^2.41 F^0.31 (nu n)^0.6 as in SKF's catalogue, "Rolling bearings", table of G_rr. The
-    constants R1 = 1.09e-6 (series 3), K_rs = 3e-8 (low oil bath) and K_Z = 5.1 are from memory, and not checked.
-    """
-    bore, outside, mean = 40.0, 90.0, 65.0
-    heating = 1.0 / (1.0 + 1.84e-9 * (speed_rpm * mean) ** 1.28 * viscosity**0.64)
-    starved = math.exp(-3e-8 * viscosity * speed_rpm * (bore + outside) * math.sqrt(5.1 / (2.0 * (outside - bore))))
-    return heating * starved * 1.09e-6 * mean**2.41 * load**0.31 * (viscosity * speed_rpm) ** 0.6
 
 
 @pytest.fixture(scope="module")
@@ -64,13 +53,13 @@ def test_films_flooded_all_round_resist_more_than_the_catalogue_says(points, rey
 def test_torque_on_an_oil_layer(reynolds_map):
     """130, 274 and 382 N mm on 5 um, by starved solutions of every contact; and close to SKF's 129, 215 and 251.
 
-    3.5 %: the law rounds the corner where a contact begins to starve, and its rolling forces are those of rigid walls.
+    2 %: the law goes between the closed forms of rigid walls and of Grubin's inlet; found 1.5 %.
     """
     emap, supply = open_map(reynolds_map), OilSupply(5e-6)
     bearing = Bearing.named("NU308", clearance=30e-6)
     law, films = emap.law("series", supply=supply), MapFilms(emap, supply)
     points = bearing_points(bearing, law, films, [(LOAD, 0.0)], [RPM * n for n in SPEEDS], WARM)[0]
-    np.testing.assert_allclose([1e3 * point.loss.torque for point in points], [130.0, 274.0, 382.0], rtol=3.5e-2)
+    np.testing.assert_allclose([1e3 * point.loss.torque for point in points], [130.0, 274.0, 382.0], rtol=2e-2)
     # The law gives the same rolling forces as the films of the results, and no film is thicker than the layer.
     at = law.at(points[1].entrainment_speed, WARM)
     loads = np.array([10.0, 1e3, 1e5])
