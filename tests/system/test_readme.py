@@ -108,6 +108,7 @@ def test_first_block_of_python_runs(made_map, monkeypatch):
 
 PAGES = (
     "README.md",
+    "FILMS.md",
     "docs/accuracy.md",
     "ehdmaps/REFERENCE.md",
     "mbs/REFERENCE.md",
