@@ -39,7 +39,7 @@ def asperity_integral(order: float, distance: npt.ArrayLike) -> FloatArray:
     Examples
     --------
     >>> f"{float(asperity_integral(2.5, 0.0)):.4f}"
-    '0.6167'
+    '0.6166'
     """
     x = np.asarray(distance, dtype=np.float64)
     values, _ = pbdv(-order - 1.0, x)

@@ -37,7 +37,7 @@ def viscous_torque(f0: float, viscosity: float, speed: float, pitch_diameter: fl
     An NU308 in a bath of 95 mm2/s, at 1500 rpm:
 
     >>> round(1e3 * viscous_torque(2.2, 95e-6, 1500.0 / _RPM, 66e-3), 1)
-    172.5
+    172.6
     """
     product = max(viscosity * 1e6 * abs(speed) * _RPM, _STIFF_OIL)
     torque: float = 1e-3 * 1e-7 * f0 * product ** (2.0 / 3.0) * (1e3 * pitch_diameter) ** 3
