@@ -71,7 +71,7 @@ def test_whole_range_has_a_solution_or_a_typed_status(contact: LineContact) -> N
                     )
                     assert film.central_film_error > 0.0 and film.minimum_film_error > 0.0
                     assert 0.0 <= film.max_pressure_error < math.inf
-    # the only other points without a solution: the heaviest loads of an oil far too cold and fast for it, L = 73 and more
+    # the only other points without a solution: the heaviest loads of an oil far too cold and fast, L = 73 and more
     assert all(celsius == 0.0 and speed >= 5.0 and load > 3e5 for celsius, speed, load in holes), holes
 
 
