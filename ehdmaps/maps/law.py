@@ -25,7 +25,7 @@ from ehdmaps.maps.dry import DryField
 from ehdmaps.maps.excursions import Axis, Excursion, Range
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.locked_film import FORMULA, LockedFactors, locked_compliances
-from ehdmaps.maps.low_loads import LowLoads, guessed_at, low_loads
+from ehdmaps.maps.low_loads import LowLoads, guessed_at, looked_at, low_loads
 from ehdmaps.maps.memory import FilmMemory, FilmState
 from ehdmaps.maps.oil_layer import oil_layer
 from ehdmaps.maps.rolling_film import RollingFilm
@@ -465,16 +465,28 @@ class ContactLaw:
         return problems
 
     def _note_low(self, loads: FloatArray, speeds: FloatArray, temperatures: FloatArray) -> None:
-        """Note loads (n,) that lie where the film is a guess; speeds and temperatures (n,) or (1,)."""
+        """Note loads (n,) that lie where the film is a guess, by the nearest place at which the law was looked at."""
         if self.low_loads is None or not self.low_loads.guessed:
             return
-        low = (loads > 0.0) & (loads < self.load_range[0])
-        if not np.any(low):
+        low = np.nonzero((loads > 0.0) & (loads < self.load_range[0]))[0]
+        if not low.size:
             return
-        places = np.stack([np.broadcast_to(speeds, loads.shape)[low], np.broadcast_to(temperatures, loads.shape)[low]])
-        different, which = np.unique(places, axis=1, return_inverse=True)
-        for i, (u, T) in enumerate(different.T.tolist()):
-            self._keep(Range("load", self.guessed_below(u, T), np.inf).excursions(loads[low][which.reshape(-1) == i]))
+        limits = self._guessed_below
+        (slow, fast), (cold, hot) = self.speed_range, self.temperature_range
+        along = np.log(np.clip(np.abs(speeds[low]), slow, fast) / slow) / math.log(fast / slow) if fast > slow else 0.0
+        across = (np.clip(temperatures[low], cold, hot) - cold) / (hot - cold) if hot > cold else 0.0
+        rows, columns = (
+            np.rint(part * (n - 1)).astype(int) for part, n in zip((along, across), limits.shape, strict=True)
+        )
+        of = np.broadcast_to(rows * limits.shape[1] + columns, low.shape)
+        for index in np.unique(of):
+            self._keep(Range("load", float(limits.flat[index]), np.inf).excursions(loads[low[of == index]]))
+
+    @cached_property
+    def _guessed_below(self) -> FloatArray:
+        """`guessed_below` at the places at which the law was looked at."""
+        speeds, temperatures = looked_at(self.speed_range, self.temperature_range)
+        return np.array([[self.guessed_below(u, T) for T in temperatures.tolist()] for u in speeds.tolist()])
 
     def _load_problem(self, count: int, flat: Sequence[FloatArray]) -> str:
         """Note the loads that are too high, and say which."""
@@ -516,6 +528,11 @@ class LawAtPoint:
     point: Point
     law: ContactLaw
     outside: bool
+
+    @cached_property
+    def _guessed_below(self) -> float:
+        """Load below which the film is a guess [N/m]; 0 where it is none."""
+        return self.law.guessed_below(self.entrainment_speed, self.temperature)
 
     @cached_property
     def memory(self) -> FilmMemory:
@@ -596,7 +613,9 @@ class LawAtPoint:
             fixed = (self.entrainment_speed, self.temperature, self.centrifugal_load)
             flat += [np.full(flat[0].size, value) for value in fixed]
             self.law._settle(counts, named, flat)
-        self.law._note_low(forces[0], np.array([self.entrainment_speed]), np.array([self.temperature]))
+        if self._guessed_below > 0.0:
+            low = forces[0][(forces[0] > 0.0) & (forces[0] < self._guessed_below)]
+            self.law._keep(Range("load", self._guessed_below, np.inf).excursions(low))
         w, dw_ddelta, dw_drate = (force.reshape(shape)[()] for force in forces)
         return w, dw_ddelta, dw_drate, self.outside or bool(counts.any())
 

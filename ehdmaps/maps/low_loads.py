@@ -71,6 +71,19 @@ class LowLoads:
         )
 
 
+def looked_at(
+    speed_range: tuple[float, float], temperature_range: tuple[float, float]
+) -> tuple[FloatArray, FloatArray]:
+    """Speeds [m/s] and temperatures [K] at which a law is looked at, (7,) and (5,), over the ranges of its map.
+
+    Parameters
+    ----------
+    speed_range, temperature_range : (float, float)
+        Of the map [m/s], > 0, and [K].
+    """
+    return np.geomspace(*speed_range, _SPEEDS), np.linspace(*temperature_range, _TEMPERATURES)
+
+
 def known_from(zeta: FloatArray, solved: BoolArray) -> float:
     """Lowest zeta from which on all lines of a backbone are solved, but not below `RIGID`.
 
@@ -182,7 +195,7 @@ def low_loads(
     speed_range, temperature_range : (float, float)
         Of the map [m/s], > 0, and [K].
     """
-    speeds, temperatures = np.geomspace(*speed_range, _SPEEDS), np.linspace(*temperature_range, _TEMPERATURES)
+    speeds, temperatures = looked_at(speed_range, temperature_range)
     begins = first(speeds, temperatures)
     zeta = np.log(begins / _loads_at(contacts, lubricant, 0.0, speeds, temperatures))
     guessed = zeta > RIGID + _ROUND_OFF
