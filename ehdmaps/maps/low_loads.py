@@ -79,7 +79,7 @@ def looked_at(
     Parameters
     ----------
     speed_range, temperature_range : (float, float)
-        Of the map [m/s], > 0, and [K].
+        Ranges of the map [m/s], > 0, and [K].
     """
     return np.geomspace(*speed_range, _SPEEDS), np.linspace(*temperature_range, _TEMPERATURES)
 
