@@ -91,6 +91,34 @@ def quantity(text: object, unit: str) -> float:
     return float(f"{value:.15g}")  # 273.15 + 40 is 313.15, not 313.15000000000003
 
 
+def quantity_within(text: object, unit: str, low: float, high: float, wrong: str) -> float:
+    """Read a number with its unit that has to lie within limits.
+
+    Parameters
+    ----------
+    text : object
+        What was typed.
+    unit : str
+        SI unit of the result.
+    low, high : float
+        Smallest and largest value allowed, in SI.
+    wrong : str
+        What is said of a text that does not read, and of a value beyond the limits.
+
+    Raises
+    ------
+    InputError
+        With that text.
+    """
+    try:
+        value = quantity(text, unit)
+    except InputError as error:
+        raise InputError(wrong) from error
+    if not low <= value <= high:
+        raise InputError(wrong)
+    return value
+
+
 def short(value: object) -> str:
     """Quote a value of any kind and size for a message."""
     if isinstance(value, int) and not isinstance(value, bool) and abs(value) >= 10**20:

@@ -115,14 +115,8 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
     bearing, contacts = read_contacts(top, law)
     oil_section = top.table("lubricant", "[lubricant]", required="a table with the name of an oil, or its data")
     oil = read_lubricant(oil_section) if oil_section else None
-    supply_section = top.table("supply", "[supply]")
-    supply = read_supply(supply_section) if supply_section else None
-    if supply_section:
-        supply_section.close()
-    surface_section = top.table("surface", "[surface]")
-    surface = read_surface(surface_section) if surface_section else None
-    if surface_section:
-        surface_section.close()
+    supply = top.optional("supply", "[supply]", read_supply)
+    surface = top.optional("surface", "[surface]", read_surface)
 
     axes: list[tuple[float, ...] | None] = [None, None, None]
     grid = top.table("grid", "[grid]", required="a table with load, entrainment_speed and temperature")

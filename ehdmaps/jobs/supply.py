@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.oil_supply import LAYERS, THICKEST, THINNEST, OilSupply
-from ehdmaps.units import FILM, closest, quantity, short
+from ehdmaps.units import FILM, closest, quantity_within, short
 
 KEYS = ("oil_layer", "lubrication")
 """Keys of [supply]; a table has one of them."""
@@ -40,13 +39,7 @@ def supply_from_text(text: str) -> OilSupply:
         f"got {short(text)}{closest(text, names)}; allowed: {', '.join(names)}, or the thickness of an oil layer of "
         f"{_THICKNESSES}, such as '5 um'"
     )
-    try:
-        layer = quantity(text, "m")
-    except InputError as error:
-        raise InputError(wrong) from error
-    if not THINNEST <= layer <= THICKEST:
-        raise InputError(wrong)
-    return OilSupply(layer)
+    return OilSupply(quantity_within(text, "m", THINNEST, THICKEST, wrong))
 
 
 def read_supply(section: Table) -> OilSupply | None:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.roughness import FINEST, LIMITS, ROUGHEST, SMOOTH, Surface
-from ehdmaps.units import FILM, PRESSURE, quantity, short
+from ehdmaps.units import FILM, PRESSURE, quantity_within, short
 
 _ROUGHNESSES = f"{FILM.text(FINEST)} to {FILM.text(ROUGHEST)}"
 
@@ -31,13 +30,7 @@ def surface_from_text(text: str) -> Surface:
     if text == "smooth":
         return SMOOTH
     wrong = f"got {short(text)}; allowed: a combined rms roughness of {_ROUGHNESSES}, such as '0.2 um', or smooth"
-    try:
-        roughness = quantity(text, "m")
-    except InputError as error:
-        raise InputError(wrong) from error
-    if not FINEST <= roughness <= ROUGHEST:
-        raise InputError(wrong)
-    return Surface(roughness)
+    return Surface(quantity_within(text, "m", FINEST, ROUGHEST, wrong))
 
 
 def read_surface(section: Table) -> Surface | None:

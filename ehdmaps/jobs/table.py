@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 from ehdmaps.errors import InputError
 from ehdmaps.units import Display, closest, quantity, short
+
+_Read = TypeVar("_Read")
 
 
 class Table:
@@ -67,6 +70,33 @@ class Table:
         """
         values = self.get(key, required)
         return None if key not in self else Table(values, where, self.problems)
+
+    def optional(
+        self,
+        key: str,
+        where: str,
+        read: Callable[[Table], _Read | None],
+        close: Callable[[Table], None] | None = None,
+    ) -> _Read | None:
+        """Read the table under a key, where there is one, and note the keys that nobody asked for.
+
+        Parameters
+        ----------
+        key : str
+            Key in this table.
+        where : str
+            How messages call the table under the key.
+        read : callable
+            What reads it; None where it notes a problem.
+        close : callable, optional
+            What closes it; `close` if left out.
+        """
+        section = self.table(key, where)
+        if section is None:
+            return None
+        found = read(section)
+        (close or Table.close)(section)
+        return found
 
     def quantity(
         self, key: str, unit: str, low: float, high: float, display: Display, *, required: bool = False

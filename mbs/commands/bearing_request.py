@@ -276,14 +276,8 @@ def _alone(source: str) -> _Given | None:
     geometry, contacts = read_contacts(top, "iso16281")
     section = top.table("lubricant", "[lubricant]")
     oil = read_lubricant(section) if section else None
-    own = top.table("supply", "[supply]")
-    supply = read_supply(own) if own else None
-    if own:
-        own.close()
-    rough = top.table("surface", "[surface]")
-    surface = read_surface(rough) if rough else None
-    if rough:
-        rough.close()
+    supply = top.optional("supply", "[supply]", read_supply)
+    surface = top.optional("surface", "[surface]", read_surface)
     top.close(others=("schema", "bearing", "material", "lubricant", "supply", "surface"))
     if geometry is None and not problems:
         problems.append("bearing file: has [contact]; allowed: [bearing] with a name or dimensions")

@@ -43,10 +43,7 @@ def read_bearing(section: Table, name: str) -> BearingSpec | None:
     if "centrifugal" in section and not isinstance(centrifugal, bool):
         section.note("centrifugal", f"got {short(centrifugal)}; allowed: true, false")
     thermal, mounting = read_thermal(section), read_mounting(section)
-    own = section.table("supply", f"{section.where} supply")
-    supply = read_supply(own) if own else None
-    if own:
-        own.close()
+    supply = section.optional("supply", f"{section.where} supply", read_supply)
     if inner is None or outer is None or geometry is None:
         return None
     return BearingSpec(

@@ -120,14 +120,8 @@ class _Reader:
             self._close(operation)
         section = top.table("lubricant", "[lubricant]")
         lubricant = read_lubricant(section) if section else None
-        section = top.table("supply", "[supply]")
-        supply = read_supply(section) if section else None
-        if section:
-            self._close(section)
-        section = top.table("surface", "[surface]")
-        surface = read_surface(section) if section else None
-        if section:
-            self._close(section)
+        supply = top.optional("supply", "[supply]", read_supply, self._close)
+        surface = top.optional("surface", "[surface]", read_surface, self._close)
         bodies: list[BodySpec] = [
             *self._all("bodies", self._body),
             *self._all("shafts", read_shaft),
@@ -146,14 +140,8 @@ class _Reader:
             self._close(linear)
         section = top.table("runup", "[runup]")
         run_up = self._run_up(section) if section else None
-        section = top.table("sweep", "[sweep]")
-        sweep = read_sweep(section) if section else None
-        if section:
-            self._close(section)
-        section = top.table("campbell", "[campbell]")
-        campbell = read_campbell(section) if section else None
-        if section:
-            self._close(section)
+        sweep = top.optional("sweep", "[sweep]", read_sweep, self._close)
+        campbell = top.optional("campbell", "[campbell]", read_campbell, self._close)
         top.close()
         if top.problems or speed is None or temperature is None or frequencies is None:
             return None
