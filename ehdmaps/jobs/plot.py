@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullLocator
@@ -260,18 +261,35 @@ def write_line(
     figure.text(0.057, height, text, fontsize=size, fontweight=weight, color=colour, va="center", parse_math=False)
 
 
+def page_legend(figure: Figure, entries: Sequence[Line2D | Patch]) -> Legend:
+    """Write a legend at the foot of a page: three columns, or two where a long text would run out of it.
+
+    Parameters
+    ----------
+    figure : Figure
+        The page.
+    entries : sequence of Line2D or Patch
+        What is explained.
+    """
+    for columns in (3, 2):
+        legend = figure.legend(
+            handles=entries,
+            loc="lower left",
+            bbox_to_anchor=(0.047, 0.022),
+            ncols=columns,
+            frameon=False,
+            fontsize=7.5,
+            columnspacing=2.5,
+        )
+        if legend.get_window_extent().x1 <= figure.bbox.x1 or columns == 2:
+            break
+        legend.remove()
+    return legend
+
+
 def _legend(figure: Figure, sheet: Sheet) -> None:
     """Explain what is drawn, and only that, and write how the map was made."""
-    entries = _entries(sheet)
-    figure.legend(
-        handles=entries,
-        loc="lower left",
-        bbox_to_anchor=(0.047, 0.022),
-        ncols=3,
-        frameon=False,
-        fontsize=7.5,
-        columnspacing=2.5,
-    )
+    page_legend(figure, _entries(sheet))
     write_line(figure, 0.014, _facts(sheet.dataset, sheet.emap.surface.roughness), 6.5, colour="0.35")
 
 
@@ -284,9 +302,10 @@ def _entries(sheet: Sheet) -> list[Line2D | Patch]:
         curve = "k, c, approach between the points (dots): films of the contact laws"
         entries.append(Line2D([], [], color="0.3", lw=1.0, marker=".", ms=3, label=curve))
     entries += [Patch(label=words, **THIN[words]) for _, words in _thin(sheet)]
+    entries += mark_entries(sheet)
     if any((sheet.dataset[name].values <= 0).any() and (sheet.dataset[name].values > 0).any() for name in _LOGARITHMIC):
         entries.append(Line2D([], [], ls="", color="0.3", label="zero or negative", **BELOW))
-    return entries + mark_entries(sheet)
+    return entries
 
 
 def mark_entries(sheet: Sheet) -> list[Line2D | Patch]:

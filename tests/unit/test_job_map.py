@@ -16,7 +16,7 @@ from ehdmaps.jobs.curves import curves, law_field
 from ehdmaps.jobs.describe import describe
 from ehdmaps.jobs.generate import generate
 from ehdmaps.jobs.law_check import STANDS_ON_LINES, STANDS_ON_POINTS, unmet
-from ehdmaps.jobs.plot import plot_map
+from ehdmaps.jobs.plot import page_legend, plot_map
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.report import ERRORS, holes
 from ehdmaps.jobs.summary import summary
@@ -489,6 +489,17 @@ def test_the_page_names_what_it_shows(tmp_path, monkeypatch):
         "80 converged, 4 stagnated, 4 filled",
     ):
         assert part in text
+
+
+def test_a_long_legend_stays_on_the_page():
+    """By what is drawn: the right edge of the legend in pixels."""
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+
+    figure = Figure(figsize=(11.7, 8.3))
+    for words, columns in (("short", 3), ("asymptote: film thicker than 1 % of the radius " * 2, 2)):
+        legend = page_legend(figure, [Line2D([], [], label=words) for _ in range(4)])
+        assert legend._ncols == columns and legend.get_window_extent().x1 <= figure.bbox.x1
 
 
 def test_unmet_bars_are_said_with_what_helps():
