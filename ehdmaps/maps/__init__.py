@@ -23,6 +23,7 @@ tail           film below the lowest known load
 contact_curve  approach and damping of one contact over load
 oil_layer      the film of a contact on an oil layer, from that of the flooded one
 asperities     pressure of asperities, and the mean gap between rough surfaces
+rough_films    Lambda, and the film's share of the load, at the points of a map
 rough_layer    load sharing of film and asperities, between the film and the structure
 splines        cubic splines on uniform axes
 compilation    curves -> table over approach, speed and temperature
@@ -32,6 +33,7 @@ lines          splines and states in compiled code
 kernel         the law at run time, one point at a time, for compiled code
 bulk           the law at run time, many points
 excursions     calls outside the map
+law_arguments  arguments of a law: arrays of doubles, of one shape, finite
 law            `ContactLaw`, `LawAtPoint`
 =============  =======================================================================================
 

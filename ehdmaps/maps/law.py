@@ -24,6 +24,7 @@ from ehdmaps.maps.contact_curve import ContactCurve
 from ehdmaps.maps.dry import DryField
 from ehdmaps.maps.excursions import Axis, Excursion, Range
 from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.law_arguments import broadcast, check_finite, floats
 from ehdmaps.maps.locked_film import FORMULA, LockedFactors, locked_compliances
 from ehdmaps.maps.low_loads import LowLoads, guessed_at, looked_at, low_loads
 from ehdmaps.maps.memory import FilmMemory, FilmState
@@ -250,7 +251,7 @@ class ContactLaw:
         OutsideMapError
             Outside the map, with the policy `error`.
         """
-        named = _floats(
+        named = floats(
             delta=delta,
             rate=rate,
             entrainment_speed=entrainment_speed,
@@ -258,7 +259,7 @@ class ContactLaw:
             centrifugal_load=centrifugal_load,
         )
         self._check_centrifugal(named["centrifugal_load"])
-        shape, flat = _broadcast(named)
+        shape, flat = broadcast(named)
         table = self.table if np.any(named["centrifugal_load"]) else self._plain
         forces = np.empty((3, flat[0].size))
         counts = np.zeros(4, dtype=np.int64)
@@ -285,11 +286,11 @@ class ContactLaw:
         InputError, OutsideMapError
             As calling the law does.
         """
-        named = _floats(entrainment_speed=entrainment_speed, temperature=temperature, centrifugal_load=centrifugal_load)
+        named = floats(entrainment_speed=entrainment_speed, temperature=temperature, centrifugal_load=centrifugal_load)
         for name, value in named.items():
             if value.ndim:
                 raise InputError(f"contact law, {name}: got an array; allowed: one number in `at`")
-        _check_finite(named)
+        check_finite(named)
         self._check_centrifugal(named["centrifugal_load"])
         table = self.table if centrifugal_load else self._plain
         counts = np.zeros(4, dtype=np.int64)
@@ -439,7 +440,7 @@ class ContactLaw:
     def _settle(self, counts: IntArray, named: Mapping[str, FloatArray], flat: Sequence[FloatArray]) -> None:
         """Add up the counts of a call, and raise what they ask for."""
         if counts[NOT_FINITE]:
-            _check_finite(named)
+            check_finite(named)
         self.counts += counts
         if not np.any(counts[[LOAD, SPEED, TEMPERATURE]]):
             return
@@ -568,8 +569,8 @@ class LawAtPoint:
                 "contact law, rolling force: the map holds none, or not at all its points; allowed: maps without holes "
                 "by the solvers reynolds and openfoam, of schema 3; generate it again"
             )
-        loads = _floats(load=load)["load"]
-        _check_finite({"load": loads})
+        loads = floats(load=load)["load"]
+        check_finite({"load": loads})
         if np.any(loads < 0.0):
             raise InputError(f"contact law, load: got {float(np.min(loads)):.6g} N/m; allowed: >= 0")
         extra = {"outer": self.centrifugal_load}
@@ -604,8 +605,8 @@ class LawAtPoint:
 
     def evaluate(self, delta: npt.ArrayLike, rate: npt.ArrayLike) -> tuple[Any, Any, Any, bool]:
         """As a call, and whether any of it lies outside the map."""
-        named = _floats(delta=delta, rate=rate)
-        shape, flat = _broadcast(named)
+        named = floats(delta=delta, rate=rate)
+        shape, flat = broadcast(named)
         forces = np.empty((3, flat[0].size))
         counts = np.zeros(4, dtype=np.int64)
         bulk.evaluate_many_at(self.point, flat[0], flat[1], forces, counts)
@@ -630,43 +631,3 @@ def _workspace(table: LawTable) -> FloatArray:
     """Scratch for the largest of the tables."""
     width = max(entry.coefficients.shape[2] for entry in (table.own, table.inner, table.outer))
     return np.empty((4, width // 2, 8))
-
-
-def _floats(**values: npt.ArrayLike) -> dict[str, FloatArray]:
-    """Arrays of doubles by name; what is no number is refused."""
-    arrays = {}
-    for name, value in values.items():
-        try:
-            arrays[name] = np.asarray(value, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise InputError(f"contact law, {name}: got {value!r}; allowed: real numbers") from None
-    return arrays
-
-
-def _broadcast(named: Mapping[str, FloatArray]) -> tuple[tuple[int, ...], list[FloatArray]]:
-    """Common shape, and flat arrays of it that compiled code takes: contiguous and writeable."""
-    try:
-        shape = np.broadcast_shapes(*(array.shape for array in named.values()))
-    except ValueError:
-        shapes = ", ".join(f"{name} {array.shape}" for name, array in named.items())
-        raise InputError(f"contact law: got shapes that do not broadcast: {shapes}") from None
-    flat = []
-    for array in named.values():
-        ready = array.shape == shape and array.flags.c_contiguous and array.flags.writeable
-        full = array if ready else np.empty(shape)
-        if not ready:
-            full[...] = array
-        flat.append(full.reshape(-1))
-    return shape, flat
-
-
-def _check_finite(named: Mapping[str, FloatArray]) -> None:
-    """Refuse values that are no finite numbers."""
-    problems = [
-        f"contact law, {name}: got {values[~np.isfinite(values)].flat[0]} "
-        f"({np.count_nonzero(~np.isfinite(values))} of {values.size}); allowed: finite numbers"
-        for name, values in named.items()
-        if not np.all(np.isfinite(values))
-    ]
-    if problems:
-        raise InputError(problems)
