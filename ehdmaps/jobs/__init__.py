@@ -15,6 +15,7 @@ solvers      names and settings of the solvers
 tasks        `Job` -> `LineTask`, the units of work, each with the key of everything that shapes it
 store        results by key in a file beside the map; survives kill -9
 sweep        tasks -> results, over all cores, past dead workers and Ctrl-C
+sampling     random operating points of a job
 refinement   the lines that a contact law needs besides the map, and the group they become
 law_check    the contact laws against fresh solves at random points
 holes        isolated holes filled from their neighbours

@@ -13,6 +13,7 @@ import xarray as xr
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.sampling import SamplePoint, draw, draw_in_valley, log_uniform
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
 from ehdmaps.maps.backbone import BackboneField
@@ -23,7 +24,6 @@ from ehdmaps.maps.law import ContactLaw, OutsidePolicy
 from ehdmaps.maps.tail import THICK_FILM
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
-from ehdmaps.physics.moes import moes_groups, valley_load_number
 from ehdmaps.physics.oil_supply import FLOODED
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.roughness import SMOOTH
@@ -33,9 +33,6 @@ SEED = 20260
 
 VALLEY_SHARE = 0.2
 """Share of the points that are drawn inside the damping valley."""
-
-VALLEY_WIDTH = (-0.6, 0.8)
-"""Range of ln(M/M_valley) from which they are drawn."""
 
 INSIDE = ("", "valley")
 """Regions within the map, whose points are held to the bars."""
@@ -78,9 +75,6 @@ NOTHING = {"film_compliance": "none: no film to relate to", "damping": "none: no
 _WORTH: Mapping[Axis, float] = {"load": 0.25}
 """Weight of an axis in `coarse_axis`, where it is not 1."""
 
-_Point = tuple[LineContact, float, float, float]
-"""Contact, load [N/m], speed [m/s] and temperature [K]."""
-
 QUANTILES = (0.5, 0.95, 0.99, 1.0)
 
 
@@ -110,12 +104,12 @@ def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
         return None
     rng = np.random.default_rng(SEED)
     valley = round(VALLEY_SHARE * count)
-    drawn = [("", _draw(job, rng)) for _ in range(count - valley)]
-    inside = [point for _ in range(MOST_TRIES * valley) if (point := _draw_in_valley(job, rng)) is not None][:valley]
+    drawn = [("", draw(job, rng)) for _ in range(count - valley)]
+    inside = [point for _ in range(MOST_TRIES * valley) if (point := draw_in_valley(job, rng)) is not None][:valley]
     drawn += [("valley", point) for point in inside]
     if len(job.loads) > 1:
         drawn += [
-            (region, _moved(job, _draw(job, rng), region, _log_uniform(rng, *factors)))
+            (region, _moved(job, draw(job, rng), region, log_uniform(rng, *factors)))
             for region, factors in OUTSIDE.items()
             for _ in range(round(OUTSIDE_SHARE * count))
         ]
@@ -123,43 +117,13 @@ def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
     return LawCheck(job.contacts, tasks, tuple(region for region, _ in drawn))
 
 
-def _moved(job: Job, point: _Point, region: str, factor: float) -> _Point:
+def _moved(job: Job, point: SamplePoint, region: str, factor: float) -> SamplePoint:
     """A point of the map, moved along one axis to a multiple of its end."""
-    contact, load, speed, temperature = point
     if region == "above_speed":
-        return contact, load, factor * max(job.entrainment_speeds), temperature
+        return point._replace(speed=factor * max(job.entrainment_speeds))
     if region == "below_load":
-        return contact, factor * min(job.loads), speed, temperature
-    return contact, min(factor * max(job.loads), highest_structural_load(contact)), speed, temperature
-
-
-def _draw(job: Job, rng: np.random.Generator) -> _Point:
-    """Contact, load, speed and temperature of a random point."""
-    contact = job.contacts[rng.integers(len(job.contacts))]
-    speeds = [u for u in job.entrainment_speeds if u > 0.0]
-    speed = _log_uniform(rng, min(speeds), max(speeds))
-    temperature = float(rng.uniform(min(job.temperatures), max(job.temperatures)))
-    return contact, _log_uniform(rng, min(job.loads), max(job.loads)), speed, temperature
-
-
-def _draw_in_valley(job: Job, rng: np.random.Generator) -> _Point | None:
-    """The same with a load in the damping valley; None where the map's loads do not reach it."""
-    contact, _, speed, temperature = _draw(job, rng)
-    load = _valley_load(job, contact, speed, temperature) * float(np.exp(rng.uniform(*VALLEY_WIDTH)))
-    return (contact, load, speed, temperature) if min(job.loads) < load < max(job.loads) else None
-
-
-def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
-    """One number."""
-    return float(np.exp(rng.uniform(np.log(low), np.log(high))))
-
-
-def _valley_load(job: Job, contact: LineContact, speed: float, temperature: float) -> float:
-    """Load at the bottom of the damping valley [N/m]."""
-    state = job.lubricant.at(temperature)
-    alpha = state.pressure_viscosity.pressure_viscosity
-    unit, L = moes_groups(1.0, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
-    return float(valley_load_number(L)) / float(unit)
+        return point._replace(load=factor * min(job.loads))
+    return point._replace(load=min(factor * max(job.loads), highest_structural_load(point.contact)))
 
 
 def checked_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> dict[str, float | int | str]:

@@ -40,6 +40,8 @@ ALLOWED = {
         "ehdmaps.units",
         "ehdmaps.physics",
     },
+    "ehdmaps.trade": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.figures", "ehdmaps.outputs", "ehdmaps.units"},
+    "ehdmaps.stability": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.inputs", "ehdmaps.outputs", "ehdmaps.units"},
     "ehdmaps.jobs": {
         "ehdmaps",
         "ehdmaps.arrays",
@@ -56,6 +58,8 @@ ALLOWED = {
         "ehdmaps.ehl",
         "ehdmaps.openfoam",
         "ehdmaps.maps",
+        "ehdmaps.stability",
+        "ehdmaps.trade",
     },
     "mbs": {
         "ehdmaps.arrays",
@@ -70,6 +74,8 @@ ALLOWED = {
         "ehdmaps.version",
         "ehdmaps.physics",
         "ehdmaps.maps",
+        "ehdmaps.stability",
+        "ehdmaps.trade",
     },
     "mbs.scene.scene": {
         "ehdmaps.arrays",
@@ -84,6 +90,8 @@ ALLOWED = {
         "ehdmaps.version",
         "ehdmaps.physics",
         "ehdmaps.maps",
+        "ehdmaps.stability",
+        "ehdmaps.trade",
         "ehdmaps.jobs",
         "mbs",
     },

@@ -1,0 +1,71 @@
+"""Random operating points of a job: over its axes, and inside the damping valley."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ehdmaps.jobs.job import Job
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.moes import moes_groups, valley_load_number
+
+VALLEY_WIDTH = (-0.6, 0.8)
+"""Range of ln(M/M_valley) from which points inside the valley are drawn."""
+
+
+class SamplePoint(NamedTuple):
+    """A contact with its load [N/m], entrainment speed [m/s] and temperature [K]."""
+
+    contact: LineContact
+    load: float
+    speed: float
+    temperature: float
+
+
+def draw(job: Job, rng: np.random.Generator) -> SamplePoint:
+    """Draw a point: load and speed log-uniform, temperature uniform, contact at random.
+
+    Parameters
+    ----------
+    job : Job
+        Job over whose axes is drawn; it has a speed above zero.
+    rng : numpy.random.Generator
+        Source of chance.
+    """
+    contact = job.contacts[rng.integers(len(job.contacts))]
+    speeds = [u for u in job.entrainment_speeds if u > 0.0]
+    speed = log_uniform(rng, min(speeds), max(speeds))
+    temperature = float(rng.uniform(min(job.temperatures), max(job.temperatures)))
+    return SamplePoint(contact, log_uniform(rng, min(job.loads), max(job.loads)), speed, temperature)
+
+
+def draw_in_valley(job: Job, rng: np.random.Generator) -> SamplePoint | None:
+    """Draw a point with a load in the damping valley; None where the map's loads do not reach it.
+
+    Arguments as of `draw`.
+    """
+    contact, _, speed, temperature = draw(job, rng)
+    load = _valley_load(job, contact, speed, temperature) * float(np.exp(rng.uniform(*VALLEY_WIDTH)))
+    return SamplePoint(contact, load, speed, temperature) if min(job.loads) < load < max(job.loads) else None
+
+
+def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
+    """Draw a number whose logarithm is uniform.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+        Source of chance.
+    low, high : float
+        Ends, > 0.
+    """
+    return float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+
+def _valley_load(job: Job, contact: LineContact, speed: float, temperature: float) -> float:
+    """Load at the bottom of the damping valley [N/m]."""
+    state = job.lubricant.at(temperature)
+    alpha = state.pressure_viscosity.pressure_viscosity
+    unit, L = moes_groups(1.0, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
+    return float(valley_load_number(L)) / float(unit)

@@ -1,0 +1,11 @@
+"""Speed against accuracy, as it was measured: one record for contacts, maps and systems, and how it is shown.
+
+The modules in the order in which data pass through them:
+
+=======  ================================================================================
+record   `Trade`: choices with their cost, and the errors of what a user looks at
+pareto   which choices no other one beats in both cost and error
+=======  ================================================================================
+
+What is measured is no part of it: contacts and maps are in `ehdmaps.jobs`, systems in `mbs.analyses`.
+"""

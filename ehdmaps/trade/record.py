@@ -1,0 +1,164 @@
+"""What a measurement of speed against accuracy found, as frozen values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A quantity that a user looks at.
+
+    Attributes
+    ----------
+    name : str
+        Name in words, such as "stiffness".
+    unit : {"1", "dB"}
+        Unit of its error: relative to the reference, or a difference of levels.
+    """
+
+    name: str
+    unit: str = "1"
+
+
+@dataclass(frozen=True)
+class ErrorSummary:
+    """Sizes of the errors of one quantity over the points of a sample.
+
+    Attributes
+    ----------
+    points : int
+        How many points were compared.
+    median, high, largest : float
+        Median, 95 % quantile and largest value of the sizes; NaN without a point.
+    bias : float
+        Median of the signed errors.
+    worst : str
+        Where the largest one is, in words; empty without a point.
+    stated : float
+        Median of the errors that the choice states of itself; NaN where it states none.
+    covered : float
+        Share of the points whose error is not above the stated one; NaN where none is stated.
+    """
+
+    points: int
+    median: float
+    high: float
+    largest: float
+    bias: float
+    worst: str
+    stated: float = np.nan
+    covered: float = np.nan
+
+    @classmethod
+    def of(cls, errors: FloatArray, places: Sequence[str], stated: FloatArray | None = None) -> ErrorSummary:
+        """Sum up signed errors.
+
+        Parameters
+        ----------
+        errors : array (n,)
+            Signed errors; those that are not finite are left out.
+        places : sequence of str
+            Where each was found.
+        stated : array (n,), optional
+            Error that the choice states of each point; NaN where it states none.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> found = ErrorSummary.of(np.array([-0.02, 0.01, np.nan]), ["a", "b", "c"], np.array([0.03, 0.005, 0.1]))
+        >>> found.points, found.largest, found.worst, found.covered
+        (2, 0.02, 'a', 0.5)
+        """
+        known = np.isfinite(errors)
+        if not known.any():
+            return cls(0, np.nan, np.nan, np.nan, np.nan, "")
+        sizes = np.abs(errors[known])
+        middle, high, largest = (float(value) for value in np.quantile(sizes, (0.5, 0.95, 1.0)))
+        worst = np.asarray(places, dtype=object)[known][int(np.argmax(sizes))]
+        own = np.full(sizes.shape, np.nan) if stated is None else np.asarray(stated, dtype=np.float64)[known]
+        told = np.isfinite(own)
+        return cls(
+            points=sizes.size,
+            median=middle,
+            high=high,
+            largest=largest,
+            bias=float(np.median(errors[known])),
+            worst=str(worst),
+            stated=float(np.median(own[told])) if told.any() else np.nan,
+            covered=float(np.mean(sizes[told] <= own[told])) if told.any() else np.nan,
+        )
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One choice of model or setting, with its cost and its errors.
+
+    Attributes
+    ----------
+    group : str
+        What is chosen, such as "resolution" or "law"; choices of a group stand together.
+    label : str
+        The choice, such as "reynolds, density 12".
+    seconds : float
+        Cost, as `Trade.cost` says: processor time.
+    errors : mapping of str to ErrorSummary
+        Errors against the reference, by the name of the quantity; a quantity that was not judged is left out.
+    numerical : mapping of str to ErrorSummary
+        The part of them that a finer solution of the same model takes away; empty where it was not told apart.
+    model : mapping of str to ErrorSummary
+        The part that stays with the finest solution of the same model; empty where it was not told apart.
+    solved, asked : int
+        Points with a usable answer, of how many.
+    lost : tuple of str
+        Points without one, each with its place and cause.
+    default : bool
+        Whether this is what is used where a user says nothing.
+    """
+
+    group: str
+    label: str
+    seconds: float
+    errors: Mapping[str, ErrorSummary]
+    numerical: Mapping[str, ErrorSummary] = field(default_factory=dict)
+    model: Mapping[str, ErrorSummary] = field(default_factory=dict)
+    solved: int = 1
+    asked: int = 1
+    lost: tuple[str, ...] = ()
+    default: bool = False
+
+
+@dataclass(frozen=True)
+class Trade:
+    """A measurement of speed against accuracy.
+
+    Attributes
+    ----------
+    level : {"contact", "map", "system"}
+        What was measured.
+    title : str
+        Of what, in words.
+    cost : str
+        What `Choice.seconds` counts, such as "s a point" or "s a run".
+    reference : str
+        What errors are relative to, in words.
+    judged : tuple of Judged
+        The quantities, in the order of the columns.
+    choices : tuple of Choice
+        The rows.
+    frame : tuple of str
+        What a reader must know besides: seed, sample, sensor, clearance, and what could not be compared.
+    """
+
+    level: str
+    title: str
+    cost: str
+    reference: str
+    judged: tuple[Judged, ...]
+    choices: tuple[Choice, ...]
+    frame: tuple[str, ...] = ()
