@@ -34,6 +34,12 @@ def parser() -> argparse.ArgumentParser:
     generate.add_argument("job", metavar="JOB")
     generate.add_argument("-o", "--output", metavar="MAP.nc", help="default: the job's name with .nc, in this folder")
     generate.add_argument("--solver", metavar="NAME", help=_SOLVER)
+    generate.add_argument(
+        "--tolerance",
+        metavar="SHARE",
+        help='of k, c and film offset of the contact laws, "1 %%": grid and refinement lines are chosen for it, and '
+        "confirmed by fresh solves; default: the settings of the job",
+    )
     generate.add_argument("--workers", metavar="N", type=_workers, help="processes; default: all cores")
     generate.add_argument("--fresh", action="store_true", help="forget what is solved already")
     generate.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
