@@ -44,7 +44,6 @@ from ehdmaps.jobs.refinement import MOST_LINE_POINTS, Refinement, backbone_group
 from ehdmaps.jobs.sampling import drawable
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
-from ehdmaps.maps.backbone import BackboneField
 from ehdmaps.maps.backbone_plan import STEP_LIMITS, STEPS, Axis, Steps
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.solution import ContactSolver
@@ -202,8 +201,8 @@ def check_tolerance(job: Job, solver: ContactSolver, tolerance: float) -> Reynol
         problems.append(f"tolerance: got {tolerance!r:.40}; {_ALLOWED}, which is 0.01 in Python")
     if not isinstance(solver, ReynoldsSolver):
         problems.append(
-            f"tolerance: the solver {solver.name!r} has no grid density and no refinement lines to choose; allowed: the "
-            "solver reynolds; how far other solvers are from it is measured by `ehdmaps tradeoff`"
+            f"tolerance: the solver {solver.name!r} has no grid density and no refinement lines to choose; allowed: "
+            "the solver reynolds; how far other solvers are from it is measured by `ehdmaps tradeoff`"
         )
     elif job.backbone == "none":
         problems.append(
@@ -427,10 +426,9 @@ def _worst(tried: _Round, name: str) -> str:
 
 def _words(tried: _Round, tolerance: float) -> str:
     """One round in words."""
-    found = (
-        tried.refused or f"{np.mean(np.all(tried.within(tolerance), axis=0)):.1%} of {len(tried.fresh.tasks)} within"
-    )
-    return f"{tried.settings.text}, {tried.lines.points} points: {found}"
+    count = len(tried.fresh.tasks)
+    found = tried.refused or f"{np.mean(np.all(tried.within(tolerance), axis=0)):.1%} of {count} points within"
+    return f"{tried.settings.text}, {tried.lines.points} points of lines: {found}"
 
 
 def unmet_tolerance(attributes: Mapping[str, Any]) -> list[str]:
@@ -445,7 +443,7 @@ def unmet_tolerance(attributes: Mapping[str, Any]) -> list[str]:
         return []
     worst = attributes.get("tolerance_worst", "no point compared")
     return [
-        f"unmet: the contact laws are not within {float(attributes['tolerance']):.2%} at {SHARE:.0%} of the fresh points "
-        f"over the map and {VALLEY_SHARE:.0%} of those in the damping valley: {attributes['tolerance_unmet']}",
+        f"unmet: the contact laws are not within {100.0 * float(attributes['tolerance']):.3g} % at {SHARE:.0%} of the "
+        f"fresh points over the map and {VALLEY_SHARE:.0%} of those in the valley: {attributes['tolerance_unmet']}",
         f"worst points: {worst}",
     ]
