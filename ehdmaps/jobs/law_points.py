@@ -242,7 +242,7 @@ def errors_of(values: Mapping[str, FloatArray], points: FreshPoints) -> dict[str
     """Signed relative errors against fresh solutions, by quantity; shape (n,).
 
     Stiffness relative to k; damping to c, or to `SMALL_DAMPING` k b/u where c is less; film offset to h, or to
-    `SMALL_OFFSET` of the elastic approach where h is less; the approach to the elastic one.
+    `SMALL_OFFSET` of the elastic approach where h is less; the approach to the sum of the elastic one and h.
 
     Parameters
     ----------
@@ -276,7 +276,7 @@ def _scales(points: FreshPoints) -> dict[str, FloatArray]:
         STIFFNESS: true[STIFFNESS],
         DAMPING: np.maximum(true[DAMPING], SMALL_DAMPING * true[STIFFNESS] * time),
         OFFSET: np.maximum(true[OFFSET], SMALL_OFFSET * solids),
-        APPROACH: solids,
+        APPROACH: solids + true[OFFSET],
     }
 
 

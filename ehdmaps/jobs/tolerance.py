@@ -72,8 +72,8 @@ DENSITIES = (3.0, 4.0, 5.0, 6.5, 9.0, 13.0)
 TRIAL_DENSITY = 18.0
 """Density of the reference of the trial."""
 
-NUMERICAL_SHARE = 1.0 / 3.0
-"""Share of the tolerance that the numerical error of the map's points may take at 95 % of the trial points."""
+NUMERICAL_SHARE, MOST_NUMERICAL = 1.0 / 3.0, 0.5
+"""Shares of the tolerance that the numerical error of the map's points may take, at 95 % of the points and at most."""
 
 REFERENCE = 2.0
 """Density and inlet length of fresh solves, over those of the map."""
@@ -265,7 +265,7 @@ def _density(job: Job, solver: ReynoldsSolver, tolerance: float, solve: Solve) -
         if not sizes.size or np.any(np.isnan(sizes)):
             continue
         high = np.quantile(sizes, 0.95, axis=1)
-        if np.all(high <= NUMERICAL_SHARE * tolerance) and np.all(sizes <= tolerance):
+        if np.all(high <= NUMERICAL_SHARE * tolerance) and np.all(sizes <= MOST_NUMERICAL * tolerance):
             return density
     return DENSITIES[-1]
 
@@ -342,7 +342,7 @@ def _finer(tried: _Round, tolerance: float, solve: Solve) -> tuple[Settings | No
         return None, (
             "no finer settings are left"
             if wanted
-            else "films between the lines are within it; what misses is the table of a law"
+            else "films between the lines are within it, and the table of a law misses where damping goes through zero"
         )
     lines = refinement(_chosen(tried.job, tried.solver, settings), replace(tried.solver, density=settings.density))
     if lines is None or lines.points > MOST_LINE_POINTS:
@@ -375,7 +375,7 @@ def _votes(tried: _Round, tolerance: float, solve: Solve) -> Counter[str]:
     between = errors_of(film_values(fields, there), there)
     votes: Counter[str] = Counter()
     for i, task in enumerate(there.tasks):
-        if any(not abs(numerical[name][i]) <= 0.5 * tolerance for name in JUDGED):
+        if any(not abs(numerical[name][i]) <= MOST_NUMERICAL * tolerance for name in JUDGED):
             votes["density"] += 1
         elif any(not abs(between[name][i]) <= tolerance for name in JUDGED):
             votes[loosest_axis(fields[task.contact.name], task)] += 1
@@ -408,8 +408,9 @@ def _attributes(
                     sizes = np.abs(last.errors[name][here])
                     record[f"tolerance_{prefix}{name.replace(' ', '_')}_error"] = quantiles(sizes)
         record["tolerance_damping_related_to_itself"] = judged_by_share(fresh)
-        record["tolerance_worst"] = "; ".join(_worst(last, name) for name in JUDGED)
-    record["tolerance_rounds"] = "; ".join(_words(tried, tolerance) for tried in rounds)
+        record |= {key: _worst(last, name) for name, key in _WORST.items()}
+    record["tolerance_rounds"] = len(rounds)
+    record |= {f"tolerance_round_{number}": _words(tried, tolerance) for number, tried in enumerate(rounds, start=1)}
     record["tolerance_spent"] = f"{points} points and {seconds:.3g} s of solving besides the points of the map"
     record["tolerance_job_sha256"] = job.sha256
     if not met:
@@ -421,7 +422,11 @@ def _worst(tried: _Round, name: str) -> str:
     """The largest error of a quantity, and where."""
     sizes = np.abs(tried.errors[name])
     worst = int(np.argmax(np.where(np.isnan(sizes), math.inf, sizes)))
-    return f"{name} {sizes[worst]:.2g} at {tried.fresh.places[worst]}"
+    return f"{sizes[worst]:.2g} at {tried.fresh.places[worst]}"
+
+
+_WORST = {name: f"tolerance_worst_{name.replace(' ', '_')}" for name in JUDGED}
+"""Attributes with the worst points."""
 
 
 def _words(tried: _Round, tolerance: float) -> str:
@@ -441,9 +446,9 @@ def unmet_tolerance(attributes: Mapping[str, Any]) -> list[str]:
     """
     if "tolerance_unmet" not in attributes:
         return []
-    worst = attributes.get("tolerance_worst", "no point compared")
+    worst = [f"{name} {attributes[key]}" for name, key in _WORST.items() if key in attributes]
     return [
         f"unmet: the contact laws are not within {100.0 * float(attributes['tolerance']):.3g} % at {SHARE:.0%} of the "
         f"fresh points over the map and {VALLEY_SHARE:.0%} of those in the valley: {attributes['tolerance_unmet']}",
-        f"worst points: {worst}",
+        f"worst points: {'; '.join(worst) or 'none compared'}",
     ]

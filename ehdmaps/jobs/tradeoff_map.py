@@ -192,7 +192,7 @@ def _frame(measurement: _Measurement, seed: int) -> tuple[str, ...]:
     return (
         f"{len(points.tasks)} random points, seed {seed}; {np.count_nonzero(points.valley)} in the damping valley",
         f"damping relative to c, or to {SMALL_DAMPING:g} k b/u where c is less ({1.0 - share:.0%} of the points); film "
-        f"offset to h, or to {SMALL_OFFSET:g} of the elastic approach where h is less; approach to the elastic one",
+        f"offset to h, or to {SMALL_OFFSET:g} of the elastic approach where h is less; approach to the sum of both",
         "seconds: processor time of all points of the map and its lines; that of the grid is scaled from a sample of "
         "its lines where laws are made from refinement lines; without the check of the laws",
         "step over ln(M/M_valley) in the valley; sizes are loads x speeds x temperatures, the points are those of the "
