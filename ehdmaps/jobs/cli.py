@@ -116,14 +116,37 @@ def parser() -> argparse.ArgumentParser:
     export.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
     export.add_argument("--roughness", metavar="LENGTH", help=_ROUGHNESS)
 
+    _add_compare(commands)
+    _add_tradeoff(commands)
+    return top
+
+
+def _add_compare(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Add the arguments of `ehdmaps compare`."""
     compare = commands.add_parser("compare", help="differences between two maps")
     compare.add_argument("first", metavar="A.nc")
     compare.add_argument("second", metavar="B.nc")
+    compare.add_argument("--json", action="store_true", help="the differences as one object")
 
-    tradeoff = commands.add_parser("tradeoff", help="measured speed and accuracy of the solvers and settings")
+
+def _add_tradeoff(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Add the arguments of `ehdmaps tradeoff`."""
+    tradeoff = commands.add_parser("tradeoff", help="measured speed and accuracy of solvers, settings and physics")
     tradeoff.add_argument("job", metavar="JOB")
-    tradeoff.add_argument("--lines", metavar="N", type=_workers, default=4, help="load lines in the sample; default: 4")
-    return top
+    tradeoff.add_argument("--points", metavar="N", type=_workers, default=60, help="random points; default: 60")
+    tradeoff.add_argument("--seed", metavar="S", type=_count, default=1, help="seed of the points; default: 1")
+    tradeoff.add_argument(
+        "--openfoam",
+        metavar="N",
+        type=_count,
+        default=3,
+        help="how many of the points openfoam solves, some ten to hundred seconds each; 0 leaves it out; default: 3",
+    )
+    tradeoff.add_argument("-o", "--output", metavar="OUT.nc", help="the numbers as netCDF; default: none")
+    tradeoff.add_argument("--json", action="store_true", help="the numbers as one object")
+    tradeoff.add_argument(
+        "--plot", metavar="FIG.png", help="error over cost, with the front of the best; also .pdf, .svg"
+    )
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -146,6 +169,13 @@ def _command(arguments: argparse.Namespace) -> tuple[str, int]:
     """Load the command that is asked for, and do it."""
     result: tuple[str, int] = importlib.import_module(f"ehdmaps.jobs.commands.{arguments.command}").run(arguments)
     return result
+
+
+def _count(text: str) -> int:
+    """Read a whole number >= 0."""
+    if not (text.isascii() and text.isdigit() and len(text) <= 9):
+        raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 0 to 999999999")
+    return int(text)
 
 
 def _workers(text: str) -> int:

@@ -13,7 +13,7 @@ import xarray as xr
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.sampling import SamplePoint, draw, draw_in_valley, log_uniform
+from ehdmaps.jobs.sampling import VALLEY_SHARE, SamplePoint, draw, draw_valley_points, log_uniform
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
 from ehdmaps.maps.backbone import BackboneField
@@ -30,9 +30,6 @@ from ehdmaps.physics.roughness import SMOOTH
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
 
 SEED = 20260
-
-VALLEY_SHARE = 0.2
-"""Share of the points that are drawn inside the damping valley."""
 
 INSIDE = ("", "valley")
 """Regions within the map, whose points are held to the bars."""
@@ -53,9 +50,6 @@ COMPLIANCE_BARS, DAMPING_BARS = (0.01, 1e-4), (0.05, 1e-3)
 
 SHARES = {"law_": 0.99, "law_valley_": 0.95}
 """Share of the points that should be within the bars, over the whole map and in the valley."""
-
-MOST_TRIES = 10
-"""Draws per point in the valley: a map may hold a part of it, or none."""
 
 REFUSED, HALVED = "law_refused", "law_lines_halved_along"
 """Attributes of the map: why it makes no law, and the axes along which the steps of its lines were halved."""
@@ -105,8 +99,7 @@ def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
     rng = np.random.default_rng(SEED)
     valley = round(VALLEY_SHARE * count)
     drawn = [("", draw(job, rng)) for _ in range(count - valley)]
-    inside = [point for _ in range(MOST_TRIES * valley) if (point := draw_in_valley(job, rng)) is not None][:valley]
-    drawn += [("valley", point) for point in inside]
+    drawn += [("valley", point) for point in draw_valley_points(job, valley, rng)]
     if len(job.loads) > 1:
         drawn += [
             (region, _moved(job, draw(job, rng), region, log_uniform(rng, *factors)))
