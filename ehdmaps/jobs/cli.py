@@ -123,7 +123,23 @@ def parser() -> argparse.ArgumentParser:
     tradeoff = commands.add_parser("tradeoff", help="measured speed and accuracy of the solvers and settings")
     tradeoff.add_argument("job", metavar="JOB")
     tradeoff.add_argument("--lines", metavar="N", type=_workers, default=4, help="load lines in the sample; default: 4")
+    _add_stability(commands)
     return top
+
+
+def _add_stability(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Add the command `stability`."""
+    stability = commands.add_parser(
+        "stability", help="search the extremes of what contacts and readers may be given; takes an hour as it is"
+    )
+    stability.add_argument("job", metavar="JOB", nargs="?", default="nu308", help="whose contacts are tried; nu308")
+    stability.add_argument("--points", metavar="N", type=_count, default=100_000, help="by each quick solver; 100000")
+    stability.add_argument("--openfoam", metavar="N", type=_count, default=200, help="points by openfoam; 200")
+    stability.add_argument("--mutations", metavar="N", type=_count, default=10_000, help="for each reader; 10000")
+    stability.add_argument("--seed", metavar="S", type=_count, default=1, help="of all chance; default: 1")
+    stability.add_argument("--only", metavar="NAME", help="contact, or a reader such as map; default: all")
+    stability.add_argument("--json", action="store_true", help="the checks as JSON")
+    stability.add_argument("-o", "--output", metavar="FILE", help="the same into a file, .txt or .json")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -152,6 +168,13 @@ def _workers(text: str) -> int:
     """Read a whole number >= 1."""
     if not (text.isascii() and text.isdigit() and 1 <= int(text[:6]) <= 1024 and len(text) <= 4):
         raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 1 to 1024")
+    return int(text)
+
+
+def _count(text: str) -> int:
+    """Read a whole number >= 0."""
+    if not (text.isascii() and text.isdigit() and len(text) <= 8):
+        raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 0 to 99999999")
     return int(text)
 
 

@@ -32,8 +32,8 @@ from ehdmaps.stability.mutations import Damaged, damage
 MOST_SECONDS = 10.0
 """Processor time that a small file may take; most take some milliseconds."""
 
-MOST_WAIT = 60.0
-"""Wall time after which a case counts as one that never ends."""
+MOST_WAIT = 120.0
+"""Wall time after which a case counts as one that never ends, though it takes no processor time."""
 
 MOST_MEMORY = 400e6
 """Memory that a file may take [bytes]; the damaged ones are small, see `ehdmaps.stability.mutations.LARGEST`."""
@@ -208,6 +208,8 @@ def _batch(reader: Reader, seed: int, begin: int, end: int) -> Iterator[tuple[in
         _, status = os.waitpid(child, 0)
     if number < end:
         died = -os.waitstatus_to_exitcode(status)
+        if died == signal.SIGXCPU:
+            ended = f"did not end within {2.0 * MOST_SECONDS:g} s of processor time"
         words = ended or (f"crash: {signal.Signals(died).name}" if died > 0 else f"the process left with {-died}")
         yield number, {"failed": words, "refused": "", "seconds": 0.0}
 
@@ -223,12 +225,19 @@ def _work(reader: Reader, seed: int, begin: int, end: int, sink: int) -> NoRetur
         _limit_addresses()
         for number in range(begin, end):
             case = case_of(reader, seed, number)
+            _limit_seconds()
             with _folder(case.files) as folder:
                 found = _judged(reader, case, folder)
             os.write(sink, json.dumps(found).encode() + b"\n")
         status = 0
     finally:
         os._exit(status)
+
+
+def _limit_seconds() -> None:
+    """Have the system end this process where the next case never ends."""
+    _, most = resource.getrlimit(resource.RLIMIT_CPU)
+    resource.setrlimit(resource.RLIMIT_CPU, (int(time.process_time() + 2.0 * MOST_SECONDS) + 1, most))
 
 
 def _limit_addresses() -> None:
@@ -299,7 +308,7 @@ def _wording(error: EhdmapsError) -> str:
 def _reason(text: str, folder: Path) -> str:
     """Why something was refused, in words that are alike for alike cases."""
     first = next((line for line in text.splitlines() if line.strip()), "")
-    words = " ".join(_VARIED.sub("#", first.replace(f"{folder}/", "")).split())
+    words = " ".join(_VARIED.sub("#", first.replace(f"{folder}/", "")[:400]).split())
     return words.encode("ascii", "replace").decode()[:70]
 
 

@@ -6,8 +6,12 @@ import dataclasses
 import json
 import textwrap
 from collections.abc import Sequence
+from pathlib import Path
 
+from ehdmaps.outputs import MARK, Kind, has_mark, write_text
 from ehdmaps.stability.findings import Check
+
+CHECKS = Kind("a table of checks of ehdmaps or mbs", (".txt", ".json"), has_mark)
 
 MOST_REASONS = 6
 """Reasons of refusals that are printed of a check; JSON has all."""
@@ -46,7 +50,7 @@ def checks_text(checks: Sequence[Check]) -> str:
 
 
 def checks_json(checks: Sequence[Check]) -> str:
-    """Return the checks as JSON: a list of objects with the attributes of `Check`.
+    """Return the checks as JSON: under "checks" a list of objects with the attributes of `Check`.
 
     Parameters
     ----------
@@ -54,7 +58,28 @@ def checks_json(checks: Sequence[Check]) -> str:
         What was found.
     """
     entries = [dataclasses.asdict(check) | {"reasons": dict(check.reasons)} for check in checks]
-    return json.dumps(entries, indent=1)
+    return json.dumps({"mark": MARK, "checks": entries}, indent=1)
+
+
+def write_checks(path: Path, head: str, checks: Sequence[Check]) -> None:
+    """Write checks, by the rule of all files that are written.
+
+    Parameters
+    ----------
+    path : Path
+        .txt for the table, .json for JSON.
+    head : str
+        What was searched; first line of the table.
+    checks : sequence of Check
+        What was found.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    text = checks_json(checks) if path.suffix == ".json" else f"{head} ({MARK})\n{checks_text(checks)}"
+    write_text(path, f"{text}\n", CHECKS)
 
 
 def _reasons(check: Check) -> str:
