@@ -13,8 +13,8 @@ import xarray as xr
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.law_points import at_loads, fresh_solution
-from ehdmaps.jobs.sampling import SamplePoint, draw, drawable, log_uniform, sample
+from ehdmaps.jobs.law_points import COMPLIANCE_BARS, DAMPING_BARS, at_loads, fresh_solution
+from ehdmaps.jobs.sampling import SamplePoint, draw, draw_apart, drawable, log_uniform
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
 from ehdmaps.maps.backbone import BackboneField
@@ -22,6 +22,7 @@ from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.maps.compilation import highest_structural_load
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import ContactLaw, OutsidePolicy
+from ehdmaps.maps.law_errors import quantiles_text
 from ehdmaps.maps.tail import THICK_FILM
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
@@ -45,9 +46,6 @@ of films to lower loads are worth there is told, and held to no bar."""
 OUTSIDE_SHARE = 0.1
 """Points in each of these regions, as a share of those within the map."""
 
-COMPLIANCE_BARS, DAMPING_BARS = (0.01, 1e-4), (0.05, 1e-3)
-"""An error is within its bar where it is below a share of the film compliance or of 1/k; of c or of k b/u."""
-
 SHARES = {"law_": 0.99, "law_valley_": 0.95}
 """Share of the points that should be within the bars, over the whole map and in the valley."""
 
@@ -63,13 +61,15 @@ STANDS_ON_LINES = (
 STANDS_ON_POINTS = "these laws are made from the points of the map: more temperatures, speeds or loads help"
 """What can be done where a bar is unmet; for the lines see `coarse_axis`."""
 
-NOTHING = {"film_compliance": "none: no film to relate to", "damping": "none: no damping above zero to relate to"}
+NOTHING = {
+    "film_compliance": "none: no film to relate to",
+    "damping": "none: no damping above zero to relate to",
+    "film_offset": "none: no film to relate to",
+}
 """What stands in place of quantiles where no point has one."""
 
 _WORTH: Mapping[Axis, float] = {"load": 0.25}
 """Weight of an axis in `coarse_axis`, where it is not 1."""
-
-QUANTILES = (0.5, 0.95, 0.99, 1.0)
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
     if not count or not drawable(job):
         return None
     rng = np.random.default_rng(SEED)
-    over, valley = sample(job, rng, count)
+    over, valley = draw_apart(job, rng, count)
     drawn = [("", point) for point in over] + [("valley", point) for point in valley]
     if len(job.loads) > 1:
         drawn += [
@@ -255,10 +255,11 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
     -------
     dict
         Quantiles of the relative error in film compliance and damping of each contact's law, and the shares of the
-        points that are within the bars. A law has no damping below zero: where the solved one is, the law is held
-        against zero by the second bar, and the quantiles leave the point out. Where there is no film, only the second
-        bars count. The same just outside the map, see `OUTSIDE`, by the law of the policy `asymptote`; below it, points
-        with a film so thick that a law lets it fade are left out.
+        points that are within the bars; within the map also quantiles of the error in stiffness and film offset. A law
+        has no damping below zero: where the solved one is, the law is held against zero by the second bar, and the
+        quantiles leave the point out. Where there is no film, only the second bars count. The same just outside the
+        map, see `OUTSIDE`, by the law of the policy `asymptote`; below it, points with a film so thick that a law lets
+        it fade are left out.
     """
     rows: list[FloatArray] = []
     regions: list[str] = []
@@ -288,8 +289,12 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
         where = f"_{region}" if region else ""
         for column, name in enumerate(("film_compliance", "damping")):
             known = table[mask, column][np.isfinite(table[mask, column])]
-            record[f"law{where}_{name}_error"] = quantiles(known) if known.size else NOTHING[name]
+            record[f"law{where}_{name}_error"] = quantiles_text(known) if known.size else NOTHING[name]
             record[f"law{where}_{name}_within_bar"] = float(np.mean(table[mask, column + 2]))
+        if region in INSIDE:
+            for column, name in ((4, "stiffness"), (5, "film_offset")):
+                known = table[mask, column][np.isfinite(table[mask, column])]
+                record[f"law{where}_{name}_error"] = quantiles_text(known) if known.size else NOTHING[name]
     return record
 
 
@@ -299,31 +304,24 @@ def _known(task: LineTask, arrays: Arrays, region: str) -> bool:
     return Status(int(arrays["status"][0])).usable and not fading
 
 
-def quantiles(errors: FloatArray) -> str:
-    """Quantiles of errors in words.
-
-    Parameters
-    ----------
-    errors : array (n,)
-        Sizes of errors, n > 0.
-    """
-    words = ("median", "95 %", "99 %", "largest")
-    return ", ".join(f"{word} {value:.2g}" for word, value in zip(words, np.quantile(errors, QUANTILES), strict=True))
-
-
 def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> FloatArray:
-    """Relative errors of film compliance and damping, and whether each is within its bar; shape (n, 4)."""
+    """Errors of film compliance and damping, whether each is within its bar, errors of k and film offset, shape (n, 6).
+
+    All are relative; that of the film offset is what the approach at the load misses, as a part of the offset.
+    """
     tasks = [task for task, _ in points]
     fresh = [fresh_solution(task, arrays) for task, arrays in points]
     load = np.array([task.loads[0] for task in tasks])
     speed = np.array([task.entrainment_speed for task in tasks])
     temperature = np.array([task.temperature for task in tasks])
     half = np.array([float(half_width(t.loads[0], t.contact.radius, t.contact.reduced_modulus)) for t in tasks])
-    approach = np.array([one.approach for one in fresh])
-    _, stiffness, damping = at_loads(law, approach, load, speed, temperature)
+    solved_approach = np.array([one.approach for one in fresh])
+    approach, stiffness, damping = at_loads(law, solved_approach, load, speed, temperature)
     solved_k = np.array([one.stiffness for one in fresh])
     solved_c = np.maximum([one.damping for one in fresh], 0.0)
     compliance = np.array([one.film_compliance for one in fresh])
+    offset = np.abs([one.film_offset for one in fresh])
+    missed = np.abs(approach - solved_approach)
     wrong = np.abs(1.0 / stiffness - 1.0 / solved_k)
     wrong_c = np.abs(damping - solved_c)
     # a dry contact has no film compliance to relate to, only 1/k
@@ -335,5 +333,7 @@ def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> FloatArra
             relative_c,
             (relative <= COMPLIANCE_BARS[0]) | (wrong * solved_k <= COMPLIANCE_BARS[1]),
             (relative_c <= DAMPING_BARS[0]) | (wrong_c * speed <= DAMPING_BARS[1] * solved_k * half),
+            wrong * solved_k,
+            np.where(offset > 0.0, missed / np.maximum(offset, 1e-300), np.nan),
         ]
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.sampling import sample
+from ehdmaps.jobs.sampling import draw_apart
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
 from ehdmaps.maps.film_field import FilmField
@@ -23,11 +23,14 @@ from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 STIFFNESS, DAMPING, OFFSET, APPROACH = "stiffness", "damping", "film offset", "approach"
 """Quantities of `errors_of`."""
 
-SMALL_DAMPING = 0.02
-"""Damping, as a share of k b/u, below which an error is related to this share: damping runs through zero in its valley,
-and a share of nothing is no measure. It is the ratio of the two bars of the check of the laws."""
+COMPLIANCE_BARS, DAMPING_BARS = (0.01, 1e-4), (0.05, 1e-3)
+"""An error is within its bar where it is below a share of the film compliance or of 1/k; of c or of k b/u."""
 
-SMALL_OFFSET = 0.01
+SMALL_DAMPING = DAMPING_BARS[1] / DAMPING_BARS[0]
+"""Damping, as a share of k b/u, below which an error is related to this share: damping runs through zero in its valley,
+and a share of nothing is no measure."""
+
+SMALL_OFFSET = COMPLIANCE_BARS[1] / COMPLIANCE_BARS[0]
 """Film offset, as a share of the elastic approach, below which an error is related to this share: an approach that is
 wrong by 1e-4 of itself is a load that is, however thin the film."""
 
@@ -69,7 +72,7 @@ def random_points(job: Job, solver: ContactSolver, count: int, rng: np.random.Ge
     rng : numpy.random.Generator
         Source of chance.
     """
-    over, valley = sample(job, rng, count)
+    over, valley = draw_apart(job, rng, count)
     tasks = tuple(LineTask(p.contact, job.lubricant, (p.load,), p.speed, p.temperature, solver) for p in over + valley)
     return RandomPoints(tasks, np.arange(len(tasks)) >= len(over))
 

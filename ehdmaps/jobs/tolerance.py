@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from scipy.special import betaincinv
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.ehl.limits import SETTING_LIMITS
@@ -23,7 +24,7 @@ from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.job_text import steps_keys, with_solver
-from ehdmaps.jobs.law_check import loosest_axis, quantiles
+from ehdmaps.jobs.law_check import loosest_axis
 from ehdmaps.jobs.law_points import (
     DAMPING,
     OFFSET,
@@ -46,6 +47,7 @@ from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
 from ehdmaps.maps.backbone_plan import STEP_LIMITS, STEPS, Axis, Steps
 from ehdmaps.maps.law import ContactLaw
+from ehdmaps.maps.law_errors import quantiles_text
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.units import quantity_within
 
@@ -403,10 +405,12 @@ def _attributes(
     if last.errors and fresh.tasks:
         for prefix, here in (("", ~fresh.valley), ("valley_", fresh.valley)):
             if np.any(here):
-                record[f"tolerance_{prefix}points_within"] = float(np.mean(np.all(last.within(tolerance)[:, here], 0)))
+                within = np.all(last.within(tolerance)[:, here], axis=0)
+                record[f"tolerance_{prefix}points_within"] = float(np.mean(within))
+                record[f"tolerance_{prefix}points_surely_within"] = surely(int(np.count_nonzero(within)), within.size)
                 for name in JUDGED:
                     sizes = np.abs(last.errors[name][here])
-                    record[f"tolerance_{prefix}{name.replace(' ', '_')}_error"] = quantiles(sizes)
+                    record[f"tolerance_{prefix}{name.replace(' ', '_')}_error"] = quantiles_text(sizes)
         record["tolerance_damping_related_to_itself"] = judged_by_share(fresh)
         record |= {key: _worst(last, name) for name, key in _WORST.items()}
     record["tolerance_rounds"] = len(rounds)
@@ -416,6 +420,26 @@ def _attributes(
     if not met:
         record["tolerance_unmet"] = reason
     return record
+
+
+def surely(found: int, points: int) -> float:
+    """Share of all places of which it is 95 % sure that they are within, from so many of random points.
+
+    Lower limit of C. J. Clopper and E. S. Pearson, Biometrika 26, 1934, 404.
+
+    Parameters
+    ----------
+    found : int
+        Points within.
+    points : int
+        All points, > 0.
+
+    Examples
+    --------
+    >>> round(surely(200, 200), 4), round(surely(198, 200), 4), surely(0, 200)
+    (0.9851, 0.9688, 0.0)
+    """
+    return float(betaincinv(found, points - found + 1, 0.05)) if found else 0.0
 
 
 def _worst(tried: _Round, name: str) -> str:
