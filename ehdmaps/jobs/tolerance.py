@@ -437,7 +437,7 @@ def surely(found: int, points: int) -> float:
     Examples
     --------
     >>> round(surely(200, 200), 4), round(surely(198, 200), 4), surely(0, 200)
-    (0.9851, 0.9688, 0.0)
+    (0.9851, 0.9689, 0.0)
     """
     return float(betaincinv(found, points - found + 1, 0.05)) if found else 0.0
 
