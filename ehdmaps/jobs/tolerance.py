@@ -117,7 +117,7 @@ class Tolerated:
     Attributes
     ----------
     job : Job
-        Its text states the chosen settings, and no check of the laws: the confirmation takes its place.
+        Job whose text states the chosen settings, and no check of the laws: the confirmation takes its place.
     solver : ReynoldsSolver
         The solver with the chosen density.
     attributes : dict
