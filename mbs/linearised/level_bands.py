@@ -48,6 +48,6 @@ def level_bands(
     laws = law_bands(balance)
     if laws is None:
         return None
-    motion, back = modal_motion(balance, states, inputs, sensors, frequencies)
+    motion, back = modal_motion(balance, states, inputs, sensors, frequencies, laws.ports)
     band = laws.of_responses(frequencies, motion, back, responses)
     return np.asarray(20.0 * np.log10(1.0 + band / np.maximum(np.abs(responses), 1e-300)))

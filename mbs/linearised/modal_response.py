@@ -68,17 +68,23 @@ def modal_motion(
     inputs: Sequence[Input],
     sensors: Sequence[Sensor],
     frequencies: FloatArray,
+    ports: FloatArray,
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Motion of all coordinates by each input, and what each sensor sees of a load on each coordinate.
+    """Motion of some ports by each input, and what each sensor sees of a load on each of them.
 
-    Arguments as of `modal_response`.
+    Parameters
+    ----------
+    balance, states, inputs, sensors, frequencies
+        The same as for `modal_response`.
+    ports : array, shape (ports, n)
+        How the ports follow the coordinates.
 
     Returns
     -------
-    motion : array, shape (frequencies, n, inputs)
-        Complex amplitudes of the coordinates at 1 N or 1 N m.
-    back : array, shape (frequencies, sensors, n)
-        Response of each sensor to a load of 1 N or 1 N m on each coordinate.
+    motion : array, shape (frequencies, ports, inputs)
+        Complex amplitudes of the ports at 1 N or 1 N m.
+    back : array, shape (frequencies, sensors, ports)
+        Response of each sensor to a load of 1 N or 1 N m on each port.
     """
     n = balance.system.size
     right = states.right[:n]
@@ -87,8 +93,9 @@ def modal_motion(
     rate = 2j * np.pi * np.asarray(frequencies, dtype=np.float64)
     resonance = 1.0 / (rate[:, None] - states.eigenvalues)
     orders = np.array([_ORDER[sensor.quantity] for sensor in sensors], dtype=np.int64)
-    motion = right @ (resonance[:, :, None] * driven)
-    back = (seen * resonance[:, None, :]) @ by_load
+    at_ports, from_ports = (ports @ right).T, by_load @ ports.T
+    motion = np.stack([(resonance * driven[:, i]) @ at_ports for i in range(len(inputs))], axis=-1)
+    back = np.stack([(resonance * seen[s]) @ from_ports for s in range(len(sensors))], axis=1)
     return motion, back * (rate[:, None] ** orders)[:, :, None]
 
 
