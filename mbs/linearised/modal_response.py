@@ -62,41 +62,30 @@ def modal_response(
     return result
 
 
-def modal_motion(
+def seen_of_loads(
     balance: Equilibrium,
     states: StateModes,
-    inputs: Sequence[Input],
     sensors: Sequence[Sensor],
     frequencies: FloatArray,
     ports: FloatArray,
-) -> tuple[ComplexArray, ComplexArray]:
-    """Motion of some ports by each input, and what each sensor sees of a load on each of them.
+) -> ComplexArray:
+    """What each sensor sees of a load of 1 N or 1 N m on each of some ports, shape (frequencies, sensors, ports).
 
     Parameters
     ----------
-    balance, states, inputs, sensors, frequencies
+    balance, states, sensors, frequencies
         The same as for `modal_response`.
     ports : array, shape (ports, n)
         How the ports follow the coordinates.
-
-    Returns
-    -------
-    motion : array, shape (frequencies, ports, inputs)
-        Complex amplitudes of the ports at 1 N or 1 N m.
-    back : array, shape (frequencies, sensors, ports)
-        Response of each sensor to a load of 1 N or 1 N m on each port.
     """
     n = balance.system.size
-    right = states.right[:n]
-    by_load = np.linalg.solve(balance.system.mass.T, states.left[:, n : 2 * n].T).T
-    seen, driven = sensor_matrix(balance, sensors) @ right, by_load @ input_matrix(balance, inputs)
+    seen = sensor_matrix(balance, sensors) @ states.right[:n]
+    by_load = np.linalg.solve(balance.system.mass.T, states.left[:, n : 2 * n].T).T @ ports.T
     rate = 2j * np.pi * np.asarray(frequencies, dtype=np.float64)
     resonance = 1.0 / (rate[:, None] - states.eigenvalues)
     orders = np.array([_ORDER[sensor.quantity] for sensor in sensors], dtype=np.int64)
-    at_ports, from_ports = (ports @ right).T, by_load @ ports.T
-    motion = np.stack([(resonance * driven[:, i]) @ at_ports for i in range(len(inputs))], axis=-1)
-    back = np.stack([(resonance * seen[s]) @ from_ports for s in range(len(sensors))], axis=1)
-    return motion, back * (rate[:, None] ** orders)[:, :, None]
+    found = np.stack([(resonance * row) @ by_load for row in seen], axis=1)
+    return np.asarray(found * (rate[:, None] ** orders)[:, :, None])
 
 
 def checked_response(

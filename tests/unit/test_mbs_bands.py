@@ -19,8 +19,8 @@ from mbs.analyses.lsa import LsaSettings, lsa
 from mbs.analyses.modes import modes
 from mbs.commands.common import band_lines
 from mbs.linearised.bands import NO_MAP, law_bands
-from mbs.linearised.linear import frequency_response, input_matrix
-from mbs.linearised.modal_response import modal_motion
+from mbs.linearised.linear import frequency_response, input_matrix, responses
+from mbs.linearised.modal_response import seen_of_loads
 from mbs.linearised.modes import state_modes, undamped_modes
 from mbs.linearised.sweep_point import along_load
 from mbs.model.elements import Operation
@@ -119,9 +119,10 @@ def test_derivatives_are_those_of_systems_solved_again(models, scene):
     inputs, sensors = model_scene.inputs, model_scene.sensors
     frequencies = np.geomspace(30.0, 5e3, 7)
     direct = frequency_response(balance, inputs, sensors, frequencies)
-    motion, back = modal_motion(balance, states, inputs, sensors, frequencies, np.eye(n))
+    back = seen_of_loads(balance, states, sensors, frequencies, np.eye(n))
     np.testing.assert_allclose(back @ input_matrix(balance, inputs), direct, rtol=1e-4)  # the few states of the films
-    motion, back = modal_motion(balance, states, inputs, sensors, frequencies, laws.ports)
+    back = seen_of_loads(balance, states, sensors, frequencies, laws.ports)
+    motion = laws.ports @ responses(balance, inputs, frequencies)
     for index, change in enumerate(laws.changes[:3]):
         only = dataclasses.replace(laws, changes=(change,))
         other = changed(balance, laws, change, SMALL)
