@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from ehdmaps.maps.law_change import LawChange
 from ehdmaps.maps.law_errors import LawBounds
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.solids import STEEL
-from mbs.analyses.campbell import campbell
+from mbs.analyses.campbell import campbell, silent_run
 from mbs.analyses.changed_laws import law_changes, with_changed_laws
 from mbs.analyses.lsa import LsaSettings, lsa
 from mbs.analyses.modes import modes
@@ -231,3 +232,36 @@ def test_runs_of_bands_are_limited():
     model = assemble(read_scene("nu308_rigid"))
     with pytest.raises(InputError, match=r"bands: got 9 runs; allowed: 0 to 8"):
         campbell(model, bands=9)
+
+
+def loudness(model):
+    """Stiffness of the first bearing in a pose, which takes the place of what a run would find."""
+    first = model.system.elements[0]
+    at = np.zeros(first.transform.shape[0])
+    at[1] = 3e-6
+    return float(first.element.evaluate(at, np.zeros_like(at), Operation(SPEED)).stiffness[1, 1])
+
+
+def test_the_band_of_a_level_is_the_largest_difference_of_its_runs(models, monkeypatch):
+    """Runs as loud as a bearing is stiff: k wrong by 0.1 % is 20 log10(1.001) or 20 log10(1/0.999)."""
+    model = models["nu308_rigid"]
+    plain, told = loudness(model), []
+
+    def run(wrong, course, sensors, progress):
+        silent = silent_run(course)
+        part = loudness(wrong) / plain
+        told.append(part)
+        values = part * np.sin(2.0 * np.pi * 1000.0 * silent.time)
+        return SimpleNamespace(time=silent.time, speed=silent.speed, angle=silent.angle, signals=values[:, None])
+
+    monkeypatch.setattr("mbs.analyses.campbell.recorded_run", run)
+    found = campbell(model, bands=2)
+    change = law_changes(model, [0.5 * found.course.speed.at(found.course.duration)[0]])["bearing_left"][0]
+    assert len(told) == 3
+    expected = 20.0 * np.abs(np.log10(np.array(told[1:]))).max()
+    # Both films and k of a sample have the same sign; a film of a thousandth of the approach counts as k does.
+    assert expected > 20.0 * np.log10(1.0 + change.stiffness)
+    np.testing.assert_allclose(found.runs[0].level_error, expected, rtol=1e-6)
+    np.testing.assert_allclose(found.dataset["sum_level_error"][0], expected, rtol=1e-6)
+    assert campbell(model).runs[0].level_error is None
+    assert len(told) == 4
