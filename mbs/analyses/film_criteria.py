@@ -30,7 +30,7 @@ from ehdmaps.physics.films import dowson_higginson_minimum, martin_minimum, moes
 from ehdmaps.physics.hertz import half_width, max_pressure, natural_time
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
-from ehdmaps.physics.starved import compliance_ratio, damping_ratio, passing
+from ehdmaps.physics.starved import CORNER, compliance_ratio, damping_ratio, film_ratio, passing
 from ehdmaps.physics.thermal import inlet_shear_heating_factor, thermal_loading
 
 TOUCHING = 3.0
@@ -160,13 +160,20 @@ def supply_effect(state: ClosedContact, layer: float) -> FloatArray:
     Notes
     -----
     Moes' film goes to the flow of the flooded contact at either end: 3/M is 1.2257 times the smallest film of rigid
-    surfaces, and a loaded contact carries its central film through.
+    surfaces, and a loaded contact carries its central film through. As in the law on a layer, the meniscus follows a
+    slow change of the load, which is in k, and is held in c (`ehdmaps.maps.oil_layer`).
     """
-    root = np.sqrt(passing(state.film, layer))
-    softer = compliance_ratio(root) * root**2
-    lost = damping_ratio(root) * root**-1.5 * softer**2
-    ratio = (state.solids + state.film_compliance) / (state.solids + state.film_compliance * softer)
-    return np.asarray(np.maximum(np.abs(ratio - 1.0), np.abs(lost * ratio**2 - 1.0)))
+    passed = passing(state.film, layer)
+    root, exponent = np.sqrt(passed), state.film_compliance * state.load / state.film
+    ratio, slope = film_ratio(root)
+    capped = 1.0 - passed**CORNER  # -d ln(r)/d ln(flow)
+    following = passed * (ratio - capped * (ratio + 0.5 * root * slope))
+    held = (compliance_ratio(root) * root**2) ** exponent
+    lost = (damping_ratio(root) * root**-1.5) ** exponent * held**2
+    flooded = state.solids + state.film_compliance
+    k = flooded / (state.solids + state.film_compliance * np.maximum(following, 0.0))
+    c = lost * (flooded / (state.solids + state.film_compliance * held)) ** 2
+    return np.asarray(np.maximum(np.abs(k - 1.0), np.abs(c - 1.0)))
 
 
 def heat_effect(state: ClosedContact, lubricant: Lubricant) -> FloatArray:

@@ -1,9 +1,9 @@
 """Which physics of the films a scene requires, from the ranges that it visits: verdicts with their reasons.
 
 The criteria are those of `mbs.analyses.film_criteria`, each taken at its worst over both contacts, over the speeds of
-the scene, and over the loads of the rollers that carry it; `SHARES` of the highest load at rest. Rollers that carry
-less take less than that part in stiffness. The oil supply is looked at down to idle rollers, whose films are the thick
-ones.
+the scene, and over the loads of the rollers that carry it, `SHARES` of the highest load at rest. Rollers that carry
+less take less than that part in stiffness. The oil supply is looked at down to the lowest load of the planned map,
+that of idle rollers, whose films are the thick ones.
 """
 
 from __future__ import annotations
@@ -35,9 +35,6 @@ from mbs.scene.fields import HERTZ, MICROMETRE
 
 SHARES = (0.1, 1.0)
 """Loads of rollers that carry a bearing, over the highest one at rest."""
-
-IDLE = 0.01
-"""Lowest load over the highest one that is looked at for the oil supply: a roller that films alone press."""
 
 _LOADS, _SPEEDS = 9, 5
 _LAYERS = 241
@@ -78,7 +75,7 @@ class Range:
     Attributes
     ----------
     states : tuple of ClosedContact
-        One a contact and speed, over loads from `IDLE` of the highest one at rest on.
+        One a contact and speed, over loads from the lowest one of the plan to the highest one at rest.
     highest : float
         Highest load at rest [N/m].
     lubricant : Lubricant
@@ -123,7 +120,9 @@ def visited(needed: Needed, lubricant: Lubricant, tolerance: float) -> Range:
         Accepted change, as a part.
     """
     highest = needed.static_load
-    loads = np.union1d(np.geomspace(IDLE, SHARES[0], _LOADS), np.geomspace(*SHARES, _LOADS)) * highest
+    carried = np.geomspace(SHARES[0] * highest, SHARES[1] * highest, _LOADS)
+    idle = np.geomspace(min(needed.load[0], carried[0]), carried[0], _LOADS)
+    loads = np.union1d(idle[:-1], carried)
     speeds = np.unique(np.geomspace(*needed.entrainment_speed, _SPEEDS))
     states = tuple(
         closed_contact(contact, lubricant, loads, speed, needed.temperature)
