@@ -38,7 +38,12 @@ traction     traction of one point over the slide-to-roll ratio
 supplied     one point behind an oil layer: flow ratio and place of the meniscus
 film_plot    pressure, film and velocities of one point, on one page
 compare      differences between two maps
-tradeoff     speed against accuracy, measured
+answers      what is asked of a contact and answered, and what errors are relative to
+rough_solved load sharing of film and asperities with solved films
+contact_ways ways of computing a contact: solvers, oil layers, rough surfaces, frequencies
+contestants  the table of the ways that are measured
+tradeoff     speed against accuracy of contacts, measured
+trade_frame  what a reader of that must know besides
 commands     one module a command
 cli          the command line
 ===========  ====================================================================================
