@@ -118,6 +118,7 @@ def parser() -> argparse.ArgumentParser:
 
     _add_compare(commands)
     _add_tradeoff(commands)
+    _add_stability(commands)
     return top
 
 
@@ -147,6 +148,21 @@ def _add_tradeoff(commands: argparse._SubParsersAction[Parser]) -> None:
     tradeoff.add_argument(
         "--plot", metavar="FIG.png", help="error over cost, with the front of the best; also .pdf, .svg"
     )
+
+
+def _add_stability(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Add the command `stability`."""
+    stability = commands.add_parser(
+        "stability", help="search the extremes of what contacts and readers may be given; takes an hour as it is"
+    )
+    stability.add_argument("job", metavar="JOB", nargs="?", default="nu308", help="whose contacts are tried; nu308")
+    stability.add_argument("--points", metavar="N", type=_count, default=100_000, help="by each quick solver; 100000")
+    stability.add_argument("--openfoam", metavar="N", type=_count, default=200, help="points by openfoam; 200")
+    stability.add_argument("--mutations", metavar="N", type=_count, default=10_000, help="for each reader; 10000")
+    stability.add_argument("--seed", metavar="S", type=_count, default=1, help="of all chance; default: 1")
+    stability.add_argument("--only", metavar="NAME", help="contact, or a reader such as map; default: all")
+    stability.add_argument("--json", action="store_true", help="the checks as JSON")
+    stability.add_argument("-o", "--output", metavar="FILE", help="the same into a file, .txt or .json")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

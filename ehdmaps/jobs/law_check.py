@@ -21,6 +21,7 @@ from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.maps.compilation import highest_structural_load
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import ContactLaw, OutsidePolicy
+from ehdmaps.maps.law_errors import quantiles_text
 from ehdmaps.maps.tail import THICK_FILM
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
@@ -63,13 +64,15 @@ STANDS_ON_LINES = (
 STANDS_ON_POINTS = "these laws are made from the points of the map: more temperatures, speeds or loads help"
 """What can be done where a bar is unmet; for the lines see `coarse_axis`."""
 
-NOTHING = {"film_compliance": "none: no film to relate to", "damping": "none: no damping above zero to relate to"}
+NOTHING = {
+    "film_compliance": "none: no film to relate to",
+    "damping": "none: no damping above zero to relate to",
+    "film_offset": "none: no film to relate to",
+}
 """What stands in place of quantiles where no point has one."""
 
 _WORTH: Mapping[Axis, float] = {"load": 0.25}
 """Weight of an axis in `coarse_axis`, where it is not 1."""
-
-QUANTILES = (0.5, 0.95, 0.99, 1.0)
 
 
 @dataclass(frozen=True)
@@ -244,10 +247,11 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
     -------
     dict
         Quantiles of the relative error in film compliance and damping of each contact's law, and the shares of the
-        points that are within the bars. A law has no damping below zero: where the solved one is, the law is held
-        against zero by the second bar, and the quantiles leave the point out. Where there is no film, only the second
-        bars count. The same just outside the map, see `OUTSIDE`, by the law of the policy `asymptote`; below it, points
-        with a film so thick that a law lets it fade are left out.
+        points that are within the bars; within the map also quantiles of the error in stiffness and film offset. A law
+        has no damping below zero: where the solved one is, the law is held against zero by the second bar, and the
+        quantiles leave the point out. Where there is no film, only the second bars count. The same just outside the
+        map, see `OUTSIDE`, by the law of the policy `asymptote`; below it, points with a film so thick that a law lets
+        it fade are left out.
     """
     rows: list[FloatArray] = []
     regions: list[str] = []
@@ -277,8 +281,12 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
         where = f"_{region}" if region else ""
         for column, name in enumerate(("film_compliance", "damping")):
             known = table[mask, column][np.isfinite(table[mask, column])]
-            record[f"law{where}_{name}_error"] = _quantiles(known) if known.size else NOTHING[name]
+            record[f"law{where}_{name}_error"] = quantiles_text(known) if known.size else NOTHING[name]
             record[f"law{where}_{name}_within_bar"] = float(np.mean(table[mask, column + 2]))
+        if region in INSIDE:
+            for column, name in ((4, "stiffness"), (5, "film_offset")):
+                known = table[mask, column][np.isfinite(table[mask, column])]
+                record[f"law{where}_{name}_error"] = quantiles_text(known) if known.size else NOTHING[name]
     return record
 
 
@@ -288,14 +296,11 @@ def _known(task: LineTask, arrays: Arrays, region: str) -> bool:
     return Status(int(arrays["status"][0])).usable and not fading
 
 
-def _quantiles(errors: FloatArray) -> str:
-    """Quantiles of errors in words."""
-    words = ("median", "95 %", "99 %", "largest")
-    return ", ".join(f"{word} {value:.2g}" for word, value in zip(words, np.quantile(errors, QUANTILES), strict=True))
-
-
 def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> FloatArray:
-    """Relative errors of film compliance and damping, and whether each is within its bar; shape (n, 4)."""
+    """Errors of film compliance and damping, whether each is within its bar, errors of k and film offset, shape (n, 6).
+
+    All are relative; that of the film offset is what the approach at the load misses, as a part of the offset.
+    """
     tasks = [task for task, _ in points]
     fresh = [_solution(task, arrays) for task, arrays in points]
     load = np.array([task.loads[0] for task in tasks])
@@ -311,6 +316,8 @@ def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> FloatArra
     solved_k = np.array([one.stiffness for one in fresh])
     solved_c = np.maximum([one.damping for one in fresh], 0.0)
     compliance = np.array([one.film_compliance for one in fresh])
+    offset = np.abs([one.film_offset for one in fresh])
+    missed = np.abs(approach - [one.approach for one in fresh])
     wrong = np.abs(1.0 / stiffness - 1.0 / solved_k)
     wrong_c = np.abs(damping - solved_c)
     # a dry contact has no film compliance to relate to, only 1/k
@@ -322,6 +329,8 @@ def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> FloatArra
             relative_c,
             (relative <= COMPLIANCE_BARS[0]) | (wrong * solved_k <= COMPLIANCE_BARS[1]),
             (relative_c <= DAMPING_BARS[0]) | (wrong_c * speed <= DAMPING_BARS[1] * solved_k * half),
+            wrong * solved_k,
+            np.where(offset > 0.0, missed / np.maximum(offset, 1e-300), np.nan),
         ]
     )
 

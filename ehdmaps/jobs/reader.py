@@ -17,6 +17,7 @@ from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.surface import read_surface
 from ehdmaps.jobs.table import Table
+from ehdmaps.netcdf_structure import DAMAGE, structure_problem
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
@@ -203,10 +204,15 @@ def _job_of_map(path: Path) -> tuple[str, str, str | None]:
     import netCDF4
 
     try:
+        damage = structure_problem(path)
+        if damage:
+            raise OSError(damage)
         with netCDF4.Dataset(path) as file:
             attributes = {name: file.getncattr(name) for name in file.ncattrs()}
-    except (OSError, RuntimeError) as error:
-        raise InputError(f"{path}: looks like a map file but cannot be read ({error}); generate it again") from error
+    except DAMAGE as error:
+        raise InputError(
+            f"{path}: looks like a map file but cannot be read ({error!s:.300}); generate it again"
+        ) from error
     text, digest, solver, name = (attributes.get(key) for key in ("job_toml", "job_sha256", "solver", "job_name"))
     if not isinstance(text, str):
         raise InputError(f"{path}: carries no job (attribute job_toml); allowed: a map written by `ehdmaps generate`")
