@@ -17,7 +17,9 @@ store        results by key in a file beside the map; survives kill -9
 sweep        tasks -> results, over all cores, past dead workers and Ctrl-C
 sampling     random operating points of a job
 refinement   the lines that a contact law needs besides the map, and the group they become
-law_check    the contact laws against fresh solves at random points
+law_points   what contact laws give at random points, and how far that is from fresh solves
+law_check    the contact laws against fresh solves, as every map with `law_check` has it
+tolerance    settings that bring the contact laws within a tolerance, confirmed by fresh solves
 holes        isolated holes filled from their neighbours
 assemble     results -> dataset of the map
 write        dataset -> map file, aside and renamed
@@ -46,6 +48,7 @@ contact_ways ways of computing a contact: solvers, oil layers, rough surfaces, f
 contestants  the table of the ways that are measured
 tradeoff     speed against accuracy of contacts, measured
 trade_frame  what a reader of that must know besides
+tradeoff_map speed against accuracy of whole maps: their contact laws against fresh solves
 commands     one module a command
 cli          the command line
 ===========  ====================================================================================
