@@ -90,6 +90,9 @@ ORDERS: Mapping[Axis, int] = {"load": 4, "entrainment_speed": 6, "temperature": 
 VOTES = 0.25
 """Share of the missed points that makes one change of settings worthwhile beside the most frequent one."""
 
+_OF_ALL_SOLVERS = ("structural_law", "fill", "backbone")
+"""Keys of [solver] that every solver has, and that are kept."""
+
 Solve = Callable[[Sequence[LineTask]], Mapping[str, Arrays]]
 """Solves what is not solved yet; gives the arrays of all tasks so far, by key."""
 
@@ -343,11 +346,11 @@ def _fields(job: Job, lines: Refinement, results: Mapping[str, Arrays]) -> dict[
 def _chosen(job: Job, solver: ReynoldsSolver, settings: Settings) -> Job:
     """The job, read again from a text that states the settings."""
     table = toml_text.parse(job.text, job.name)["solver"]
+    # own keys of another solver, in whose place this one was asked for, say nothing of it
+    known = table if table["name"] == solver.name else {key: table[key] for key in _OF_ALL_SOLVERS if key in table}
     keys: dict[str, Any] = {
+        **{key: value for key, value in known.items() if key != "law_check"},
         "name": solver.name,
-        "structural_law": table["structural_law"],
-        "fill": job.fill,
-        "backbone": job.backbone,
         "density": settings.density,
         "inlet_length": solver.inlet_length,
         "tolerance": solver.tolerance,
