@@ -124,7 +124,7 @@ def test_lines_are_added_until_there_would_be_too_many(tmp_path: Path, capsys, m
     attributes = ehdmaps.open_map(output).dataset.attrs
     assert attributes["tolerance_met"] == 0
     first, last = (re.search(r"steps of the lines (\S+) over", attributes[f"tolerance_round_{n}"])[1] for n in (1, 2))
-    assert float(last) == pytest.approx(0.5 * float(first), rel=5e-3)  # three digits are told
+    assert float(last) == pytest.approx(tolerance.FINER * float(first), rel=5e-3)  # three digits are told
     # each round has new points
     assert attributes["tolerance_seed"] == tolerance.SEED + attributes["tolerance_rounds"]
 
