@@ -1,8 +1,8 @@
 """A map by its tolerance: which settings bring its contact laws within it, confirmed by fresh solves at random points.
 
 The density of the solver's grid is chosen on a trial sample. The steps of the refinement lines begin where their order
-of convergence lets expect enough. They are shortened as long as fresh points say no: new ones in each round, solved on a
-grid twice as dense as that of the map. All that is decided follows from what is solved, so that a run that was
+of convergence lets expect enough. They are shortened as long as fresh points say no: new ones in each round, solved on
+a grid twice as dense as that of the map. All that is decided follows from what is solved, so that a run that was
 interrupted goes on as if it had not been.
 """
 
