@@ -37,6 +37,7 @@ def generate(
     workers: int | None = 1,
     fresh: bool = False,
     progress: Callable[[int], Progress] | None = None,
+    corrector: ContactSolver | None = None,
 ) -> xr.Dataset:
     """Make a map.
 
@@ -60,6 +61,8 @@ def generate(
         Drop the store of the output file first.
     progress : callable, optional
         Takes the number of points, gives the `Progress` to tell.
+    corrector : ContactSolver, optional
+        Solver in place of the one that the job names in `corrected_by`.
 
     Returns
     -------
@@ -76,16 +79,16 @@ def generate(
     made_by = None if isinstance(solver, str) else solver
     if output is None:
         plain = dataclasses.replace(chosen, backbone="none")
-        return generating.generate_in_memory(plain, workers, progress, made_by).dataset
+        return generating.generate_in_memory(plain, workers, progress, made_by, corrector).dataset
     check_outputs([Output("output", Path(output), MAP)], [] if isinstance(job, Job) else [fspath(job)])
-    return generating.generate(chosen, Path(output), workers, fresh, progress, made_by).dataset
+    return generating.generate(chosen, Path(output), workers, fresh, progress, made_by, corrector).dataset
 
 
 def _with_solver(job: Job, name: str | None) -> Job:
     """The job with another solver, which has its default settings."""
     if name is None or name == job.solver:
         return job
-    return dataclasses.replace(job, solver=_known(name), solver_options={})
+    return dataclasses.replace(job, solver=_known(name), solver_options={}, corrected_by=None)
 
 
 def compare(

@@ -26,6 +26,29 @@ MOST_CHECKS = 100_000
 """Random points for the check of the contact laws."""
 
 
+DEFAULT_CORRECTION_POINTS = 16
+"""Points of the dearer solver, where a job asks for a correction and does not say how many."""
+
+
+@dataclass(frozen=True)
+class CorrectedBy:
+    """By what the map of a job is corrected.
+
+    Attributes
+    ----------
+    solver : str
+        Name of the dearer solver.
+    points : int
+        How many points it is asked for.
+    options : mapping
+        The dearer solver's own keys, those that the file gives in [correction].
+    """
+
+    solver: str
+    points: int
+    options: Mapping[str, Any]
+
+
 @dataclass(frozen=True)
 class Job:
     """One map to be made.
@@ -64,6 +87,9 @@ class Job:
     surface : Surface or None
         Surfaces that the contact laws of the map have by default; None where the job states none, which is smooth. The
         points of the map are those of smooth surfaces.
+    corrected_by : CorrectedBy or None
+        Dearer solver by a few points of which the films of the map are corrected, see `ehdmaps.jobs.correction`; None
+        where they are those of `solver`.
     """
 
     name: str
@@ -81,6 +107,7 @@ class Job:
     law_check: int = 0
     supply: OilSupply | None = None
     surface: Surface | None = None
+    corrected_by: CorrectedBy | None = None
 
     @classmethod
     def build(
@@ -101,6 +128,9 @@ class Job:
         fill: str = "neighbours",
         backbone: str = "law",
         law_check: int = 0,
+        corrected_by: str | None = None,
+        correction_points: int = DEFAULT_CORRECTION_POINTS,
+        correction_options: Mapping[str, str | int | float | bool] | None = None,
         name: str = "job",
     ) -> Job:
         """Make a job from values, all in SI.
@@ -134,6 +164,12 @@ class Job:
             Structural law of the bearing's contacts.
         fill, backbone, law_check
             See the attributes.
+        corrected_by : str, optional
+            Name of a dearer solver whose few points correct the films of `solver`.
+        correction_points : int
+            How many points it is asked for.
+        correction_options : mapping, optional
+            The dearer solver's own keys, as in [correction].
         name : str
             Name of the job.
 
@@ -161,6 +197,8 @@ class Job:
         if solids is None or (contact and bearing):
             got = "both" if solids else "none"
             raise InputError(f"Job.build, bearing and contact: got {got}; allowed: one of the two")
+        if not corrected_by and correction_options:
+            raise InputError("Job.build, correction_options: got some without corrected_by; allowed: together with it")
         text = job_text(
             solids,
             contact.material if contact else material,
@@ -172,10 +210,12 @@ class Job:
                 "fill": fill,
                 "backbone": backbone,
                 "law_check": law_check,
+                **({"corrected_by": corrected_by, "correction_points": correction_points} if corrected_by else {}),
                 **(solver_options or {}),
             },
             supply,
             surface,
+            correction_options,
         )
         job = parse_job(text, name, "Job.build")
         check_oil(lubricant, job, "Job.build, ")

@@ -1,0 +1,266 @@
+"""A smooth function through few points, with what it is uncertain by: regression by a Gaussian process.
+
+The values are those of a constant plus a process of zero mean with the covariance of Matern, nu = 5/2, of the distance
+of two places in units of three lengths, one for each coordinate. Where the slope of the function along the first
+coordinate is known too, it is one more observation of the same process: value and slope of what comes back belong
+together exactly.
+
+The lengths, and the shares of noise in values and slopes, are those among `LENGTHS` and `NOISES` for which what is left
+out one point at a time was most likely: the log predictive density of leave-one-out of C. E. Rasmussen, C. K. I.
+Williams, Gaussian Processes for Machine Learning, MIT Press, 2006, section 5.4.2. They are improved in turn, one after
+the other, until none changes. The variance follows in closed form, such that the squares of the errors of leaving out
+are, on the average, the variances that were stated for them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+
+from ehdmaps.arrays import FloatArray
+
+LENGTHS = (0.15, 0.3, 0.6, 1.2, 2.5, 5.0, 20.0)
+"""Lengths that are tried, over the range of the coordinate; at the last one it hardly matters."""
+
+NOISES = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
+"""Variances of the noise that are tried, over that of the process; of a slope, over that of the process' slope."""
+
+_BEGIN_LENGTH, _BEGIN_NOISE = LENGTHS.index(1.2), NOISES.index(1e-3)
+_CONSTANT = 1e3
+"""Variance of the constant over that of the process: nothing is known of it before."""
+
+_LEAST = 1e-14
+"""Smallest variance of the process: differences of 1e-7 are round-off of a solver."""
+
+_MOST_ROUNDS = 6
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a regression is made with.
+
+    Attributes
+    ----------
+    lengths : tuple of float
+        One for each coordinate, in its unit.
+    noises : tuple of float
+        Variance of the noise of values, and of slopes where they are known, over that of the process.
+    """
+
+    lengths: tuple[float, ...]
+    noises: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """What a regression says of each of its own points once it is left out.
+
+    Attributes
+    ----------
+    value, slope : array (n,)
+        Predictions; the slope is NaN where slopes are not observed.
+    squares : array (n,)
+        Squares of the errors over the variances stated for them: one on the average.
+    """
+
+    value: FloatArray
+    slope: FloatArray
+    squares: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Regression:
+    """Smooth function through noisy values.
+
+    Attributes
+    ----------
+    places : array (n, d)
+        Where it was observed.
+    observed : array (n,) or (2 n,)
+        Values, and behind them the slopes along the first coordinate, where they are known.
+    settings : Settings
+        Lengths and noises.
+    """
+
+    places: FloatArray
+    observed: FloatArray
+    settings: Settings
+
+    @classmethod
+    def fitted(
+        cls, places: FloatArray, values: FloatArray, slopes: FloatArray | None, ranges: FloatArray
+    ) -> Regression:
+        """Choose the settings by leaving out.
+
+        Parameters
+        ----------
+        places : array (n, d)
+            Where the function was observed.
+        values : array (n,)
+            Its values.
+        slopes : array (n,), optional
+            Its slopes along the first coordinate.
+        ranges : array (d,)
+            Ranges of the coordinates, of which the lengths are multiples.
+        """
+        observed = values if slopes is None else np.concatenate([values, slopes])
+        allowed = [*([LENGTHS] * places.shape[1]), *([NOISES] * (1 if slopes is None else 2))]
+        chosen = [_BEGIN_LENGTH] * places.shape[1] + [_BEGIN_NOISE] * (len(allowed) - places.shape[1])
+        scales = np.where(ranges > 0.0, ranges, 1.0)
+
+        def made(indices: list[int]) -> Regression:
+            numbers = [options[i] for options, i in zip(allowed, indices, strict=True)]
+            lengths = tuple(float(v) for v in np.array(numbers[: scales.size]) * scales)
+            return cls(places, observed, Settings(lengths, tuple(numbers[scales.size :])))
+
+        best = made(chosen)
+        for _ in range(_MOST_ROUNDS):
+            before = list(chosen)
+            for which, options in enumerate(allowed):
+                if which < scales.size and not ranges[which] > 0.0:
+                    continue
+                for index in range(len(options)):
+                    tried = made([*chosen[:which], index, *chosen[which + 1 :]])
+                    if tried.likelihood > best.likelihood:
+                        best, chosen = tried, [*chosen[:which], index, *chosen[which + 1 :]]
+            if chosen == before:
+                break
+        return best
+
+    @property
+    def with_slopes(self) -> bool:
+        """Whether slopes are observed."""
+        return len(self.settings.noises) > 1
+
+    @cached_property
+    def variance(self) -> float:
+        """Variance of the process, by which the squares of `LeftOut` are one on the average."""
+        errors, spreads = self._left_out
+        return max(float(np.mean(_squares(errors, spreads))), _LEAST)
+
+    @cached_property
+    def likelihood(self) -> float:
+        """Logarithm of the density that is predicted for the points, each left out, but for a constant."""
+        _, spreads = self._left_out
+        return -0.5 * float(np.sum(np.linalg.slogdet(spreads)[1])) - 0.5 * self.observed.size * math.log(self.variance)
+
+    def at(self, places: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Value and slope along the first coordinate, each of shape (m,).
+
+        Parameters
+        ----------
+        places : array (m, d)
+            Where.
+        """
+        value, slope = _covariance(places, self.places, self.settings.lengths, True, self.with_slopes).reshape(
+            2, len(places), -1
+        )
+        return value @ self._weights, slope @ self._weights
+
+    def spread(self, places: FloatArray, noise: bool = True) -> FloatArray:
+        """Covariance of value and slope, shape (m, 2, 2).
+
+        Parameters
+        ----------
+        places : array (m, d)
+            Where.
+        noise : bool
+            Whether that of one more observation, with its noise, is meant; else that of the function itself. A slope
+            that is not observed has no noise of its own.
+        """
+        cross = _covariance(places, self.places, self.settings.lengths, True, self.with_slopes).reshape(
+            2, len(places), -1
+        )
+        known = np.einsum("amn,nbm->mab", cross, cho_solve(self._factor, cross.reshape(-1, cross.shape[2]).T).reshape(
+            -1, 2, len(places)
+        ))  # fmt: skip
+        own = np.diag([1.0 + _CONSTANT, self._slope_variance])
+        spread = self.variance * (own - known)
+        if noise:
+            spread = spread + self.variance * np.diag([*self._noises, 0.0][:2])
+        return np.asarray(spread)
+
+    @cached_property
+    def left_out(self) -> LeftOut:
+        """What is predicted of each point by the others."""
+        errors, spreads = self._left_out
+        predicted = self.observed.reshape(errors.shape[1], -1).T - errors
+        slope = predicted[:, 1] if self.with_slopes else np.full(len(predicted), np.nan)
+        return LeftOut(predicted[:, 0], slope, _squares(errors, spreads) / self.variance)
+
+    def and_at(self, places: FloatArray) -> Regression:
+        """The same with more points, for which it holds what it says there: only its spread is smaller.
+
+        Parameters
+        ----------
+        places : array (m, d)
+            Where.
+        """
+        value, slope = self.at(places)
+        mine = self.observed.reshape(-1, len(self.places))
+        more = np.stack([value, slope])[: len(mine)]
+        known = Regression(
+            np.vstack([self.places, places]), np.concatenate([mine, more], axis=1).ravel(), self.settings
+        )
+        known.__dict__["variance"] = self.variance
+        return known
+
+    @property
+    def _slope_variance(self) -> float:
+        """Variance of the slope over that of the process."""
+        return 5.0 / (3.0 * self.settings.lengths[0] ** 2)
+
+    @property
+    def _noises(self) -> tuple[float, ...]:
+        """Variances of the noise over that of the process, of values and slopes."""
+        return tuple(n * s for n, s in zip(self.settings.noises, (1.0, self._slope_variance), strict=False))
+
+    @cached_property
+    def _factor(self) -> tuple[FloatArray, bool]:
+        """Cholesky factor of the covariance of the observations."""
+        covariance = _covariance(self.places, self.places, self.settings.lengths, self.with_slopes, self.with_slopes)
+        return cho_factor(covariance + np.diag(np.repeat(self._noises, len(self.places))), lower=True)  # type: ignore[no-any-return]
+
+    @cached_property
+    def _weights(self) -> FloatArray:
+        """Weights of the observations."""
+        return np.asarray(cho_solve(self._factor, self.observed))
+
+    @cached_property
+    def _left_out(self) -> tuple[FloatArray, FloatArray]:
+        """Errors of each point left out, (n, q), and their covariances over the variance, (n, q, q)."""
+        count = len(self.places)
+        kinds = self.observed.size // count
+        inverse = cho_solve(self._factor, np.eye(self.observed.size)).reshape(kinds, count, kinds, count)
+        own = np.einsum("aibi->iab", inverse)
+        spreads = np.linalg.inv(0.5 * (own + own.transpose(0, 2, 1)))
+        return np.einsum("iab,bi->ia", spreads, self._weights.reshape(kinds, count)), spreads
+
+
+def _squares(errors: FloatArray, spreads: FloatArray) -> FloatArray:
+    """Squares of errors over their covariances, a point, on the average of its observations."""
+    return np.einsum("ia,iab,ib->i", errors, np.linalg.inv(spreads), errors) / errors.shape[1]
+
+
+def _covariance(
+    one: FloatArray, other: FloatArray, lengths: tuple[float, ...], slopes: bool, other_slopes: bool
+) -> FloatArray:
+    """Covariance of values, and behind them slopes if they are wanted, at some places and others."""
+    scales = np.array(lengths)
+    apart = (one[:, None, :] - other[None, :, :]) / scales
+    q = np.sqrt(5.0 * np.sum(apart**2, axis=2))
+    fading = np.exp(-q)
+    along = apart[:, :, 0] / scales[0]
+    bent = 5.0 / 3.0 * (1.0 + q) * fading * along
+    rows = {
+        (False, False): (1.0 + q + q**2 / 3.0) * fading + _CONSTANT,
+        (False, True): bent,
+        (True, False): -bent,
+        (True, True): 5.0 / 3.0 * fading * ((1.0 + q) / scales[0] ** 2 - 5.0 * along**2),
+    }
+    mine, theirs = (False, True)[: 1 + slopes], (False, True)[: 1 + other_slopes]
+    return np.asarray(np.block([[rows[a, b] for b in theirs] for a in mine]))
