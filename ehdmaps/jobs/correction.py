@@ -11,6 +11,9 @@ What is corrected is regressed over the places of `correction_design`, on what t
   logarithm of a ratio, and it takes the losses below zero that are solved in it.
 - The logarithms of the ratios of central and minimum film, rolling force and mass flow, where both solvers have them.
 
+Noise counts as far as it changes stiffness and damping: at heavy loads, where the film is a hundredth of the
+compliance, its slope and its loss are solved ten times worse and matter not at all; see `_doubts`.
+
 The largest pressure is left as it is: its spike is resolved by no solver. So are the numerical errors that the cheaper
 solver states.
 
@@ -30,7 +33,7 @@ import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import MapError
-from ehdmaps.jobs.correction_design import Candidates, candidates, free, places_of, spread_out
+from ehdmaps.jobs.correction_design import Candidates, candidates, free, per_zeta, places_of, spread_out
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.law_check import DAMPING_BARS
 from ehdmaps.jobs.regression import Regression
@@ -94,6 +97,9 @@ class Correction:
         Of ln(h) with its slope along zeta, and of the loss.
     also : mapping of str to Regression
         Of the logarithms of `ALSO`.
+    applied : tuple of bool
+        Whether film offset and compliance, and the loss, are corrected: not where leaving out points one by one says
+        that they are worse then.
     before, left_out : mapping of str to array (n,)
         Signed relative errors of `JUDGED` of the cheaper solver against the dearer one at the points with a solution,
         and of the corrected one, each of these points left out of the correction in turn.
@@ -108,6 +114,7 @@ class Correction:
     offset: Regression
     loss: Regression
     also: Mapping[str, Regression]
+    applied: tuple[bool, bool]
     before: Mapping[str, FloatArray]
     left_out: Mapping[str, FloatArray]
     shares: FloatArray
@@ -133,7 +140,7 @@ class Correction:
         result = dict(arrays)
         for name, old, new in zip(("film_offset", "film_compliance", "loss_compliance"), films, found, strict=True):
             result[name] = np.where(known, new, old)
-        for name, regression in self.also.items():
+        for name, regression in self.also.items() if self.applied[0] else ():
             if name in arrays:
                 result[name] = arrays[name] * np.where(known, np.exp(regression.at(places)[0]), 1.0)
         if task.natural_frequencies:
@@ -154,7 +161,8 @@ class Correction:
         where : Place
             Loads, half-widths and speeds.
         """
-        return _applied(films, where, *self.offset.at(places), self.loss.at(places)[0])
+        value, slope = self.offset.at(places)
+        return _applied(films, where, value, slope * per_zeta(places), self.loss.at(places)[0], self.applied)
 
     def model_errors(
         self, contact: LineContact, films: Films, places: FloatArray, where: Place
@@ -172,9 +180,20 @@ class Correction:
         where : Place
             Loads, half-widths and speeds.
         """
-        spread, of_loss = self.offset.spread(places), self.loss.spread(places)[:, 0, 0]
         per_load = films.offset / where.load
         steep = films.compliance / per_load
+        share = per_load / (contact.structural_compliance(where.load) + films.compliance)
+        of_slope, of_lost = _doubts(share, _share(films, where))
+        sure, stretched = np.ones(share.shape), per_zeta(places)
+        spread = self.offset.spread(places, np.column_stack([sure, of_slope / stretched]))
+        of_loss = self.loss.spread(places, np.column_stack([of_lost, sure]))[:, 0, 0]
+        if not self.applied[0]:
+            known = np.column_stack(self.offset.at(places))
+            spread = spread + known[:, :, None] * known[:, None, :]
+        if not self.applied[1]:
+            of_loss = of_loss + self.loss.at(places)[0] ** 2
+        to_zeta = np.column_stack([sure, stretched])
+        spread = spread * to_zeta[:, :, None] * to_zeta[:, None, :]
         of_compliance = per_load**2 * (steep**2 * spread[:, 0, 0] - 2.0 * steep * spread[:, 0, 1] + spread[:, 1, 1])
         stiffness = 1.0 / (contact.structural_compliance(where.load) + films.compliance)
         of_stiffness = stiffness**2 * np.maximum(of_compliance, 0.0)
@@ -194,10 +213,13 @@ class Correction:
             "asked": len(self.points),
             "usable": self.usable,
             "solve_seconds": self.seconds,
+            "not_applied": [
+                name for name, used in zip(("film_offset", "damping"), self.applied, strict=True) if not used
+            ],
             "before": {name: quantiles(self.before[name], self.shares) for name in JUDGED},
             "leave_one_out": {name: quantiles(self.left_out[name], self.shares) for name in JUDGED},
             "lengths": {
-                name: dict(zip(("zeta", "ln(1+L)", "temperature"), one.settings.lengths, strict=True))
+                name: dict(zip(("arsinh(zeta/0.3)", "ln(1+L)", "temperature"), one.settings.lengths, strict=True))
                 for name, one in (("film_offset", self.offset), ("loss", self.loss))
             },
             "points": [
@@ -376,11 +398,34 @@ def _width(contact: LineContact, loads: FloatArray) -> FloatArray:
 
 def _loss(films: Films, where: Place) -> FloatArray:
     """The loss in the coordinate of a backbone."""
-    return np.arcsinh(films.loss * where.speed * where.load / (films.offset * where.width * LOSS_SCALE))
+    return np.arcsinh(_share(films, where) / LOSS_SCALE)
 
 
-def _applied(films: Films, where: Place, value: FloatArray, slope: FloatArray, lost: FloatArray) -> Films:
-    """Films with a correction of ln(h), of its slope along zeta, and of the loss."""
+def _share(films: Films, where: Place) -> FloatArray:
+    """The loss q = B u w/(h b)."""
+    return np.asarray(films.loss * where.speed * where.load / (films.offset * where.width))
+
+
+def _doubts(stiffness_share: FloatArray, loss_share: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Doubts of the slope of ln(h) and of the loss: what they are worth in k, and in c as `error_of` relates it.
+
+    Parameters
+    ----------
+    stiffness_share : array (n,)
+        k h/w.
+    loss_share : array (n,)
+        B u w/(h b).
+    """
+    smallest = SMALLEST_DAMPING / stiffness_share
+    of_loss = np.sqrt((loss_share**2 + smallest**2) / (loss_share**2 + LOSS_SCALE**2))
+    return np.sqrt(1.0 + stiffness_share**-2.0), np.maximum(of_loss, 1.0)
+
+
+def _applied(
+    films: Films, where: Place, value: FloatArray, slope: FloatArray, lost: FloatArray, applied: tuple[bool, bool]
+) -> Films:
+    """Films with a correction of ln(h), of its slope along zeta, and of the loss, as far as it is to be applied."""
+    value, slope, lost = value * applied[0], slope * applied[0], lost * applied[1]
     with np.errstate(invalid="ignore"):
         ratio = np.exp(value)
         offset = ratio * films.offset
@@ -413,8 +458,12 @@ def _regressions(among: Candidates, asked: _Asked, both: BoolArray) -> tuple[Reg
     cheap, dear = (_films([found[i] for i in kept]) for found in (asked.cheap, asked.dear))
     where, places = _place([among.points[i] for i in chosen]), among.places[chosen]
     slopes = [films.compliance * where.load / films.offset for films in (cheap, dear)]
-    offset = Regression.fitted(places, np.log(dear.offset / cheap.offset), slopes[0] - slopes[1], among.ranges)
-    loss = Regression.fitted(places, _loss(dear, where) - _loss(cheap, where), None, among.ranges)
+    largest = np.maximum(np.abs(_share(cheap, where)), np.abs(_share(dear, where)))
+    of_slope, of_loss = _doubts(among.stiffness_shares[chosen], largest)
+    value, slope, stretched = np.log(dear.offset / cheap.offset), slopes[0] - slopes[1], per_zeta(places)
+    sure = np.ones(value.size)
+    offset = Regression.fitted(places, among.ranges, value, sure, slope / stretched, of_slope / stretched)
+    loss = Regression.fitted(places, among.ranges, _loss(dear, where) - _loss(cheap, where), of_loss)
     return offset, loss
 
 
@@ -425,13 +474,14 @@ def _next(among: Candidates, asked: _Asked, both: BoolArray, size: int) -> list[
     nearest = among.nearest(np.array(solved))
     offset, loss = _regressions(among, asked, both)
     weights = [0.5 + 0.5 * one.left_out.squares[nearest] for one in (offset, loss)]
+    weights[1] /= loss.doubts[nearest] ** 2
     if len(tried):
         offset, loss = offset.and_at(tried), loss.and_at(tried)
     chosen: list[int] = []
     for _ in range(size):
-        spread = offset.spread(among.places, noise=False)
-        of_offset = spread[:, 0, 0] + among.stiffness_shares**2 * spread[:, 1, 1]
-        unknown = weights[0] * of_offset + weights[1] * loss.spread(among.places, noise=False)[:, 0, 0]
+        spread = offset.spread(among.places)
+        of_offset = spread[:, 0, 0] + (among.stiffness_shares * per_zeta(among.places)) ** 2 * spread[:, 1, 1]
+        unknown = weights[0] * of_offset + weights[1] * loss.spread(among.places)[:, 0, 0]
         open_ones = free(among, [*asked.chosen, *chosen])
         chosen.append(int(open_ones[np.argmax(unknown[open_ones])]))
         here = among.places[chosen[-1:]]
@@ -458,12 +508,23 @@ def _regressed(job: Job, among: Candidates, asked: _Asked, both: BoolArray) -> C
     where = _place(points)
     offset, loss = _regressions(among, asked, both)
     without = offset.left_out
-    predicted = _applied(cheap, where, without.value, without.slope, loss.left_out.value)
+    before, shares = _errors(points, where, cheap, dear), among.shares(places)
+
+    def left_out(applied: tuple[bool, bool]) -> dict[str, FloatArray]:
+        slope = without.slope * per_zeta(places)
+        predicted = _applied(cheap, where, without.value, slope, loss.left_out.value, applied)
+        return _errors(points, where, predicted, dear)
+
+    def size(errors: Mapping[str, FloatArray], names: tuple[str, ...]) -> float:
+        return float(sum(np.abs(errors[name]) @ shares for name in names))
+
+    of_films = size(left_out((True, False)), JUDGED[:2]) < size(before, JUDGED[:2])
+    of_loss = size(left_out((of_films, True)), JUDGED[2:]) < size(left_out((of_films, False)), JUDGED[2:])
     also = {}
     for name in ALSO:
         pair = [np.array([float(found[i][name][0]) for i in kept]) for found in (asked.cheap, asked.dear)]
         if all(np.all(np.isfinite(values) & (values > 0.0)) for values in pair):
-            also[name] = Regression.fitted(places, np.log(pair[1] / pair[0]), None, among.ranges)
+            also[name] = Regression.fitted(places, among.ranges, np.log(pair[1] / pair[0]), np.ones(len(kept)))
     statuses, reasons = zip(*(_ended(*pair) for pair in zip(asked.cheap, asked.dear, strict=True)), strict=True)
     return Correction(
         points=tuple(among.points[i] for i in asked.chosen),
@@ -473,9 +534,10 @@ def _regressed(job: Job, among: Candidates, asked: _Asked, both: BoolArray) -> C
         offset=offset,
         loss=loss,
         also=also,
-        before=_errors(points, where, cheap, dear),
-        left_out=_errors(points, where, predicted, dear),
-        shares=among.shares(places),
+        applied=(of_films, of_loss),
+        before=before,
+        left_out=left_out((of_films, of_loss)),
+        shares=shares,
     )
 
 

@@ -1,7 +1,9 @@
 """Where a dearer solver tells most about what a cheaper one gets wrong: places over a job's own range.
 
-A place is (zeta, ln(1 + L), T): zeta = ln(M/M_valley(L)) and Moes' L, by which the film of a contact goes at one
-temperature, and the temperature [K]. Two contacts of a bearing at equal groups have one place.
+A place is (s, ln(1 + L), T): zeta = ln(M/M_valley(L)) and Moes' L, by which the film of a contact goes at one
+temperature, and the temperature [K]. zeta is stretched around the damping valley, zeta = 0.3 sinh(s): there films
+change within some tenths of zeta, elsewhere over several of it, and so does what solvers differ by. Two contacts of a
+bearing at equal groups have one place.
 """
 
 from __future__ import annotations
@@ -20,6 +22,9 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, valley_load_number
 
+VALLEY = 0.3
+"""zeta beyond which it is no longer stretched."""
+
 SEED = 20261
 """Of the points among which places are chosen."""
 
@@ -35,7 +40,7 @@ _SAME_PLACE = 1e-9
 def places_of(
     contact: LineContact, lubricant: Lubricant, loads: FloatArray, speed: float, temperature: float
 ) -> FloatArray:
-    """Places (zeta, ln(1 + L), T) of a line of loads, shape (n, 3).
+    """Places (s, ln(1 + L), T) of a line of loads, shape (n, 3).
 
     Parameters
     ----------
@@ -50,7 +55,20 @@ def places_of(
     alpha = state.pressure_viscosity.pressure_viscosity
     M, L = moes_groups(loads, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
     zeta = np.log(np.asarray(M) / valley_load_number(L))
-    return np.column_stack([zeta, np.full(zeta.shape, np.log1p(L)), np.full(zeta.shape, temperature)])
+    return np.column_stack(
+        [np.arcsinh(zeta / VALLEY), np.full(zeta.shape, np.log1p(L)), np.full(zeta.shape, temperature)]
+    )
+
+
+def per_zeta(places: FloatArray) -> FloatArray:
+    """Derivative of s by zeta, shape (n,).
+
+    Parameters
+    ----------
+    places : array (n, 3)
+        Places.
+    """
+    return np.asarray(1.0 / (VALLEY * np.cosh(places[:, 0])))
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,11 +5,14 @@ of two places in units of three lengths, one for each coordinate. Where the slop
 coordinate is known too, it is one more observation of the same process: value and slope of what comes back belong
 together exactly.
 
+Not all observations are equally good, or matter equally. Each has a doubt: its noise is so many times that of the best.
+
 The lengths, and the shares of noise in values and slopes, are those among `LENGTHS` and `NOISES` for which what is left
 out one point at a time was most likely: the log predictive density of leave-one-out of C. E. Rasmussen, C. K. I.
 Williams, Gaussian Processes for Machine Learning, MIT Press, 2006, section 5.4.2. They are improved in turn, one after
 the other, until none changes. The variance follows in closed form, such that the squares of the errors of leaving out
-are, on the average, the variances that were stated for them.
+are, on the average, the variances that were stated for them. Since the settings were chosen to keep these errors small,
+what is stated elsewhere is larger, by the number of observations over what is left of it after one for each setting.
 """
 
 from __future__ import annotations
@@ -82,17 +85,26 @@ class Regression:
         Where it was observed.
     observed : array (n,) or (2 n,)
         Values, and behind them the slopes along the first coordinate, where they are known.
+    doubts : array (n,) or (2 n,)
+        Standard deviation of the noise of each of them over that of one without doubt, at least one.
     settings : Settings
         Lengths and noises.
     """
 
     places: FloatArray
     observed: FloatArray
+    doubts: FloatArray
     settings: Settings
 
     @classmethod
     def fitted(
-        cls, places: FloatArray, values: FloatArray, slopes: FloatArray | None, ranges: FloatArray
+        cls,
+        places: FloatArray,
+        ranges: FloatArray,
+        values: FloatArray,
+        doubts: FloatArray,
+        slopes: FloatArray | None = None,
+        slope_doubts: FloatArray | None = None,
     ) -> Regression:
         """Choose the settings by leaving out.
 
@@ -100,14 +112,15 @@ class Regression:
         ----------
         places : array (n, d)
             Where the function was observed.
-        values : array (n,)
-            Its values.
-        slopes : array (n,), optional
-            Its slopes along the first coordinate.
         ranges : array (d,)
             Ranges of the coordinates, of which the lengths are multiples.
+        values, doubts : array (n,)
+            Its values, and their doubts.
+        slopes, slope_doubts : array (n,), optional
+            Its slopes along the first coordinate, and their doubts.
         """
         observed = values if slopes is None else np.concatenate([values, slopes])
+        of_all = doubts if slope_doubts is None else np.concatenate([doubts, slope_doubts])
         allowed = [*([LENGTHS] * places.shape[1]), *([NOISES] * (1 if slopes is None else 2))]
         chosen = [_BEGIN_LENGTH] * places.shape[1] + [_BEGIN_NOISE] * (len(allowed) - places.shape[1])
         scales = np.where(ranges > 0.0, ranges, 1.0)
@@ -115,7 +128,7 @@ class Regression:
         def made(indices: list[int]) -> Regression:
             numbers = [options[i] for options, i in zip(allowed, indices, strict=True)]
             lengths = tuple(float(v) for v in np.array(numbers[: scales.size]) * scales)
-            return cls(places, observed, Settings(lengths, tuple(numbers[scales.size :])))
+            return cls(places, observed, of_all, Settings(lengths, tuple(numbers[scales.size :])))
 
         best = made(chosen)
         for _ in range(_MOST_ROUNDS):
@@ -135,6 +148,11 @@ class Regression:
     def with_slopes(self) -> bool:
         """Whether slopes are observed."""
         return len(self.settings.noises) > 1
+
+    @cached_property
+    def count(self) -> int:
+        """Number of observations."""
+        return self.observed.size
 
     @cached_property
     def variance(self) -> float:
@@ -161,16 +179,16 @@ class Regression:
         )
         return value @ self._weights, slope @ self._weights
 
-    def spread(self, places: FloatArray, noise: bool = True) -> FloatArray:
+    def spread(self, places: FloatArray, doubts: FloatArray | None = None) -> FloatArray:
         """Covariance of value and slope, shape (m, 2, 2).
 
         Parameters
         ----------
         places : array (m, d)
             Where.
-        noise : bool
-            Whether that of one more observation, with its noise, is meant; else that of the function itself. A slope
-            that is not observed has no noise of its own.
+        doubts : array (m, 2), optional
+            Doubts of one more observation of value and slope there, whose noise is then counted in; that of the
+            function itself if left out. A slope that is not observed has no noise of its own.
         """
         cross = _covariance(places, self.places, self.settings.lengths, True, self.with_slopes).reshape(
             2, len(places), -1
@@ -179,9 +197,10 @@ class Regression:
             -1, 2, len(places)
         ))  # fmt: skip
         own = np.diag([1.0 + _CONSTANT, self._slope_variance])
-        spread = self.variance * (own - known)
-        if noise:
-            spread = spread + self.variance * np.diag([*self._noises, 0.0][:2])
+        variance = self.variance * self._freedom
+        spread = variance * (own - known)
+        if doubts is not None:
+            spread = spread + variance * np.eye(2) * (np.array([*self._noises, 0.0][:2]) * doubts**2)[:, None, :]
         return np.asarray(spread)
 
     @cached_property
@@ -203,11 +222,21 @@ class Regression:
         value, slope = self.at(places)
         mine = self.observed.reshape(-1, len(self.places))
         more = np.stack([value, slope])[: len(mine)]
+        doubts = np.concatenate([self.doubts.reshape(mine.shape), np.ones(more.shape)], axis=1)
         known = Regression(
-            np.vstack([self.places, places]), np.concatenate([mine, more], axis=1).ravel(), self.settings
+            np.vstack([self.places, places]),
+            np.concatenate([mine, more], axis=1).ravel(),
+            doubts.ravel(),
+            self.settings,
         )
-        known.__dict__["variance"] = self.variance
+        known.__dict__.update(variance=self.variance, count=self.count)
         return known
+
+    @property
+    def _freedom(self) -> float:
+        """Observations over those that remain after one for each setting."""
+        chosen = len(self.settings.lengths) + len(self.settings.noises)
+        return self.count / max(self.count - chosen, 1)
 
     @property
     def _slope_variance(self) -> float:
@@ -223,7 +252,9 @@ class Regression:
     def _factor(self) -> tuple[FloatArray, bool]:
         """Cholesky factor of the covariance of the observations."""
         covariance = _covariance(self.places, self.places, self.settings.lengths, self.with_slopes, self.with_slopes)
-        return cho_factor(covariance + np.diag(np.repeat(self._noises, len(self.places))), lower=True)  # type: ignore[no-any-return]
+        noise = np.repeat(self._noises, len(self.places)) * self.doubts**2
+        factor, lower = cho_factor(covariance + np.diag(noise), lower=True)
+        return np.asarray(factor), bool(lower)
 
     @cached_property
     def _weights(self) -> FloatArray:
@@ -243,7 +274,7 @@ class Regression:
 
 def _squares(errors: FloatArray, spreads: FloatArray) -> FloatArray:
     """Squares of errors over their covariances, a point, on the average of its observations."""
-    return np.einsum("ia,iab,ib->i", errors, np.linalg.inv(spreads), errors) / errors.shape[1]
+    return np.asarray(np.einsum("ia,iab,ib->i", errors, np.linalg.inv(spreads), errors) / errors.shape[1])
 
 
 def _covariance(

@@ -1,6 +1,7 @@
-"""What a few points of a dearer solver are worth: errors at held-out points, corrected by 0, 8, 16, 32 of them, and costs.
+"""What a few points of a dearer solver are worth: errors at held-out points, corrected by 0 to 32 of them, and costs.
 
-Run: python -m tests.benchmarks.bench_correction [--pair NAME] [--job JOB] [--points N ...] [--held-out N] [--store FILE]
+Run: python -m tests.benchmarks.bench_correction [--pair NAME] [--job JOB] [--points N ...] [--held-out N]
+    [--store FILE]
 
 The held-out points are drawn over the job's own range with another seed than the candidates of the design, one in five
 in the damping valley. `left out` is what the correction itself says of its error: at its own points, each left out in

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
+from ehdmaps.jobs.correction_report import unsolved
 from ehdmaps.jobs.generate import generate
 from ehdmaps.jobs.law_check import unmet
 from ehdmaps.jobs.progress import progress
@@ -22,7 +23,7 @@ INTERRUPTED = 130
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Make the map; status 1 if points have no solution, or a contact law is not as good as it should be."""
+    """Make the map; status 1 if points of it or of its correction have no solution, or a law is not good enough."""
     job = read_job(arguments.job, arguments.solver, to_run=True)
     if arguments.output is None and is_map(arguments.job):
         raise InputError(f"-o: missing; {arguments.job} is a map itself; give the map to write with -o")
@@ -34,5 +35,6 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     except KeyboardInterrupt:
         tell(f"\nstopped; what is solved is kept in {store_path(output)}: the same command goes on from there")
         return "", INTERRUPTED
+    lost = holes(generated.dataset) + unsolved(generated.dataset)
     missed = unmet(generated.dataset, generated.backbone is not None)
-    return "\n".join([summary(generated, output), *missed]), 1 if holes(generated.dataset) or missed else 0
+    return "\n".join([summary(generated, output), *missed]), 1 if lost or missed else 0
