@@ -98,8 +98,8 @@ class Correction:
     also : mapping of str to Regression
         Of the logarithms of `ALSO`.
     applied : tuple of bool
-        Whether film offset and compliance, and the loss, are corrected: not where leaving out points one by one says
-        that they are worse then.
+        Whether film offset and compliance, and the loss, are corrected: only where leaving out points one by one says
+        that they are better then, also with what the settings that were chosen by it make it too small by.
     before, left_out : mapping of str to array (n,)
         Signed relative errors of `JUDGED` of the cheaper solver against the dearer one at the points with a solution,
         and of the corrected one, each of these points left out of the correction in turn.
@@ -515,11 +515,12 @@ def _regressed(job: Job, among: Candidates, asked: _Asked, both: BoolArray) -> C
         predicted = _applied(cheap, where, without.value, slope, loss.left_out.value, applied)
         return _errors(points, where, predicted, dear)
 
-    def size(errors: Mapping[str, FloatArray], names: tuple[str, ...]) -> float:
-        return float(sum(np.abs(errors[name]) @ shares for name in names))
+    def size(applied: tuple[bool, bool], names: tuple[str, ...]) -> float:
+        errors = left_out(applied)
+        return float(sum(errors[name] ** 2 @ shares for name in names))
 
-    of_films = size(left_out((True, False)), JUDGED[:2]) < size(before, JUDGED[:2])
-    of_loss = size(left_out((of_films, True)), JUDGED[2:]) < size(left_out((of_films, False)), JUDGED[2:])
+    of_films = size((True, False), JUDGED[:2]) * offset.freedom < size((False, False), JUDGED[:2])
+    of_loss = size((of_films, True), JUDGED[2:]) * loss.freedom < size((of_films, False), JUDGED[2:])
     also = {}
     for name in ALSO:
         pair = [np.array([float(found[i][name][0]) for i in kept]) for found in (asked.cheap, asked.dear)]

@@ -29,11 +29,11 @@ from ehdmaps.arrays import FloatArray
 LENGTHS = (0.15, 0.3, 0.6, 1.2, 2.5, 5.0, 20.0)
 """Lengths that are tried, over the range of the coordinate; at the last one it hardly matters."""
 
-NOISES = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
+NOISES = (1e-7, 1e-6, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 """Variances of the noise that are tried, over that of the process; of a slope, over that of the process' slope."""
 
 _BEGIN_LENGTH, _BEGIN_NOISE = LENGTHS.index(1.2), NOISES.index(1e-3)
-_CONSTANT = 1e3
+_CONSTANT = 1e2
 """Variance of the constant over that of the process: nothing is known of it before."""
 
 _LEAST = 1e-14
@@ -197,7 +197,7 @@ class Regression:
             -1, 2, len(places)
         ))  # fmt: skip
         own = np.diag([1.0 + _CONSTANT, self._slope_variance])
-        variance = self.variance * self._freedom
+        variance = self.variance * self.freedom
         spread = variance * (own - known)
         if doubts is not None:
             spread = spread + variance * np.eye(2) * (np.array([*self._noises, 0.0][:2]) * doubts**2)[:, None, :]
@@ -233,7 +233,7 @@ class Regression:
         return known
 
     @property
-    def _freedom(self) -> float:
+    def freedom(self) -> float:
         """Observations over those that remain after one for each setting."""
         chosen = len(self.settings.lengths) + len(self.settings.noises)
         return self.count / max(self.count - chosen, 1)

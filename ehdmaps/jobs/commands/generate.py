@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
@@ -16,6 +18,7 @@ from ehdmaps.jobs.report import holes
 from ehdmaps.jobs.store import store_path
 from ehdmaps.jobs.summary import summary
 from ehdmaps.outputs import MAP, Output, check_outputs
+from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.program import tell
 
 INTERRUPTED = 130
@@ -29,12 +32,25 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         raise InputError(f"-o: missing; {arguments.job} is a map itself; give the map to write with -o")
     output = Path(arguments.output or f"{job.name}.nc")
     check_outputs([Output("-o", output, MAP)], [arguments.job])
-    solver = solvers.build(job.solver, {**job.solver_options, **solvers.case_options(job.solver, arguments.keep_cases)})
+    by = job.corrected_by
+    kept = solvers.case_options(by.solver if by and _keeps_cases(by.solver) else job.solver, arguments.keep_cases)
+    solver = _built(job.solver, job.solver_options, kept)
+    corrector = _built(by.solver, by.options, kept) if by else None
     try:
-        generated = generate(job, output, arguments.workers, arguments.fresh, progress, solver)
+        generated = generate(job, output, arguments.workers, arguments.fresh, progress, solver, corrector)
     except KeyboardInterrupt:
         tell(f"\nstopped; what is solved is kept in {store_path(output)}: the same command goes on from there")
         return "", INTERRUPTED
     lost = holes(generated.dataset) + unsolved(generated.dataset)
     missed = unmet(generated.dataset, generated.backbone is not None)
     return "\n".join([summary(generated, output), *missed]), 1 if lost or missed else 0
+
+
+def _keeps_cases(name: str) -> bool:
+    """Whether a solver can keep its cases."""
+    return solvers.SOLVERS[name].keeps_cases
+
+
+def _built(name: str, options: Mapping[str, Any], kept: Mapping[str, Any]) -> ContactSolver:
+    """A solver of the job, which keeps its cases where it has some and that is wanted."""
+    return solvers.build(name, {**options, **(kept if _keeps_cases(name) else {})})
