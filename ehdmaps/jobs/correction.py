@@ -517,7 +517,8 @@ def _regressed(job: Job, among: Candidates, asked: _Asked, both: BoolArray) -> C
 
     def size(applied: tuple[bool, bool], names: tuple[str, ...]) -> float:
         errors = left_out(applied)
-        return float(sum(errors[name] ** 2 @ shares for name in names))
+        # A damping that is wrong altogether is not worse for being so by ten times itself.
+        return float(sum(np.minimum(errors[name] ** 2, 1.0) @ shares for name in names))
 
     of_films = size((True, False), JUDGED[:2]) * offset.freedom < size((False, False), JUDGED[:2])
     of_loss = size((of_films, True), JUDGED[2:]) * loss.freedom < size((of_films, False), JUDGED[2:])

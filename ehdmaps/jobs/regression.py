@@ -10,9 +10,10 @@ Not all observations are equally good, or matter equally. Each has a doubt: its 
 The lengths, and the shares of noise in values and slopes, are those among `LENGTHS` and `NOISES` for which what is left
 out one point at a time was most likely: the log predictive density of leave-one-out of C. E. Rasmussen, C. K. I.
 Williams, Gaussian Processes for Machine Learning, MIT Press, 2006, section 5.4.2. They are improved in turn, one after
-the other, until none changes. The variance follows in closed form, such that the squares of the errors of leaving out
-are, on the average, the variances that were stated for them. Since the settings were chosen to keep these errors small,
-what is stated elsewhere is larger, by the number of observations over what is left of it after one for each setting.
+the other, until none changes, once from little noise and once from much. The variance follows in closed form, such that
+the squares of the errors of leaving out are, on the average, the variances that were stated for them. Since the settings
+were chosen to keep these errors small, what is stated elsewhere is larger, by the number of observations over what is
+left of it after one for each setting.
 """
 
 from __future__ import annotations
@@ -29,10 +30,13 @@ from ehdmaps.arrays import FloatArray
 LENGTHS = (0.15, 0.3, 0.6, 1.2, 2.5, 5.0, 20.0)
 """Lengths that are tried, over the range of the coordinate; at the last one it hardly matters."""
 
+LATER_LENGTHS = LENGTHS[2:]
+"""The same for all coordinates but the first: few points could not tell what is narrow in several from noise."""
+
 NOISES = (1e-7, 1e-6, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 """Variances of the noise that are tried, over that of the process; of a slope, over that of the process' slope."""
 
-_BEGIN_LENGTH, _BEGIN_NOISE = LENGTHS.index(1.2), NOISES.index(1e-3)
+_BEGIN_LENGTH, _BEGIN_NOISES = 1.2, (1e-3, 1.0)
 _CONSTANT = 1e2
 """Variance of the constant over that of the process: nothing is known of it before."""
 
@@ -121,28 +125,32 @@ class Regression:
         """
         observed = values if slopes is None else np.concatenate([values, slopes])
         of_all = doubts if slope_doubts is None else np.concatenate([doubts, slope_doubts])
-        allowed = [*([LENGTHS] * places.shape[1]), *([NOISES] * (1 if slopes is None else 2))]
-        chosen = [_BEGIN_LENGTH] * places.shape[1] + [_BEGIN_NOISE] * (len(allowed) - places.shape[1])
+        kinds = 1 if slopes is None else 2
+        coordinates = places.shape[1]
+        allowed = [LENGTHS, *([LATER_LENGTHS] * (coordinates - 1)), *([NOISES] * kinds)]
         scales = np.where(ranges > 0.0, ranges, 1.0)
+        free = [which for which in range(len(allowed)) if which >= coordinates or ranges[which] > 0.0]
 
-        def made(indices: list[int]) -> Regression:
-            numbers = [options[i] for options, i in zip(allowed, indices, strict=True)]
-            lengths = tuple(float(v) for v in np.array(numbers[: scales.size]) * scales)
-            return cls(places, observed, of_all, Settings(lengths, tuple(numbers[scales.size :])))
+        def made(numbers: tuple[float, ...]) -> Regression:
+            lengths = tuple((np.array(numbers[:coordinates]) * scales).tolist())
+            return cls(places, observed, of_all, Settings(lengths, numbers[coordinates:]))
 
-        best = made(chosen)
-        for _ in range(_MOST_ROUNDS):
-            before = list(chosen)
-            for which, options in enumerate(allowed):
-                if which < scales.size and not ranges[which] > 0.0:
-                    continue
-                for index in range(len(options)):
-                    tried = made([*chosen[:which], index, *chosen[which + 1 :]])
-                    if tried.likelihood > best.likelihood:
-                        best, chosen = tried, [*chosen[:which], index, *chosen[which + 1 :]]
-            if chosen == before:
-                break
-        return best
+        def improved(numbers: tuple[float, ...]) -> Regression:
+            best = made(numbers)
+            for _ in range(_MOST_ROUNDS):
+                before = numbers
+                for which in free:
+                    for value in allowed[which]:
+                        changed = (*numbers[:which], value, *numbers[which + 1 :])
+                        tried = made(changed)
+                        if tried.likelihood > best.likelihood:
+                            best, numbers = tried, changed
+                if numbers == before:
+                    break
+            return best
+
+        starts = [(*([_BEGIN_LENGTH] * coordinates), *([noise] * kinds)) for noise in _BEGIN_NOISES]
+        return max((improved(numbers) for numbers in starts), key=lambda found: found.likelihood)
 
     @property
     def with_slopes(self) -> bool:
