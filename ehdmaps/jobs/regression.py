@@ -11,9 +11,9 @@ The lengths, and the shares of noise in values and slopes, are those among `LENG
 out one point at a time was most likely: the log predictive density of leave-one-out of C. E. Rasmussen, C. K. I.
 Williams, Gaussian Processes for Machine Learning, MIT Press, 2006, section 5.4.2. They are improved in turn, one after
 the other, until none changes, once from little noise and once from much. The variance follows in closed form, such that
-the squares of the errors of leaving out are, on the average, the variances that were stated for them. Since the settings
-were chosen to keep these errors small, what is stated elsewhere is larger, by the number of observations over what is
-left of it after one for each setting.
+the squares of the errors of leaving out are, on the average, the variances that were stated for them. Since the
+settings were chosen to keep these errors small, what is stated elsewhere is larger, by the number of observations over
+what is left of it after one for each setting.
 """
 
 from __future__ import annotations
