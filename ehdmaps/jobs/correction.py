@@ -35,7 +35,7 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.correction_design import Candidates, candidates, free, per_zeta, places_of, spread_out
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.law_check import DAMPING_BARS
+from ehdmaps.jobs.law_points import SMALL_DAMPING
 from ehdmaps.jobs.regression import Regression
 from ehdmaps.jobs.sampling import SamplePoint
 from ehdmaps.jobs.store import Arrays
@@ -54,9 +54,6 @@ ALSO = ("central_film", "minimum_film", "rolling_force", "mass_flow")
 
 JUDGED = ("film_offset", "stiffness", "damping")
 """Of what errors are told."""
-
-SMALLEST_DAMPING = DAMPING_BARS[1] / DAMPING_BARS[0]
-"""Damping, over k b/u, below which an error of damping is relative to this, as in the check of the laws."""
 
 RIGID_MEMORY = 0.946
 """Natural time after which a rigid film has followed, over sqrt(b^2 + 2 h R)/u: S = s/(1 + 0.946 i omega T)."""
@@ -294,7 +291,7 @@ def correction(
 
 
 def error_of(contact: LineContact, where: Place, found: Films, true: Films) -> dict[str, FloatArray]:
-    """Relative errors of `JUDGED`, signed; that of damping over `SMALLEST_DAMPING` where damping is below it.
+    """Relative errors of `JUDGED`, signed; that of damping over `SMALL_DAMPING` where damping is below it.
 
     Parameters
     ----------
@@ -308,7 +305,7 @@ def error_of(contact: LineContact, where: Place, found: Films, true: Films) -> d
     dry = contact.structural_compliance(where.load)
     k, true_k = 1.0 / (dry + found.compliance), 1.0 / (dry + true.compliance)
     c, true_c = found.loss * k**2, true.loss * true_k**2
-    scale = np.maximum(true_c, SMALLEST_DAMPING * true_k * where.width / where.speed)
+    scale = np.maximum(true_c, SMALL_DAMPING * true_k * where.width / where.speed)
     return {
         "film_offset": found.offset / true.offset - 1.0,
         "stiffness": k / true_k - 1.0,
@@ -416,7 +413,7 @@ def _doubts(stiffness_share: FloatArray, loss_share: FloatArray) -> tuple[FloatA
     loss_share : array (n,)
         B u w/(h b).
     """
-    smallest = SMALLEST_DAMPING / stiffness_share
+    smallest = SMALL_DAMPING / stiffness_share
     of_loss = np.sqrt((loss_share**2 + smallest**2) / (loss_share**2 + LOSS_SCALE**2))
     return np.sqrt(1.0 + stiffness_share**-2.0), np.maximum(of_loss, 1.0)
 
@@ -515,13 +512,16 @@ def _regressed(job: Job, among: Candidates, asked: _Asked, both: BoolArray) -> C
         predicted = _applied(cheap, where, without.value, slope, loss.left_out.value, applied)
         return _errors(points, where, predicted, dear)
 
-    def size(applied: tuple[bool, bool], names: tuple[str, ...]) -> float:
-        errors = left_out(applied)
-        # A damping that is wrong altogether is not worse for being so by ten times itself.
-        return float(sum(np.minimum(errors[name] ** 2, 1.0) @ shares for name in names))
+    def better(new: tuple[bool, bool], old: tuple[bool, bool], names: tuple[str, ...], freedom: float) -> bool:
+        # By size and by square, since one point far off decides the one, and many that agree by chance the other; a
+        # damping that is wrong altogether is not worse for being so by ten times itself.
+        sizes = [np.minimum(np.abs([left_out(applied)[name] for name in names]), 1.0) for applied in (new, old)]
+        return all(
+            np.sum((freedom * sizes[0] ** 2) ** p @ shares) < np.sum(sizes[1] ** (2 * p) @ shares) for p in (0.5, 1)
+        )
 
-    of_films = size((True, False), JUDGED[:2]) * offset.freedom < size((False, False), JUDGED[:2])
-    of_loss = size((of_films, True), JUDGED[2:]) * loss.freedom < size((of_films, False), JUDGED[2:])
+    of_films = better((True, False), (False, False), JUDGED[:2], offset.freedom)
+    of_loss = better((of_films, True), (of_films, False), JUDGED[2:], loss.freedom)
     also = {}
     for name in ALSO:
         pair = [np.array([float(found[i][name][0]) for i in kept]) for found in (asked.cheap, asked.dear)]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 
 import xarray as xr
@@ -16,11 +15,12 @@ from ehdmaps.jobs.assemble import assemble, with_correction
 from ehdmaps.jobs.correction import Correction, correction
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.law_check import HALVED, REFUSED, LawCheck, checked_laws, coarse_axis, met, plan_check
-from ehdmaps.jobs.refinement import Refinement, backbone_group, refinement
+from ehdmaps.jobs.refinement import MOST_LINE_POINTS, Refinement, backbone_group, refinement
 from ehdmaps.jobs.status import StatusFile
 from ehdmaps.jobs.store import Arrays, NoStore, Store, store_path
 from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
 from ehdmaps.jobs.tasks import LineTask, line_tasks
+from ehdmaps.jobs.tolerance import check_tolerance, within_tolerance
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import Axis
@@ -31,9 +31,6 @@ from ehdmaps.physics.solution import ContactSolver
 
 MOST_HALVINGS = 3
 """How often the steps of the lines of a law are halved, each time along one axis."""
-
-MOST_LINE_POINTS = 40_000
-"""Points of these lines that are not exceeded by halving a step: minutes on one core."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +59,7 @@ def generate(
     fresh: bool = False,
     progress: Callable[[int], Progress] | None = None,
     solver: ContactSolver | None = None,
+    tolerance: float | None = None,
     corrector: ContactSolver | None = None,
 ) -> Generated:
     """Make a map; what its store has already is taken over.
@@ -81,6 +79,9 @@ def generate(
         Takes the number of points, gives the `Progress` to tell.
     solver : ContactSolver, optional
         Instead of the job's; picklable.
+    tolerance : float, optional
+        Relative tolerance of the contact laws, for which density and refinement lines are chosen, see
+        `ehdmaps.jobs.tolerance`; those of the job if left out.
     corrector : ContactSolver, optional
         Instead of the dearer solver that the job names in `corrected_by`; picklable.
 
@@ -90,22 +91,30 @@ def generate(
         With what to do; everything solved is kept.
     """
     planned = _plan(job, _solver(job, solver), _corrector(job, corrector))
-    total = planned.points
+    adjusted = None if tolerance is None else check_tolerance(job, planned.solver, tolerance)
+    total = planned.points if adjusted is None else 0
     processes = workers or available_cores()
     with Store(store_path(output), fresh) as store, StatusFile(output, job, total, processes) as status:
+        result = SweepResult()
 
-        def solve(tasks: Sequence[LineTask], more: bool) -> SweepResult:
-            points = sum(task.points for task in tasks)
+        def solve(tasks: Sequence[LineTask], more: bool = True) -> Mapping[str, Arrays]:
+            missing = [task for task in tasks if task.key not in result.arrays]
+            points = sum(task.points for task in missing)
             if more:
                 status.more(points)
-            swept = sweep(tasks, store, processes, progress(points) if progress else None, [status])
+            if missing:
+                result.add(sweep(missing, store, processes, progress(points) if progress else None, [status]))
             status.write()
-            return swept
+            return result.arrays
 
-        result = SweepResult()
-        planned = _corrected(planned, result, partial(solve, more=True))
-        result.add(solve(planned.everything, False))
-        dataset, group = _refined(planned, result, str(output), partial(solve, more=True))
+        found: dict[str, float | int | str] = {}
+        if tolerance is not None and adjusted is not None:
+            chosen = within_tolerance(job, adjusted, tolerance, solve)
+            planned, found = _plan(chosen.job, chosen.solver, planned.corrector), chosen.attributes
+        planned = _corrected(planned, solve)
+        solve(planned.everything, more=adjusted is not None)
+        dataset, group = _refined(planned, result, str(output), solve)
+        dataset.attrs.update(found)
         write_map(dataset, output, {schema.BACKBONE: group} if group is not None else None)
     return Generated(dataset, group, result)
 
@@ -123,13 +132,15 @@ def generate_in_memory(
     """
     planned = _plan(job, _solver(job, solver), _corrector(job, corrector))
 
-    def solve(tasks: Sequence[LineTask]) -> SweepResult:
-        points = sum(task.points for task in tasks)
-        return sweep(tasks, NoStore(), workers or available_cores(), progress(points) if progress else None)
-
     result = SweepResult()
-    planned = _corrected(planned, result, solve)
-    result.add(solve(planned.everything))
+
+    def solve(tasks: Sequence[LineTask]) -> Mapping[str, Arrays]:
+        points = sum(task.points for task in tasks)
+        result.add(sweep(tasks, NoStore(), workers or available_cores(), progress(points) if progress else None))
+        return result.arrays
+
+    planned = _corrected(planned, solve)
+    solve(planned.everything)
     dataset, group = _refined(planned, result, job.name, solve)
     return Generated(dataset, group, result)
 
@@ -183,17 +194,13 @@ def _plan(job: Job, solver: ContactSolver, corrector: ContactSolver | None) -> _
     return _Plan(job, solver, corrector, line_tasks(job, solver), refinement(job, solver), plan_check(job, solver))
 
 
-def _corrected(planned: _Plan, result: SweepResult, solve: Callable[[Sequence[LineTask]], SweepResult]) -> _Plan:
+def _corrected(planned: _Plan, solve: Callable[[Sequence[LineTask]], Mapping[str, Arrays]]) -> _Plan:
     """The plan with its correction, where there is to be one: first of all, since without it there is no map."""
-    job, by = planned.job, planned.job.corrected_by
+    by = planned.job.corrected_by
     if by is None or planned.corrector is None:
         return planned
-
-    def found(tasks: Sequence[LineTask]) -> Mapping[str, Arrays]:
-        result.add(solve(tasks))
-        return result.arrays
-
-    return replace(planned, correction=correction(job, planned.solver, planned.corrector, by.points, found))
+    made = correction(planned.job, planned.solver, planned.corrector, by.points, solve)
+    return replace(planned, correction=made)
 
 
 def _results(planned: _Plan, result: SweepResult) -> Mapping[str, Arrays]:
@@ -204,13 +211,16 @@ def _results(planned: _Plan, result: SweepResult) -> Mapping[str, Arrays]:
 
 
 def _refined(
-    planned: _Plan, result: SweepResult, where: str, solve: Callable[[Sequence[LineTask]], SweepResult]
+    planned: _Plan, result: SweepResult, where: str, solve: Callable[[Sequence[LineTask]], object]
 ) -> tuple[xr.Dataset, xr.Dataset | None]:
-    """Finish a map, with lines that are laid more closely as long as its laws miss their bars between them."""
+    """Finish a map, with lines that are laid more closely as long as its laws miss their bars between them.
+
+    `solve` adds to the result.
+    """
     dataset, group = _finished(planned, result, where)
     while len(planned.halved) < MOST_HALVINGS and (finer := _finer(planned, dataset, group, result)) is not None:
         planned = finer
-        result.add(solve(finer.refined.tasks if finer.refined else ()))
+        solve(finer.refined.tasks if finer.refined else ())
         dataset, group = _finished(planned, result, where)
     return dataset, group
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ehdmaps.errors import InputError
+from ehdmaps.maps.backbone_plan import STEPS, Steps
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
@@ -81,6 +82,8 @@ class Job:
         "law": solve the lines that a contact law needs, where the solver is made for it; "none": leave them out.
     law_check : int
         Random points at which the contact laws are compared with fresh solves.
+    line_steps : Steps
+        Largest steps of these lines, with which a map begins.
     supply : OilSupply or None
         Oil supply that the contact laws of the map have by default; None where the job states none, which is flooded.
         The points of the map are those of flooded films.
@@ -105,6 +108,7 @@ class Job:
     fill: str = "neighbours"
     backbone: str = "law"
     law_check: int = 0
+    line_steps: Steps = STEPS
     supply: OilSupply | None = None
     surface: Surface | None = None
     corrected_by: CorrectedBy | None = None
@@ -128,6 +132,7 @@ class Job:
         fill: str = "neighbours",
         backbone: str = "law",
         law_check: int = 0,
+        line_steps: Steps = STEPS,
         corrected_by: str | None = None,
         correction_points: int = DEFAULT_CORRECTION_POINTS,
         correction_options: Mapping[str, str | int | float | bool] | None = None,
@@ -162,7 +167,7 @@ class Job:
             The solver's own keys, as in [solver].
         structural_law : {"iso16281", "palmgren", "half_space"}
             Structural law of the bearing's contacts.
-        fill, backbone, law_check
+        fill, backbone, law_check, line_steps
             See the attributes.
         corrected_by : str, optional
             Name of a dearer solver whose few points correct the films of `solver`.
@@ -190,7 +195,7 @@ class Job:
         >>> job.shape
         (2, 2, 2, 1)
         """
-        from ehdmaps.jobs.job_text import job_text
+        from ehdmaps.jobs.job_text import job_text, steps_keys
         from ehdmaps.jobs.reader import parse_job
 
         solids = contact or bearing
@@ -210,6 +215,7 @@ class Job:
                 "fill": fill,
                 "backbone": backbone,
                 "law_check": law_check,
+                **({} if line_steps == STEPS else {"line_steps": steps_keys(line_steps)}),
                 **({"corrected_by": corrected_by, "correction_points": correction_points} if corrected_by else {}),
                 **(solver_options or {}),
             },

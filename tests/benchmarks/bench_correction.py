@@ -24,9 +24,8 @@ from ehdmaps.jobs import solvers
 from ehdmaps.jobs.correction import JUDGED, Correction, Films, Place, correction, error_of, quantiles
 from ehdmaps.jobs.correction_design import places_of
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.law_check import VALLEY_SHARE
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.jobs.sampling import draw, draw_in_valley
+from ehdmaps.jobs.sampling import VALLEY_SHARE, draw, draw_in_valley
 from ehdmaps.jobs.store import Arrays, NoStore, Results, Store
 from ehdmaps.jobs.sweep import sweep
 from ehdmaps.jobs.tasks import LineTask

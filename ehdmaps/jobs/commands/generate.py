@@ -17,6 +17,7 @@ from ehdmaps.jobs.reader import is_map, read_job
 from ehdmaps.jobs.report import holes
 from ehdmaps.jobs.store import store_path
 from ehdmaps.jobs.summary import summary
+from ehdmaps.jobs.tolerance import read_tolerance, unmet_tolerance
 from ehdmaps.outputs import MAP, Output, check_outputs
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.program import tell
@@ -27,6 +28,7 @@ INTERRUPTED = 130
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Make the map; status 1 if points of it or of its correction have no solution, or a law is not good enough."""
+    tolerance = None if arguments.tolerance is None else read_tolerance(arguments.tolerance)
     job = read_job(arguments.job, arguments.solver, to_run=True)
     if arguments.output is None and is_map(arguments.job):
         raise InputError(f"-o: missing; {arguments.job} is a map itself; give the map to write with -o")
@@ -37,12 +39,15 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     solver = _built(job.solver, job.solver_options, kept)
     corrector = _built(by.solver, by.options, kept) if by else None
     try:
-        generated = generate(job, output, arguments.workers, arguments.fresh, progress, solver, corrector)
+        generated = generate(job, output, arguments.workers, arguments.fresh, progress, solver, tolerance, corrector)
     except KeyboardInterrupt:
         tell(f"\nstopped; what is solved is kept in {store_path(output)}: the same command goes on from there")
         return "", INTERRUPTED
     lost = holes(generated.dataset) + unsolved(generated.dataset)
-    missed = unmet(generated.dataset, generated.backbone is not None)
+    missed = [
+        *unmet(generated.dataset, generated.backbone is not None),
+        *unmet_tolerance(generated.dataset.attrs),
+    ]
     return "\n".join([summary(generated, output), *missed]), 1 if lost or missed else 0
 
 
