@@ -81,7 +81,7 @@ def with_correction(dataset: xr.Dataset, job: Job, correction: Correction, corre
     Parameters
     ----------
     dataset : xarray.Dataset
-        Its points, as `assemble` makes them of corrected films.
+        The map, as `assemble` makes it of corrected films.
     job : Job
         What was asked for.
     correction : Correction

@@ -85,15 +85,15 @@ class Correction:
     Attributes
     ----------
     points : tuple of SamplePoint
-        Where the dearer solver was asked, in this order.
+        Points at which the dearer solver was asked, in this order.
     statuses, reasons : tuple
         How each of them ended, by the dearer solver, or by the cheaper one where only that one has no solution.
     seconds : float
         Time in which the dearer solver solved them [s], all cores.
     offset, loss : Regression
-        Of ln(h) with its slope along zeta, and of the loss.
+        Regressions of ln(h) with its slope along zeta, and of the loss.
     also : mapping of str to Regression
-        Of the logarithms of `ALSO`.
+        Regressions of the logarithms of `ALSO`.
     applied : tuple of bool
         Whether film offset and compliance, and the loss, are corrected: only where leaving out points one by one says
         that they are better then, also with what the settings that were chosen by it make it too small by.
@@ -516,9 +516,9 @@ def _regressed(job: Job, among: Candidates, asked: _Asked, both: BoolArray) -> C
         # By size and by square, since one point far off decides the one, and many that agree by chance the other; a
         # damping that is wrong altogether is not worse for being so by ten times itself.
         sizes = [np.minimum(np.abs([left_out(applied)[name] for name in names]), 1.0) for applied in (new, old)]
-        return all(
-            np.sum((freedom * sizes[0] ** 2) ** p @ shares) < np.sum(sizes[1] ** (2 * p) @ shares) for p in (0.5, 1)
-        )
+        squares = [freedom * sizes[0] ** 2, sizes[1] ** 2]
+        means = [[float(np.sum(found**power @ shares)) for power in (0.5, 1.0)] for found in squares]
+        return means[0][0] < means[1][0] and means[0][1] < means[1][1]
 
     of_films = better((True, False), (False, False), JUDGED[:2], offset.freedom)
     of_loss = better((of_films, True), (of_films, False), JUDGED[2:], loss.freedom)

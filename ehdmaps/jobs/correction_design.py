@@ -66,7 +66,7 @@ def per_zeta(places: FloatArray) -> FloatArray:
     Parameters
     ----------
     places : array (n, 3)
-        Places.
+        Places (s, ln(1 + L), T).
     """
     return np.asarray(1.0 / (VALLEY * np.cosh(places[:, 0])))
 
@@ -106,7 +106,7 @@ class Candidates:
         Parameters
         ----------
         places : array (m, 3)
-            Places.
+            Places (s, ln(1 + L), T).
         """
         return np.asarray(places / np.where(self.ranges > 0.0, self.ranges, 1.0))
 

@@ -69,7 +69,7 @@ class LeftOut:
     Attributes
     ----------
     value, slope : array (n,)
-        Predictions; the slope is NaN where slopes are not observed.
+        Predicted values and slopes; the slope is NaN where slopes are not observed.
     squares : array (n,)
         Squares of the errors over the variances stated for them: one on the average.
     """
@@ -86,7 +86,7 @@ class Regression:
     Attributes
     ----------
     places : array (n, d)
-        Where it was observed.
+        Coordinates of the points at which it was observed.
     observed : array (n,) or (2 n,)
         Values, and behind them the slopes along the first coordinate, where they are known.
     doubts : array (n,) or (2 n,)
@@ -115,13 +115,13 @@ class Regression:
         Parameters
         ----------
         places : array (n, d)
-            Where the function was observed.
+            Coordinates of the points at which the function was observed.
         ranges : array (d,)
             Ranges of the coordinates, of which the lengths are multiples.
         values, doubts : array (n,)
-            Its values, and their doubts.
+            Values of the function, and their doubts.
         slopes, slope_doubts : array (n,), optional
-            Its slopes along the first coordinate, and their doubts.
+            Slopes of the function along the first coordinate, and their doubts.
         """
         observed = values if slopes is None else np.concatenate([values, slopes])
         of_all = doubts if slope_doubts is None else np.concatenate([doubts, slope_doubts])
@@ -180,7 +180,7 @@ class Regression:
         Parameters
         ----------
         places : array (m, d)
-            Where.
+            Coordinates of the points that are asked for.
         """
         value, slope = _covariance(places, self.places, self.settings.lengths, True, self.with_slopes).reshape(
             2, len(places), -1
@@ -193,7 +193,7 @@ class Regression:
         Parameters
         ----------
         places : array (m, d)
-            Where.
+            Coordinates of the points that are asked for.
         doubts : array (m, 2), optional
             Doubts of one more observation of value and slope there, whose noise is then counted in; that of the
             function itself if left out. A slope that is not observed has no noise of its own.
@@ -225,7 +225,7 @@ class Regression:
         Parameters
         ----------
         places : array (m, d)
-            Where.
+            Coordinates of the points that are asked for.
         """
         value, slope = self.at(places)
         mine = self.observed.reshape(-1, len(self.places))
