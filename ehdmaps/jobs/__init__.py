@@ -17,6 +17,9 @@ store        results by key in a file beside the map; survives kill -9
 sweep        tasks -> results, over all cores, past dead workers and Ctrl-C
 sampling     random operating points of a job
 refinement   the lines that a contact law needs besides the map, and the group they become
+regression   a smooth function through few points, with what it is uncertain by
+correction   films of one solver corrected by few points of a dearer one; `correction_design` chooses the points,
+             `correction_report` says what came of it
 law_points   what contact laws give at random points, and how far that is from fresh solves
 law_check    the contact laws against fresh solves, as every map with `law_check` has it
 tolerance    settings that bring the contact laws within a tolerance, confirmed by fresh solves

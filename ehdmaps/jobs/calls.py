@@ -38,6 +38,7 @@ def generate(
     fresh: bool = False,
     progress: Callable[[int], Progress] | None = None,
     tolerance: float | None = None,
+    corrector: ContactSolver | None = None,
 ) -> xr.Dataset:
     """Make a map.
 
@@ -65,6 +66,8 @@ def generate(
         Relative tolerance of stiffness, damping and film offset of the contact laws, 0.01 say: density of the grid and
         refinement lines are chosen for it, fresh solves confirm it, and the attributes `tolerance_...` of the map say
         what was found. It needs an output file.
+    corrector : ContactSolver, optional
+        Solver in place of the one that the job names in `corrected_by`.
 
     Returns
     -------
@@ -85,16 +88,16 @@ def generate(
         )
     if output is None:
         plain = dataclasses.replace(chosen, backbone="none")
-        return generating.generate_in_memory(plain, workers, progress, made_by).dataset
+        return generating.generate_in_memory(plain, workers, progress, made_by, corrector).dataset
     check_outputs([Output("output", Path(output), MAP)], [] if isinstance(job, Job) else [fspath(job)])
-    return generating.generate(chosen, Path(output), workers, fresh, progress, made_by, tolerance).dataset
+    return generating.generate(chosen, Path(output), workers, fresh, progress, made_by, tolerance, corrector).dataset
 
 
 def _with_solver(job: Job, name: str | None) -> Job:
     """The job with another solver, which has its default settings."""
     if name is None or name == job.solver:
         return job
-    return dataclasses.replace(job, solver=_known(name), solver_options={})
+    return dataclasses.replace(job, solver=_known(name), solver_options={}, corrected_by=None)
 
 
 def compare(
