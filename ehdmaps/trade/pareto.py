@@ -14,7 +14,7 @@ def front(cost: Sequence[float], error: Sequence[float]) -> tuple[int, ...]:
     cost : sequence of float
         Cost of each choice.
     error : sequence of float
-        Its error; a choice whose cost or error is not finite is never on the front.
+        Error of each choice; one whose cost or error is not finite is never on the front.
 
     Returns
     -------

@@ -39,7 +39,7 @@ class ErrorSummary:
     bias : float
         Median of the signed errors.
     worst : str
-        Where the largest one is, in words; empty without a point.
+        Place of the largest one, in words; empty without a point.
     stated : float
         Median of the errors that the choice states of itself; NaN where it states none.
     covered : float
@@ -64,7 +64,7 @@ class ErrorSummary:
         errors : array (n,)
             Signed errors; those that are not finite are left out.
         places : sequence of str
-            Where each was found.
+            Place of each error, in words.
         stated : array (n,), optional
             Error that the choice states of each point; NaN where it states none.
 
@@ -119,6 +119,8 @@ class Choice:
         Points without one, each with its place and cause.
     default : bool
         Whether this is what is used where a user says nothing.
+    reference : str
+        What its errors are relative to where that is not the reference of the trade; empty where it is.
     """
 
     group: str
@@ -131,6 +133,7 @@ class Choice:
     asked: int = 1
     lost: tuple[str, ...] = ()
     default: bool = False
+    reference: str = ""
 
 
 @dataclass(frozen=True)
@@ -140,9 +143,9 @@ class Trade:
     Attributes
     ----------
     level : {"contact", "map", "system"}
-        What was measured.
+        Level of the model that was varied.
     title : str
-        Of what, in words.
+        What was measured on, in words.
     cost : str
         What `Choice.seconds` counts, such as "s a point" or "s a run".
     reference : str

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -13,12 +14,13 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.figures import typeset
 from ehdmaps.units import RPM
-from mbs.analyses.campbell import MODE_SPEEDS, CampbellResult, LawRun, campbell, campbell_problems
+from mbs.analyses.campbell import MODE_SPEEDS, MOST_BANDS, CampbellResult, LawRun, campbell, campbell_problems
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside, fade_of
+from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Told, film_course, heading, held_lines, read_option, write
+from mbs.commands.common import Told, band_lines, film_course, heading, held_lines, read_option, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
@@ -40,25 +42,56 @@ _MOST_DAMPED = 0.5
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run up with each law, and compare."""
-    cases, settings = _asked(arguments)
-    found = campbell(cases, settings, Told("step"), with_modes=arguments.modes, keep_partial=True)
-    runs, course = found.runs, found.course
+    done = analysed(
+        arguments,
+        lambda given: _Asked(*_asked(given)),
+        lambda asked: campbell(
+            asked.cases,
+            asked.settings,
+            Told("step"),
+            with_modes=arguments.modes,
+            keep_partial=True,
+            bands=asked.bands,
+        ),
+        _looks_at,
+    )
+    found, bands = done.result, int(arguments.bands or "0")
+    settings, runs, course = found.settings, found.runs, found.course
     lines = [
+        *done.lines,
         f"{runs[0].case.model.scene.title}: run-up from {RPM.text(course.speed.at(0.0)[0])} to "
         f"{RPM.text(course.speed.at(course.duration)[0])} in {course.duration:.4g} s; "
         f"sensor {found.sensor.name}, {Reference.of(found.sensor).text}",
         *_resolution(runs[0].spectra, settings),
     ]
     for entry in runs:
-        lines += _report(entry)
+        lines += [*_report(entry), *_band(entry, bands)]
     lines += [*_differences(runs), *(f"warning: {line}" for line in found.failed)]
     lines += write(arguments, found.dataset, _figure(found) if arguments.plot else None)
-    return "\n".join(lines), 1 if found.failed or any(any(entry.record.outside.values()) for entry in runs) else 0
+    unsound = found.failed or any(any(entry.record.outside.values()) for entry in runs)
+    return "\n".join(lines), 1 if unsound else done.status
 
 
-def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings]:
-    """Laws, and what is looked at; all problems at once."""
+class _Asked(NamedTuple):
+    """Laws that are run, what is looked at, and how many runs a band has."""
+
+    cases: list[Case]
+    settings: CampbellSettings
+    bands: int
+
+
+def _looks_at(asked: _Asked) -> Looked:
+    """The scene with the largest loads, and the highest frequency."""
+    return Looked(max(asked.cases, key=lambda case: case.load_factor).model.scene, asked.settings.highest)
+
+
+def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings, int]:
+    """Laws, what is looked at, and how many runs a band has; all problems at once."""
     problems: list[str] = []
+    text = arguments.bands or "0"
+    bands = int(text) if text.isascii() and text.isdigit() and len(text) < 4 else -1
+    if not 0 <= bands <= MOST_BANDS:
+        problems.append(f"--bands: got {text!r:.40}; allowed: a whole number of runs, 0 to {MOST_BANDS}")
     highest = read_option("--highest", arguments.highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
     window = read_option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems)
     try:
@@ -80,7 +113,7 @@ def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings]
     problems += campbell_problems(scene, settings)
     if problems:
         raise InputError(tuple(dict.fromkeys(problems)))
-    return cases, settings
+    return cases, settings, bands
 
 
 def _figure(found: CampbellResult) -> Figure:
@@ -93,6 +126,7 @@ def _figure(found: CampbellResult) -> Figure:
         found.orders,
         [_overlay(entry) for entry in found.runs],
         [_reach(entry) for entry in found.runs],
+        [entry.level_error for entry in found.runs],
     )
 
 
@@ -161,6 +195,25 @@ def _report(entry: LawRun) -> list[str]:
     )
     ends = (float(found.speeds[0]), float(found.speeds[-1]))
     return [*lines, *fade_lines(entry.case.model, record.speed, "the run"), *film_course(entry.case.model, ends)]
+
+
+def _band(entry: LawRun, runs: int) -> list[str]:
+    """Lines on the band of the sum level, where runs for it were asked for."""
+    if not runs:
+        return []
+    words = band_lines(entry.case.model)
+    if entry.level_error is None:
+        return words
+    found = entry.spectra.campbell
+    worst = int(np.argmax(entry.level_error))
+    middle, at = float(np.median(entry.level_error)), RPM.text(float(found.speeds[worst]))
+    highest = float(entry.level_error[int(np.argmax(found.sum_level))])
+    return [
+        f"  band of the sum level by {runs} runs with laws wrong by the errors of the map: +- {middle:.2g} dB in the "
+        f"median of the windows, +- {highest:.2g} dB at the highest level, at most +- "
+        f"{entry.level_error[worst]:.2g} dB, at {at}",
+        *words,
+    ]
 
 
 def _differences(found: Sequence[LawRun]) -> list[str]:

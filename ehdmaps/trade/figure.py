@@ -1,0 +1,112 @@
+"""A measurement of speed against accuracy as one picture: cost and error of every choice, and the front of the best."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ehdmaps.figures import COLOURS, typeset
+from ehdmaps.trade.pareto import front
+from ehdmaps.trade.record import Choice, Judged, Trade
+
+RESOLUTION = 150
+"""Dots an inch."""
+
+_COLUMNS, _PANEL = 2, (4.0, 3.2)
+_KEY, _KEY_LINE = 3.4, 0.155
+"""Width of the key, and height of one of its lines [inch]."""
+_WORDS = {"1": "relative error", "dB": "error [dB]"}
+
+
+def trade_figure(trade: Trade) -> Figure:
+    """Draw cost and median error of each choice, a panel a quantity; a bar goes up to the 95 % quantile.
+
+    Parameters
+    ----------
+    trade : Trade
+        The measurement. Choices without an error above zero have no place on a logarithmic axis: the key says so.
+    """
+    groups = list(dict.fromkeys(choice.group for choice in trade.choices))
+    judged = [entry for entry in trade.judged if any(_shown(choice, entry) for choice in trade.choices)]
+    rows = max(math.ceil(len(judged) / _COLUMNS), 1)
+    lines = len(trade.choices) + len(groups) + 3
+    height = max(rows * _PANEL[1], lines * _KEY_LINE) + 0.6
+    figure = Figure(figsize=(_COLUMNS * _PANEL[0] + _KEY, height), layout="constrained")
+    figure.suptitle(typeset(f"{trade.title}\nreference: {trade.reference}"), fontsize=8)
+    grid = figure.add_gridspec(rows, _COLUMNS + 1, width_ratios=[*[_PANEL[0]] * _COLUMNS, _KEY])
+    for place, entry in enumerate(judged):
+        panel = figure.add_subplot(grid[place // _COLUMNS, place % _COLUMNS])
+        _panel(panel, trade, entry, groups)
+    _key(figure.add_subplot(grid[:, _COLUMNS]), trade, groups, judged)
+    return figure
+
+
+def _panel(panel: Axes, trade: Trade, judged: Judged, groups: list[str]) -> None:
+    """Draw the choices of one quantity, and which of them no other one with the same reference beats."""
+    places: dict[str, list[tuple[float, float]]] = {}
+    for index, choice in enumerate(trade.choices):
+        if not _shown(choice, judged):
+            continue
+        found = choice.errors[judged.name]
+        colour = _colour(choice, groups)
+        high = found.high if math.isfinite(found.high) else found.median
+        panel.plot([choice.seconds] * 2, [found.median, max(high, found.median)], color=colour, lw=0.8, alpha=0.6)
+        panel.plot(
+            choice.seconds,
+            found.median,
+            "D" if choice.default else "o",
+            color=colour,
+            ms=5.5 if choice.default else 4.0,
+        )
+        panel.annotate(
+            str(index + 1), (choice.seconds, found.median), xytext=(4, 2), textcoords="offset points", fontsize=6.5
+        )
+        places.setdefault(choice.reference, []).append((choice.seconds, found.median))
+    # errors that are relative to one thing do not beat those that are relative to another
+    for points in places.values():
+        best = front([x for x, _ in points], [y for _, y in points])
+        panel.plot([points[i][0] for i in best], [points[i][1] for i in best], color="0.5", lw=0.9, ls="--", zorder=0)
+    panel.set_xscale("log")
+    panel.set_yscale("log")
+    panel.margins(0.12)
+    panel.set_title(judged.name, fontsize=8)
+    panel.set_xlabel(trade.cost, fontsize=7)
+    panel.set_ylabel(_WORDS[judged.unit], fontsize=7)
+    panel.tick_params(labelsize=6.5, which="both")
+    panel.grid(lw=0.3, which="major")
+
+
+def _key(panel: Axes, trade: Trade, groups: list[str], judged: list[Judged]) -> None:
+    """List the choices by their numbers."""
+    panel.set_axis_off()
+    texts: list[tuple[str, dict[str, Any]]] = []
+    for group in groups:
+        colour = COLOURS[groups.index(group) % len(COLOURS)]
+        texts.append((group, {"color": colour, "weight": "bold"}))
+        for index, choice in enumerate(trade.choices):
+            if choice.group == group:
+                seen = any(_shown(choice, entry) for entry in judged)
+                words = f"{index + 1}  {choice.label}" + ("" if seen else " (no error above zero)")
+                texts.append((words, {"color": colour}))
+    texts += [
+        ("point: median, bar: up to 95 %", {"color": "0.3"}),
+        ("diamond: used where nothing is said", {"color": "0.3"}),
+        ("broken line: no other choice is better in both", {"color": "0.3"}),
+    ]
+    for line, (words, style) in enumerate(texts):
+        panel.annotate(typeset(words), (0.0, 1.0), xycoords="axes fraction", xytext=(0, -11.0 * (line + 1)),
+                       textcoords="offset points", fontsize=7, **style)  # fmt: skip
+
+
+def _shown(choice: Choice, judged: Judged) -> bool:
+    """Whether a choice has a place on logarithmic axes."""
+    found = choice.errors.get(judged.name)
+    return found is not None and found.points > 0 and found.median > 0.0 and 0.0 < choice.seconds < math.inf
+
+
+def _colour(choice: Choice, groups: list[str]) -> str:
+    """Colour of a group."""
+    return COLOURS[groups.index(choice.group) % len(COLOURS)]

@@ -1,0 +1,160 @@
+"""A measurement of speed against accuracy as printed tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from itertools import groupby
+
+from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade
+
+_COLUMNS, _CELL, _GAP = 4, 18, 2
+"""Quantities beside each other, least width of one, and the gap before its name."""
+
+_FACTOR = {"1": 100.0, "dB": 1.0}
+_UNIT = {"1": "%", "dB": "dB"}
+
+
+def trade_text(trade: Trade) -> str:
+    """Return a measurement as the tables that are printed.
+
+    Parameters
+    ----------
+    trade : Trade
+        The measurement.
+    """
+    return "\n".join(_lines(trade))
+
+
+def _lines(trade: Trade) -> Iterator[str]:
+    yield trade.title
+    yield f"reference: {trade.reference}"
+    yield from trade.frame
+    yield ""
+    yield "errors against the reference, median / 95 %"
+    yield from _table(trade, _error)
+    if any(choice.default for choice in trade.choices):
+        yield "* what is used where nothing is said"
+    if any(choice.numerical or choice.model for choice in trade.choices):
+        yield ""
+        yield "the same apart, medians: numerical error, which a finer solution takes away / error of the model"
+        yield from _table(trade, _apart, lambda choice: bool(choice.numerical or choice.model))
+    if any(_states(choice) for choice in trade.choices):
+        yield ""
+        yield "error that each states of itself, median / share of the points whose numerical error is not above it"
+        yield from _table(trade, _stated, _states)
+    yield ""
+    yield "largest error of each, and where"
+    for choice in trade.choices:
+        yield from _worst(choice, trade.judged)
+    yield from _lost(trade)
+
+
+def _table(
+    trade: Trade,
+    cell: Callable[[Choice, Judged], str],
+    wanted: Callable[[Choice], bool] = lambda choice: True,
+) -> Iterator[str]:
+    """Yield tables of the choices that are wanted, by group: so many that their lines do not become too long."""
+    width = max(len(choice.label) for choice in trade.choices) + 4
+    for first in range(0, len(trade.judged), _COLUMNS):
+        columns = trade.judged[first : first + _COLUMNS]
+        names = [f"{judged.name}, {_UNIT[judged.unit]}" for judged in columns]
+        widths = [max(_CELL, len(name) + _GAP) for name in names]
+        heads = "".join(f"{name:>{wide}s}" for name, wide in zip(names, widths, strict=True))
+        yield f"{'':{width}s}{trade.cost:>12s}{'solved':>12s}{heads}"
+        for (group, reference), choices in groupby(filter(wanted, trade.choices), key=_heading):
+            yield f"{group}, against {reference}" if reference else group
+            for choice in choices:
+                mark = "*" if choice.default else " "
+                cells = "".join(f"{cell(choice, one):>{wide}s}" for one, wide in zip(columns, widths, strict=True))
+                solved = f"{choice.solved}/{choice.asked}"
+                yield f"{mark} {choice.label:{width - 2}s}{number(choice.seconds):>12s}{solved:>12s}{cells}"
+
+
+def _heading(choice: Choice) -> tuple[str, str]:
+    """Group, and its own reference."""
+    return choice.group, choice.reference
+
+
+def _error(choice: Choice, judged: Judged) -> str:
+    """Median and 95 % quantile."""
+    found = choice.errors.get(judged.name)
+    return "-" if found is None else _pair(found.median, found.high, judged)
+
+
+def _apart(choice: Choice, judged: Judged) -> str:
+    """Medians of the numerical error and of that of the model."""
+    numerical, model = (
+        math.nan if part is None else part.median
+        for part in (choice.numerical.get(judged.name), choice.model.get(judged.name))
+    )
+    return _pair(numerical, model, judged)
+
+
+def _stated(choice: Choice, judged: Judged) -> str:
+    """Error that is stated, and how often it holds."""
+    found = _own(choice, judged.name)
+    if found is None or not math.isfinite(found.stated):
+        return "-"
+    return f"{number(found.stated * _FACTOR[judged.unit])} / {found.covered:.0%}"
+
+
+def _own(choice: Choice, name: str) -> ErrorSummary | None:
+    """The errors beside which the stated one stands: the numerical ones, where they are told apart."""
+    return choice.numerical.get(name) or choice.errors.get(name)
+
+
+def _states(choice: Choice) -> bool:
+    """Whether a choice states errors of itself."""
+    return any(
+        math.isfinite(found.stated) for found in (*choice.numerical.values(), *choice.errors.values()) if found.points
+    )
+
+
+def _pair(first: float, second: float, judged: Judged) -> str:
+    """Two errors in the unit of the column."""
+    factor = _FACTOR[judged.unit]
+    if not (math.isfinite(first) or math.isfinite(second)):
+        return "-"
+    return f"{number(first * factor)} / {number(second * factor)}"
+
+
+def number(value: float) -> str:
+    """Return a number to two digits, without an exponent where that is short.
+
+    Parameters
+    ----------
+    value : float
+        The number; "-" if it is not finite.
+
+    Examples
+    --------
+    >>> number(0.01234), number(1.2e-7), number(99.7), number(12345.0), number(float("nan"))
+    ('0.012', '1.2e-07', '100', '12345', '-')
+    """
+    if not math.isfinite(value):
+        return "-"
+    return f"{value:.0f}" if 99.5 <= abs(value) < 1e6 else f"{value:.2g}"
+
+
+def _worst(choice: Choice, judged: tuple[Judged, ...]) -> Iterator[str]:
+    """Yield the largest errors of a choice; one line for all quantities that have it at the same place."""
+    places: dict[str, list[str]] = {}
+    for quantity in judged:
+        found = choice.errors.get(quantity.name)
+        if found is not None and found.points and found.largest > 0.0:
+            words = f"{quantity.name} {number(found.largest * _FACTOR[quantity.unit])} {_UNIT[quantity.unit]}"
+            places.setdefault(found.worst, []).append(words)
+    for place, errors in places.items():
+        yield f"  {choice.label}: {', '.join(errors)}" + (f" at {place}" if place else "")
+
+
+def _lost(trade: Trade) -> Iterator[str]:
+    """Yield what has no answer, and is in no error."""
+    if any(choice.lost for choice in trade.choices):
+        yield ""
+        yield "without an answer, and in no error"
+        for choice in trade.choices:
+            for point in choice.lost:
+                yield f"  {choice.label}: {point}"

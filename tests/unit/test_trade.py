@@ -1,0 +1,133 @@
+"""Records of speed against accuracy: their tables, files and picture."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.collections import LineCollection
+
+from ehdmaps.errors import InputError
+from ehdmaps.trade.data import trade_dataset, trade_json
+from ehdmaps.trade.figure import trade_figure
+from ehdmaps.trade.files import check_trade_files, write_trade
+from ehdmaps.trade.pareto import front
+from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade
+from ehdmaps.trade.text import trade_text
+
+PLACES = ("inner, 1 N/mm", "outer, 30 N/mm", "inner, 7 N/mm")
+
+
+def choice(label: str, seconds: float, errors: list[float], group: str = "resolution", **further) -> Choice:
+    """A choice whose films state an error of 1 %."""
+    found = ErrorSummary.of(np.array(errors), PLACES, np.full(3, 0.01))
+    levels = ErrorSummary.of(10.0 * np.array(errors), PLACES)
+    return Choice(group, label, seconds, {"film": found, "level": levels}, solved=3, asked=3, **further)
+
+
+@pytest.fixture(scope="module")
+def trade() -> Trade:
+    coarse = choice("coarse", 1e-3, [0.02, -0.005, 0.004])
+    return Trade(
+        level="contact",
+        title="three points",
+        cost="s a point",
+        reference="the exact solution",
+        judged=(Judged("film"), Judged("level", "dB")),
+        choices=(
+            coarse,
+            choice("fine", 1e-2, [0.001, 0.002, -0.001], default=True),
+            choice("dear", 2e-2, [0.01, 0.01, 0.01], lost=("inner, 2 N/mm: no convergence",)),
+            choice("exact", 1.0, [0.0, 0.0, 0.0]),
+            Choice("law", "none", 1e-6, {}, numerical={}, model={}, solved=0, asked=3),
+            Choice("law", "apart", 5e-3, coarse.errors, numerical=coarse.errors, model={"film": coarse.errors["film"]}),
+        ),
+        frame=("seed 1",),
+    )
+
+
+def test_sizes_and_places_of_errors() -> None:
+    found = ErrorSummary.of(np.array([-0.02, 0.005, np.nan]), PLACES, np.array([0.01, 0.01, 0.01]))
+    assert (found.points, found.largest, found.worst, found.covered, found.stated) == (2, 0.02, PLACES[0], 0.5, 0.01)
+    # the mean of the two in the middle, and of their signed values: exact arithmetic but for rounding
+    assert found.median == pytest.approx(0.0125, rel=1e-12)
+    assert found.bias == pytest.approx(-0.0075, rel=1e-12)
+    empty = ErrorSummary.of(np.array([np.nan]), ["a"])
+    assert (empty.points, empty.worst) == (0, "")
+    assert math.isnan(empty.median)
+
+
+def test_front_keeps_what_no_other_choice_beats() -> None:
+    assert front([1.0, 2.0, 3.0, 4.0], [4.0, 5.0, 1.0, 1.0]) == (0, 2)
+    assert front([2.0, 2.0], [1.0, 0.5]) == (1,)
+    assert front([math.nan, math.inf, 1.0], [1.0, 0.0, math.nan]) == ()
+
+
+def test_tables_name_default_worst_and_lost(trade: Trade) -> None:
+    text = trade_text(trade)
+    lines = text.splitlines()
+    assert lines[:3] == ["three points", "reference: the exact solution", "seed 1"]
+    (fine,) = [line for line in lines if line.startswith("* fine") and "0.1 / " in line]
+    assert fine.split()[2:5] == ["0.01", "3/3", "0.1"]
+    assert "  coarse: film 2 %, level 0.2 dB at inner, 1 N/mm" in lines
+    assert "  dear: inner, 2 N/mm: no convergence" in lines
+    (stated,) = [line for line in lines if line.startswith("  coarse") and "67%" in line]
+    assert "1 / 67%" in stated  # states 1 %, and two of three points keep it
+
+
+def test_dataset_and_json_hold_the_same_numbers(trade: Trade) -> None:
+    dataset, record = trade_dataset(trade), json.loads(trade_json(trade))
+    assert dataset["median"].dims == ("choice", "quantity")
+    for index, entry in enumerate(record["choices"]):
+        assert float(dataset["seconds"][index]) == entry["seconds"]
+        if "film" in entry["errors"]:
+            assert float(dataset["largest"].sel(quantity="film")[index]) == entry["errors"]["film"]["largest"]
+    assert np.isnan(dataset["median"].sel(choice="none")).all()
+    assert record["choices"][0]["errors"]["level"]["stated"] is None
+    assert dataset["unit"].values.tolist() == ["1", "dB"]
+
+
+def test_picture_shows_choices_with_an_error_and_the_front(trade: Trade) -> None:
+    figure = trade_figure(trade)
+    film, level, key = figure.axes
+    assert (film.get_title(), level.get_title()) == ("film", "level")
+    assert [text.get_text() for text in film.texts] == ["1", "2", "3", "6"]
+    (best,) = [line for line in film.lines if line.get_linestyle() == "--"]
+    assert best.get_xdata().tolist() == [1e-3, 1e-2]
+    assert any("4  exact (no error above zero)" in text.get_text() for text in key.texts)
+    assert not [entry for entry in film.collections if isinstance(entry, LineCollection)]
+
+
+def test_choices_with_another_reference_have_a_front_and_a_heading_of_their_own(trade: Trade) -> None:
+    own = choice("wet", 2e-3, [0.003, 0.003, 0.003], group="layer", reference="films on it")
+    both = replace(trade, choices=(*trade.choices, own))
+    film, *_ = trade_figure(both).axes
+    fronts = [line.get_xdata().tolist() for line in film.lines if line.get_linestyle() == "--"]
+    assert fronts == [[1e-3, 1e-2], [2e-3]]  # it beats "fine" in cost and error, of something else
+    assert "layer, against films on it" in trade_text(both).splitlines()
+    assert trade_dataset(both)["against"].values.tolist()[-2:] == ["", "films on it"]
+
+
+def test_long_tables_are_broken_into_columns_that_fit(trade: Trade) -> None:
+    many = tuple(Judged(f"quantity {index}") for index in range(5))
+    heads = [line for line in trade_text(replace(trade, judged=many)).splitlines() if "s a point" in line]
+    assert [line.count("quantity") for line in heads[:2]] == [4, 1]  # errors; further tables are broken likewise
+
+
+def test_files_follow_the_rule_of_outputs(trade: Trade, tmp_path) -> None:
+    output, plot, foreign = tmp_path / "t.nc", tmp_path / "t.png", tmp_path / "mine.nc"
+    for _ in range(2):  # an own file is replaced
+        assert len(write_trade(trade, str(output), str(plot))) == 2
+    with xr.open_dataset(output) as read:
+        assert read.attrs["level"] == "contact"
+        np.testing.assert_array_equal(read["median"], trade_dataset(trade)["median"])
+    foreign.write_text("mine")
+    with pytest.raises(InputError, match="is not a trade of ehdmaps"):
+        check_trade_files(str(foreign), None, [])
+    with pytest.raises(InputError, match="is not a trade of ehdmaps"):
+        write_trade(trade, str(foreign), None)
+    assert foreign.read_text() == "mine"
