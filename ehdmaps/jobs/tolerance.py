@@ -233,6 +233,11 @@ def check_tolerance(job: Job, solver: ContactSolver, tolerance: float) -> Reynol
             'tolerance: the job has [solver] backbone = "none", and a tolerance is met by refinement lines; allowed: '
             'backbone = "law"'
         )
+    if job.corrected_by is not None:
+        problems.append(
+            "tolerance: the job has [solver] corrected_by, and a tolerance is against the solver itself, which the "
+            "corrected films leave; allowed: a job without it, whose density and line_steps may be taken over"
+        )
     if not drawable(job):
         problems.append(
             "tolerance: the job has one point, or no speed above zero: nothing lies between its points; allowed: a job "
