@@ -156,17 +156,17 @@ class _Round:
 
     def met(self, tolerance: float) -> bool:
         """Whether enough points of the laws are."""
-        return self._enough(self.errors, tolerance)
+        return not self.refused and self._enough(self.within(tolerance))
 
-    def films_met(self, tolerance: float) -> bool:
-        """Whether enough points of the films between the lines are."""
-        return self._enough(self.film_errors, tolerance)
+    def curable(self, tolerance: float) -> bool:
+        """Whether enough would be, were the films between the lines right: what the table of a law misses stays."""
+        return self._enough(self.within(tolerance) | ~_within(self.film_errors, tolerance))
 
-    def _enough(self, errors: Mapping[str, FloatArray], tolerance: float) -> bool:
-        """Whether enough points are within it by each quantity, over the map and in the valley."""
-        if self.refused or not self.fresh.tasks:
+    def _enough(self, within: BoolArray) -> bool:
+        """Whether enough points are within by each quantity, over the map and in the valley."""
+        if not self.fresh.tasks:
             return False
-        within, valley = _within(errors, tolerance), self.fresh.valley
+        valley = self.fresh.valley
         parts = ((within[:, ~valley], SHARE), (within[:, valley], VALLEY_SHARE))
         return all(bool(np.all(part.mean(axis=1) >= share)) for part, share in parts if part.shape[1])
 
@@ -232,6 +232,11 @@ def check_tolerance(job: Job, solver: ContactSolver, tolerance: float) -> Reynol
         problems.append(
             'tolerance: the job has [solver] backbone = "none", and a tolerance is met by refinement lines; allowed: '
             'backbone = "law"'
+        )
+    if job.corrected_by is not None:
+        problems.append(
+            "tolerance: the job has [solver] corrected_by, and a tolerance is against the solver itself, which the "
+            "corrected films leave; allowed: a job without it, whose density and line_steps may be taken over"
         )
     if not drawable(job):
         problems.append(
@@ -364,8 +369,8 @@ def _finer(tried: _Round, tolerance: float, solve: Solve) -> tuple[Settings | No
     """Settings that bring the missed points closer; none, and why, where that would not help, or be too much."""
     if tried.refused:
         return None, f"no contact law: {tried.refused}"
-    if tried.films_met(tolerance):
-        return None, "films between the lines are within it, and the table of a law misses where damping nears zero"
+    if not tried.curable(tolerance):
+        return None, "the table of a law misses, where damping nears zero, by more than finer lines would mend"
     settings = tried.settings
     for name, _ in _votes(tried, tolerance, solve).most_common():
         if (settings := _refined(tried.settings, name)) != tried.settings:

@@ -143,6 +143,11 @@ def test_tolerances_that_are_none_are_refused(text: str, tmp_path: Path, capsys)
     [
         (('"reynolds"', '"formula"'), 0.01, "solver 'formula' has no grid density .* allowed: the solver reynolds"),
         (('"reynolds"', '"reynolds"\nbackbone = "none"'), 0.01, 'backbone = "none", .* allowed: backbone = "law"'),
+        (
+            ('"reynolds"', '"reynolds"\ncorrected_by = "formula"'),
+            0.01,
+            r"has \[solver\] corrected_by, .*; allowed: a job",
+        ),
         (('["1 m/s"]', '["0 m/s"]'), 0.01, "no speed above zero: nothing lies between its points; allowed"),
         (('"reynolds"', '"reynolds"'), 1e-11, "tolerance: got 1e-11; allowed: .* 0.01 in Python"),
         (('"reynolds"', '"reynolds"'), float("nan"), "tolerance: got nan; allowed"),
