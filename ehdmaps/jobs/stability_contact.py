@@ -194,10 +194,12 @@ def pair_check(name: str, solver: ContactSolver, job: Job, pairs: int, seed: int
 
     Parameters
     ----------
-    name, solver, job, seed
+    name, solver, job
         The arguments of `line_check`.
     pairs : int
         How many pairs.
+    seed : int
+        Seed of the search.
     """
     tally = Tally(
         f"contact: {name}, a hair apart",

@@ -139,7 +139,15 @@ def _moes_range(groups: Groups) -> tuple[float, float]:
 
 
 def film_problem(wild: WildPoint, film: FilmSolution, whole: ContactSolution) -> tuple[str, float]:
-    """A solved film beside Martin's, Hertz' and Moes'."""
+    """A solved film beside Martin's, Hertz' and Moes'.
+
+    Parameters
+    ----------
+    wild : WildPoint
+        The point.
+    film, whole
+        Film and contact of the point.
+    """
     wrong = _whole_problem(film, whole)
     if wrong or film.film_offset == 0.0:
         return wrong, 0.0
@@ -180,7 +188,17 @@ def stated_size(error: float) -> float:
 def jump(
     wild: WildPoint, film: FilmSolution, whole: ContactSolution, other: FilmSolution, its: ContactSolution
 ) -> tuple[str, float]:
-    """What changes too much between points a hair apart, and how much of its bound the largest change takes."""
+    """What changes too much between points a hair apart, and how much of its bound the largest change takes.
+
+    Parameters
+    ----------
+    wild : WildPoint
+        The point.
+    film, whole
+        Film and contact of the point.
+    other, its
+        Film and contact of the point beside it.
+    """
     worst, share = "", 0.0
     for name, apart, size, error in _differences(wild, film, whole, other, its):
         bound = JUMP * size + error
@@ -195,7 +213,17 @@ def jump(
 def error_ratios(
     wild: WildPoint, film: FilmSolution, whole: ContactSolution, exact: FilmSolution, best: ContactSolution
 ) -> dict[str, float]:
-    """Errors over what is stated of them; round-off counts as stated."""
+    """Errors over what is stated of them; round-off counts as stated.
+
+    Parameters
+    ----------
+    wild : WildPoint
+        The point.
+    film, whole
+        Film and contact of the point.
+    exact, best
+        Film and contact on the finer grid.
+    """
     found = {}
     for name, apart, size, _ in _differences(wild, film, whole, exact, best):
         stated = {"film": film.film_offset_error, "stiffness": whole.stiffness_error, "damping": whole.damping_error}[
