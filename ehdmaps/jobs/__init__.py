@@ -42,7 +42,9 @@ film_output  files with the film itself, beside the numbers of one point
 traction     traction of one point over the slide-to-roll ratio
 supplied     one point behind an oil layer: flow ratio and place of the meniscus
 film_plot    pressure, film and velocities of one point, on one page
+compare_films films of two maps at random points of their common range
 compare      differences between two maps
+compare_text the same in words and as JSON
 answers      what is asked of a contact and answered, and what errors are relative to
 rough_solved load sharing of film and asperities with solved films
 contact_ways ways of computing a contact: solvers, oil layers, rough surfaces, frequencies

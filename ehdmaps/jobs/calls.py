@@ -103,7 +103,10 @@ def _with_solver(job: Job, name: str | None) -> Job:
 def compare(
     first: EHDMap | xr.Dataset | str | PathLike[str], second: EHDMap | xr.Dataset | str | PathLike[str]
 ) -> comparing.Comparison:
-    """Compare two maps on the points that they share.
+    """Compare two maps: on the points that they share, and where these are not all of one of them, between points.
+
+    Between points films are read as contact laws read them, at random points of the range that both maps have. A
+    dataset on its own has no refinement lines: give the file, or the `EHDMap`, of a map that has them.
 
     Parameters
     ----------
@@ -118,20 +121,18 @@ def compare(
     Raises
     ------
     MapError
-        If a file is no map, or they have no point in common.
+        If a file is no map, or they have no contact or range of an axis in common.
     """
     a, first_name = _opened(first, "first")
     b, second_name = _opened(second, "second")
     return comparing.compare(a, b, (first_name, second_name))
 
 
-def _opened(source: EHDMap | xr.Dataset | str | PathLike[str], name: str) -> tuple[xr.Dataset, str]:
+def _opened(source: EHDMap | xr.Dataset | str | PathLike[str], name: str) -> tuple[EHDMap | xr.Dataset, str]:
     """A map, and what it is called."""
-    if isinstance(source, xr.Dataset):
+    if isinstance(source, EHDMap | xr.Dataset):
         return source, name
-    if isinstance(source, EHDMap):
-        return source.dataset, name
-    return open_map(source).dataset, fspath(source)
+    return open_map(source), fspath(source)
 
 
 def solve(
