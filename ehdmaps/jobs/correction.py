@@ -211,7 +211,7 @@ class Correction:
             "usable": self.usable,
             "solve_seconds": self.seconds,
             "not_applied": [
-                name for name, used in zip(("film_offset", "damping"), self.applied, strict=True) if not used
+                name for name, used in zip(("film_offset", "loss_compliance"), self.applied, strict=True) if not used
             ],
             "before": {name: quantiles(self.before[name], self.shares) for name in JUDGED},
             "leave_one_out": {name: quantiles(self.left_out[name], self.shares) for name in JUDGED},

@@ -18,6 +18,7 @@ from ehdmaps.maps.structure import MODEL_ERRORS
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 _LEVELS = ("median", "95 %", "largest")
+_WIDTH = 49
 _USABLE = ("converged", "asymptote")
 
 
@@ -74,17 +75,18 @@ def _lines(dataset: xr.Dataset, record: Mapping[str, Any]) -> Iterator[str]:
         for point in points:
             yield f"    {_place(point)}: {plain(point.get('reason', 'no reason given'))}"
     for name in record["not_applied"]:
-        yield f"  {plain(name).replace('_', ' ')} left as it was: by leaving out points one by one it would be worse"
-    yield f"  {'difference from it, relative':41s}" + "".join(f"{level:>11s}" for level in _LEVELS)
+        words = plain(name).replace("_", " ")
+        yield f"  {words} left as it was: points left out one by one are no better with the correction"
+    yield f"  {'difference from it, relative':{_WIDTH}s}" + "".join(f"{level:>11s}" for level in _LEVELS)
     for kind, words in (("before", "not corrected"), ("leave_one_out", "corrected, leaving out each point")):
         for name in JUDGED:
             values = "".join(f"{float(record[kind][name][level]):11.2g}" for level in _LEVELS)
-            yield f"  {name.replace('_', ' ') + ', ' + words:41s}{values}"
+            yield f"  {name.replace('_', ' ') + ', ' + words:{_WIDTH}s}{values}"
     for name in MODEL_ERRORS:
         known = dataset[name].values[np.isfinite(dataset[name].values)] if name in dataset else np.empty(0)
         if known.size:
             values = "".join(f"{value:11.2g}" for value in np.quantile(known, (0.5, 0.95, 1.0)))
-            yield f"  {name.partition('_')[0] + ', one deviation, at all points':41s}{values}"
+            yield f"  {name.partition('_')[0] + ', one deviation, at all points':{_WIDTH}s}{values}"
 
 
 def _place(point: Mapping[str, Any]) -> str:

@@ -298,7 +298,7 @@ def test_a_correction_that_leaving_out_does_not_bear_out_is_not_applied():
     idle = [made for made in found if made.applied == (False, False)]
     assert len(idle) >= 2
     made = idle[0]
-    assert made.record()["not_applied"] == ["film_offset", "damping"]
+    assert made.record()["not_applied"] == ["film_offset", "loss_compliance"]
     task = LineTask(job.contacts[0], job.lubricant, (2e4,), 1.0, 333.15, cheap)
     found = made.corrected(task, arrays := task.run())
     assert found["loss_compliance"] == pytest.approx(arrays["loss_compliance"], rel=1e-12)  # round-off of arsinh
