@@ -31,6 +31,7 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import VALLEY
 from ehdmaps.maps.low_loads import valley_loads
+from ehdmaps.maps.structure import MODEL_ERRORS
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 
@@ -39,9 +40,6 @@ QUANTILES = {"median": 0.5, "95 %": 0.95, "99 %": 0.99, "largest": 1.0}
 
 TAKEN = "95 %"
 """Quantile of the errors of a law that a bound takes."""
-
-MODEL_ERRORS = ("stiffness_model_error", "damping_model_error")
-"""Relative errors of the model that a map may state, of k and of c."""
 
 NOT_IN = "physics that the solver leaves out, the structure of the solids and the geometry are not in it"
 """What no bound has, for people."""
@@ -92,9 +90,9 @@ class LawBounds:
     Attributes
     ----------
     stiffness, damping : array (n,)
-        Relative, of k and c at the load.
+        Relative errors of k and c at the load.
     film_offset : array (n,)
-        Of the approach at the load [m]: where the film stands.
+        Error of the approach at the load [m]: how much thicker or thinner the films may be.
     """
 
     stiffness: FloatArray
@@ -134,9 +132,9 @@ class LawErrors:
     dataset : xarray.Dataset
         The map, with what is derived from its films.
     contacts : sequence of LineContact
-        Its contacts, in the order of its first axis.
+        Contacts of the map, in the order of its first axis.
     lubricant : Lubricant
-        Its oil, for the place of the damping valley.
+        Oil of the map, for the place of the damping valley.
     """
 
     def __init__(self, dataset: xr.Dataset, contacts: Sequence[LineContact], lubricant: Lubricant) -> None:

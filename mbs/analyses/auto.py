@@ -48,7 +48,8 @@ MOST_MAPS = 3
 WIDER = 3.0
 """Highest load of the next plan over that of the last one."""
 
-MOST_TOLERANCE = 1.0
+MOST_TOLERANCE = 9.0
+"""A tenfold stiffness or damping, 20 dB."""
 
 
 @dataclass(frozen=True, kw_only=True)

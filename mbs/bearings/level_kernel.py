@@ -112,10 +112,12 @@ def assemble_level_slices(
 
     Parameters
     ----------
-    motion, shape, weights, out
+    motion, shape, weights
         The same as for `assemble_level`.
     states : array (4, Z, n)
         Loads and their slopes; zeros where the damping would be.
+    out : array (13, 6)
+        Written as by `assemble_level`.
     """
     numbers = LawNumbers(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, math.inf, math.inf, -math.inf, 1.0)
     assemble_level(motion, shape, weights, numbers, states, out)
@@ -129,12 +131,14 @@ def level_force(
 
     Parameters
     ----------
-    motion, shape, weights, out
+    motion, shape, weights
         The same as for `assemble_level`.
     law : PreparedLaw
         Law of a roller between both raceways, at a speed and temperature.
     work : Work
         Work space, overwritten.
+    out : array (13, 6)
+        Written as by `assemble_level`.
     """
     wrong = check_motion(motion, shape.sizes)
     if wrong != 0:

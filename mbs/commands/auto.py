@@ -14,7 +14,7 @@ from ehdmaps.jobs.progress import progress
 from ehdmaps.jobs.store import store_path
 from ehdmaps.program import tell
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
-from mbs.analyses.auto import TOLERANCE, Automatic, AutoSettings, settled
+from mbs.analyses.auto import MOST_TOLERANCE, TOLERANCE, Automatic, AutoSettings, settled
 from mbs.analyses.kept_map import KeptMap
 from mbs.analyses.varied import LawChoice, Subject
 from mbs.commands.cases import FILMS, read_clearance, read_supplies
@@ -129,12 +129,12 @@ def read_tolerance(text: str | None, problems: list[str]) -> float:
         part = {"%": value / 100.0, "dB": math.pow(10.0, value / 20.0) - 1.0}[unit.strip()]
     except (KeyError, ValueError, OverflowError):
         part = math.nan
-    if not 0.0 < part <= 1.0:
+    if not 0.0 < part <= MOST_TOLERANCE * (1.0 + 1e-9):
         problems.append(
-            f"--tolerance: got {text!r:.40}; allowed: above 0 up to 100 % or 6.02 dB, such as '5 %' or '1 dB'"
+            f"--tolerance: got {text!r:.40}; allowed: above 0 up to 900 % or 20 dB, such as '5 %' or '1 dB'"
         )
         return TOLERANCE
-    return part
+    return min(part, MOST_TOLERANCE)
 
 
 def _asked(
@@ -159,14 +159,24 @@ def _asked(
         if scene.lubricant is None:
             problems.append(f"{scene.name}: got no [lubricant], which a map is made for; add the table to the scene")
         else:
-            # What is wrong about the other options shows with the formula in place of the map.
-            formula = Subject(scene, LawChoice(law_label("formula"), "formula"))
-            looked = looks_at(ask(_with(arguments, formula)))
+            looked = looks_at(ask(_stand_in(arguments, scene)))
     except InputError as error:
         problems += error.problems
+    films = getattr(arguments, "films", None) or []
+    problems += [f"--films: got {text!r:.60}; allowed: {', '.join(FILMS)}" for text in films if text not in FILMS]
+    read_supplies(getattr(arguments, "supply", None) or (), problems)
     if problems or scene is None or looked is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     return scene, looked, _settings(arguments, tolerance, folder, looked.highest)
+
+
+def _stand_in(arguments: argparse.Namespace, scene: Scene) -> argparse.Namespace:
+    """The arguments with a law that is made in a moment in place of the map, to see what is wrong about the others."""
+    needs_films = any(entry.centrifugal and not entry.rollers_as_bodies for entry in scene.bearings)
+    law = "formula" if needs_films else "hertz"
+    without = {name: None for name in ("films", "supply") if hasattr(arguments, name)}
+    there = _with(arguments, Subject(scene, LawChoice(law_label(law), law)))
+    return argparse.Namespace(**{**vars(there), **without})
 
 
 def _settings(arguments: argparse.Namespace, tolerance: float, folder: Path, highest: float) -> AutoSettings:

@@ -63,9 +63,9 @@ class ModeBands(NamedTuple):
     Attributes
     ----------
     frequency : array
-        Of |eigenvalue|/(2 pi) [Hz].
+        Bands of |eigenvalue|/(2 pi) [Hz].
     damping_ratio : array
-        Of the damping ratio.
+        Bands of the damping ratio.
     """
 
     frequency: FloatArray
