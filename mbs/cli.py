@@ -13,7 +13,7 @@ from ehdmaps.program import Parser, run
 from mbs.model.relaxation import DEFAULT_FILMS
 
 VARIED_KEYS = (
-    "clearance, temperature, films, supply, housing-damping, ramp, start-angle, load-factor, step, slices, law"
+    "clearance, temperature, films, supply, housing-damping, ramp, start-angle, load-factor, step, slices, cutoff, law"
 )
 """The keys of `mbs.analyses.varied.VARIED`, which takes longer to import than a command to be refused."""
 
@@ -127,6 +127,12 @@ def _campbell(command: argparse.ArgumentParser) -> None:
     command.add_argument("--sensor", metavar="NAME", help="a sensor; default: the first of an acceleration")
     command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
     command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
+    command.add_argument(
+        "--tolerance",
+        metavar="LEVEL",
+        help="of one law: choose step, slices and cut-off by short trials so that the sum level at equal speed keeps "
+        'it, such as "1 dB"',
+    )
     command.add_argument("--modes", action="store_true", help="draw in the linear modes, with the films of each run")
 
 

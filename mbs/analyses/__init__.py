@@ -11,6 +11,9 @@ sweep          modes, bearings and responses over speed, of one or more models
 runup          the nonlinear system in time over its speed profile
 campbell       run-ups with one or more laws as levels over speed, frequency and order
 variants       how a difference between two laws in a run-up depends on clearance, temperature and the like
+tolerance      step, slices and cut-off of a run-up that keep its sum level within a tolerance
+numerics       these settings
+ramp_parts     short runs of parts of a run-up, and their sum levels
 hammer         a simulated hammer test
 plan           which ranges a scene needs of a contact map, and the jobs that cover them
 planning       operating points of a scene and the loads and speeds seen there

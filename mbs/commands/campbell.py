@@ -17,6 +17,7 @@ from mbs.analyses.campbell import MODE_SPEEDS, CampbellResult, LawRun, campbell,
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside, fade_of
+from mbs.analyses.tolerance import read_tolerance, within
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Told, film_course, heading, held_lines, read_option, write
 from mbs.commands.reach import fade_lines, outside_lines
@@ -40,7 +41,11 @@ _MOST_DAMPED = 0.5
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run up with each law, and compare."""
-    cases, settings = _asked(arguments)
+    cases, settings, tolerance = _asked(arguments)
+    tolerated = None
+    if tolerance is not None and cases[0].subject is not None:
+        tolerated = within(cases[0].subject, tolerance, settings, Told("trial"))
+        cases = [dataclasses.replace(cases[0], model=tolerated.subject.model(), subject=tolerated.subject)]
     found = campbell(cases, settings, Told("step"), with_modes=arguments.modes, keep_partial=True)
     runs, course = found.runs, found.course
     lines = [
@@ -48,17 +53,26 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"{RPM.text(course.speed.at(course.duration)[0])} in {course.duration:.4g} s; "
         f"sensor {found.sensor.name}, {Reference.of(found.sensor).text}",
         *_resolution(runs[0].spectra, settings),
+        *(tolerated.lines if tolerated else ()),
     ]
     for entry in runs:
         lines += _report(entry)
     lines += [*_differences(runs), *(f"warning: {line}" for line in found.failed)]
-    lines += write(arguments, found.dataset, _figure(found) if arguments.plot else None)
-    return "\n".join(lines), 1 if found.failed or any(any(entry.record.outside.values()) for entry in runs) else 0
+    dataset = found.dataset.assign_attrs(tolerance="\n".join(tolerated.lines)) if tolerated else found.dataset
+    lines += write(arguments, dataset, _figure(found) if arguments.plot else None)
+    outside = any(any(entry.record.outside.values()) for entry in runs)
+    return "\n".join(lines), 1 if found.failed or outside or (tolerated and not tolerated.met) else 0
 
 
-def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings]:
-    """Laws, and what is looked at; all problems at once."""
+def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings, float | None]:
+    """Laws, what is looked at, and the tolerance if there is one; all problems at once."""
     problems: list[str] = []
+    tolerance = None
+    if arguments.tolerance is not None:
+        try:
+            tolerance = read_tolerance(arguments.tolerance)
+        except InputError as error:
+            problems.append(f"--tolerance: {error.problems[0]}")
     highest = read_option("--highest", arguments.highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
     window = read_option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems)
     try:
@@ -70,6 +84,11 @@ def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings]
             f"--law, --map, --films, --supply, --clearance, --load-factor: got {len(cases)} combinations; allowed: up "
             f"to {MOST_LAWS} side by side"
         )
+    if arguments.tolerance is not None and len(cases) > 1:
+        problems.append(
+            f"--tolerance: got {len(cases)} combinations of laws, films and the like; allowed: one, for which step, "
+            "slices and cut-off are chosen"
+        )
     scene = cases[0].model.scene
     settings = dataclasses.replace(
         scene.campbell,
@@ -80,7 +99,7 @@ def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings]
     problems += campbell_problems(scene, settings)
     if problems:
         raise InputError(tuple(dict.fromkeys(problems)))
-    return cases, settings
+    return cases, settings, tolerance
 
 
 def _figure(found: CampbellResult) -> Figure:
