@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from textwrap import shorten
 
-from ehdmaps.jobs.law_check import COMPLIANCE_BARS, DAMPING_BARS
+from ehdmaps.jobs.law_points import COMPLIANCE_BARS, DAMPING_BARS
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant

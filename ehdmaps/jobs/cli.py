@@ -34,6 +34,12 @@ def parser() -> argparse.ArgumentParser:
     generate.add_argument("job", metavar="JOB")
     generate.add_argument("-o", "--output", metavar="MAP.nc", help="default: the job's name with .nc, in this folder")
     generate.add_argument("--solver", metavar="NAME", help=_SOLVER)
+    generate.add_argument(
+        "--tolerance",
+        metavar="SHARE",
+        help='of k, c and film offset of the contact laws, "1 %%": grid and refinement lines are chosen for it, and '
+        "confirmed by fresh solves; default: the settings of the job",
+    )
     generate.add_argument("--workers", metavar="N", type=_workers, help="processes; default: all cores")
     generate.add_argument("--fresh", action="store_true", help="forget what is solved already")
     generate.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
@@ -134,6 +140,12 @@ def _add_tradeoff(commands: argparse._SubParsersAction[Parser]) -> None:
     """Add the arguments of `ehdmaps tradeoff`."""
     tradeoff = commands.add_parser("tradeoff", help="measured speed and accuracy of solvers, settings and physics")
     tradeoff.add_argument("job", metavar="JOB")
+    tradeoff.add_argument(
+        "--level",
+        choices=("contact", "map"),
+        default="contact",
+        help="contact: single points by every solver; map: contact laws of whole maps between their points",
+    )
     tradeoff.add_argument("--points", metavar="N", type=_workers, default=60, help="random points; default: 60")
     tradeoff.add_argument("--seed", metavar="S", type=_count, default=1, help="seed of the points; default: 1")
     tradeoff.add_argument(
@@ -141,7 +153,7 @@ def _add_tradeoff(commands: argparse._SubParsersAction[Parser]) -> None:
         metavar="N",
         type=_count,
         default=3,
-        help="how many of the points openfoam solves, some ten to hundred seconds each; 0 leaves it out; default: 3",
+        help="contact: how many of the points openfoam solves, some ten to hundred seconds each; 0: none; default: 3",
     )
     tradeoff.add_argument("-o", "--output", metavar="OUT.nc", help="the numbers as netCDF; default: none")
     tradeoff.add_argument("--json", action="store_true", help="the numbers as one object")

@@ -13,7 +13,8 @@ import xarray as xr
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.sampling import VALLEY_SHARE, SamplePoint, draw, draw_valley_points, log_uniform
+from ehdmaps.jobs.law_points import COMPLIANCE_BARS, DAMPING_BARS, at_loads, fresh_solution
+from ehdmaps.jobs.sampling import SamplePoint, draw, draw_apart, drawable, log_uniform
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
 from ehdmaps.maps.backbone import BackboneField
@@ -26,9 +27,8 @@ from ehdmaps.maps.tail import THICK_FILM
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.oil_supply import FLOODED
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.roughness import SMOOTH
-from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
+from ehdmaps.physics.solution import ContactSolution, ContactSolver, Status
 
 SEED = 20260
 
@@ -45,9 +45,6 @@ of films to lower loads are worth there is told, and held to no bar."""
 
 OUTSIDE_SHARE = 0.1
 """Points in each of these regions, as a share of those within the map."""
-
-COMPLIANCE_BARS, DAMPING_BARS = (0.01, 1e-4), (0.05, 1e-3)
-"""An error is within its bar where it is below a share of the film compliance or of 1/k; of c or of k b/u."""
 
 SHARES = {"law_": 0.99, "law_valley_": 0.95}
 """Share of the points that should be within the bars, over the whole map and in the valley."""
@@ -96,13 +93,11 @@ def check_points(count: int) -> int:
 def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
     """Draw the points: load and speed log-uniform, temperature uniform, contact at random; None if `law_check` is 0."""
     count = job.law_check
-    speeds = [u for u in job.entrainment_speeds if u > 0.0]
-    if not count or not speeds or len(speeds) * len(job.loads) * len(job.temperatures) < 2:
+    if not count or not drawable(job):
         return None
     rng = np.random.default_rng(SEED)
-    valley = round(VALLEY_SHARE * count)
-    drawn = [("", draw(job, rng)) for _ in range(count - valley)]
-    drawn += [("valley", point) for point in draw_valley_points(job, valley, rng)]
+    over, valley = draw_apart(job, rng, count)
+    drawn = [("", point) for point in over] + [("valley", point) for point in valley]
     if len(job.loads) > 1:
         drawn += [
             (region, _moved(job, draw(job, rng), region, log_uniform(rng, *factors)))
@@ -211,10 +206,23 @@ def coarse_axis(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) ->
             arrays = results[task.key]
             if task.contact != contact or not check.inside(i) or not Status(int(arrays["status"][0])).usable:
                 continue
-            if _missed_between(field, task, _solution(task, arrays)):
-                changes = field.changes(contact.name, task.loads[0], task.entrainment_speed, task.temperature)
-                votes[max(changes, key=lambda axis: changes[axis] * _WORTH.get(axis, 1.0))] += 1
+            if _missed_between(field, task, fresh_solution(task, arrays)):
+                votes[loosest_axis(field, task)] += 1
     return votes.most_common(1)[0][0] if votes else None
+
+
+def loosest_axis(field: BackboneField, task: LineTask) -> Axis:
+    """Axis of the lines on which their reading at a point hangs most, see `coarse_axis`.
+
+    Parameters
+    ----------
+    field : BackboneField
+        Films between the lines.
+    task : LineTask
+        The point.
+    """
+    changes = field.changes(task.contact.name, task.loads[0], task.entrainment_speed, task.temperature)
+    return max(changes, key=lambda axis: changes[axis] * _WORTH.get(axis, 1.0))
 
 
 def _missed_between(field: BackboneField, task: LineTask, fresh: ContactSolution) -> bool:
@@ -302,22 +310,18 @@ def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> FloatArra
     All are relative; that of the film offset is what the approach at the load misses, as a part of the offset.
     """
     tasks = [task for task, _ in points]
-    fresh = [_solution(task, arrays) for task, arrays in points]
+    fresh = [fresh_solution(task, arrays) for task, arrays in points]
     load = np.array([task.loads[0] for task in tasks])
     speed = np.array([task.entrainment_speed for task in tasks])
     temperature = np.array([task.temperature for task in tasks])
-    dry = np.array([task.contact.structural_compliance(task.loads[0]) for task in tasks])
     half = np.array([float(half_width(t.loads[0], t.contact.radius, t.contact.reduced_modulus)) for t in tasks])
-    approach = np.array([one.approach for one in fresh])
-    for _ in range(8):  # the approach at which the law has the load
-        found, stiffness, damping = law(approach, 0.0, speed, temperature)
-        approach -= (found - load) / np.maximum(stiffness, 1e-12 / dry)
-    _, stiffness, damping = law(approach, 0.0, speed, temperature)
+    solved_approach = np.array([one.approach for one in fresh])
+    approach, stiffness, damping = at_loads(law, solved_approach, load, speed, temperature)
     solved_k = np.array([one.stiffness for one in fresh])
     solved_c = np.maximum([one.damping for one in fresh], 0.0)
     compliance = np.array([one.film_compliance for one in fresh])
     offset = np.abs([one.film_offset for one in fresh])
-    missed = np.abs(approach - [one.approach for one in fresh])
+    missed = np.abs(approach - solved_approach)
     wrong = np.abs(1.0 / stiffness - 1.0 / solved_k)
     wrong_c = np.abs(damping - solved_c)
     # a dry contact has no film compliance to relate to, only 1/k
@@ -333,13 +337,3 @@ def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> FloatArra
             np.where(offset > 0.0, missed / np.maximum(offset, 1e-300), np.nan),
         ]
     )
-
-
-def _solution(task: LineTask, arrays: Arrays) -> ContactSolution:
-    """The fresh solve with its structure."""
-    film = FilmSolution(
-        **{name: array[0].item() for name, array in arrays.items() if name != "status"},
-        status=Status(int(arrays["status"][0])),
-    )
-    point = OperatingPoint(task.loads[0], task.entrainment_speed, task.temperature)
-    return contact_solution(film, task.contact, point)

@@ -13,6 +13,7 @@ from ehdmaps.physics.moes import moes_groups, valley_load_number
 VALLEY_WIDTH = (-0.6, 0.8)
 """Range of ln(M/M_valley) from which points inside the valley are drawn."""
 
+
 VALLEY_SHARE = 0.2
 """Share of the points of a sample that are drawn inside the damping valley."""
 
@@ -27,6 +28,35 @@ class SamplePoint(NamedTuple):
     load: float
     speed: float
     temperature: float
+
+
+def drawable(job: Job) -> bool:
+    """Whether there is something between the points of a job's axes, and a speed above zero.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    """
+    speeds = [u for u in job.entrainment_speeds if u > 0.0]
+    return bool(speeds) and len(speeds) * len(job.loads) * len(job.temperatures) >= 2
+
+
+def draw_apart(job: Job, rng: np.random.Generator, count: int) -> tuple[list[SamplePoint], list[SamplePoint]]:
+    """Draw points over the whole map, and points inside its valley apart; fewer of these where it has hardly one.
+
+    Parameters
+    ----------
+    job : Job
+        Job over whose axes is drawn; see `drawable`.
+    rng : numpy.random.Generator
+        Source of chance.
+    count : int
+        How many in all; the share `VALLEY_SHARE` of them in the valley.
+    """
+    valley = round(VALLEY_SHARE * count)
+    over = [draw(job, rng) for _ in range(count - valley)]
+    return over, draw_valley_points(job, valley, rng)
 
 
 def draw(job: Job, rng: np.random.Generator) -> SamplePoint:

@@ -92,9 +92,9 @@ class LawBounds:
     Attributes
     ----------
     stiffness, damping : array (n,)
-        Relative, of k and c at the load.
+        Relative errors of k and c at the load.
     film_offset : array (n,)
-        Of the approach at the load [m]: where the film stands.
+        Error of the approach at the load [m]: how much thicker or thinner the films may be.
     """
 
     stiffness: FloatArray
@@ -113,12 +113,13 @@ class _Checked:
 
     @classmethod
     def of(cls, attributes: Mapping[str, Any], region: str) -> _Checked | None:
-        """Those of a region of the map; None where it was not checked."""
+        """Those of a region of the map, by its check or the confirmation of its tolerance; None without either."""
         names = ("film_compliance", "damping", "stiffness", "film_offset")
-        found = [quantile_of(attributes.get(f"law{region}_{name}_error", "")) for name in names]
-        if all(value is None for value in found):
-            return None
-        return cls(found[0] or 0.0, found[1] or 0.0, found[2], found[3])
+        for check in ("law", "tolerance"):
+            found = [quantile_of(attributes.get(f"{check}{region}_{name}_error", "")) for name in names]
+            if any(value is not None for value in found):
+                return cls(found[0] or 0.0, found[1] or 0.0, found[2], found[3])
+        return None
 
     def relative_stiffness(self, share: FloatArray) -> FloatArray:
         """Relative error of k for films with a share (n,) of the compliance, which older maps state no other way."""
@@ -133,9 +134,9 @@ class LawErrors:
     dataset : xarray.Dataset
         The map, with what is derived from its films.
     contacts : sequence of LineContact
-        Its contacts, in the order of its first axis.
+        Contacts of the map, in the order of its first axis.
     lubricant : Lubricant
-        Its oil, for the place of the damping valley.
+        Oil of the map, for the place of the damping valley.
     """
 
     def __init__(self, dataset: xr.Dataset, contacts: Sequence[LineContact], lubricant: Lubricant) -> None:
@@ -147,7 +148,7 @@ class LawErrors:
         self._log_speeds = np.log(data["entrainment_speed"].values.astype(np.float64))
         self._temperatures = data["temperature"].values.astype(np.float64)
         self._checked, self._in_valley = (_Checked.of(dataset.attrs, region) for region in ("", "_valley"))
-        points = dataset.attrs.get("law_check_usable")
+        points = dataset.attrs.get("law_check_usable", dataset.attrs.get("tolerance_points"))
         self.checked_points = 0 if self._checked is None or points is None else int(points)
         self.has_model_errors = any(name in data for name in MODEL_ERRORS)
         self.unknown: tuple[str, ...] = ()
