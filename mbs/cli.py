@@ -13,7 +13,7 @@ from ehdmaps.program import Parser, run
 from mbs.model.relaxation import DEFAULT_FILMS
 
 VARIED_KEYS = (
-    "clearance, temperature, films, supply, housing-damping, ramp, start-angle, load-factor, step, slices, law"
+    "clearance, temperature, films, supply, housing-damping, ramp, start-angle, load-factor, step, slices, cutoff, law"
 )
 """The keys of `mbs.analyses.varied.VARIED`, which takes longer to import than a command to be refused."""
 
@@ -133,6 +133,12 @@ def _campbell(command: argparse.ArgumentParser) -> None:
         metavar="N",
         help="runs more of each law, up to 8, with laws that are wrong by the errors of the map: a band of the sum "
         "level; each costs a run (0)",
+    )
+    command.add_argument(
+        "--tolerance",
+        metavar="LEVEL",
+        help="of one law: choose step, slices and cut-off by short trials so that the sum level at equal speed keeps "
+        'it, such as "1 dB"; with --auto films, supply and roughness, too',
     )
     command.add_argument("--modes", action="store_true", help="draw in the linear modes, with the films of each run")
 
@@ -305,11 +311,12 @@ def _scene_command(
     command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
     if name != "variants":
-        _auto(command)
+        # That of a Campbell diagram is one of levels, and stands without --auto, too.
+        _auto(command, tolerance=name != "campbell")
     return command
 
 
-def _auto(command: argparse.ArgumentParser) -> None:
+def _auto(command: argparse.ArgumentParser, tolerance: bool = True) -> None:
     """Add what makes a map and chooses the physics."""
     command.add_argument(
         "--auto",
@@ -318,6 +325,8 @@ def _auto(command: argparse.ArgumentParser) -> None:
         "supply and roughness on where they matter; check that all of it lies inside, else plan wider",
     )
     command.add_argument("--maps", metavar="FOLDER", help="where --auto makes and keeps maps; default: this folder")
+    if not tolerance:
+        return
     command.add_argument(
         "--tolerance",
         metavar="PART",

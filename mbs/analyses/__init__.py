@@ -12,6 +12,9 @@ runup          the nonlinear system in time over its speed profile
 campbell       run-ups with one or more laws as levels over speed, frequency and order
 changed_laws   models whose laws are wrong by the errors that their map states
 variants       how a difference between two laws in a run-up depends on clearance, temperature and the like
+tolerance      step, slices and cut-off of a run-up that keep its sum level within a tolerance
+numerics       these settings
+ramp_parts     short runs of parts of a run-up, and their sum levels
 hammer         a simulated hammer test
 plan           which ranges a scene needs of a contact map, and the jobs that cover them
 planning       operating points of a scene and the loads and speeds seen there

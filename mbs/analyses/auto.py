@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import NoneType
 from typing import Generic, TypeVar
 
 from ehdmaps.errors import InputError
@@ -29,6 +30,7 @@ from mbs.analyses.plan import PlanResult, PlanSettings, plan
 from mbs.analyses.runup import RunUpResult
 from mbs.analyses.statics import StaticsResult
 from mbs.analyses.sweep import SweepResult
+from mbs.analyses.tolerance import Tolerated
 from mbs.analyses.varied import LawChoice, Subject
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
@@ -231,7 +233,8 @@ def outside_calls(result: object) -> dict[str, int]:
     """
     counts: list[Mapping[str, int]]
     if isinstance(result, (list, tuple)):
-        counts = [outside_calls(entry) for entry in result if not isinstance(entry, str)]
+        # Labels stand beside results, and how numerical settings were chosen for them.
+        counts = [outside_calls(entry) for entry in result if not isinstance(entry, (str, Tolerated, NoneType))]
     elif isinstance(result, (StaticsResult, ModesResult, LsaResult)):
         counts = [result.balance.outside]
     elif isinstance(result, HammerResult):

@@ -181,6 +181,29 @@ def campbell(
     return CampbellResult(settings, sensor, course, tuple(orders), tuple(runs), tuple(failed), dataset)
 
 
+def looked_at(scene: Scene, settings: CampbellSettings) -> tuple[Sensor, ...]:
+    """The sensor of a diagram, then all others of an acceleration.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    settings : CampbellSettings
+        The sensor's name, if one is named.
+
+    Raises
+    ------
+    InputError
+        If there is no such sensor.
+    """
+    problems: list[str] = []
+    sensor = _sensor(settings.sensor, scene, problems)
+    if sensor is None:
+        raise InputError(problems)
+    others = (other for other in scene.sensors if other.quantity == "acceleration" and other.name != sensor.name)
+    return sensor, *others
+
+
 def campbell_problems(scene: Scene, settings: CampbellSettings) -> list[str]:
     """Everything about the run and the sensor of a scene that is not possible with some settings."""
     problems: list[str] = []
@@ -374,7 +397,12 @@ def _one(
 
 
 def recorded_run(
-    model: Model, course: RunUp, sensors: Sequence[Sensor], told: Callable[[int], None] | None = None
+    model: Model,
+    course: RunUp,
+    sensors: Sequence[Sensor],
+    told: Callable[[int], None] | None = None,
+    *,
+    nudge: float = 0.0,
 ) -> Recording:
     """Run up from the equilibrium at the first speed, and record sensors.
 
@@ -388,6 +416,8 @@ def recorded_run(
         What is recorded.
     told : callable, optional
         Told the number of samples done.
+    nudge : float
+        By how much all coordinates are off their equilibrium at the beginning [m or rad], to see what becomes of it.
 
     Raises
     ------
@@ -401,7 +431,7 @@ def recorded_run(
         course.duration,
         course.settings,
         sensors=sensors,
-        displacement=start.displacement,
+        displacement=start.displacement + nudge,
         progress=told,
     )
 

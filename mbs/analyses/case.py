@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from ehdmaps.errors import InputError
 from ehdmaps.units import TEMPERATURE
+from mbs.analyses.varied import Subject
 from mbs.scene.assembly import Model
 from mbs.scene.contact_laws import supply_words
 from mbs.scene.fields import MICROMETRE
@@ -29,6 +30,8 @@ class Case:
         Factor of all loads of the scene.
     start_angle : float or None
         Angle at which all cages start instead of the scene's angles [rad].
+    subject : Subject or None
+        What the model was made from, where that is known.
     """
 
     label: str
@@ -36,6 +39,7 @@ class Case:
     clearance: float
     load_factor: float = 1.0
     start_angle: float | None = None
+    subject: Subject | None = None
 
 
 def clearance_text(model: Model) -> str:

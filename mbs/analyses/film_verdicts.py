@@ -177,7 +177,7 @@ def supply_verdict(found: Range, supplies: tuple[OilSupply, ...], asked: bool = 
     stated = [supply for supply in supplies if not supply.flooded]
     if not stated:
         layer = _layer_that_matters(found)
-        return Verdict(name, False, math.nan, f"none is stated; a layer below {MICROMETRE.text(layer, 2)} would matter")
+        return Verdict(name, False, math.nan, f"none is stated; a layer below {MICROMETRE.text(layer, 3)} would matter")
     thinnest = min(stated, key=lambda supply: supply.oil_layer)
     size = max(float(np.max(supply_effect(state, thinnest.oil_layer))) for state in found.states)
     words = f"{thinnest.label} changes k or c of a contact by up to {_percent(size)} ({_beside(size, found)})"
@@ -269,8 +269,8 @@ def _changes(found: Range, layer: float) -> bool:
 
 
 def _percent(part: float) -> str:
-    """A part in per cent, with two digits."""
-    return f"{100.0 * part:.2g} %"
+    """A part in per cent, with two digits or more, and no exponent above."""
+    return f"{100.0 * part:.2g} %" if part < 0.995 else f"{100.0 * part:.0f} %"
 
 
 def _beside(size: float, found: Range) -> str:

@@ -21,7 +21,7 @@ from mbs.model.relaxation import Films
 from mbs.scene import changes
 from mbs.scene.assembly import Model, assemble
 from mbs.scene.contact_laws import law_label
-from mbs.scene.fields import DEGREE, MICROMETRE
+from mbs.scene.fields import DEGREE, HERTZ, MICROMETRE
 from mbs.scene.scene import Scene
 
 Value = float | int | str
@@ -279,6 +279,14 @@ VARIED = {
             _slices,
             str,
             lambda subject, value: dataclasses.replace(subject, scene=changes.with_slices(subject.scene, int(value))),
+        ),
+        VariedKey(
+            "cutoff",
+            "6 kHz",
+            "both",
+            _between("Hz", 1.0, 1e6, HERTZ),
+            _shown(HERTZ),
+            _of_scene(changes.with_cutoff),
         ),
         VariedKey("law", "hertz:1.25e-5 s", "first", str, lambda value: law_label(str(value)), _with_law),
     )

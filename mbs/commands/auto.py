@@ -70,6 +70,7 @@ def analysed(
     ask: Callable[[argparse.Namespace], A],
     analyse: Callable[[A], R],
     looks_at: Callable[[A], Looked],
+    own_tolerance: bool = False,
 ) -> Done[R]:
     """The analysis of a command, with a map of its own where `--auto` asks for one.
 
@@ -83,6 +84,8 @@ def analysed(
         The analysis.
     looks_at : callable
         What it looks at.
+    own_tolerance : bool
+        Whether `--tolerance` says something without `--auto`, too.
 
     Raises
     ------
@@ -90,7 +93,7 @@ def analysed(
         With every problem of the arguments; before a map is made.
     """
     if not getattr(arguments, "auto", False):
-        if problems := _only_with_auto(arguments):
+        if problems := _only_with_auto(arguments, own_tolerance):
             raise InputError(problems)
         return Done(analyse(ask(arguments)))
     scene, looked, settings = _asked(arguments, ask, looks_at)
@@ -197,9 +200,10 @@ def _settings(arguments: argparse.Namespace, tolerance: float, folder: Path, hig
     )
 
 
-def _only_with_auto(arguments: argparse.Namespace) -> list[str]:
+def _only_with_auto(arguments: argparse.Namespace, own_tolerance: bool) -> list[str]:
     """What is wrong about options that belong to `--auto`."""
-    given = [option for option in ("maps", "tolerance") if getattr(arguments, option, None) is not None]
+    options = ("maps",) if own_tolerance else ("maps", "tolerance")
+    given = [option for option in options if getattr(arguments, option, None) is not None]
     return [f"--{option}: stands without --auto; allowed: with it" for option in given]
 
 

@@ -18,6 +18,7 @@ from mbs.analyses.campbell import MODE_SPEEDS, MOST_BANDS, CampbellResult, LawRu
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside, fade_of
+from mbs.analyses.tolerance import Tolerated, read_tolerance, within
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Told, band_lines, film_course, heading, held_lines, read_option, write
@@ -42,42 +43,51 @@ _MOST_DAMPED = 0.5
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run up with each law, and compare."""
-    done = analysed(
-        arguments,
-        lambda given: _Asked(*_asked(given)),
-        lambda asked: campbell(
-            asked.cases,
-            asked.settings,
-            Told("step"),
-            with_modes=arguments.modes,
-            keep_partial=True,
-            bands=asked.bands,
-        ),
-        _looks_at,
-    )
-    found, bands = done.result, int(arguments.bands or "0")
-    settings, runs, course = found.settings, found.runs, found.course
+    done = analysed(arguments, _asked, lambda asked: _ran(asked, arguments.modes), _looks_at, own_tolerance=True)
+    found, tolerated = done.result.run, done.result.tolerated
+    settings, runs, course, bands = found.settings, found.runs, found.course, int(arguments.bands or "0")
     lines = [
         *done.lines,
         f"{runs[0].case.model.scene.title}: run-up from {RPM.text(course.speed.at(0.0)[0])} to "
         f"{RPM.text(course.speed.at(course.duration)[0])} in {course.duration:.4g} s; "
         f"sensor {found.sensor.name}, {Reference.of(found.sensor).text}",
         *_resolution(runs[0].spectra, settings),
+        *(tolerated.lines if tolerated else ()),
     ]
     for entry in runs:
         lines += [*_report(entry), *_band(entry, bands)]
     lines += [*_differences(runs), *(f"warning: {line}" for line in found.failed)]
-    lines += write(arguments, found.dataset, _figure(found) if arguments.plot else None)
-    unsound = found.failed or any(any(entry.record.outside.values()) for entry in runs)
+    dataset = found.dataset.assign_attrs(tolerance="\n".join(tolerated.lines)) if tolerated else found.dataset
+    lines += write(arguments, dataset, _figure(found) if arguments.plot else None)
+    outside = any(any(entry.record.outside.values()) for entry in runs)
+    unsound = found.failed or outside or (tolerated is not None and not tolerated.met)
     return "\n".join(lines), 1 if unsound else done.status
 
 
 class _Asked(NamedTuple):
-    """Laws that are run, what is looked at, and how many runs a band has."""
+    """Laws that are run, what is looked at, how many runs a band has, and the tolerance if there is one [dB]."""
 
     cases: list[Case]
     settings: CampbellSettings
     bands: int
+    tolerance: float | None
+
+
+class _Ran(NamedTuple):
+    """The run-ups, and how their step, slices and cut-off were chosen."""
+
+    run: CampbellResult
+    tolerated: Tolerated | None
+
+
+def _ran(asked: _Asked, with_modes: bool) -> _Ran:
+    """Choose the numerical settings where a tolerance is given, and run up."""
+    cases, tolerated = asked.cases, None
+    if asked.tolerance is not None and cases[0].subject is not None:
+        tolerated = within(cases[0].subject, asked.tolerance, asked.settings, Told("trial"))
+        cases = [dataclasses.replace(cases[0], model=tolerated.subject.model(), subject=tolerated.subject)]
+    found = campbell(cases, asked.settings, Told("step"), with_modes=with_modes, keep_partial=True, bands=asked.bands)
+    return _Ran(found, tolerated)
 
 
 def _looks_at(asked: _Asked) -> Looked:
@@ -85,13 +95,21 @@ def _looks_at(asked: _Asked) -> Looked:
     return Looked(max(asked.cases, key=lambda case: case.load_factor).model.scene, asked.settings.highest)
 
 
-def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings, int]:
-    """Laws, what is looked at, and how many runs a band has; all problems at once."""
+def _asked(arguments: argparse.Namespace) -> _Asked:
+    """Laws, what is looked at, runs of a band, and the tolerance if there is one; all problems at once."""
     problems: list[str] = []
     text = arguments.bands or "0"
     bands = int(text) if text.isascii() and text.isdigit() and len(text) < 4 else -1
     if not 0 <= bands <= MOST_BANDS:
         problems.append(f"--bands: got {text!r:.40}; allowed: a whole number of runs, 0 to {MOST_BANDS}")
+    tolerance = None
+    # A part of a stiffness or damping is for --auto alone, which chooses physics by it.
+    of_levels = not (getattr(arguments, "auto", False) and (arguments.tolerance or "").rstrip().endswith("%"))
+    if arguments.tolerance is not None and of_levels:
+        try:
+            tolerance = read_tolerance(arguments.tolerance)
+        except InputError as error:
+            problems.append(f"--tolerance: {error.problems[0]}")
     highest = read_option("--highest", arguments.highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
     window = read_option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems)
     try:
@@ -103,6 +121,11 @@ def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings,
             f"--law, --map, --films, --supply, --clearance, --load-factor: got {len(cases)} combinations; allowed: up "
             f"to {MOST_LAWS} side by side"
         )
+    if arguments.tolerance is not None and of_levels and len(cases) > 1:
+        problems.append(
+            f"--tolerance: got {len(cases)} combinations of laws, films and the like; allowed: one, for which step, "
+            "slices and cut-off are chosen"
+        )
     scene = cases[0].model.scene
     settings = dataclasses.replace(
         scene.campbell,
@@ -113,7 +136,7 @@ def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings,
     problems += campbell_problems(scene, settings)
     if problems:
         raise InputError(tuple(dict.fromkeys(problems)))
-    return cases, settings, bands
+    return _Asked(cases, settings, bands, tolerance)
 
 
 def _figure(found: CampbellResult) -> Figure:

@@ -118,7 +118,7 @@ def load_cases(
             *([f"cage at {DEGREE.text(float(angle))}"] if len(angles) > 1 and angle is not None else []),
         ]
         turned = None if angle is None else float(angle)
-        cases.append(Case(", ".join(words), model, common_clearance(model), float(factor or 1.0), turned))
+        cases.append(Case(", ".join(words), model, common_clearance(model), float(factor or 1.0), turned, subject))
     if problems:
         raise InputError(tuple(dict.fromkeys(problems)))
     return cases

@@ -137,6 +137,62 @@ class ReducedBody:
         return problems
 
 
+def mode_frequencies(reduced: ReducedBody) -> FloatArray:
+    """Frequency of each modal coordinate alone, the others held [Hz], shape (n,); NaN for displacements and rotations.
+
+    Parameters
+    ----------
+    reduced : ReducedBody
+        The body.
+    """
+    modal = np.array([unit == "1" for unit in reduced.units])
+    squares = np.maximum(np.diag(reduced.stiffness) / np.diag(reduced.mass), 0.0)
+    return np.asarray(np.where(modal, np.sqrt(squares) / (2.0 * np.pi), np.nan), dtype=np.float64)
+
+
+def up_to(reduced: ReducedBody, cutoff: float) -> ReducedBody:
+    """The body with the modes up to a lower cut-off only, as if it had been reduced with that one.
+
+    Parameters
+    ----------
+    reduced : ReducedBody
+        A body reduced by static shapes and modes with held interfaces (Craig, Bampton), whose modes share stiffness and
+        mass neither with each other, nor stiffness with the interfaces.
+    cutoff : float
+        Frequency up to which modes are kept [Hz].
+
+    Raises
+    ------
+    InputError
+        If the modes of the body are coupled, so that leaving one out would change the others.
+    """
+    frequencies = mode_frequencies(reduced)
+    modal = np.flatnonzero(np.isfinite(frequencies))
+    kept = np.flatnonzero(~(frequencies > cutoff))
+    if kept.size == reduced.size:
+        return reduced
+    scale = 1.0 / np.sqrt(np.diag(reduced.mass))
+    for name, others in (("stiffness", np.arange(reduced.size)), ("mass", modal)):
+        scaled = scale[:, None] * getattr(reduced, name) * scale
+        coupled = scaled[np.ix_(modal, others)]
+        coupled[np.arange(modal.size), np.searchsorted(others, modal)] = 0.0
+        if np.max(np.abs(coupled), initial=0.0) > _ROUNDING * float(np.max(np.abs(scaled))):
+            raise InputError(
+                f"reduced body, cut-off: got {cutoff:.6g} Hz for modes whose {name} is coupled, so that none may be "
+                "left out; allowed: a body that was reduced by static shapes and modes with held interfaces, as "
+                "`mbs reduce` does; reduce it again with the lower cut-off"
+            )
+    square = np.ix_(kept, kept)
+    return ReducedBody(
+        reduced.mass[square],
+        reduced.stiffness[square],
+        tuple(reduced.coordinates[k] for k in kept),
+        tuple(reduced.units[k] for k in kept),
+        {name: replace(frame, transform=frame.transform[:, kept]) for name, frame in reduced.frames.items()},
+        {**reduced.attributes, "cutoff": f"{cutoff:.6g} Hz"},
+    )
+
+
 def to_body(
     reduced: ReducedBody,
     name: str,

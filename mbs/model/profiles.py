@@ -56,6 +56,26 @@ class HalfSine:
 
 
 @dataclass(frozen=True)
+class Advanced:
+    """A profile from a later time on.
+
+    Attributes
+    ----------
+    profile : LoadProfile
+        The profile.
+    time : float
+        Its time at time zero [s].
+    """
+
+    profile: LoadProfile
+    time: float
+
+    def __call__(self, time: float) -> float:
+        """Factor at a time [s]."""
+        return self.profile(self.time + time)
+
+
+@dataclass(frozen=True)
 class Course:
     """Straight lines between given values; the first and the last value hold before and after.
 
@@ -142,6 +162,18 @@ class SpeedProfile:
             [s].
         """
         return cls(Course((0.0, duration), (begin, end)))
+
+    def part(self, begin: float, end: float) -> SpeedProfile:
+        """The speed between two times, as a profile that begins at time and angle zero.
+
+        Parameters
+        ----------
+        begin, end : float
+            Times of this profile [s], 0 <= begin < end.
+        """
+        inner = [time for time in self.course.times if begin < time < end]
+        times = [begin, *inner, end]
+        return SpeedProfile(Course(tuple(time - begin for time in times), tuple(self.course(time) for time in times)))
 
     def at(self, time: float) -> tuple[float, float]:
         """Speed [rad/s] and angle [rad] at a time >= 0 [s]."""

@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import dataclasses
+from pathlib import Path
+
+import numpy as np
 
 from ehdmaps.errors import InputError
-from mbs.model.profiles import Course, SpeedProfile
+from mbs.flexible.plan import ReductionPlan
+from mbs.flexible.reduced_body import mode_frequencies, up_to
+from mbs.flexible.reduced_file import read_reduced
+from mbs.model.profiles import Advanced, Constant, Course, SpeedProfile
+from mbs.scene.fields import HERTZ
 from mbs.scene.scene import Scene
-from mbs.scene.specs import HIGHEST_DAMPING_RATIO, FlexibleSpec
+from mbs.scene.specs import HIGHEST_DAMPING_RATIO, BodySpec, FlexibleSpec, ShaftSpec
 from mbs.settings import RunUp
 
 
@@ -89,6 +96,98 @@ def with_step(scene: Scene, step: float) -> Scene:
     course = _run_up(scene)
     settings = dataclasses.replace(course.settings, step=step, sample=step)
     return dataclasses.replace(scene, run_up=dataclasses.replace(course, settings=settings))
+
+
+def with_part(scene: Scene, begin: float, end: float) -> Scene:
+    """The scene with a part of its run-up alone; loads that vary are those of that time.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    begin, end : float
+        Times of the run-up [s], 0 <= begin < end.
+
+    Raises
+    ------
+    InputError
+        If the scene has no run-up.
+    """
+    course = _run_up(scene)
+    part = dataclasses.replace(course, speed=course.speed.part(begin, end), duration=end - begin)
+    loads = tuple(
+        load
+        if isinstance(load.profile, Constant) or begin == 0.0
+        else dataclasses.replace(load, profile=Advanced(load.profile, begin))
+        for load in scene.loads
+    )
+    return dataclasses.replace(scene, run_up=part, loads=loads)
+
+
+def cutoff_of(scene: Scene) -> float | None:
+    """Highest cut-off of the flexible bodies of a scene [Hz]; None where no body has one.
+
+    That of a body from a reduced file is the frequency of its highest mode.
+    """
+    return max((found for body in scene.bodies if (found := _cutoff(body)) is not None), default=None)
+
+
+def with_cutoff(scene: Scene, cutoff: float) -> Scene:
+    """The scene with modes of its flexible bodies up to another frequency.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    cutoff : float
+        Frequency [Hz]. Shafts and bodies of finite elements are reduced again; of a body that is read from a reduced
+        file modes are left out, or all are kept where they end below it.
+
+    Raises
+    ------
+    InputError
+        If no body has a cut-off, or no body can follow one so high, or modes cannot be left out.
+    """
+    bodies = [body for body in scene.bodies if _cutoff(body) is not None]
+    if not bodies:
+        raise InputError("the scene has no flexible body with a cut-off; allowed: for scenes that have one")
+    if not any(_may_rise(body) or cutoff <= (_cutoff(body) or 0.0) for body in bodies):
+        raise InputError(
+            f"got {HERTZ.text(cutoff)}; allowed: up to {HERTZ.text(max(_cutoff(body) or 0.0 for body in bodies))}, the "
+            "highest mode of the reduced files; reduce the bodies again with a higher cut-off for more"
+        )
+    return dataclasses.replace(scene, bodies=[_cut(body, cutoff) for body in scene.bodies])
+
+
+def _may_rise(body: BodySpec) -> bool:
+    """Whether a body can be reduced to more modes than it has."""
+    return isinstance(body, ShaftSpec) or (isinstance(body, FlexibleSpec) and isinstance(body.source, ReductionPlan))
+
+
+def _cutoff(body: BodySpec) -> float | None:
+    """Frequency up to which a body has modes [Hz]; None where it has none, or all."""
+    if isinstance(body, ShaftSpec):
+        return body.cutoff
+    if not isinstance(body, FlexibleSpec):
+        return None
+    if isinstance(body.source, ReductionPlan):
+        return body.source.cutoff
+    found = mode_frequencies(read_reduced(body.source) if isinstance(body.source, Path) else body.source)
+    return float(np.nanmax(found)) if np.isfinite(found).any() else None
+
+
+def _cut(body: BodySpec, cutoff: float) -> BodySpec:
+    """A body with another cut-off."""
+    if isinstance(body, ShaftSpec):
+        return body if body.cutoff is None else dataclasses.replace(body, cutoff=cutoff)
+    if not isinstance(body, FlexibleSpec):
+        return body
+    if isinstance(body.source, ReductionPlan):
+        return dataclasses.replace(body, source=dataclasses.replace(body.source, cutoff=cutoff))
+    source = read_reduced(body.source) if isinstance(body.source, Path) else body.source
+    less = up_to(source, cutoff)
+    # Where nothing is left out the body stays known by its file.
+    return body if less is source else dataclasses.replace(body, source=less)
 
 
 def _run_up(scene: Scene) -> RunUp:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.generate import generate
 from ehdmaps.maps.emap import open_map
@@ -210,6 +210,19 @@ def test_run_does_what_the_scene_has_tables_for(file, capsys, tmp_path):
     (tmp_path / "out" / "modes.txt").write_text("mine")
     assert run(capsys, "run", file, "-o", "out")[0] == 2
     assert (tmp_path / "out" / "modes.txt").read_text() == "mine"
+
+
+def test_numerical_settings_are_chosen_for_the_map_and_its_physics(file, capsys, monkeypatch):
+    Path(file).write_text(TEXT.replace("slices = 41", "slices = 3"))
+    chosen = []
+
+    def within(subject, tolerance, settings, tell):
+        chosen.append((subject.law.name, subject.law.films, tolerance))
+        raise AnalysisError("enough")
+
+    monkeypatch.setattr("mbs.commands.campbell.within", within)
+    assert run(capsys, "campbell", file, "--auto", "--tolerance", "1 dB")[0] == 1
+    assert chosen == [("map", "memory", 1.0)]
 
 
 # criteria

@@ -1,0 +1,196 @@
+"""A tolerance instead of settings: what short trials choose and confirm, where they could not, what is refused."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import importlib
+
+import numpy as np
+import pytest
+
+from ehdmaps.errors import InputError
+from mbs import parse_scene, read_scene
+from mbs.analyses.campbell import campbell, looked_at
+from mbs.analyses.numerics import Numerics
+from mbs.analyses.ramp_parts import WINDOWS, ramp_of
+from mbs.analyses.tolerance import drift, read_tolerance, within
+from mbs.analyses.varied import LawChoice, Subject
+from mbs.model.profiles import Advanced, Course, Harmonic, SpeedProfile
+from mbs.scene import changes
+
+DRY = LawChoice("dry", "hertz")
+
+SWINGING = """
+schema = 1
+title = "A mass on a spring"
+[operation]
+speed = "1000 rpm"
+temperature = "40 degC"
+[[bodies]]
+name = "mass"
+freedoms = ["y", "z"]
+position = ["0 mm", "0 mm", "0 mm"]
+cylinders = [{ from = "-10 mm", to = "10 mm", diameter = "100 mm" }]
+[[springs]]
+name = "spring"
+on = "mass"
+stiffness = { y = "5e7 N/m", z = "2e7 N/m" }
+damping = { y = "300 N s/m", z = "300 N s/m" }
+[[loads]]
+name = "shaker"
+on = "mass"
+force = ["0 N", "1 N", "0 N"]
+frequency = "1.05 kHz"
+[[sensors]]
+name = "S1"
+on = "mass"
+direction = "y"
+quantity = "acceleration"
+[runup]
+from = "500 rpm"
+to = "2000 rpm"
+duration = "1 s"
+step = "20 us"
+[campbell]
+highest = "2 kHz"
+"""
+
+
+@pytest.fixture(scope="module")
+def swinging():
+    return parse_scene(SWINGING, "swinging", "swinging.toml")
+
+
+class TestReading:
+    @pytest.mark.parametrize("text", ["0 dB", "-1 dB", "nan dB", "nan", "1 %", "21 dB", "1", "dB", "", "1 dB x"])
+    def test_what_is_no_tolerance_is_refused(self, text):
+        with pytest.raises(InputError, match=r"got .*; allowed: above 0 dB, from 0.01 dB up to 20 dB, such as '1 dB'"):
+            read_tolerance(text)
+
+    def test_with_and_without_a_space(self):
+        assert read_tolerance("1dB") == read_tolerance(" 1 dB ") == 1.0
+
+    def test_within_refuses_too(self, swinging):
+        with pytest.raises(InputError, match="tolerance: got nan dB"):
+            within(Subject(swinging, DRY), float("nan"))
+
+
+class TestParts:
+    def test_a_part_of_a_run_has_its_speeds_and_loads(self, swinging):
+        part = changes.with_part(swinging, 0.25, 0.5)
+        assert part.run_up.duration == 0.25
+        # Round-off of an interpolation.
+        assert part.run_up.speed.at(0.1)[0] == pytest.approx(swinging.run_up.speed.at(0.35)[0], rel=1e-12)
+        assert part.loads[0].profile(0.1) == pytest.approx(swinging.loads[0].profile(0.35), rel=1e-12)
+        assert changes.with_part(swinging, 0.0, 0.5).loads[0].profile is swinging.loads[0].profile
+
+    def test_speeds_between_given_ones_are_kept(self):
+        speed = SpeedProfile(Course((0.0, 1.0, 2.0), (0.0, 10.0, 0.0))).part(0.5, 1.5)
+        assert speed.course == Course((0.0, 0.5, 1.0), (5.0, 10.0, 5.0))
+        assert Advanced(Harmonic(1.0), 0.25)(0.0) == pytest.approx(1.0)
+
+    def test_parts_follow_each_other_and_start_a_window_before(self, swinging):
+        model = Subject(swinging, DRY).model()
+        ramp = ramp_of(model, swinging.campbell, looked_at(swinging, swinging.campbell))
+        assert ramp.parts[0].start == ramp.parts[0].begin == 0.0
+        for before, after in zip(ramp.parts[:-1], ramp.parts[1:], strict=True):
+            assert after.begin == pytest.approx(before.end)
+            assert after.begin - after.start == pytest.approx(ramp.window)
+        assert ramp.parts[0].end == pytest.approx(WINDOWS * ramp.window)
+        # 2.5 samples a period at 2 kHz allow 200 us; 20 us doubled three times.
+        assert ramp.coarsest == pytest.approx(160e-6)
+
+
+class TestCutoff:
+    def test_modes_are_left_out_as_by_a_lower_cutoff(self):
+        gearbox = read_scene("gearbox")
+        less = changes.with_cutoff(gearbox, 5000.0)
+        sizes = [Subject(scene, DRY).model().system.size for scene in (gearbox, less)]
+        # 54 and 36 coordinates of the housing with 38 and 15 modes; shafts reduced to fewer modes, too.
+        assert sizes[0] == 84
+        housing = Subject(less, DRY).model().system.bodies[2]
+        assert len(housing.coordinates) == 54 - 38 + 15
+        assert sizes[1] < 84 - 22
+
+    def test_more_modes_than_a_file_has_are_refused_where_nothing_can_follow(self):
+        scene = read_scene("gearbox")
+        stiff = dataclasses.replace(scene, bodies=[scene.bodies[2]])
+        with pytest.raises(InputError, match="allowed: up to 7853 Hz, the highest mode of the reduced files"):
+            changes.with_cutoff(stiff, 9000.0)
+        with pytest.raises(InputError, match="no flexible body with a cut-off"):
+            changes.with_cutoff(read_scene("nu308_rigid"), 9000.0)
+
+
+class TestChoosing:
+    def test_what_is_chosen_keeps_the_tolerance_on_the_whole_ramp(self, swinging):
+        found = within(Subject(swinging, DRY), 0.5)
+        assert found.met
+        assert found.confirmed <= 0.5
+        assert found.numerics.slices is found.numerics.cutoff is None
+        assert "chosen: step" in "\n".join(found.lines)
+        finest = Numerics(10e-6, None, None).applied(Subject(swinging, DRY))
+        coarse, fine = (campbell(one.model()).runs[0].spectra.campbell for one in (found.subject, finest))
+        levels = np.interp(coarse.speeds, fine.speeds, fine.sum_level)
+        # The tolerance itself, which is of 95 % of the windows.
+        assert np.quantile(np.abs(levels - coarse.sum_level), 0.95) <= 0.5
+        # A looser tolerance takes no shorter step, and a tight one no longer one.
+        assert within(Subject(swinging, DRY), 10.0).numerics.step >= found.numerics.step
+
+    def test_where_no_step_is_short_enough_it_says_so(self, swinging):
+        coarse = changes.with_step(swinging, 160e-6)
+        found = within(Subject(coarse, DRY), 0.01)
+        assert not found.met
+        assert "could not: the sum level still changes too much by step 40 us" in "\n".join(found.lines)
+
+    def test_a_ramp_of_few_parts_is_not_enough(self, swinging):
+        short = changes.with_step(changes.with_duration(swinging, 0.06), 20e-6)
+        found = within(Subject(short, DRY), 1.0)
+        assert not found.met
+        assert "too few to choose by and to confirm" in "\n".join(found.lines)
+        assert found.numerics == Numerics(20e-6, None, None)
+
+    def test_runs_that_drift_apart_have_no_level(self, swinging, monkeypatch):
+        # An eighth of the time, in which two runs drift apart by e^8: rounding grows by e^64 in the whole.
+        monkeypatch.setattr("mbs.analyses.tolerance.LEAST_SCOUT", 0.0)
+        monkeypatch.setattr("mbs.analyses.tolerance.drift", lambda *_: 8.0)
+        found = within(Subject(swinging, DRY), 1.0)
+        assert not found.met
+        assert "does not forget its start" in "\n".join(found.lines)
+        monkeypatch.setattr("mbs.analyses.tolerance.drift", lambda *_: 1.0)
+        assert within(Subject(swinging, DRY), 10.0).met
+
+    def test_a_part_of_a_drift_counts(self):
+        sizes = np.repeat(np.exp([0.0, -5.0, -8.0, *[-8.0] * 9, *[-6.0] * 12]), 10)
+        assert drift(np.zeros(240), sizes) == pytest.approx(2.0)
+
+
+class TestCommand:
+    def test_it_runs_with_what_it_chose_and_says_so(self, tmp_path):
+        scene = tmp_path / "swinging.toml"
+        scene.write_text(SWINGING.replace('"1 s"', '"0.5 s"'))
+        names = (
+            "law",
+            "map",
+            "films",
+            "supply",
+            "clearance",
+            "structure",
+            "output",
+            "plot",
+            "highest",
+            "window",
+            "sensor",
+            "bands",
+        )
+        given = argparse.Namespace(**dict.fromkeys(names), scene=str(scene), tolerance="20 dB", modes=False)
+        given.load_factor = given.start_angle = None
+        text, status = importlib.import_module("mbs.commands.campbell").run(given)
+        assert status == 0
+        assert "tolerance 20 dB of the sum level of S1" in text
+        assert "chosen: step" in text
+        given.tolerance, given.law = "1 %", ["hertz", "hertz:1.25e-5 s"]
+        with pytest.raises(InputError) as caught:
+            importlib.import_module("mbs.commands.campbell").run(given)
+        assert any("--tolerance: got '1 %'" in problem for problem in caught.value.problems)
+        assert any("--tolerance: got 2 combinations" in problem for problem in caught.value.problems)
