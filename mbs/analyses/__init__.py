@@ -11,6 +11,8 @@ sweep          modes, bearings and responses over speed, of one or more models
 runup          the nonlinear system in time over its speed profile
 campbell       run-ups with one or more laws as levels over speed, frequency and order
 variants       how a difference between two laws in a run-up depends on clearance, temperature and the like
+tradeoff       what laws, supplies, maps, slices, cut-off, step and cage angles cost, and how wrong they are
+linear_look    what a user looks at in a linear system, and how two systems differ in it
 tolerance      step, slices and cut-off of a run-up that keep its sum level within a tolerance
 numerics       these settings
 ramp_parts     short runs of parts of a run-up, and their sum levels
