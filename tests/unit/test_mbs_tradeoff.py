@@ -65,7 +65,7 @@ class TestTradeoff:
         monkeypatch.setattr(analysis, "run_part", lambda *given: made.append(given[2]) or run_part(*given))
         scene = changes.with_slices(read_scene("nu308_rigid"), 5)
         course = dataclasses.replace(scene.run_up, speed=scene.run_up.speed.part(0.1, 0.12), duration=0.02)
-        scene = dataclasses.replace(scene, run_up=course)
+        scene = dataclasses.replace(scene, run_up=course, frequencies=scene.frequencies[::20])
         law = LawChoice("map", "map", EHDMap(dataset_of()))
         found = tradeoff(scene, [law], settings=TradeoffSettings(scene.campbell))
         rows = {(choice.group, choice.label): choice for choice in found.choices}
@@ -81,8 +81,8 @@ class TestTradeoff:
         assert rows["linear: law", "dry Hertz"].errors["frequency"].largest > 0.0
         assert rows["linear: slices", "5 slices"].default
         assert rows["linear: slices", "3 slices"].errors["roller load"].largest > 0.0
-        # None twice: three laws, a supply more, a map with fewer loads, fewer and more slices, all steps with the finest
-        # one, and the finest of all, each of two parts.
+        # None twice: three laws, a supply more, a map with fewer loads, fewer and more slices, all steps with the
+        # finest one, and the finest of all, each of two parts.
         steps = sum(group == "run-up: step" for group, _ in rows)
         assert len(made) == 2 * (3 + 1 + 1 + 2 + steps + 1)
         assert "reference: map with memory of its films" in trade_text(found)
