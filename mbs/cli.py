@@ -70,6 +70,7 @@ def parser() -> argparse.ArgumentParser:
     _modal_fit(commands)
     _bearing(commands)
     _plan(commands)
+    _run(commands, top)
     _reduce(commands)
     return top
 
@@ -129,10 +130,10 @@ def _campbell(command: argparse.ArgumentParser) -> None:
     command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
     command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
     command.add_argument(
-        "--tolerance",
-        metavar="LEVEL",
-        help="of one law: choose step, slices and cut-off by short trials so that the sum level at equal speed keeps "
-        'it, such as "1 dB"',
+        "--bands",
+        metavar="N",
+        help="runs more of each law, up to 8, with laws that are wrong by the errors of the map: a band of the sum "
+        "level; each costs a run (0)",
     )
     command.add_argument("--modes", action="store_true", help="draw in the linear modes, with the films of each run")
 
@@ -327,7 +328,40 @@ def _scene_command(
     )
     command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
+    if name != "variants":
+        _auto(command)
     return command
+
+
+def _auto(command: argparse.ArgumentParser) -> None:
+    """Add what makes a map and chooses the physics."""
+    command.add_argument(
+        "--auto",
+        action="store_true",
+        help="plan and make the map that the scene needs, or reuse the one of the same plan; switch film memory, oil "
+        "supply and roughness on where they matter; check that all of it lies inside, else plan wider",
+    )
+    command.add_argument("--maps", metavar="FOLDER", help="where --auto makes and keeps maps; default: this folder")
+    command.add_argument(
+        "--tolerance",
+        metavar="PART",
+        help="change of a stiffness or damping above which --auto switches physics on, such as '5 %%' (default), or of "
+        "a level, such as '1 dB'; of campbell a level, without --auto too, also chooses step, slices and cut-off by "
+        "short trials, so that the sum level at equal speed keeps it",
+    )
+
+
+def _run(commands: Any, top: argparse.ArgumentParser) -> None:
+    """Add the command that does every analysis for which the scene has a table."""
+    words = "every analysis for which the scene has a table: statics, modes, lsa, sweep, and campbell or runup"
+    command: argparse.ArgumentParser = commands.add_parser("run", help=words, description=words)
+    command.add_argument("scene", metavar="SCENE")
+    command.add_argument("--map", metavar="MAP.nc", help="made by `ehdmaps generate` for the same bearing; or --auto")
+    command.add_argument("--clearance", metavar="LENGTH", help='diametral clearance of all bearings, such as "20 um"')
+    command.add_argument("-o", "--output", metavar="FOLDER", help="results, figures and texts of all analyses")
+    _auto(command)
+    # The command asks for the others by their own words.
+    command.set_defaults(parse=top.parse_args)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

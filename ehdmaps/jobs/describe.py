@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.correction_report import correction_lines
 from ehdmaps.jobs.report import (
     AXES,
     error_lines,
@@ -18,6 +19,7 @@ from ehdmaps.jobs.report import (
     plain,
     span,
     status_lines,
+    tolerance_lines,
     value_lines,
 )
 from ehdmaps.jobs.supply import supply_words
@@ -91,6 +93,14 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     if law:
         yield ""
         yield from law
+    corrected = list(correction_lines(dataset))
+    if corrected:
+        yield ""
+        yield from corrected
+    told = list(tolerance_lines(dataset))
+    if told:
+        yield ""
+        yield from told
     if emap.low_loads is not None:
         yield ""
         yield f"contact laws at low loads: {emap.low_loads.text}"

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 
 import xarray as xr
 
+from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.assemble import assemble
+from ehdmaps.jobs.assemble import assemble, with_correction
+from ehdmaps.jobs.correction import Correction, correction
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.law_check import HALVED, REFUSED, LawCheck, checked_laws, coarse_axis, met, plan_check
-from ehdmaps.jobs.refinement import Refinement, backbone_group, refinement
+from ehdmaps.jobs.refinement import MOST_LINE_POINTS, Refinement, backbone_group, refinement
 from ehdmaps.jobs.status import StatusFile
-from ehdmaps.jobs.store import NoStore, Store, store_path
+from ehdmaps.jobs.store import Arrays, NoStore, Store, store_path
 from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
 from ehdmaps.jobs.tasks import LineTask, line_tasks
+from ehdmaps.jobs.tolerance import check_tolerance, within_tolerance
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import Axis
@@ -29,9 +31,6 @@ from ehdmaps.physics.solution import ContactSolver
 
 MOST_HALVINGS = 3
 """How often the steps of the lines of a law are halved, each time along one axis."""
-
-MOST_LINE_POINTS = 40_000
-"""Points of these lines that are not exceeded by halving a step: minutes on one core."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +59,8 @@ def generate(
     fresh: bool = False,
     progress: Callable[[int], Progress] | None = None,
     solver: ContactSolver | None = None,
+    tolerance: float | None = None,
+    corrector: ContactSolver | None = None,
 ) -> Generated:
     """Make a map; what its store has already is taken over.
 
@@ -78,27 +79,42 @@ def generate(
         Takes the number of points, gives the `Progress` to tell.
     solver : ContactSolver, optional
         Instead of the job's; picklable.
+    tolerance : float, optional
+        Relative tolerance of the contact laws, for which density and refinement lines are chosen, see
+        `ehdmaps.jobs.tolerance`; those of the job if left out.
+    corrector : ContactSolver, optional
+        Instead of the dearer solver that the job names in `corrected_by`; picklable.
 
     Raises
     ------
     InputError, StoreError, MapError
         With what to do; everything solved is kept.
     """
-    planned = _plan(job, solvers.complete(solver or solvers.build(job.solver, job.solver_options)))
-    total = planned.points
+    planned = _plan(job, _solver(job, solver), _corrector(job, corrector))
+    adjusted = None if tolerance is None else check_tolerance(job, planned.solver, tolerance)
+    total = planned.points if adjusted is None else 0
     processes = workers or available_cores()
     with Store(store_path(output), fresh) as store, StatusFile(output, job, total, processes) as status:
+        result = SweepResult()
 
-        def solve(tasks: Sequence[LineTask], more: bool) -> SweepResult:
-            points = sum(task.points for task in tasks)
+        def solve(tasks: Sequence[LineTask], more: bool = True) -> Mapping[str, Arrays]:
+            missing = [task for task in tasks if task.key not in result.arrays]
+            points = sum(task.points for task in missing)
             if more:
                 status.more(points)
-            swept = sweep(tasks, store, processes, progress(points) if progress else None, [status])
+            if missing:
+                result.add(sweep(missing, store, processes, progress(points) if progress else None, [status]))
             status.write()
-            return swept
+            return result.arrays
 
-        result = solve(planned.everything, False)
-        dataset, group = _refined(planned, result, str(output), partial(solve, more=True))
+        found: dict[str, float | int | str] = {}
+        if tolerance is not None and adjusted is not None:
+            chosen = within_tolerance(job, adjusted, tolerance, solve)
+            planned, found = _plan(chosen.job, chosen.solver, planned.corrector), chosen.attributes
+        planned = _corrected(planned, solve)
+        solve(planned.everything, more=adjusted is not None)
+        dataset, group = _refined(planned, result, str(output), solve)
+        dataset.attrs.update(found)
         write_map(dataset, output, {schema.BACKBONE: group} if group is not None else None)
     return Generated(dataset, group, result)
 
@@ -108,18 +124,23 @@ def generate_in_memory(
     workers: int | None = None,
     progress: Callable[[int], Progress] | None = None,
     solver: ContactSolver | None = None,
+    corrector: ContactSolver | None = None,
 ) -> Generated:
     """Make a map without a file and without a store: what is not finished is lost.
 
     Arguments and errors as of `generate`.
     """
-    planned = _plan(job, solvers.complete(solver or solvers.build(job.solver, job.solver_options)))
+    planned = _plan(job, _solver(job, solver), _corrector(job, corrector))
 
-    def solve(tasks: Sequence[LineTask]) -> SweepResult:
+    result = SweepResult()
+
+    def solve(tasks: Sequence[LineTask]) -> Mapping[str, Arrays]:
         points = sum(task.points for task in tasks)
-        return sweep(tasks, NoStore(), workers or available_cores(), progress(points) if progress else None)
+        result.add(sweep(tasks, NoStore(), workers or available_cores(), progress(points) if progress else None))
+        return result.arrays
 
-    result = solve(planned.everything)
+    planned = _corrected(planned, solve)
+    solve(planned.everything)
     dataset, group = _refined(planned, result, job.name, solve)
     return Generated(dataset, group, result)
 
@@ -128,15 +149,18 @@ def generate_in_memory(
 class _Plan:
     """All that is solved for a map: its points, the lines of a contact law, and the check of the laws.
 
-    `halved` are the axes along which the steps of the lines were halved, in turn.
+    `halved` are the axes along which the steps of the lines were halved, in turn; `correction` is what the points of
+    the `corrector` made, once they are solved.
     """
 
     job: Job
     solver: ContactSolver
+    corrector: ContactSolver | None
     tasks: tuple[LineTask, ...]
     refined: Refinement | None
     check: LawCheck | None
     halved: tuple[Axis, ...] = ()
+    correction: Correction | None = None
 
     @property
     def everything(self) -> tuple[LineTask, ...]:
@@ -150,19 +174,53 @@ class _Plan:
         return sum(task.points for task in self.everything)
 
 
-def _plan(job: Job, solver: ContactSolver) -> _Plan:
+def _solver(job: Job, instead: ContactSolver | None) -> ContactSolver:
+    """The solver of a job, or another one."""
+    return solvers.complete(instead or solvers.build(job.solver, job.solver_options))
+
+
+def _corrector(job: Job, instead: ContactSolver | None) -> ContactSolver | None:
+    """The solver that corrects the films of a job, or another one; None where nothing is to be corrected."""
+    by = job.corrected_by
+    if by is None:
+        if instead is not None:
+            raise InputError("corrector: got one for a job without corrected_by; allowed: for a job with it")
+        return None
+    return solvers.complete(instead or solvers.build(by.solver, by.options))
+
+
+def _plan(job: Job, solver: ContactSolver, corrector: ContactSolver | None) -> _Plan:
     """Lay out what is to be solved."""
-    return _Plan(job, solver, line_tasks(job, solver), refinement(job, solver), plan_check(job, solver))
+    return _Plan(job, solver, corrector, line_tasks(job, solver), refinement(job, solver), plan_check(job, solver))
+
+
+def _corrected(planned: _Plan, solve: Callable[[Sequence[LineTask]], Mapping[str, Arrays]]) -> _Plan:
+    """The plan with its correction, where there is to be one: first of all, since without it there is no map."""
+    by = planned.job.corrected_by
+    if by is None or planned.corrector is None:
+        return planned
+    made = correction(planned.job, planned.solver, planned.corrector, by.points, solve)
+    return replace(planned, correction=made)
+
+
+def _results(planned: _Plan, result: SweepResult) -> Mapping[str, Arrays]:
+    """Arrays of all tasks by key, corrected where that is wanted."""
+    if planned.correction is None:
+        return result.arrays
+    return {task.key: planned.correction.corrected(task, result.arrays[task.key]) for task in planned.everything}
 
 
 def _refined(
-    planned: _Plan, result: SweepResult, where: str, solve: Callable[[Sequence[LineTask]], SweepResult]
+    planned: _Plan, result: SweepResult, where: str, solve: Callable[[Sequence[LineTask]], object]
 ) -> tuple[xr.Dataset, xr.Dataset | None]:
-    """Finish a map, with lines that are laid more closely as long as its laws miss their bars between them."""
+    """Finish a map, with lines that are laid more closely as long as its laws miss their bars between them.
+
+    `solve` adds to the result.
+    """
     dataset, group = _finished(planned, result, where)
     while len(planned.halved) < MOST_HALVINGS and (finer := _finer(planned, dataset, group, result)) is not None:
         planned = finer
-        result.add(solve(finer.refined.tasks if finer.refined else ()))
+        solve(finer.refined.tasks if finer.refined else ())
         dataset, group = _finished(planned, result, where)
     return dataset, group
 
@@ -171,7 +229,7 @@ def _finer(planned: _Plan, dataset: xr.Dataset, group: xr.Dataset | None, result
     """The plan with half the step along one axis of its lines; None where that would not help, or be too much."""
     if planned.check is None or planned.refined is None or met(dataset.attrs) or REFUSED in dataset.attrs:
         return None
-    axis = coarse_axis(planned.check, EHDMap(dataset, group), result.arrays)
+    axis = coarse_axis(planned.check, EHDMap(dataset, group), _results(planned, result))
     if axis is None:
         return None
     lines = refinement(planned.job, planned.solver, planned.refined.steps.finer(axis))
@@ -182,11 +240,14 @@ def _finer(planned: _Plan, dataset: xr.Dataset, group: xr.Dataset | None, result
 
 def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Dataset, xr.Dataset | None]:
     """Put results together, with the check of the laws and a checksum: the map and its backbone."""
-    dataset = assemble(planned.job, planned.solver, planned.tasks, result.arrays)
+    found = _results(planned, result)
+    dataset = assemble(planned.job, planned.solver, planned.tasks, found)
+    if planned.correction and planned.corrector:
+        dataset = with_correction(dataset, planned.job, planned.correction, planned.corrector)
     validate(dataset, where)
-    group = backbone_group(planned.refined, result.arrays) if planned.refined else None
+    group = backbone_group(planned.refined, found) if planned.refined else None
     if planned.check:
-        dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), result.arrays))
+        dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), found))
     if planned.halved:
         dataset.attrs[HALVED] = ", ".join(planned.halved)
     dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, group)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ehdmaps.errors import InputError
+from ehdmaps.maps.backbone_plan import STEPS, Steps
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
@@ -24,6 +25,29 @@ MOST_POINTS = 2_000_000
 
 MOST_CHECKS = 100_000
 """Random points for the check of the contact laws."""
+
+
+DEFAULT_CORRECTION_POINTS = 16
+"""Points of the dearer solver, where a job asks for a correction and does not say how many."""
+
+
+@dataclass(frozen=True)
+class CorrectedBy:
+    """By what the map of a job is corrected.
+
+    Attributes
+    ----------
+    solver : str
+        Name of the dearer solver.
+    points : int
+        How many points it is asked for.
+    options : mapping
+        The dearer solver's own keys, those that the file gives in [correction].
+    """
+
+    solver: str
+    points: int
+    options: Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -58,12 +82,17 @@ class Job:
         "law": solve the lines that a contact law needs, where the solver is made for it; "none": leave them out.
     law_check : int
         Random points at which the contact laws are compared with fresh solves.
+    line_steps : Steps
+        Largest steps of these lines, with which a map begins.
     supply : OilSupply or None
         Oil supply that the contact laws of the map have by default; None where the job states none, which is flooded.
         The points of the map are those of flooded films.
     surface : Surface or None
         Surfaces that the contact laws of the map have by default; None where the job states none, which is smooth. The
         points of the map are those of smooth surfaces.
+    corrected_by : CorrectedBy or None
+        Dearer solver by a few points of which the films of the map are corrected, see `ehdmaps.jobs.correction`; None
+        where they are those of `solver`.
     """
 
     name: str
@@ -79,8 +108,10 @@ class Job:
     fill: str = "neighbours"
     backbone: str = "law"
     law_check: int = 0
+    line_steps: Steps = STEPS
     supply: OilSupply | None = None
     surface: Surface | None = None
+    corrected_by: CorrectedBy | None = None
 
     @classmethod
     def build(
@@ -101,6 +132,10 @@ class Job:
         fill: str = "neighbours",
         backbone: str = "law",
         law_check: int = 0,
+        line_steps: Steps = STEPS,
+        corrected_by: str | None = None,
+        correction_points: int = DEFAULT_CORRECTION_POINTS,
+        correction_options: Mapping[str, str | int | float | bool] | None = None,
         name: str = "job",
     ) -> Job:
         """Make a job from values, all in SI.
@@ -132,8 +167,14 @@ class Job:
             The solver's own keys, as in [solver].
         structural_law : {"iso16281", "palmgren", "half_space"}
             Structural law of the bearing's contacts.
-        fill, backbone, law_check
+        fill, backbone, law_check, line_steps
             See the attributes.
+        corrected_by : str, optional
+            Name of a dearer solver whose few points correct the films of `solver`.
+        correction_points : int
+            How many points it is asked for.
+        correction_options : mapping, optional
+            The dearer solver's own keys, as in [correction].
         name : str
             Name of the job.
 
@@ -154,13 +195,15 @@ class Job:
         >>> job.shape
         (2, 2, 2, 1)
         """
-        from ehdmaps.jobs.job_text import job_text
+        from ehdmaps.jobs.job_text import job_text, steps_keys
         from ehdmaps.jobs.reader import parse_job
 
         solids = contact or bearing
         if solids is None or (contact and bearing):
             got = "both" if solids else "none"
             raise InputError(f"Job.build, bearing and contact: got {got}; allowed: one of the two")
+        if not corrected_by and correction_options:
+            raise InputError("Job.build, correction_options: got some without corrected_by; allowed: together with it")
         text = job_text(
             solids,
             contact.material if contact else material,
@@ -172,10 +215,13 @@ class Job:
                 "fill": fill,
                 "backbone": backbone,
                 "law_check": law_check,
+                **({} if line_steps == STEPS else {"line_steps": steps_keys(line_steps)}),
+                **({"corrected_by": corrected_by, "correction_points": correction_points} if corrected_by else {}),
                 **(solver_options or {}),
             },
             supply,
             surface,
+            correction_options,
         )
         job = parse_job(text, name, "Job.build")
         check_oil(lubricant, job, "Job.build, ")

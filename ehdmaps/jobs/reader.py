@@ -12,21 +12,26 @@ from ehdmaps import inputs
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers, toml_text
 from ehdmaps.jobs.axes import LOAD_AXIS, TEMPERATURE_AXIS, read_axis, read_speeds
-from ehdmaps.jobs.job import MOST_CHECKS, MOST_POINTS, Job
+from ehdmaps.jobs.job import DEFAULT_CORRECTION_POINTS, MOST_CHECKS, MOST_POINTS, CorrectedBy, Job
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.surface import read_surface
 from ehdmaps.jobs.table import Table
+from ehdmaps.maps.backbone_plan import STEP_LIMITS, STEPS, Steps
+from ehdmaps.netcdf_structure import DAMAGE, structure_problem
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.units import closest
+from ehdmaps.units import KELVIN, closest
 
 LONGEST_FILE = 1_000_000
 """Bytes of a job file; axes of a hundred thousand values still fit."""
 
+FEWEST_CORRECTION_POINTS, MOST_CORRECTION_POINTS = 4, 200
+"""Points of the dearer solver; beyond that a map of its own is the better use of them."""
+
 _SIGNATURES = (b"CDF", b"\x89HDF")
-_TABLES = ("schema", "bearing", "contact", "material", "lubricant", "supply", "surface", "grid", "solver")
+_TABLES = ("schema", "bearing", "contact", "material", "lubricant", "supply", "surface", "grid", "solver", "correction")
 
 
 def shipped_jobs() -> tuple[str, ...]:
@@ -103,14 +108,16 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
         top.note("schema", f"got {schema!r:.60}; allowed: 1; this version of ehdmaps reads no other")
 
     section = top.table("solver", "[solver]", required="a table with name and structural_law")
-    solver, options, law, rest = _solver(section) if section else (None, {}, None, {})
+    solver, options, law, rest = _solver(section, top) if section else (None, {}, None, {})
     if override is not None and override not in solvers.SOLVER_NAMES:
         top.note("--solver", f"got {override!r:.60}; allowed: {', '.join(solvers.SOLVER_NAMES)}")
     elif override is not None and override != solver:
-        solver, options = override, {}
+        solver, options, rest = override, {}, {**rest, "corrected_by": None}
     if to_run and solver is not None:
-        for problem in solvers.SOLVERS[solver].missing():
-            top.note("[solver] name", f"got {solver!r}, which needs more than is here: {problem}")
+        by: CorrectedBy | None = rest["corrected_by"]
+        for key, needed in (("name", solver), *([("corrected_by", by.solver)] if by else [])):
+            for problem in solvers.SOLVERS[needed].missing():
+                top.note(f"[solver] {key}", f"got {needed!r}, which needs more than is here: {problem}")
 
     bearing, contacts = read_contacts(top, law)
     oil_section = top.table("lubricant", "[lubricant]", required="a table with the name of an oil, or its data")
@@ -146,20 +153,61 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
     )
 
 
-def _solver(section: Table) -> tuple[str | None, dict[str, object], str | None, dict[str, Any]]:
-    """Read [solver]: name, its own keys, structural law, and the keys that every solver has."""
+def _solver(section: Table, top: Table) -> tuple[str | None, dict[str, object], str | None, dict[str, Any]]:
+    """Read [solver]: name, its own keys, structural law, and the keys that every solver has; and [correction]."""
     name = section.choice("name", solvers.SOLVER_NAMES, required=True)
     law = section.choice("structural_law", STRUCTURAL_LAWS, required=True)
     rest: dict[str, Any] = {
         "fill": section.choice("fill", ("neighbours", "none")) or "neighbours",
         "backbone": section.choice("backbone", ("law", "none")) or "law",
         "law_check": section.integer("law_check", 0, MOST_CHECKS) or 0,
+        "line_steps": section.optional("line_steps", "[solver] line_steps", _line_steps) or STEPS,
+        "corrected_by": None,
     }
+    top.get("correction")
     options: dict[str, object] = {}
     if name is not None:
         options = solvers.read_options(name, section)
+        rest["corrected_by"] = _corrected_by(section, top, name, options)
         section.close()
     return name, options, law, rest
+
+
+def _corrected_by(section: Table, top: Table, name: str, options: dict[str, object]) -> CorrectedBy | None:
+    """Read by what the films are corrected, and the keys of that solver in [correction]."""
+    with_films = tuple(known for known in solvers.SOLVER_NAMES if known != "hertz")
+    by = section.choice("corrected_by", with_films)
+    points = section.integer("correction_points", FEWEST_CORRECTION_POINTS, MOST_CORRECTION_POINTS)
+    own = top.table("correction", "[correction]")
+    if "corrected_by" not in section:
+        for table, key in ((section, "correction_points"), (top, "correction")):
+            if key in table:
+                table.note(key, "stands without corrected_by of [solver]; allowed: with it; delete it, or add that")
+        return None
+    if by is None:
+        return None
+    of_corrector = {} if own is None else solvers.read_options(by, own)
+    if own is not None:
+        own.close()
+    if name == "hertz":
+        section.note("corrected_by", "stands beside name = 'hertz', which has no film to correct; delete it")
+    elif by == name and of_corrector == options:
+        section.note(
+            "corrected_by",
+            f"got {by!r}, the solver of the map with the same keys, which corrects nothing; allowed: another solver, "
+            "or other keys in [correction]",
+        )
+    return CorrectedBy(by, points or DEFAULT_CORRECTION_POINTS, of_corrector)
+
+
+def _line_steps(section: Table) -> Steps:
+    """Read the steps of refinement lines; those that are absent or wrong are the usual ones."""
+    return Steps(
+        load=section.number("load", *STEP_LIMITS.load) or STEPS.load,
+        entrainment_speed=section.number("entrainment_speed", *STEP_LIMITS.entrainment_speed)
+        or STEPS.entrainment_speed,
+        temperature=section.quantity("temperature", "K", *STEP_LIMITS.temperature, KELVIN) or STEPS.temperature,
+    )
 
 
 def _grid(grid: Table, contacts: int, bearing: BearingGeometry | None) -> list[tuple[float, ...] | None]:
@@ -203,10 +251,15 @@ def _job_of_map(path: Path) -> tuple[str, str, str | None]:
     import netCDF4
 
     try:
+        damage = structure_problem(path)
+        if damage:
+            raise OSError(damage)
         with netCDF4.Dataset(path) as file:
             attributes = {name: file.getncattr(name) for name in file.ncattrs()}
-    except (OSError, RuntimeError) as error:
-        raise InputError(f"{path}: looks like a map file but cannot be read ({error}); generate it again") from error
+    except DAMAGE as error:
+        raise InputError(
+            f"{path}: looks like a map file but cannot be read ({error!s:.300}); generate it again"
+        ) from error
     text, digest, solver, name = (attributes.get(key) for key in ("job_toml", "job_sha256", "solver", "job_name"))
     if not isinstance(text, str):
         raise InputError(f"{path}: carries no job (attribute job_toml); allowed: a map written by `ehdmaps generate`")

@@ -10,6 +10,7 @@ lsa            state space and frequency responses at the equilibrium
 sweep          modes, bearings and responses over speed, of one or more models
 runup          the nonlinear system in time over its speed profile
 campbell       run-ups with one or more laws as levels over speed, frequency and order
+changed_laws   models whose laws are wrong by the errors that their map states
 variants       how a difference between two laws in a run-up depends on clearance, temperature and the like
 tradeoff       what laws, supplies, maps, slices, cut-off, step and cage angles cost, and how wrong they are
 linear_look    what a user looks at in a linear system, and how two systems differ in it
@@ -21,6 +22,10 @@ plan           which ranges a scene needs of a contact map, and the jobs that co
 planning       operating points of a scene and the loads and speeds seen there
 planned_job    such a job, from the bearings and the oil of the scene
 coverage       whether a map covers what is needed
+auto           an analysis with a map that is planned, made or reused, and checked for it
+kept_map       a map for a planned job: one that is there, or a new one
+film_verdicts  which physics of the films a scene requires
+film_criteria  such criteria at a contact, in closed form
 case           the models that an analysis compares, with their labels
 varied         what comparisons vary, one row a key
 progress       how an analysis tells how far it is

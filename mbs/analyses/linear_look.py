@@ -47,7 +47,7 @@ class LinearLook:
     balance : Equilibrium
         Equilibrium at which it was linearised.
     modes : Modes
-        Its complex modes.
+        Complex modes of the system.
     frequencies : array, shape (frequencies,)
         Frequencies of the responses [Hz].
     levels : array, shape (frequencies, responses)

@@ -16,7 +16,8 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.bearing_kernel import Work, bearing_force
 from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
-from mbs.bearings.rings import Rings, answer_ring, feels, gather_rings, motion_of, shape_of
+from mbs.bearings.level_kernel import level_force
+from mbs.bearings.rings import LEVEL, Rings, answer_ring, feels, gather_rings, motion_of, placed, shape_of
 from mbs.bearings.slice_table import CELLS, LawNumbers, PreparedLaw, law_numbers, store_numbers
 from mbs.bearings.speed_tables import NODES, SpeedTables
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
@@ -138,7 +139,11 @@ def _force(bearings: Bearings, b: int, moment: Moment, motion: FloatArray, out: 
     law = PreparedLaw(law_numbers(films.current[film]), films.cells[film])
     cells = z * n
     work = Work(bearings.rows[:cells].reshape(z, n), bearings.states[: 4 * cells].reshape(4, z, n))
-    status: int = bearing_force(motion_of(rings, b, moment, motion), shape_of(rings, b), law, work, out)
+    ring, shape = motion_of(rings, b, moment, motion), shape_of(rings, b)
+    if rings.felt[b] == LEVEL:
+        level: int = level_force(ring, shape, rings.weights[b][:n], law, work, out)
+        return level
+    status: int = bearing_force(ring, shape, law, work, out)
     return status
 
 
@@ -166,7 +171,7 @@ def bearings_answer(bearings: Bearings, moment: Moment, motion: FloatArray, answ
         if status != 0:
             return NO_SOLUTION if status < 0 else IN_PYTHON
         answers.outside[rings.places[b]] += course.outside[moment.step, rings.films_of[b]]
-        answer_ring(rings.firsts[b], moment, out, answers)
+        answer_ring(rings.firsts[b], rings.felt[b], moment, out, answers)
     return FOUND
 
 
@@ -227,5 +232,5 @@ def _takes(element: Element) -> bool:
     return isinstance(element, BearingElement) and type(element.force) is BearingForce
 
 
-BEARINGS = Kind(arrays=Bearings, answer=bearings_answer, feels=feels, gather=BearingBlock, takes=_takes)
+BEARINGS = Kind(arrays=Bearings, answer=bearings_answer, feels=feels, gather=BearingBlock, takes=_takes, placed=placed)
 """For `mbs.transient.kinds`."""

@@ -188,8 +188,22 @@ def roller_of(motion: RingMotion, shape: Shape, j: int) -> Roller:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _find_cells(motion: RingMotion, shape: Shape, numbers: LawNumbers, rows: IntArray, places: FloatArray) -> None:
-    """Row of the table of each slice, and the place in the cell."""
+def find_cells(motion: RingMotion, shape: Shape, numbers: LawNumbers, rows: IntArray, places: FloatArray) -> None:
+    """Row of the table of each slice, and the place in the cell.
+
+    Parameters
+    ----------
+    motion : RingMotion
+        Motion of the ring.
+    shape : Shape
+        The bearing.
+    numbers : LawNumbers
+        Centre and scale of the cells.
+    rows : array (Z, n), of int
+        Rows, written.
+    places : array (Z, n)
+        Places in the cells, written.
+    """
     x, lost = shape.positions, shape.profile
     inverse = numbers.inverse_scale
     for j in range(rows.shape[0]):
@@ -228,8 +242,20 @@ def slice_approaches(motion: RingMotion, shape: Shape, out: FloatArray) -> None:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray) -> None:
-    """States of w = a delta^b with c = damping + damping_time dw; rollers without load are left out."""
+def power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray) -> None:
+    """States of w = a delta^b with c = damping + damping_time dw; rollers without load are left out.
+
+    Parameters
+    ----------
+    motion : RingMotion
+        Motion of the ring.
+    shape : Shape
+        The bearing.
+    numbers : LawNumbers
+        The power law.
+    states : array (4, Z, n)
+        States of the slices, written.
+    """
     x, lost = shape.positions, shape.profile
     a, b, damping, time = numbers.coefficient, numbers.exponent, numbers.damping, numbers.damping_time
     bend = time * (b - 1.0) / b
@@ -449,10 +475,10 @@ def bearing_force(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work
     states = work.states
     if law.numbers.kind == CELLS:
         # The places lie where the load is written, at the same time as they are read.
-        _find_cells(motion, shape, law.numbers, work.rows, states[0])
+        find_cells(motion, shape, law.numbers, work.rows, states[0])
         read_cells(law.cells, work.rows.reshape(-1), states.reshape(4, -1))
     else:
-        _power_states(motion, shape, law.numbers, states)
+        power_states(motion, shape, law.numbers, states)
     above = assemble(motion, shape, law.numbers, states, out)
     return 1 if above > 0 else 0
 

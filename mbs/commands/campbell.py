@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -13,13 +14,14 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.figures import typeset
 from ehdmaps.units import RPM
-from mbs.analyses.campbell import MODE_SPEEDS, CampbellResult, LawRun, campbell, campbell_problems
+from mbs.analyses.campbell import MODE_SPEEDS, MOST_BANDS, CampbellResult, LawRun, campbell, campbell_problems
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside, fade_of
-from mbs.analyses.tolerance import read_tolerance, within
+from mbs.analyses.tolerance import Tolerated, read_tolerance, within
+from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Told, film_course, heading, held_lines, read_option, write
+from mbs.commands.common import Told, band_lines, film_course, heading, held_lines, read_option, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
@@ -41,14 +43,23 @@ _MOST_DAMPED = 0.5
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run up with each law, and compare."""
-    cases, settings, tolerance = _asked(arguments)
-    tolerated = None
-    if tolerance is not None and cases[0].subject is not None:
-        tolerated = within(cases[0].subject, tolerance, settings, Told("trial"))
-        cases = [dataclasses.replace(cases[0], model=tolerated.subject.model(), subject=tolerated.subject)]
-    found = campbell(cases, settings, Told("step"), with_modes=arguments.modes, keep_partial=True)
-    runs, course = found.runs, found.course
+    chosen: list[Tolerated] = []
+
+    def analyse(asked: _Asked) -> CampbellResult:
+        cases = asked.cases
+        if asked.tolerance is not None and cases[0].subject is not None:
+            chosen.append(within(cases[0].subject, asked.tolerance, asked.settings, Told("trial")))
+            subject = chosen[-1].subject
+            cases = [dataclasses.replace(cases[0], model=subject.model(), subject=subject)]
+        told = Told("step")
+        return campbell(cases, asked.settings, told, with_modes=arguments.modes, keep_partial=True, bands=asked.bands)
+
+    done = analysed(arguments, lambda given: _Asked(*_asked(given)), analyse, _looks_at, alone=("tolerance",))
+    found, bands = done.result, int(arguments.bands or "0")
+    settings, runs, course = found.settings, found.runs, found.course
+    tolerated = chosen[-1] if chosen else None
     lines = [
+        *done.lines,
         f"{runs[0].case.model.scene.title}: run-up from {RPM.text(course.speed.at(0.0)[0])} to "
         f"{RPM.text(course.speed.at(course.duration)[0])} in {course.duration:.4g} s; "
         f"sensor {found.sensor.name}, {Reference.of(found.sensor).text}",
@@ -56,23 +67,36 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *(tolerated.lines if tolerated else ()),
     ]
     for entry in runs:
-        lines += _report(entry)
+        lines += [*_report(entry), *_band(entry, bands)]
     lines += [*_differences(runs), *(f"warning: {line}" for line in found.failed)]
     dataset = found.dataset.assign_attrs(tolerance="\n".join(tolerated.lines)) if tolerated else found.dataset
     lines += write(arguments, dataset, _figure(found) if arguments.plot else None)
-    outside = any(any(entry.record.outside.values()) for entry in runs)
-    return "\n".join(lines), 1 if found.failed or outside or (tolerated and not tolerated.met) else 0
+    unsound = found.failed or any(any(entry.record.outside.values()) for entry in runs)
+    return "\n".join(lines), 1 if unsound or (tolerated and not tolerated.met) else done.status
 
 
-def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings, float | None]:
-    """Laws, what is looked at, and the tolerance if there is one; all problems at once."""
+class _Asked(NamedTuple):
+    """Laws that are run, what is looked at, how many runs a band has, and the tolerance of levels [dB]."""
+
+    cases: list[Case]
+    settings: CampbellSettings
+    bands: int
+    tolerance: float | None = None
+
+
+def _looks_at(asked: _Asked) -> Looked:
+    """The scene with the largest loads, and the highest frequency."""
+    return Looked(max(asked.cases, key=lambda case: case.load_factor).model.scene, asked.settings.highest)
+
+
+def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings, int, float | None]:
+    """Laws, what is looked at, how many runs a band has, and the tolerance of levels; all problems at once."""
     problems: list[str] = []
-    tolerance = None
-    if arguments.tolerance is not None:
-        try:
-            tolerance = read_tolerance(arguments.tolerance)
-        except InputError as error:
-            problems.append(f"--tolerance: {error.problems[0]}")
+    tolerance = _tolerance(arguments, problems)
+    text = arguments.bands or "0"
+    bands = int(text) if text.isascii() and text.isdigit() and len(text) < 4 else -1
+    if not 0 <= bands <= MOST_BANDS:
+        problems.append(f"--bands: got {text!r:.40}; allowed: a whole number of runs, 0 to {MOST_BANDS}")
     highest = read_option("--highest", arguments.highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
     window = read_option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems)
     try:
@@ -84,7 +108,7 @@ def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings,
             f"--law, --map, --films, --supply, --clearance, --load-factor: got {len(cases)} combinations; allowed: up "
             f"to {MOST_LAWS} side by side"
         )
-    if arguments.tolerance is not None and len(cases) > 1:
+    if tolerance is not None and len(cases) > 1:
         problems.append(
             f"--tolerance: got {len(cases)} combinations of laws, films and the like; allowed: one, for which step, "
             "slices and cut-off are chosen"
@@ -99,7 +123,19 @@ def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings,
     problems += campbell_problems(scene, settings)
     if problems:
         raise InputError(tuple(dict.fromkeys(problems)))
-    return cases, settings, tolerance
+    return cases, settings, bands, tolerance
+
+
+def _tolerance(arguments: argparse.Namespace, problems: list[str]) -> float | None:
+    """The tolerance of levels [dB]; None without one. A part of a stiffness is one of `--auto` alone."""
+    text = getattr(arguments, "tolerance", None)
+    if text is None or (getattr(arguments, "auto", False) and text.strip().endswith("%")):
+        return None
+    try:
+        return read_tolerance(text)
+    except InputError as error:
+        problems.append(f"--tolerance: {error.problems[0]}")
+        return None
 
 
 def _figure(found: CampbellResult) -> Figure:
@@ -112,6 +148,7 @@ def _figure(found: CampbellResult) -> Figure:
         found.orders,
         [_overlay(entry) for entry in found.runs],
         [_reach(entry) for entry in found.runs],
+        [entry.level_error for entry in found.runs],
     )
 
 
@@ -180,6 +217,25 @@ def _report(entry: LawRun) -> list[str]:
     )
     ends = (float(found.speeds[0]), float(found.speeds[-1]))
     return [*lines, *fade_lines(entry.case.model, record.speed, "the run"), *film_course(entry.case.model, ends)]
+
+
+def _band(entry: LawRun, runs: int) -> list[str]:
+    """Lines on the band of the sum level, where runs for it were asked for."""
+    if not runs:
+        return []
+    words = band_lines(entry.case.model)
+    if entry.level_error is None:
+        return words
+    found = entry.spectra.campbell
+    worst = int(np.argmax(entry.level_error))
+    middle, at = float(np.median(entry.level_error)), RPM.text(float(found.speeds[worst]))
+    highest = float(entry.level_error[int(np.argmax(found.sum_level))])
+    return [
+        f"  band of the sum level by {runs} runs with laws wrong by the errors of the map: +- {middle:.2g} dB in the "
+        f"median of the windows, +- {highest:.2g} dB at the highest level, at most +- "
+        f"{entry.level_error[worst]:.2g} dB, at {at}",
+        *words,
+    ]
 
 
 def _differences(found: Sequence[LawRun]) -> list[str]:

@@ -9,12 +9,12 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.signal import find_peaks
 
-from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
 from mbs.analyses.case import Case
 from mbs.analyses.lsa import LsaResult, lsa
+from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import film_lines, heading, outside_at, write
+from mbs.commands.common import band_lines, film_lines, heading, outside_at, write
 from mbs.commands.reach import fade_lines
 from mbs.linearised.linear import response_unit
 from mbs.linearised.validity import DynamicLoad
@@ -24,8 +24,13 @@ from mbs.scene.assembly import Model
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Linearise, and compute the responses over the frequencies of the scene, with each kind of films and supply."""
-    cases = _asked(arguments)
-    found = [(case.label, lsa(case.model)) for case in cases]
+    done = analysed(
+        arguments,
+        _asked,
+        lambda cases: [(case.label, lsa(case.model)) for case in cases],
+        lambda cases: Looked(cases[0].model.scene, max(cases[0].model.scene.frequencies, default=0.0)),
+    )
+    found = done.result
     figure = None
     if arguments.plot:
         curves = [
@@ -34,19 +39,20 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
                 entry.frequencies,
                 entry.responses,
                 min((error.frequency for error in entry.errors), default=math.inf),
+                entry.level_error,
             )
             for label, entry in found
         ]
         notes = [note for label, entry in found for note in _lifting_notes(entry.lifting, label if found[1:] else "")]
         first = found[0][1].model
         figure = comparison_figure(first, curves, notes) if found[1:] else response_figure(first, curves[0], notes)
-    lines: list[str] = []
+    lines = list(done.lines)
     outside: list[str] = []
     for label, entry in found:
         outside += [line for line in outside_at(entry.model, entry.balance) if line not in outside]
         lines += _report(entry, label if found[1:] else "")
     lines += [*outside, *write(arguments, found[0][1].dataset, figure)]
-    return "\n".join(lines), 1 if outside else 0
+    return "\n".join(lines), 1 if outside else done.status
 
 
 def _asked(arguments: argparse.Namespace) -> list[Case]:
@@ -81,7 +87,8 @@ def _report(found: LsaResult, label: str) -> list[str]:
         f"state space: {found.space.A.shape[0]} states, {len(scene.inputs)} inputs, {len(scene.sensors)} outputs; "
         f"{found.asked} frequencies, and {frequencies.size - found.asked} more around lightly "
         "damped modes",
-        *_peaks(model, frequencies, found.responses),
+        *_peaks(model, found),
+        *band_lines(model),
         *film_lines(found.errors, frequencies),
         *(
             f"warning: {load.element}: {load.dynamic:.3g} N of dynamic load at {load.frequency:.4g} Hz exceed the "
@@ -106,15 +113,19 @@ def _lifting_notes(loads: Sequence[DynamicLoad], label: str) -> list[str]:
     ]
 
 
-def _peaks(model: Model, frequencies: FloatArray, responses: ComplexArray) -> list[str]:
-    """Lines of the peaks of each response."""
+def _peaks(model: Model, found: LsaResult) -> list[str]:
+    """Lines of the peaks of each response, with the bands of their levels."""
     lines = []
+    frequencies, responses, bands = found.frequencies, found.responses, found.level_error
     for s, sensor in enumerate(model.scene.sensors):
         for i, entry in enumerate(model.scene.inputs):
             size = np.abs(responses[:, s, i])
             # A peak stands out of both valleys beside it.
             places, _ = find_peaks(np.log(np.maximum(size, 1e-300)), prominence=0.05)
-            shown = [f"{frequencies[k]:.5g} Hz ({size[k]:.3g})" for k in places]
+            shown = [
+                f"{frequencies[k]:.5g} Hz ({size[k]:.3g}{'' if bands is None else f' +- {bands[k, s, i]:.2g} dB'})"
+                for k in places
+            ]
             lines.append(
                 f"  {sensor.name} ({sensor.quantity}, {response_unit(sensor, entry)}) by {entry.name}: "
                 + (f"peaks at {', '.join(shown)}" if shown else "no peak")

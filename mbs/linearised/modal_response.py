@@ -62,6 +62,32 @@ def modal_response(
     return result
 
 
+def seen_of_loads(
+    balance: Equilibrium,
+    states: StateModes,
+    sensors: Sequence[Sensor],
+    frequencies: FloatArray,
+    ports: FloatArray,
+) -> ComplexArray:
+    """What each sensor sees of a load of 1 N or 1 N m on each of some ports, shape (frequencies, sensors, ports).
+
+    Parameters
+    ----------
+    balance, states, sensors, frequencies
+        The same as for `modal_response`.
+    ports : array, shape (ports, n)
+        How the ports follow the coordinates.
+    """
+    n = balance.system.size
+    seen = sensor_matrix(balance, sensors) @ states.right[:n]
+    by_load = np.linalg.solve(balance.system.mass.T, states.left[:, n : 2 * n].T).T @ ports.T
+    rate = 2j * np.pi * np.asarray(frequencies, dtype=np.float64)
+    resonance = 1.0 / (rate[:, None] - states.eigenvalues)
+    orders = np.array([_ORDER[sensor.quantity] for sensor in sensors], dtype=np.int64)
+    found = np.stack([(resonance * row) @ by_load for row in seen], axis=1)
+    return np.asarray(found * (rate[:, None] ** orders)[:, :, None])
+
+
 def checked_response(
     balance: Equilibrium,
     states: StateModes,
