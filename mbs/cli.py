@@ -66,6 +66,7 @@ def parser() -> argparse.ArgumentParser:
     hammer = _scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=False)
     _films(hammer, compares=False)
     _hammer(hammer)
+    _tradeoff(commands)
     _modal_fit(commands)
     _bearing(commands)
     _plan(commands)
@@ -141,6 +142,29 @@ def _campbell(command: argparse.ArgumentParser) -> None:
         'it, such as "1 dB"; with --auto films, supply and roughness, too',
     )
     command.add_argument("--modes", action="store_true", help="draw in the linear modes, with the films of each run")
+
+
+def _tradeoff(commands: Any) -> None:
+    """Add the command that measures speed against accuracy; the laws are its own."""
+    words = "speed against accuracy of a scene, measured: laws, supplies, maps, slices, cut-off, step, cage angles"
+    command: argparse.ArgumentParser = commands.add_parser("tradeoff", help=words, description=words)
+    command.add_argument("scene", metavar="SCENE")
+    command.add_argument(
+        "--map",
+        metavar="MAP.nc",
+        action="append",
+        help="made by `ehdmaps generate` for the same bearing, the reference; more than once for rows of other maps. "
+        "Without one the film formula is the reference",
+    )
+    command.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
+    command.add_argument("--clearance", metavar="LENGTH", help='diametral clearance of all bearings, such as "20 um"')
+    command.add_argument("--sensor", metavar="NAME", help="of the sum level; default: the first of an acceleration")
+    command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
+    command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
+    command.add_argument("--linear-only", action="store_true", help="no run-ups, which take minutes")
+    command.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
+    command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
 
 
 def _variants(command: argparse.ArgumentParser) -> None:
@@ -331,7 +355,8 @@ def _auto(command: argparse.ArgumentParser, tolerance: bool = True) -> None:
         "--tolerance",
         metavar="PART",
         help="change of a stiffness or damping above which --auto switches physics on, such as '5 %%' (default), or of "
-        "a level, such as '1 dB'",
+        "a level, such as '1 dB'; of campbell a level, without --auto too, also chooses step, slices and cut-off by "
+        "short trials, so that the sum level at equal speed keeps it",
     )
 
 

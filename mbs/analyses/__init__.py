@@ -12,6 +12,8 @@ runup          the nonlinear system in time over its speed profile
 campbell       run-ups with one or more laws as levels over speed, frequency and order
 changed_laws   models whose laws are wrong by the errors that their map states
 variants       how a difference between two laws in a run-up depends on clearance, temperature and the like
+tradeoff       what laws, supplies, maps, slices, cut-off, step and cage angles cost, and how wrong they are
+linear_look    what a user looks at in a linear system, and how two systems differ in it
 tolerance      step, slices and cut-off of a run-up that keep its sum level within a tolerance
 numerics       these settings
 ramp_parts     short runs of parts of a run-up, and their sum levels

@@ -417,7 +417,7 @@ def recorded_run(
     told : callable, optional
         Told the number of samples done.
     nudge : float
-        By how much all coordinates are off their equilibrium at the beginning [m or rad], to see what becomes of it.
+        Distance of all coordinates from their equilibrium at the beginning [m or rad], to see what becomes of it.
 
     Raises
     ------

@@ -44,7 +44,7 @@ class RampPart:
     start : float
         When its run begins, in the time of the whole run [s].
     begin, end : float
-        Between which times windows are looked at [s].
+        Times between which windows are looked at [s].
     speeds : (float, float)
         Speeds there [rad/s].
     """

@@ -87,7 +87,7 @@ class Tolerated:
     Attributes
     ----------
     subject : Subject
-        With the settings that were chosen; as it came where none could be.
+        Scene and law with the settings that were chosen; as they came where none could be.
     numerics : Numerics
         These settings.
     lines : tuple of str
@@ -151,7 +151,8 @@ def within(
     subject : Subject
         Scene and law.
     tolerance : float
-        By how much the sum level at equal speed may differ from that of finer settings, in 95 % of the windows [dB].
+        Difference of the sum level at equal speed from that of finer settings that is allowed, in 95 % of the
+        windows [dB].
     settings : CampbellSettings, optional
         Sensor, highest frequency and window; [campbell] of the scene if left out.
     progress : callable, optional
@@ -160,7 +161,7 @@ def within(
     Returns
     -------
     Tolerated
-        With `met` False where it could not be met or not be confirmed; `lines` say why.
+        The choice, with `met` False where it could not be met or not be confirmed; `lines` say why.
 
     Raises
     ------

@@ -205,7 +205,7 @@ def over_pitch(balance: Equilibrium, count: int) -> FloatArray:
     found = [along_load(balance)]
     operation = balance.operation
     bearings = [balance.system.elements[index].element for index in balance.system.select(RingElement)]
-    turn = max(map(_pitch, bearings), default=0.0)
+    turn = max(map(pitch, bearings), default=0.0)
     for part in range(1, count):
         at = operation._replace(angle=operation.angle + turn * part / count)
         found.append(along_load(equilibrium(balance.system, at, balance.displacement)))
@@ -218,7 +218,7 @@ def _kinship(parts: ComplexArray) -> FloatArray:
     return np.asarray(squares / np.maximum(squares.sum(axis=1, keepdims=True), 1e-300), dtype=np.float64)
 
 
-def _pitch(element: Element) -> float:
+def pitch(element: Element) -> float:
     """Angle that the system turns while the cage goes on by one roller [rad]; 0 for a cage that stands."""
     excitation = element.excitation
     return 2.0 * math.pi / excitation.order if excitation is not None else 0.0

@@ -64,7 +64,7 @@ class Advanced:
     profile : LoadProfile
         The profile.
     time : float
-        Its time at time zero [s].
+        Time of that profile at time zero [s].
     """
 
     profile: LoadProfile

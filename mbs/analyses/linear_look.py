@@ -1,0 +1,206 @@
+"""What a user looks at in a linear system: frequencies, damping ratios, heights of responses, loads of rollers.
+
+Two systems are compared mode by mode. Modes belong together by their shapes in the coordinates that both systems have,
+weighted with the mass (modal assurance); a mode without a partner is said to be lost, and is in no error.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+from scipy.signal import find_peaks
+
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.errors import AnalysisError
+from mbs.analyses.operating import operating
+from mbs.analyses.rings import ring_motions
+from mbs.bearings.bearing_force import BearingForce
+from mbs.linearised.linear import frequency_response, with_peaks
+from mbs.linearised.modes import Modes, modes
+from mbs.linearised.steady import steady_system
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.scene.assembly import Model
+
+LEAST_ASSURANCE = 0.5
+"""Modal assurance above which two modes are one."""
+
+MOST_DAMPED = 0.5
+"""Damping ratio up to which a mode is looked at: above, a response has hardly a peak by it."""
+
+AROUND = 0.1
+"""Part of its frequency within which the height of a peak is looked for."""
+
+_PROMINENCE = 3.0
+_LEFT_OVER = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class LinearLook:
+    """A linear system at an operating point.
+
+    Attributes
+    ----------
+    balance : Equilibrium
+        Equilibrium at which it was linearised.
+    modes : Modes
+        Complex modes of the system.
+    frequencies : array, shape (frequencies,)
+        Frequencies of the responses [Hz].
+    levels : array, shape (frequencies, responses)
+        Response of each sensor to each input [dB re 1 of its unit].
+    loads : array, shape (bearings,)
+        Load of the most loaded slice of each bearing [N/m].
+    seconds : float
+        Processor time of equilibrium, modes and responses [s].
+    """
+
+    balance: Equilibrium
+    modes: Modes
+    frequencies: FloatArray
+    levels: FloatArray
+    loads: FloatArray
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class LinearDifferences:
+    """A linear system beside a reference, NaN where there is nothing to compare.
+
+    Attributes
+    ----------
+    frequency, damping : array, shape (modes,)
+        Relative differences of frequencies and damping ratios of the modes of the reference.
+    height : array, shape (peaks,)
+        Differences of the heights of the peaks of the reference [dB].
+    load : array, shape (bearings,)
+        Relative differences of the largest loads.
+    """
+
+    frequency: FloatArray
+    damping: FloatArray
+    height: FloatArray
+    load: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class LinearReference:
+    """A linear system beside which others are looked at.
+
+    Attributes
+    ----------
+    look : LinearLook
+        The system.
+    chosen : array of int, shape (modes,)
+        Which of its modes are looked at.
+    peaks : tuple of (int, float)
+        Response, and frequency [Hz], of each peak.
+    """
+
+    look: LinearLook
+    chosen: IntArray
+    peaks: tuple[tuple[int, float], ...]
+
+    @classmethod
+    def of(cls, look: LinearLook, highest: float) -> LinearReference:
+        """Choose modes and peaks.
+
+        Parameters
+        ----------
+        look : LinearLook
+            The system.
+        highest : float
+            Frequency up to which they are looked at [Hz].
+        """
+        found = look.modes
+        seen = (found.frequency <= highest) & (found.damping_ratio <= MOST_DAMPED) & (found.frequency > 1.0)
+        peaks = []
+        for column in range(look.levels.shape[1]):
+            places, _ = find_peaks(look.levels[:, column], prominence=_PROMINENCE)
+            peaks += [(column, float(look.frequencies[k])) for k in places if look.frequencies[k] <= highest]
+        return cls(look, np.asarray(np.flatnonzero(seen), dtype=np.int64), tuple(peaks))
+
+    def beside(self, other: LinearLook) -> LinearDifferences:
+        """How another system differs.
+
+        Parameters
+        ----------
+        other : LinearLook
+            The other system; it may have other coordinates.
+        """
+        own = self.look.modes
+        partner = self._partners(other)
+        there = partner >= 0
+        frequency = np.full(partner.size, np.nan)
+        damping = np.full(partner.size, np.nan)
+        which = self.chosen[there]
+        frequency[there] = other.modes.frequency[partner[there]] / own.frequency[which] - 1.0
+        ratios = own.damping_ratio[which]
+        damped = ratios > 0.0
+        damping[there] = np.where(
+            damped, other.modes.damping_ratio[partner[there]] / np.where(damped, ratios, 1.0) - 1.0, np.nan
+        )
+        height = [_highest(other, column, at) - _highest(self.look, column, at) for column, at in self.peaks]
+        load = other.loads / self.look.loads - 1.0
+        # What an equilibrium leaves over is no difference.
+        return LinearDifferences(frequency, damping, np.array(height), np.where(np.abs(load) > _LEFT_OVER, load, 0.0))
+
+    def _partners(self, other: LinearLook) -> IntArray:
+        """The mode of another system that each chosen mode is; -1 where there is none."""
+        mine, theirs = self.look.balance.system, other.balance.system
+        places = {name: k for k, name in enumerate(theirs.coordinates)}
+        common = [k for k, name in enumerate(mine.coordinates) if name in places]
+        mass = mine.mass[np.ix_(common, common)]
+        first = self.look.modes.shapes[common][:, self.chosen]
+        second = other.modes.shapes[[places[mine.coordinates[k]] for k in common]]
+        sizes = [np.sum(part.conj() * (mass @ part), axis=0).real for part in (first, second)]
+        assurance = np.abs(first.conj().T @ mass @ second) ** 2 / np.maximum(np.multiply.outer(*sizes), 1e-300)
+        rows, columns = linear_sum_assignment(assurance, maximize=True)
+        found = np.full(self.chosen.size, -1)
+        kept = assurance[rows, columns] >= LEAST_ASSURANCE
+        found[rows[kept]] = columns[kept]
+        return found
+
+
+def linear_look(model: Model, angle: float = 0.0) -> LinearLook:
+    """Look at the linear system of a model at its operating speed.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law; without inputs, sensors or frequencies it has no responses.
+    angle : float
+        Angle that the system has turned, with its cages [rad].
+
+    Raises
+    ------
+    AnalysisError
+        If there is no equilibrium.
+    """
+    begin = time.process_time()
+    scene = model.scene
+    model = operating(model, scene.speed)
+    balance = equilibrium(steady_system(model.system), Operation(scene.speed, angle))
+    found = modes(balance)
+    asked = np.array(scene.frequencies) if scene.inputs and scene.sensors else np.zeros(0)
+    frequencies = with_peaks(asked, found.eigenvalues)
+    responses = np.abs(frequency_response(balance, scene.inputs, scene.sensors, frequencies))
+    seconds = time.process_time() - begin
+    loads = [
+        float(bearing.rollers(motion, balance.operation).load_per_length.max())
+        for bearing, motion in ring_motions(model, balance.displacement)
+        if isinstance(bearing.force, BearingForce)
+    ]
+    if not all(load > 0.0 for load in loads):
+        raise AnalysisError("a bearing carries no load at its equilibrium, so that nothing can be compared with it")
+    levels = 20.0 * np.log10(np.maximum(responses, 1e-300)).reshape(frequencies.size, -1)
+    return LinearLook(balance, found, frequencies, np.asarray(levels), np.array(loads), seconds)
+
+
+def _highest(look: LinearLook, column: int, frequency: float) -> float:
+    """Highest level of a response around a frequency [dB]."""
+    near = np.abs(look.frequencies - frequency) <= AROUND * frequency
+    return float(np.max(look.levels[near, column]))

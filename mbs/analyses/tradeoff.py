@@ -1,0 +1,441 @@
+"""Speed against accuracy of a scene: laws, supplies, maps, slices, cut-off, step and cage angles, as measured.
+
+What differs in a linear analysis, and what in a run-up, is measured apart, because the one takes a second and the other
+a minute: each choice has a row for either. Of the run-up two parts are run, each from its equilibrium.
+
+Choices of the model are compared with the most complete model, both with the settings of the scene. Choices of
+numbers are compared with the finest number, the rest being that of the scene. So errors of one do not stand in those of
+another; a row of its own compares the settings of the scene with the finest of all at once.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, EhdmapsError, InputError
+from ehdmaps.jobs.supply import supply_from_text
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade
+from ehdmaps.units import RPM
+from mbs.analyses.campbell import looked_at, recorded_run, run_course
+from mbs.analyses.linear_look import LinearLook, LinearReference, linear_look
+from mbs.analyses.numerics import Numerics
+from mbs.analyses.operating import held
+from mbs.analyses.progress import Progress, silent
+from mbs.analyses.ramp_parts import PartRun, Ramp, RampPart, ramp_of, run_part
+from mbs.analyses.varied import VARIED, LawChoice, Subject
+from mbs.linearised.sweep_point import pitch
+from mbs.scene import changes
+from mbs.scene.contact_laws import law_label
+from mbs.scene.fields import HERTZ, MILLISECOND
+from mbs.scene.scene import Scene
+from mbs.settings import CampbellSettings
+from mbs.spectral.levels import Reference
+
+FREQUENCY, DAMPING, HEIGHT, LOAD = "frequency", "damping ratio", "response peak", "roller load"
+LEVEL, FORCE = "sum level", "bearing force"
+JUDGED = (
+    Judged(FREQUENCY),
+    Judged(DAMPING),
+    Judged(HEIGHT, "dB"),
+    Judged(LOAD),
+    Judged(LEVEL, "dB"),
+    Judged(FORCE, "dB"),
+)
+"""What is compared: the first four in a linear analysis, the others in a run-up."""
+
+DAMPER = "hertz:1.25e-5 s"
+"""A dry contact with the damper in the middle of the usual range."""
+
+SUPPLIES = ("flooded", "oil bath", "oil air", "grease")
+
+SLICES = (6, 11, 21, 41, 81)
+"""Slices of a roller that are tried; the last ones are the reference."""
+
+COARSER, FINER = (4.0, 2.0), (0.5, 0.25)
+"""Steps that are tried, as multiples of that of the scene; the last one is the reference."""
+
+ANGLES = (1, 2, 4, 8)
+"""Cage angles within one pitch that are tried; the last ones are the reference."""
+
+PLACES = (0.25, 0.75)
+"""Which parts of a ramp are run, as parts of its length."""
+
+_WARM_STEPS = 128
+
+
+@dataclass(frozen=True)
+class TradeoffSettings:
+    """What is measured of a scene.
+
+    Attributes
+    ----------
+    campbell : CampbellSettings
+        Sensor, highest frequency and window of the levels.
+    runs : bool
+        Whether run-ups are measured, too; linear analyses always are.
+    """
+
+    campbell: CampbellSettings
+    runs: bool = True
+
+
+@dataclass(frozen=True)
+class _Tried:
+    """A choice that is measured, and what it is compared with."""
+
+    group: str
+    label: str
+    subject: Subject
+    reference: Subject
+    default: bool = False
+
+
+def tradeoff(
+    scene: Scene,
+    laws: Sequence[LawChoice],
+    clearance: float | None = None,
+    settings: TradeoffSettings | None = None,
+    progress: Progress | None = None,
+) -> Trade:
+    """Measure what the choices of a scene cost, and how wrong they are.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; without [runup] only linear analyses are measured.
+    laws : sequence of LawChoice
+        Laws of maps, the first of which is the reference; without any the film formula is.
+    clearance : float, optional
+        Diametral clearance of all bearings [m]; that of the scene if left out.
+    settings : TradeoffSettings, optional
+        What is measured; [campbell] of the scene, and run-ups, if left out.
+    progress : callable, optional
+        Told how many measurements are done, and of how many at most.
+
+    Raises
+    ------
+    InputError
+        If scene, laws and settings do not fit together.
+    AnalysisError
+        If the reference has no equilibrium.
+    """
+    settings = settings or TradeoffSettings(scene.campbell)
+    maps = [law for law in laws if law.emap is not None]
+    films = maps[0] if maps else LawChoice(law_label("formula"), "formula")
+    base = Subject(scene, dataclasses.replace(films, films="memory"), clearance)
+    runs = settings.runs and scene.run_up is not None
+    numerics = Numerics.of(scene) if scene.run_up is not None else None
+    model = base.model()
+    models = [*_laws(base, bool(maps)), *_supplies(base), *_maps(base, maps)]
+    linear = [*models, *_numbers(base, ("slices", "cutoff"), settings)]
+    ramp = ramp_of(model, settings.campbell, looked_at(scene, settings.campbell)) if runs else None
+    tried = [*models, *_numbers(base, ("step", "slices", "cutoff"), settings)] if ramp else []
+    parts = () if ramp is None else tuple(ramp.parts[int(place * len(ramp.parts))] for place in PLACES)
+    measure = _Measured(ramp, parts, progress or silent, 2 * (len(linear) + len(tried)) + ANGLES[-1])
+    choices = [_linear_choice(one, measure, settings) for one in linear]
+    choices += _angle_choices(base, measure, settings)
+    if ramp is not None and numerics is not None:
+        tried.append(_together(base, numerics))
+        choices += [_run_choice(one, measure) for one in tried]
+    measure.finish()
+    lines = [
+        f"linear: modes and responses up to {HERTZ.text(settings.campbell.highest)} at {RPM.text(scene.speed)}; roller "
+        "load: of the most loaded slice of each bearing; cost: processor time of one analysis"
+    ]
+    if ramp is not None:
+        lines += _run_frame(base, ramp, parts)
+    return Trade(
+        level="system",
+        title=f"Speed against accuracy of {scene.title}",
+        cost="s",
+        reference=f"{base.law.label} with memory of its films; of numbers the finest of each group",
+        judged=JUDGED if ramp is not None else JUDGED[:4],
+        choices=tuple(choices),
+        frame=tuple(lines),
+    )
+
+
+def _laws(base: Subject, has_map: bool) -> Iterable[_Tried]:
+    """Laws from dry to the most complete one."""
+    memory = base.law
+    laws = [
+        (LawChoice(law_label("hertz"), "hertz"), not has_map),
+        (LawChoice(f"{law_label('hertz')}, usual damper", DAMPER), False),
+        *([(LawChoice(law_label("formula"), "formula", films="memory"), False)] if has_map else []),
+        (dataclasses.replace(memory, label=f"{memory.label}, slow films", films="slow"), False),
+        (dataclasses.replace(memory, label=f"{memory.label}, memory"), has_map),
+    ]
+    for law, default in laws:
+        same = law.name == memory.name and law.films == memory.films
+        subject = base if same else dataclasses.replace(base, law=law)
+        yield _Tried("law", law.label, subject, base, default)
+
+
+def _supplies(base: Subject) -> Iterable[_Tried]:
+    """Oil supplies, by the reference law."""
+    given = set(base.model().supplies.values())
+    for text in SUPPLIES:
+        supply = supply_from_text(text)
+        same = given == {supply}
+        subject = base if same else dataclasses.replace(base, law=dataclasses.replace(base.law, supply=supply))
+        yield _Tried("oil supply", text, subject, base, same)
+
+
+def _maps(base: Subject, maps: Sequence[LawChoice]) -> Iterable[_Tried]:
+    """Other maps, and the map of the reference with fewer points."""
+    for law in maps[1:]:
+        yield _Tried("map", law.label, dataclasses.replace(base, law=dataclasses.replace(law, films="memory")), base)
+    emap = base.law.emap
+    if emap is None:
+        return
+    yield _Tried("map", "as given", base, base, True)
+    for label, thin in _thinned(emap):
+        yield _Tried("map", label, dataclasses.replace(base, law=dataclasses.replace(base.law, emap=thin)), base)
+
+
+def _thinned(emap: EHDMap) -> Iterable[tuple[str, EHDMap]]:
+    """A map without what it costs most to make; only what is a map still."""
+    every_second = {"load": slice(None, None, 2)} if emap.dataset.sizes["load"] % 2 else {}
+    cuts: list[tuple[str, dict[str, slice], bool]] = [("no lines of refinement", {}, emap.backbone is not None)]
+    cuts.append(("every second load, no such lines", every_second, bool(every_second)))
+    for label, cut, there in cuts:
+        if there:
+            # What is left may be too little for a law.
+            with contextlib.suppress(EhdmapsError):
+                yield label, EHDMap(emap.dataset.isel(cut))
+
+
+def _numbers(base: Subject, keys: Sequence[str], settings: TradeoffSettings) -> Iterable[_Tried]:
+    """Numbers from coarse to fine, each with the finest one as its reference."""
+    scene = base.scene
+    for key in keys:
+        values, finest, own = _values(scene, key, settings.campbell.highest)
+        # One subject each, because what is measured is known by it.
+        reference = base if finest == own or not values else _with(base, key, finest)
+        for value in values:
+            words = Numerics(0.0, None, None).but(**{key: value}).words(key)
+            subject = base if value == own else _with(base, key, value)
+            yield _Tried(_GROUPS[key], words, subject, reference, value == own)
+
+
+_GROUPS = {"step": "step", "slices": "slices", "cutoff": "cut-off"}
+
+
+def _values(scene: Scene, key: str, highest: float) -> tuple[list[float | int], float | int, float | int]:
+    """Values of a number that are tried, the finest one, and that of the scene; none where the scene has no such."""
+    if key == "step":
+        assert scene.run_up is not None
+        own = scene.run_up.settings.step
+        longest = (1.0 + 1e-6) / (2.5 * highest)
+        values = [own * factor for factor in (*COARSER, 1.0, *FINER) if own * factor <= longest]
+        return list(values[:-1]), values[-1], own
+    if key == "slices":
+        many = max((entry.slices for entry in scene.bearings), default=0)
+        found = sorted({*SLICES[:-1], many, 2 * many - 1 if many > SLICES[-2] else SLICES[-1]})
+        return ([], 0, 0) if not many else (list(found[:-1]), found[-1], many)
+    top = changes.cutoff_of(scene)
+    if top is None:
+        return [], 0.0, 0.0
+    return [value for k in range(20) if (value := highest * 2.0 ** (0.25 * k)) < 0.95 * top] + [top], top, top
+
+
+def _with(base: Subject, key: str, value: float | int) -> Subject:
+    """The subject with one number changed."""
+    return VARIED[key].change(base, value)
+
+
+def _together(base: Subject, numerics: Numerics) -> _Tried:
+    """All settings of the scene beside the finest of all."""
+    finest = base
+    for key in ("step", "slices"):
+        values, best, _ = _values(base.scene, key, base.scene.campbell.highest)
+        finest = _with(finest, key, best) if values else finest
+    return _Tried("all settings of the scene", numerics.text, base, finest, True)
+
+
+class _Measured:
+    """What was measured, none of it twice."""
+
+    def __init__(self, ramp: Ramp | None, parts: tuple[RampPart, ...], tell: Progress, most: int) -> None:
+        self.ramp, self.parts = ramp, parts
+        self._tell, self._most, self._done = tell, most, 0
+        self._warm: set[str] = set()
+        self._linear: dict[tuple[int, float], LinearLook | str] = {}
+        self._runs: dict[int, tuple[PartRun, ...] | str] = {}
+        self._kept: list[Subject] = []
+
+    def linear(self, subject: Subject, angle: float = 0.0) -> LinearLook | str:
+        """The linear system, or why there is none."""
+        key = (id(subject), angle)
+        if key not in self._linear:
+            self._kept.append(subject)
+            try:
+                model = subject.model()
+                if self._is_new(f"linear {subject.law.name} {subject.law.films}"):
+                    linear_look(model, angle)
+                self._linear[key] = linear_look(model, angle)
+            except (AnalysisError, InputError) as error:
+                self._linear[key] = str(error)
+            self._told()
+        return self._linear[key]
+
+    def runs(self, subject: Subject) -> tuple[PartRun, ...] | str:
+        """The runs of all parts, or why there are none."""
+        assert self.ramp is not None
+        key = id(subject)
+        if key not in self._runs:
+            self._kept.append(subject)
+            try:
+                if self._is_new(f"run {subject.law.name} {subject.law.films}"):
+                    _warm(subject, self.ramp)
+                self._runs[key] = tuple(run_part(subject, self.ramp, part) for part in self.parts)
+            except (AnalysisError, InputError) as error:
+                self._runs[key] = str(error)
+            self._told()
+        return self._runs[key]
+
+    def finish(self) -> None:
+        """Say that nothing more is measured."""
+        self._tell(self._most, self._most)
+
+    def _is_new(self, kind: str) -> bool:
+        """Whether its code has not been compiled in this process."""
+        new = kind not in self._warm
+        self._warm.add(kind)
+        return new
+
+    def _told(self) -> None:
+        self._done = min(self._done + 1, self._most - 1)
+        self._tell(self._done, self._most)
+
+
+def _warm(subject: Subject, ramp: Ramp) -> None:
+    """Make some steps, so that what has to be compiled is no cost of a run."""
+    assert subject.scene.run_up is not None
+    scene = changes.with_part(subject.scene, 0.0, _WARM_STEPS * subject.scene.run_up.settings.step)
+    course = run_course(scene, ramp.highest, [])
+    if course is not None:
+        recorded_run(held(dataclasses.replace(subject, scene=scene).model()), course, ramp.sensors)
+
+
+def _linear_choice(one: _Tried, measure: _Measured, settings: TradeoffSettings) -> Choice:
+    """A row of the linear analyses."""
+    reference, found = measure.linear(one.reference), measure.linear(one.subject)
+    if isinstance(reference, str):
+        raise AnalysisError(f"{one.group}, reference: {reference}")
+    group = f"linear: {one.group}"
+    if isinstance(found, str):
+        return Choice(group, one.label, math.nan, {}, solved=0, asked=1, lost=(found,), default=one.default)
+    beside = LinearReference.of(reference, settings.campbell.highest)
+    differences = beside.beside(found)
+    return _linear_row(group, one.label, found.seconds, beside, one.default, differences.frequency, differences.damping,
+                       differences.height, differences.load)  # fmt: skip
+
+
+def _linear_row(
+    group: str,
+    label: str,
+    seconds: float,
+    beside: LinearReference,
+    default: bool,
+    frequency: FloatArray,
+    damping: FloatArray,
+    height: FloatArray,
+    load: FloatArray,
+) -> Choice:
+    """A row, from its errors at the modes, peaks and bearings of the reference."""
+    modes = [HERTZ.text(value) for value in beside.look.modes.frequency[beside.chosen]]
+    sensors = beside.look.balance.system
+    bearings = [entry.element.name for entry in sensors.elements][: load.size]
+    peaks = [HERTZ.text(at) for _, at in beside.peaks]
+    missing = tuple(
+        f"no mode like that of {name}" for name, value in zip(modes, frequency, strict=True) if np.isnan(value)
+    )
+    errors = {
+        FREQUENCY: ErrorSummary.of(frequency, modes),
+        DAMPING: ErrorSummary.of(damping, modes),
+        HEIGHT: ErrorSummary.of(height, peaks),
+        LOAD: ErrorSummary.of(load, bearings),
+    }
+    kept = {name: found for name, found in errors.items() if found.points}
+    return Choice(
+        group, label, seconds, kept, solved=len(modes) - len(missing), asked=len(modes), lost=missing, default=default
+    )
+
+
+def _angle_choices(base: Subject, measure: _Measured, settings: TradeoffSettings) -> list[Choice]:
+    """Rows of the cage angles: means over some angles beside the mean over the most."""
+    first = measure.linear(base)
+    if isinstance(first, str):
+        return []
+    turns = [pitch(entry.element) for entry in first.balance.system.elements]
+    turn = max(turns, default=0.0)
+    if turn == 0.0:
+        return []
+    most = ANGLES[-1]
+    looks = [measure.linear(base, turn * index / most) for index in range(most)]
+    solved = [look for look in looks if not isinstance(look, str)]
+    if len(solved) < most:
+        return []
+    beside = LinearReference.of(first, settings.campbell.highest)
+    found = [beside.beside(look) for look in solved]
+    kinds = [np.array([getattr(one, kind) for one in found]) for kind in ("frequency", "damping", "height", "load")]
+    choices = []
+    for count in ANGLES[:-1]:
+        here = slice(None, None, most // count)
+        errors = [values[here].mean(axis=0) - values.mean(axis=0) for values in kinds[:3]]
+        # Of loads a user wants the largest one, wherever the cage stands.
+        errors.append((1.0 + kinds[3][here].max(axis=0)) / (1.0 + kinds[3].max(axis=0)) - 1.0)
+        words = f"{count} angle{'s' if count > 1 else ''}"
+        choices.append(_linear_row("linear: cage angles", words, count * first.seconds, beside, count == 1, *errors))
+    return choices
+
+
+def _run_choice(one: _Tried, measure: _Measured) -> Choice:
+    """A row of the run-ups."""
+    reference, found = measure.runs(one.reference), measure.runs(one.subject)
+    if isinstance(reference, str):
+        raise AnalysisError(f"{one.group}, reference: {reference}")
+    group = f"run-up: {one.group}"
+    asked = sum(run.speeds.size for run in reference)
+    if isinstance(found, str):
+        return Choice(group, one.label, math.nan, {}, solved=0, asked=asked, lost=(found,), default=one.default)
+    levels = np.concatenate([own.differences(run)[0] for own, run in zip(reference, found, strict=True)])
+    speeds = [RPM.text(speed) for own in reference for speed in own.speeds.tolist()]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        forces = [20.0 * np.log10(run.forces / own.forces) for own, run in zip(reference, found, strict=True)]
+    names = [entry.name for entry in one.subject.scene.bearings]
+    places = [f"{name}, {RPM.text(own.speeds[0])}" for own in reference for name in names]
+    errors = {LEVEL: ErrorSummary.of(levels, speeds), FORCE: ErrorSummary.of(np.concatenate(forces), places)}
+    kept = {name: found for name, found in errors.items() if found.points}
+    return Choice(group, one.label, _whole(one.subject, found, measure), kept, solved=asked, asked=asked,
+                  default=one.default)  # fmt: skip
+
+
+def _whole(subject: Subject, runs: Sequence[PartRun], measure: _Measured) -> float:
+    """What the whole run-up would take, by what its parts took [s]."""
+    assert subject.scene.run_up is not None
+    part = sum(one.end - one.start for one in measure.parts)
+    return sum(run.seconds for run in runs) * subject.scene.run_up.duration / part
+
+
+def _run_frame(base: Subject, ramp: Ramp, parts: Sequence[RampPart]) -> list[str]:
+    """What a reader must know of the run-ups."""
+    sensor = ramp.sensors[0]
+    spans = " and ".join(f"{RPM.value(part.speeds[0]):.4g} to {RPM.text(part.speeds[1])}" for part in parts)
+    top = changes.cutoff_of(base.scene)
+    return [
+        f"run-up: {spans}, sum level of {sensor.name}, {Reference.of(sensor).text}, up to {HERTZ.text(ramp.highest)} "
+        f"at equal speed in windows of {MILLISECOND.text(ramp.window)}; bearing force: root mean square of what "
+        "oscillates; cost: processor time of the whole run-up, from that of these parts",
+        "a dry run without damping does not forget its start: its levels scatter, and its median counts",
+        *([] if top is None else [f"modes above {HERTZ.text(top)} are in no row, nor in the reference"]),
+    ]

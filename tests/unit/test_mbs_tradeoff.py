@@ -1,0 +1,95 @@
+"""Speed against accuracy of a scene: how two linear systems differ, which choices are rows, what is the reference."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.trade.data import trade_json
+from ehdmaps.trade.text import trade_text
+from mbs import assemble, parse_scene, read_scene
+from mbs.analyses import tradeoff as analysis
+from mbs.analyses.linear_look import LinearReference, linear_look
+from mbs.analyses.tradeoff import TradeoffSettings, tradeoff
+from mbs.analyses.varied import LawChoice
+from mbs.cli import main
+from mbs.scene import changes
+from tests.cases.laws import dataset_of
+from tests.unit.test_mbs_tolerance import SWINGING
+
+LINEAR = (
+    '[[inputs]]\nname = "E1"\non = "mass"\ndirection = "y"\n'
+    '[linear]\nfrequencies = { from = "100 Hz", to = "2 kHz", points = 200, spacing = "log" }\n'
+)
+
+
+class TestLinearLook:
+    def test_a_stiffer_spring(self):
+        soft = parse_scene(SWINGING + LINEAR, "soft", "soft.toml")
+        stiff = parse_scene((SWINGING + LINEAR).replace("5e7 N/m", "6e7 N/m"), "stiff", "stiff.toml")
+        reference = LinearReference.of(linear_look(assemble(soft)), 5000.0)
+        same, found = (reference.beside(linear_look(assemble(one))) for one in (soft, stiff))
+        assert np.all(same.frequency == 0.0)
+        assert np.all(same.height == 0.0)
+        # sqrt(k/m) and d/(2 sqrt(k m)): round-off of an eigenproblem. The mode along z is not concerned.
+        assert sorted(found.frequency) == pytest.approx([0.0, np.sqrt(1.2) - 1.0], abs=1e-9)
+        assert sorted(found.damping) == pytest.approx([1.0 / np.sqrt(1.2) - 1.0, 0.0], abs=1e-9)
+        # The peak of an acceleration, omega/d to first order in the damping ratio of 1 %: that is its error.
+        assert found.height == pytest.approx([10.0 * np.log10(1.2)], abs=0.01)
+
+    def test_a_mode_that_is_not_there_is_lost(self):
+        gearbox = read_scene("gearbox")
+        whole, less = (linear_look(assemble(one)) for one in (gearbox, changes.with_cutoff(gearbox, 5000.0)))
+        found = LinearReference.of(whole, 8000.0).beside(less)
+        assert 0 < np.isnan(found.frequency).sum() < found.frequency.size
+        # Modes far below both cut-offs: the discarded ones are quasi-static there.
+        low = LinearReference.of(whole, 1000.0).beside(less)
+        assert np.nanmax(np.abs(low.frequency)) < 2e-3
+        assert np.all(low.load == 0.0)
+
+
+class TestTradeoff:
+    def test_rows_references_and_defaults(self, monkeypatch):
+        monkeypatch.setattr(analysis, "SUPPLIES", ("flooded", "oil air"))
+        monkeypatch.setattr(analysis, "SLICES", (3, 9))
+        monkeypatch.setattr(analysis, "ANGLES", (1, 2))
+        # Tables of a formula take longer than all the rest.
+        every = analysis._laws
+        monkeypatch.setattr(analysis, "_laws", lambda *given: [one for one in every(*given) if "film" not in one.label])
+        made = []
+        run_part = analysis.run_part
+        monkeypatch.setattr(analysis, "run_part", lambda *given: made.append(given[2]) or run_part(*given))
+        scene = changes.with_slices(read_scene("nu308_rigid"), 5)
+        course = dataclasses.replace(scene.run_up, speed=scene.run_up.speed.part(0.1, 0.12), duration=0.02)
+        scene = dataclasses.replace(scene, run_up=course, frequencies=scene.frequencies[::20])
+        law = LawChoice("map", "map", EHDMap(dataset_of()))
+        found = tradeoff(scene, [law], settings=TradeoffSettings(scene.campbell))
+        rows = {(choice.group, choice.label): choice for choice in found.choices}
+        assert {group for group, _ in rows} == {
+            *(f"{kind}: {words}" for kind in ("linear", "run-up") for words in ("law", "oil supply", "map", "slices")),
+            "linear: cage angles",
+            "run-up: step",
+            "run-up: all settings of the scene",
+        }
+        best = rows["run-up: law", "map, memory"]
+        assert best.default
+        assert best.errors["sum level"].largest == 0.0
+        assert rows["linear: law", "dry Hertz"].errors["frequency"].largest > 0.0
+        assert rows["linear: slices", "5 slices"].default
+        assert rows["linear: slices", "3 slices"].errors["roller load"].largest > 0.0
+        # None twice: three laws, a supply more, a map with fewer loads, fewer and more slices, all steps with the
+        # finest one, and the finest of all, each of two parts.
+        steps = sum(group == "run-up: step" for group, _ in rows)
+        assert len(made) == 2 * (3 + 1 + 1 + 2 + steps + 1)
+        assert "reference: map with memory of its films" in trade_text(found)
+        assert json.loads(trade_json(found))
+
+    def test_the_command_refuses_before_it_measures(self, capsys):
+        assert main(["tradeoff", "nu308_rigid", "--sensor", "S9", "--highest", "nonsense"]) == 2
+        said = capsys.readouterr().err
+        assert "--highest: got 'nonsense'" in said
+        assert "sensor 'S9' is not there" in said
