@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from ehdmaps.errors import InputError
+from ehdmaps.netcdf_structure import DAMAGE, structure_problem
 
 MARK = "made by ehdmaps"
 """What files of text and figures carry."""
@@ -249,9 +250,11 @@ def root_attributes(path: Path) -> dict[str, Any]:
     import netCDF4
 
     try:
+        if structure_problem(path):
+            return {}
         with netCDF4.Dataset(path) as file:
             return {name: file.getncattr(name) for name in file.ncattrs()}
-    except (OSError, RuntimeError, ValueError, UnicodeError):
+    except DAMAGE:
         return {}
 
 

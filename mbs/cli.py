@@ -127,6 +127,12 @@ def _campbell(command: argparse.ArgumentParser) -> None:
     command.add_argument("--sensor", metavar="NAME", help="a sensor; default: the first of an acceleration")
     command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
     command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
+    command.add_argument(
+        "--bands",
+        metavar="N",
+        help="runs more of each law, up to 8, with laws that are wrong by the errors of the map: a band of the sum "
+        "level; each costs a run (0)",
+    )
     command.add_argument("--modes", action="store_true", help="draw in the linear modes, with the films of each run")
 
 

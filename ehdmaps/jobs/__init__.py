@@ -17,7 +17,9 @@ store        results by key in a file beside the map; survives kill -9
 sweep        tasks -> results, over all cores, past dead workers and Ctrl-C
 sampling     random operating points of a job
 refinement   the lines that a contact law needs besides the map, and the group they become
-law_check    the contact laws against fresh solves at random points
+law_points   what contact laws give at random points, and how far that is from fresh solves
+law_check    the contact laws against fresh solves, as every map with `law_check` has it
+tolerance    settings that bring the contact laws within a tolerance, confirmed by fresh solves
 holes        isolated holes filled from their neighbours
 assemble     results -> dataset of the map
 write        dataset -> map file, aside and renamed
@@ -38,7 +40,13 @@ traction     traction of one point over the slide-to-roll ratio
 supplied     one point behind an oil layer: flow ratio and place of the meniscus
 film_plot    pressure, film and velocities of one point, on one page
 compare      differences between two maps
-tradeoff     speed against accuracy, measured
+answers      what is asked of a contact and answered, and what errors are relative to
+rough_solved load sharing of film and asperities with solved films
+contact_ways ways of computing a contact: solvers, oil layers, rough surfaces, frequencies
+contestants  the table of the ways that are measured
+tradeoff     speed against accuracy of contacts, measured
+trade_frame  what a reader of that must know besides
+tradeoff_map speed against accuracy of whole maps: their contact laws against fresh solves
 commands     one module a command
 cli          the command line
 ===========  ====================================================================================

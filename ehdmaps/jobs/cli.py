@@ -34,6 +34,12 @@ def parser() -> argparse.ArgumentParser:
     generate.add_argument("job", metavar="JOB")
     generate.add_argument("-o", "--output", metavar="MAP.nc", help="default: the job's name with .nc, in this folder")
     generate.add_argument("--solver", metavar="NAME", help=_SOLVER)
+    generate.add_argument(
+        "--tolerance",
+        metavar="SHARE",
+        help='of k, c and film offset of the contact laws, "1 %%": grid and refinement lines are chosen for it, and '
+        "confirmed by fresh solves; default: the settings of the job",
+    )
     generate.add_argument("--workers", metavar="N", type=_workers, help="processes; default: all cores")
     generate.add_argument("--fresh", action="store_true", help="forget what is solved already")
     generate.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
@@ -116,14 +122,59 @@ def parser() -> argparse.ArgumentParser:
     export.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
     export.add_argument("--roughness", metavar="LENGTH", help=_ROUGHNESS)
 
+    _add_compare(commands)
+    _add_tradeoff(commands)
+    _add_stability(commands)
+    return top
+
+
+def _add_compare(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Add the arguments of `ehdmaps compare`."""
     compare = commands.add_parser("compare", help="differences between two maps")
     compare.add_argument("first", metavar="A.nc")
     compare.add_argument("second", metavar="B.nc")
+    compare.add_argument("--json", action="store_true", help="the differences as one object")
 
-    tradeoff = commands.add_parser("tradeoff", help="measured speed and accuracy of the solvers and settings")
+
+def _add_tradeoff(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Add the arguments of `ehdmaps tradeoff`."""
+    tradeoff = commands.add_parser("tradeoff", help="measured speed and accuracy of solvers, settings and physics")
     tradeoff.add_argument("job", metavar="JOB")
-    tradeoff.add_argument("--lines", metavar="N", type=_workers, default=4, help="load lines in the sample; default: 4")
-    return top
+    tradeoff.add_argument(
+        "--level",
+        choices=("contact", "map"),
+        default="contact",
+        help="contact: single points by every solver; map: contact laws of whole maps between their points",
+    )
+    tradeoff.add_argument("--points", metavar="N", type=_workers, default=60, help="random points; default: 60")
+    tradeoff.add_argument("--seed", metavar="S", type=_count, default=1, help="seed of the points; default: 1")
+    tradeoff.add_argument(
+        "--openfoam",
+        metavar="N",
+        type=_count,
+        default=3,
+        help="contact: how many of the points openfoam solves, some ten to hundred seconds each; 0: none; default: 3",
+    )
+    tradeoff.add_argument("-o", "--output", metavar="OUT.nc", help="the numbers as netCDF; default: none")
+    tradeoff.add_argument("--json", action="store_true", help="the numbers as one object")
+    tradeoff.add_argument(
+        "--plot", metavar="FIG.png", help="error over cost, with the front of the best; also .pdf, .svg"
+    )
+
+
+def _add_stability(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Add the command `stability`."""
+    stability = commands.add_parser(
+        "stability", help="search the extremes of what contacts and readers may be given; takes an hour as it is"
+    )
+    stability.add_argument("job", metavar="JOB", nargs="?", default="nu308", help="whose contacts are tried; nu308")
+    stability.add_argument("--points", metavar="N", type=_count, default=100_000, help="by each quick solver; 100000")
+    stability.add_argument("--openfoam", metavar="N", type=_count, default=200, help="points by openfoam; 200")
+    stability.add_argument("--mutations", metavar="N", type=_count, default=10_000, help="for each reader; 10000")
+    stability.add_argument("--seed", metavar="S", type=_count, default=1, help="of all chance; default: 1")
+    stability.add_argument("--only", metavar="NAME", help="contact, or a reader such as map; default: all")
+    stability.add_argument("--json", action="store_true", help="the checks as JSON")
+    stability.add_argument("-o", "--output", metavar="FILE", help="the same into a file, .txt or .json")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -146,6 +197,13 @@ def _command(arguments: argparse.Namespace) -> tuple[str, int]:
     """Load the command that is asked for, and do it."""
     result: tuple[str, int] = importlib.import_module(f"ehdmaps.jobs.commands.{arguments.command}").run(arguments)
     return result
+
+
+def _count(text: str) -> int:
+    """Read a whole number >= 0."""
+    if not (text.isascii() and text.isdigit() and len(text) <= 9):
+        raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 0 to 999999999")
+    return int(text)
 
 
 def _workers(text: str) -> int:

@@ -18,6 +18,7 @@ from ehdmaps.jobs.report import (
     plain,
     span,
     status_lines,
+    tolerance_lines,
     value_lines,
 )
 from ehdmaps.jobs.supply import supply_words
@@ -91,6 +92,10 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     if law:
         yield ""
         yield from law
+    told = list(tolerance_lines(dataset))
+    if told:
+        yield ""
+        yield from told
     if emap.low_loads is not None:
         yield ""
         yield f"contact laws at low loads: {emap.low_loads.text}"

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 
 import xarray as xr
@@ -14,11 +13,12 @@ from ehdmaps.jobs import solvers
 from ehdmaps.jobs.assemble import assemble
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.law_check import HALVED, REFUSED, LawCheck, checked_laws, coarse_axis, met, plan_check
-from ehdmaps.jobs.refinement import Refinement, backbone_group, refinement
+from ehdmaps.jobs.refinement import MOST_LINE_POINTS, Refinement, backbone_group, refinement
 from ehdmaps.jobs.status import StatusFile
-from ehdmaps.jobs.store import NoStore, Store, store_path
+from ehdmaps.jobs.store import Arrays, NoStore, Store, store_path
 from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
 from ehdmaps.jobs.tasks import LineTask, line_tasks
+from ehdmaps.jobs.tolerance import check_tolerance, within_tolerance
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import Axis
@@ -29,9 +29,6 @@ from ehdmaps.physics.solution import ContactSolver
 
 MOST_HALVINGS = 3
 """How often the steps of the lines of a law are halved, each time along one axis."""
-
-MOST_LINE_POINTS = 40_000
-"""Points of these lines that are not exceeded by halving a step: minutes on one core."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +57,7 @@ def generate(
     fresh: bool = False,
     progress: Callable[[int], Progress] | None = None,
     solver: ContactSolver | None = None,
+    tolerance: float | None = None,
 ) -> Generated:
     """Make a map; what its store has already is taken over.
 
@@ -78,6 +76,9 @@ def generate(
         Takes the number of points, gives the `Progress` to tell.
     solver : ContactSolver, optional
         Instead of the job's; picklable.
+    tolerance : float, optional
+        Relative tolerance of the contact laws, for which density and refinement lines are chosen, see
+        `ehdmaps.jobs.tolerance`; those of the job if left out.
 
     Raises
     ------
@@ -85,20 +86,29 @@ def generate(
         With what to do; everything solved is kept.
     """
     planned = _plan(job, solvers.complete(solver or solvers.build(job.solver, job.solver_options)))
-    total = planned.points
+    adjusted = None if tolerance is None else check_tolerance(job, planned.solver, tolerance)
+    total = planned.points if adjusted is None else 0
     processes = workers or available_cores()
     with Store(store_path(output), fresh) as store, StatusFile(output, job, total, processes) as status:
+        result = SweepResult()
 
-        def solve(tasks: Sequence[LineTask], more: bool) -> SweepResult:
-            points = sum(task.points for task in tasks)
+        def solve(tasks: Sequence[LineTask], more: bool = True) -> Mapping[str, Arrays]:
+            missing = [task for task in tasks if task.key not in result.arrays]
+            points = sum(task.points for task in missing)
             if more:
                 status.more(points)
-            swept = sweep(tasks, store, processes, progress(points) if progress else None, [status])
+            if missing:
+                result.add(sweep(missing, store, processes, progress(points) if progress else None, [status]))
             status.write()
-            return swept
+            return result.arrays
 
-        result = solve(planned.everything, False)
-        dataset, group = _refined(planned, result, str(output), partial(solve, more=True))
+        found: dict[str, float | int | str] = {}
+        if tolerance is not None and adjusted is not None:
+            chosen = within_tolerance(job, adjusted, tolerance, solve)
+            planned, found = _plan(chosen.job, chosen.solver), chosen.attributes
+        solve(planned.everything, more=adjusted is not None)
+        dataset, group = _refined(planned, result, str(output), solve)
+        dataset.attrs.update(found)
         write_map(dataset, output, {schema.BACKBONE: group} if group is not None else None)
     return Generated(dataset, group, result)
 
@@ -115,11 +125,13 @@ def generate_in_memory(
     """
     planned = _plan(job, solvers.complete(solver or solvers.build(job.solver, job.solver_options)))
 
-    def solve(tasks: Sequence[LineTask]) -> SweepResult:
-        points = sum(task.points for task in tasks)
-        return sweep(tasks, NoStore(), workers or available_cores(), progress(points) if progress else None)
+    result = SweepResult()
 
-    result = solve(planned.everything)
+    def solve(tasks: Sequence[LineTask]) -> None:
+        points = sum(task.points for task in tasks)
+        result.add(sweep(tasks, NoStore(), workers or available_cores(), progress(points) if progress else None))
+
+    solve(planned.everything)
     dataset, group = _refined(planned, result, job.name, solve)
     return Generated(dataset, group, result)
 
@@ -156,13 +168,16 @@ def _plan(job: Job, solver: ContactSolver) -> _Plan:
 
 
 def _refined(
-    planned: _Plan, result: SweepResult, where: str, solve: Callable[[Sequence[LineTask]], SweepResult]
+    planned: _Plan, result: SweepResult, where: str, solve: Callable[[Sequence[LineTask]], object]
 ) -> tuple[xr.Dataset, xr.Dataset | None]:
-    """Finish a map, with lines that are laid more closely as long as its laws miss their bars between them."""
+    """Finish a map, with lines that are laid more closely as long as its laws miss their bars between them.
+
+    `solve` adds to the result.
+    """
     dataset, group = _finished(planned, result, where)
     while len(planned.halved) < MOST_HALVINGS and (finer := _finer(planned, dataset, group, result)) is not None:
         planned = finer
-        result.add(solve(finer.refined.tasks if finer.refined else ()))
+        solve(finer.refined.tasks if finer.refined else ())
         dataset, group = _finished(planned, result, where)
     return dataset, group
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ehdmaps.errors import InputError
+from ehdmaps.maps.backbone_plan import STEPS, Steps
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
@@ -58,6 +59,8 @@ class Job:
         "law": solve the lines that a contact law needs, where the solver is made for it; "none": leave them out.
     law_check : int
         Random points at which the contact laws are compared with fresh solves.
+    line_steps : Steps
+        Largest steps of these lines, with which a map begins.
     supply : OilSupply or None
         Oil supply that the contact laws of the map have by default; None where the job states none, which is flooded.
         The points of the map are those of flooded films.
@@ -79,6 +82,7 @@ class Job:
     fill: str = "neighbours"
     backbone: str = "law"
     law_check: int = 0
+    line_steps: Steps = STEPS
     supply: OilSupply | None = None
     surface: Surface | None = None
 
@@ -101,6 +105,7 @@ class Job:
         fill: str = "neighbours",
         backbone: str = "law",
         law_check: int = 0,
+        line_steps: Steps = STEPS,
         name: str = "job",
     ) -> Job:
         """Make a job from values, all in SI.
@@ -132,7 +137,7 @@ class Job:
             The solver's own keys, as in [solver].
         structural_law : {"iso16281", "palmgren", "half_space"}
             Structural law of the bearing's contacts.
-        fill, backbone, law_check
+        fill, backbone, law_check, line_steps
             See the attributes.
         name : str
             Name of the job.
@@ -154,7 +159,7 @@ class Job:
         >>> job.shape
         (2, 2, 2, 1)
         """
-        from ehdmaps.jobs.job_text import job_text
+        from ehdmaps.jobs.job_text import job_text, steps_keys
         from ehdmaps.jobs.reader import parse_job
 
         solids = contact or bearing
@@ -172,6 +177,7 @@ class Job:
                 "fill": fill,
                 "backbone": backbone,
                 "law_check": law_check,
+                **({} if line_steps == STEPS else {"line_steps": steps_keys(line_steps)}),
                 **(solver_options or {}),
             },
             supply,

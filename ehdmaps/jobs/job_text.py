@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.supply import supply_keys
 from ehdmaps.jobs.surface import surface_keys
+from ehdmaps.maps.backbone_plan import Steps
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.catalogue import estimate, estimate_from_dimensions, static_rating
 from ehdmaps.physics.contact import LineContact
@@ -21,6 +23,7 @@ from ehdmaps.physics.solids import Material
 from ehdmaps.units import quantity
 
 Entry = str | int | float | bool
+Value = Entry | Sequence[str] | Mapping[str, str] | Mapping[str, Entry]
 BearingKeys = dict[str, Entry | Mapping[str, str]]
 
 _BEARING_LENGTHS = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
@@ -43,7 +46,7 @@ def job_text(
     material: Material,
     lubricant: Lubricant,
     axes: Sequence[Iterable[float]],
-    solver: Mapping[str, Entry],
+    solver: Mapping[str, Entry | Mapping[str, Entry]],
     supply: OilSupply | None = None,
     surface: Surface | None = None,
 ) -> str:
@@ -72,7 +75,7 @@ def job_text(
         For an estimated bearing, see `bearing_keys`.
     """
     loads, speeds, temperatures = axes
-    tables: dict[str, Mapping[str, Entry | Sequence[str] | Mapping[str, str]]] = {}
+    tables: dict[str, Mapping[str, Value]] = {}
     if isinstance(solids, LineContact):
         tables["contact"] = dict(_contact(solids))
     else:
@@ -99,7 +102,7 @@ def job_text(
     return "\n".join(lines) + "\n"
 
 
-def table_lines(name: str, table: Mapping[str, Entry | Sequence[str] | Mapping[str, str]]) -> list[str]:
+def table_lines(name: str, table: Mapping[str, Value]) -> list[str]:
     """Return the lines of a table, with an empty one before it.
 
     Parameters
@@ -129,6 +132,38 @@ def _label(label: str | None) -> Iterator[tuple[str, Entry]]:
     """Yield a label where there is one."""
     if label is not None:
         yield "label", label
+
+
+def steps_keys(steps: Steps) -> dict[str, Entry]:
+    """Return the keys of line_steps in [solver].
+
+    Parameters
+    ----------
+    steps : Steps
+        Largest steps of refinement lines.
+    """
+    return {
+        "load": steps.load,
+        "entrainment_speed": steps.entrainment_speed,
+        "temperature": _quantity(steps.temperature, "K"),
+    }
+
+
+def with_solver(text: str, solver: Mapping[str, Value]) -> str:
+    """Return the text of a job file with another table [solver]; comments and layout of the text are lost.
+
+    Parameters
+    ----------
+    text : str
+        Text of a job file that reads.
+    solver : mapping
+        All keys of [solver].
+    """
+    values = tomllib.loads(text)
+    lines = [f"schema = {values.pop('schema')}"]
+    for name, table in {**values, "solver": solver}.items():
+        lines += table_lines(name, table)
+    return "\n".join(lines) + "\n"
 
 
 def bearing_keys(geometry: BearingGeometry) -> BearingKeys:

@@ -13,7 +13,8 @@ import xarray as xr
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.sampling import SamplePoint, draw, draw_in_valley, log_uniform
+from ehdmaps.jobs.law_points import COMPLIANCE_BARS, DAMPING_BARS, at_loads, fresh_solution
+from ehdmaps.jobs.sampling import SamplePoint, draw, draw_apart, drawable, log_uniform
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
 from ehdmaps.maps.backbone import BackboneField
@@ -21,18 +22,15 @@ from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.maps.compilation import highest_structural_load
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import ContactLaw, OutsidePolicy
+from ehdmaps.maps.law_errors import quantiles_text
 from ehdmaps.maps.tail import THICK_FILM
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.oil_supply import FLOODED
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.roughness import SMOOTH
-from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
+from ehdmaps.physics.solution import ContactSolution, ContactSolver, Status
 
 SEED = 20260
-
-VALLEY_SHARE = 0.2
-"""Share of the points that are drawn inside the damping valley."""
 
 INSIDE = ("", "valley")
 """Regions within the map, whose points are held to the bars."""
@@ -48,14 +46,8 @@ of films to lower loads are worth there is told, and held to no bar."""
 OUTSIDE_SHARE = 0.1
 """Points in each of these regions, as a share of those within the map."""
 
-COMPLIANCE_BARS, DAMPING_BARS = (0.01, 1e-4), (0.05, 1e-3)
-"""An error is within its bar where it is below a share of the film compliance or of 1/k; of c or of k b/u."""
-
 SHARES = {"law_": 0.99, "law_valley_": 0.95}
 """Share of the points that should be within the bars, over the whole map and in the valley."""
-
-MOST_TRIES = 10
-"""Draws per point in the valley: a map may hold a part of it, or none."""
 
 REFUSED, HALVED = "law_refused", "law_lines_halved_along"
 """Attributes of the map: why it makes no law, and the axes along which the steps of its lines were halved."""
@@ -69,13 +61,15 @@ STANDS_ON_LINES = (
 STANDS_ON_POINTS = "these laws are made from the points of the map: more temperatures, speeds or loads help"
 """What can be done where a bar is unmet; for the lines see `coarse_axis`."""
 
-NOTHING = {"film_compliance": "none: no film to relate to", "damping": "none: no damping above zero to relate to"}
+NOTHING = {
+    "film_compliance": "none: no film to relate to",
+    "damping": "none: no damping above zero to relate to",
+    "film_offset": "none: no film to relate to",
+}
 """What stands in place of quantiles where no point has one."""
 
 _WORTH: Mapping[Axis, float] = {"load": 0.25}
 """Weight of an axis in `coarse_axis`, where it is not 1."""
-
-QUANTILES = (0.5, 0.95, 0.99, 1.0)
 
 
 @dataclass(frozen=True)
@@ -99,14 +93,11 @@ def check_points(count: int) -> int:
 def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
     """Draw the points: load and speed log-uniform, temperature uniform, contact at random; None if `law_check` is 0."""
     count = job.law_check
-    speeds = [u for u in job.entrainment_speeds if u > 0.0]
-    if not count or not speeds or len(speeds) * len(job.loads) * len(job.temperatures) < 2:
+    if not count or not drawable(job):
         return None
     rng = np.random.default_rng(SEED)
-    valley = round(VALLEY_SHARE * count)
-    drawn = [("", draw(job, rng)) for _ in range(count - valley)]
-    inside = [point for _ in range(MOST_TRIES * valley) if (point := draw_in_valley(job, rng)) is not None][:valley]
-    drawn += [("valley", point) for point in inside]
+    over, valley = draw_apart(job, rng, count)
+    drawn = [("", point) for point in over] + [("valley", point) for point in valley]
     if len(job.loads) > 1:
         drawn += [
             (region, _moved(job, draw(job, rng), region, log_uniform(rng, *factors)))
@@ -215,10 +206,23 @@ def coarse_axis(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) ->
             arrays = results[task.key]
             if task.contact != contact or not check.inside(i) or not Status(int(arrays["status"][0])).usable:
                 continue
-            if _missed_between(field, task, _solution(task, arrays)):
-                changes = field.changes(contact.name, task.loads[0], task.entrainment_speed, task.temperature)
-                votes[max(changes, key=lambda axis: changes[axis] * _WORTH.get(axis, 1.0))] += 1
+            if _missed_between(field, task, fresh_solution(task, arrays)):
+                votes[loosest_axis(field, task)] += 1
     return votes.most_common(1)[0][0] if votes else None
+
+
+def loosest_axis(field: BackboneField, task: LineTask) -> Axis:
+    """Axis of the lines on which their reading at a point hangs most, see `coarse_axis`.
+
+    Parameters
+    ----------
+    field : BackboneField
+        Films between the lines.
+    task : LineTask
+        The point.
+    """
+    changes = field.changes(task.contact.name, task.loads[0], task.entrainment_speed, task.temperature)
+    return max(changes, key=lambda axis: changes[axis] * _WORTH.get(axis, 1.0))
 
 
 def _missed_between(field: BackboneField, task: LineTask, fresh: ContactSolution) -> bool:
@@ -251,10 +255,11 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
     -------
     dict
         Quantiles of the relative error in film compliance and damping of each contact's law, and the shares of the
-        points that are within the bars. A law has no damping below zero: where the solved one is, the law is held
-        against zero by the second bar, and the quantiles leave the point out. Where there is no film, only the second
-        bars count. The same just outside the map, see `OUTSIDE`, by the law of the policy `asymptote`; below it, points
-        with a film so thick that a law lets it fade are left out.
+        points that are within the bars; within the map also quantiles of the error in stiffness and film offset. A law
+        has no damping below zero: where the solved one is, the law is held against zero by the second bar, and the
+        quantiles leave the point out. Where there is no film, only the second bars count. The same just outside the
+        map, see `OUTSIDE`, by the law of the policy `asymptote`; below it, points with a film so thick that a law lets
+        it fade are left out.
     """
     rows: list[FloatArray] = []
     regions: list[str] = []
@@ -284,8 +289,12 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
         where = f"_{region}" if region else ""
         for column, name in enumerate(("film_compliance", "damping")):
             known = table[mask, column][np.isfinite(table[mask, column])]
-            record[f"law{where}_{name}_error"] = _quantiles(known) if known.size else NOTHING[name]
+            record[f"law{where}_{name}_error"] = quantiles_text(known) if known.size else NOTHING[name]
             record[f"law{where}_{name}_within_bar"] = float(np.mean(table[mask, column + 2]))
+        if region in INSIDE:
+            for column, name in ((4, "stiffness"), (5, "film_offset")):
+                known = table[mask, column][np.isfinite(table[mask, column])]
+                record[f"law{where}_{name}_error"] = quantiles_text(known) if known.size else NOTHING[name]
     return record
 
 
@@ -295,29 +304,24 @@ def _known(task: LineTask, arrays: Arrays, region: str) -> bool:
     return Status(int(arrays["status"][0])).usable and not fading
 
 
-def _quantiles(errors: FloatArray) -> str:
-    """Quantiles of errors in words."""
-    words = ("median", "95 %", "99 %", "largest")
-    return ", ".join(f"{word} {value:.2g}" for word, value in zip(words, np.quantile(errors, QUANTILES), strict=True))
-
-
 def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> FloatArray:
-    """Relative errors of film compliance and damping, and whether each is within its bar; shape (n, 4)."""
+    """Errors of film compliance and damping, whether each is within its bar, errors of k and film offset, shape (n, 6).
+
+    All are relative; that of the film offset is what the approach at the load misses, as a part of the offset.
+    """
     tasks = [task for task, _ in points]
-    fresh = [_solution(task, arrays) for task, arrays in points]
+    fresh = [fresh_solution(task, arrays) for task, arrays in points]
     load = np.array([task.loads[0] for task in tasks])
     speed = np.array([task.entrainment_speed for task in tasks])
     temperature = np.array([task.temperature for task in tasks])
-    dry = np.array([task.contact.structural_compliance(task.loads[0]) for task in tasks])
     half = np.array([float(half_width(t.loads[0], t.contact.radius, t.contact.reduced_modulus)) for t in tasks])
-    approach = np.array([one.approach for one in fresh])
-    for _ in range(8):  # the approach at which the law has the load
-        found, stiffness, damping = law(approach, 0.0, speed, temperature)
-        approach -= (found - load) / np.maximum(stiffness, 1e-12 / dry)
-    _, stiffness, damping = law(approach, 0.0, speed, temperature)
+    solved_approach = np.array([one.approach for one in fresh])
+    approach, stiffness, damping = at_loads(law, solved_approach, load, speed, temperature)
     solved_k = np.array([one.stiffness for one in fresh])
     solved_c = np.maximum([one.damping for one in fresh], 0.0)
     compliance = np.array([one.film_compliance for one in fresh])
+    offset = np.abs([one.film_offset for one in fresh])
+    missed = np.abs(approach - solved_approach)
     wrong = np.abs(1.0 / stiffness - 1.0 / solved_k)
     wrong_c = np.abs(damping - solved_c)
     # a dry contact has no film compliance to relate to, only 1/k
@@ -329,15 +333,7 @@ def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> FloatArra
             relative_c,
             (relative <= COMPLIANCE_BARS[0]) | (wrong * solved_k <= COMPLIANCE_BARS[1]),
             (relative_c <= DAMPING_BARS[0]) | (wrong_c * speed <= DAMPING_BARS[1] * solved_k * half),
+            wrong * solved_k,
+            np.where(offset > 0.0, missed / np.maximum(offset, 1e-300), np.nan),
         ]
     )
-
-
-def _solution(task: LineTask, arrays: Arrays) -> ContactSolution:
-    """The fresh solve with its structure."""
-    film = FilmSolution(
-        **{name: array[0].item() for name, array in arrays.items() if name != "status"},
-        status=Status(int(arrays["status"][0])),
-    )
-    point = OperatingPoint(task.loads[0], task.entrainment_speed, task.temperature)
-    return contact_solution(film, task.contact, point)

@@ -17,10 +17,12 @@ from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.surface import read_surface
 from ehdmaps.jobs.table import Table
+from ehdmaps.maps.backbone_plan import STEP_LIMITS, STEPS, Steps
+from ehdmaps.netcdf_structure import DAMAGE, structure_problem
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.units import closest
+from ehdmaps.units import KELVIN, closest
 
 LONGEST_FILE = 1_000_000
 """Bytes of a job file; axes of a hundred thousand values still fit."""
@@ -154,12 +156,23 @@ def _solver(section: Table) -> tuple[str | None, dict[str, object], str | None, 
         "fill": section.choice("fill", ("neighbours", "none")) or "neighbours",
         "backbone": section.choice("backbone", ("law", "none")) or "law",
         "law_check": section.integer("law_check", 0, MOST_CHECKS) or 0,
+        "line_steps": section.optional("line_steps", "[solver] line_steps", _line_steps) or STEPS,
     }
     options: dict[str, object] = {}
     if name is not None:
         options = solvers.read_options(name, section)
         section.close()
     return name, options, law, rest
+
+
+def _line_steps(section: Table) -> Steps:
+    """Read the steps of refinement lines; those that are absent or wrong are the usual ones."""
+    return Steps(
+        load=section.number("load", *STEP_LIMITS.load) or STEPS.load,
+        entrainment_speed=section.number("entrainment_speed", *STEP_LIMITS.entrainment_speed)
+        or STEPS.entrainment_speed,
+        temperature=section.quantity("temperature", "K", *STEP_LIMITS.temperature, KELVIN) or STEPS.temperature,
+    )
 
 
 def _grid(grid: Table, contacts: int, bearing: BearingGeometry | None) -> list[tuple[float, ...] | None]:
@@ -203,10 +216,15 @@ def _job_of_map(path: Path) -> tuple[str, str, str | None]:
     import netCDF4
 
     try:
+        damage = structure_problem(path)
+        if damage:
+            raise OSError(damage)
         with netCDF4.Dataset(path) as file:
             attributes = {name: file.getncattr(name) for name in file.ncattrs()}
-    except (OSError, RuntimeError) as error:
-        raise InputError(f"{path}: looks like a map file but cannot be read ({error}); generate it again") from error
+    except DAMAGE as error:
+        raise InputError(
+            f"{path}: looks like a map file but cannot be read ({error!s:.300}); generate it again"
+        ) from error
     text, digest, solver, name = (attributes.get(key) for key in ("job_toml", "job_sha256", "solver", "job_name"))
     if not isinstance(text, str):
         raise InputError(f"{path}: carries no job (attribute job_toml); allowed: a map written by `ehdmaps generate`")

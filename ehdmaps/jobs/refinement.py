@@ -14,10 +14,16 @@ from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import SPECTRUM_FIELDS, LineTask, with_later_fields
 from ehdmaps.maps import schema
-from ehdmaps.maps.backbone import ERROR, FILMS, IMAGINARY, REAL
-from ehdmaps.maps.backbone_plan import STEPS, BackbonePlan, Steps, plan_backbone
+from ehdmaps.maps.backbone import ERROR, FILMS, IMAGINARY, REAL, BackboneField
+from ehdmaps.maps.backbone_plan import BackbonePlan, Steps, plan_backbone
+from ehdmaps.maps.records import contacts_from_json
 from ehdmaps.maps.rolling_film import NAMES as ROLLING
+from ehdmaps.maps.usable import check_backbone
+from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.solution import ContactSolver, Status
+
+MOST_LINE_POINTS = 40_000
+"""Points of the lines that are not exceeded by halving a step: minutes on one core."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +40,7 @@ class Refinement:
         return sum(task.points for task in self.tasks)
 
 
-def refinement(job: Job, solver: ContactSolver, steps: Steps = STEPS) -> Refinement | None:
+def refinement(job: Job, solver: ContactSolver, steps: Steps | None = None) -> Refinement | None:
     """Plan the backbone of a job; None where the solver does not ask for one or the job declines it.
 
     Parameters
@@ -43,9 +49,10 @@ def refinement(job: Job, solver: ContactSolver, steps: Steps = STEPS) -> Refinem
         What to make.
     solver : ContactSolver
         What solves it.
-    steps : Steps
-        Largest steps of the backbone.
+    steps : Steps, optional
+        Largest steps of the backbone; those of the job if left out.
     """
+    steps = steps or job.line_steps
     if not solver.wants_backbone or job.backbone == "none":
         return None
     plan = plan_backbone(job.contacts, job.lubricant, job.loads, job.entrainment_speeds, job.temperatures, steps)
@@ -97,3 +104,28 @@ def backbone_group(refined: Refinement, results: Mapping[str, Arrays]) -> xr.Dat
             schema.REFERENCE_CONTACT: record_json(plan.contact),
         },
     )
+
+
+def line_field(job: Job, group: xr.Dataset, contact: LineContact) -> BackboneField:
+    """Films of one contact between the lines: what its law is made from, without the points of the map.
+
+    Parameters
+    ----------
+    job : Job
+        The job whose axes the lines cover.
+    group : xarray.Dataset
+        The group "backbone".
+    contact : LineContact
+        A contact of the job.
+
+    Raises
+    ------
+    MapError
+        If the lines have holes that cannot be bridged.
+    """
+    (reference,) = contacts_from_json(f"[{group.attrs[schema.REFERENCE_CONTACT]}]")
+    speeds = [u for u in job.entrainment_speeds if u > 0.0]
+    load_range, speed_range = (min(job.loads), max(job.loads)), (min(speeds), max(speeds))
+    check_backbone(group, reference, (contact,), job.lubricant, load_range, speed_range)
+    temperature_range = min(job.temperatures), max(job.temperatures)
+    return BackboneField(group, reference, (contact,), job.lubricant, load_range, speed_range, temperature_range)

@@ -29,6 +29,7 @@ AXES = (("load", LOAD), ("entrainment_speed", SPEED), ("temperature", TEMPERATUR
 """Numeric axes and how people read them."""
 
 _LAW_PREFIX = "law_"
+_TOLERANCE = "tolerance"
 ERRORS = (
     "film_offset_error",
     "film_compliance_error",
@@ -196,3 +197,16 @@ def law_lines(dataset: xr.Dataset) -> Iterator[str]:
         for key, value in law.items():
             text = f"{value:.2%}" if key.endswith("_within_bar") else plain(value)
             yield f"  {key.removeprefix(_LAW_PREFIX).replace('_', ' '):36s} {text}"
+
+
+def tolerance_lines(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield the tolerance that a map was made for, what was confirmed, chosen and spent; nothing where it had none."""
+    found = {key: value for key, value in dataset.attrs.items() if key.startswith(_TOLERANCE)}
+    if not found:
+        return
+    met = "confirmed" if int(found.pop("tolerance_met", 0)) else "NOT MET"
+    asked = float(found.pop("tolerance", np.nan))
+    yield f"tolerance of the contact laws {100.0 * asked:.3g} %: {met} by fresh solves at new random points"
+    for key, value in found.items():
+        text = f"{value:.2%}" if key.endswith(("_within", "_itself")) else plain(value)
+        yield f"  {key.removeprefix(_TOLERANCE).strip('_').replace('_', ' '):36s} {text}"

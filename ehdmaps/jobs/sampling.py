@@ -14,6 +14,13 @@ VALLEY_WIDTH = (-0.6, 0.8)
 """Range of ln(M/M_valley) from which points inside the valley are drawn."""
 
 
+VALLEY_SHARE = 0.2
+"""Share of the points of a sample that are drawn inside the damping valley."""
+
+MOST_TRIES = 10
+"""Draws per point in the valley: a map may hold a part of it, or none."""
+
+
 class SamplePoint(NamedTuple):
     """A contact with its load [N/m], entrainment speed [m/s] and temperature [K]."""
 
@@ -21,6 +28,35 @@ class SamplePoint(NamedTuple):
     load: float
     speed: float
     temperature: float
+
+
+def drawable(job: Job) -> bool:
+    """Whether there is something between the points of a job's axes, and a speed above zero.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    """
+    speeds = [u for u in job.entrainment_speeds if u > 0.0]
+    return bool(speeds) and len(speeds) * len(job.loads) * len(job.temperatures) >= 2
+
+
+def draw_apart(job: Job, rng: np.random.Generator, count: int) -> tuple[list[SamplePoint], list[SamplePoint]]:
+    """Draw points over the whole map, and points inside its valley apart; fewer of these where it has hardly one.
+
+    Parameters
+    ----------
+    job : Job
+        Job over whose axes is drawn; see `drawable`.
+    rng : numpy.random.Generator
+        Source of chance.
+    count : int
+        How many in all; the share `VALLEY_SHARE` of them in the valley.
+    """
+    valley = round(VALLEY_SHARE * count)
+    over = [draw(job, rng) for _ in range(count - valley)]
+    return over, draw_valley_points(job, valley, rng)
 
 
 def draw(job: Job, rng: np.random.Generator) -> SamplePoint:
@@ -48,6 +84,38 @@ def draw_in_valley(job: Job, rng: np.random.Generator) -> SamplePoint | None:
     contact, _, speed, temperature = draw(job, rng)
     load = _valley_load(job, contact, speed, temperature) * float(np.exp(rng.uniform(*VALLEY_WIDTH)))
     return SamplePoint(contact, load, speed, temperature) if min(job.loads) < load < max(job.loads) else None
+
+
+def draw_valley_points(job: Job, count: int, rng: np.random.Generator) -> list[SamplePoint]:
+    """Draw points with loads in the damping valley: so many, or fewer where the map's loads hardly reach it.
+
+    Parameters
+    ----------
+    job : Job
+        Job over whose axes is drawn; it has a speed above zero.
+    count : int
+        How many.
+    rng : numpy.random.Generator
+        Source of chance.
+    """
+    return [point for _ in range(MOST_TRIES * count) if (point := draw_in_valley(job, rng)) is not None][:count]
+
+
+def draw_sample(job: Job, count: int, rng: np.random.Generator) -> tuple[SamplePoint, ...]:
+    """Draw points, a share of them inside the damping valley, in random order: its first ones are a sample too.
+
+    Parameters
+    ----------
+    job : Job
+        Job over whose axes is drawn; it has a speed above zero.
+    count : int
+        How many.
+    rng : numpy.random.Generator
+        Source of chance.
+    """
+    valley = draw_valley_points(job, round(VALLEY_SHARE * count), rng)
+    sample = valley + [draw(job, rng) for _ in range(count - len(valley))]
+    return tuple(sample[index] for index in rng.permutation(count))
 
 
 def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:

@@ -38,6 +38,9 @@ WRITE_SECONDS = 2.0
 STATUS = Kind("a status of ehdmaps", (), has_mark)
 
 _LONGEST = 100_000
+_MOST = 10**15
+"""Largest count of anything; beyond it shares and rates are no numbers any more."""
+
 _TRIALS = 10
 
 
@@ -257,7 +260,8 @@ def _parsed(path: Path, content: bytes) -> RunStatus:
             *status.failed.values(),
         )
         texts = (status.job, status.host, *status.failed)
-        sound = all(type(value) is int and value >= 0 for value in numbers) and all(type(t) is str for t in texts)
+        sound = all(type(value) is int and 0 <= value <= _MOST for value in numbers)
+        sound = sound and all(type(text) is str for text in texts)
         sound = sound and (status.rate is None or (type(status.rate) is float and 0.0 < status.rate < np.inf))
         for moment in (status.begun, status.written):
             sound = sound and datetime.fromisoformat(moment).tzinfo is not None

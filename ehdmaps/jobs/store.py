@@ -160,13 +160,16 @@ class Store:
             If the store cannot be read.
         """
         try:
-            row = self._database.execute("SELECT checksum, content FROM results WHERE key = ?", (key,)).fetchone()
-        except sqlite3.Error as error:
+            # As bytes: what was damaged may be no text, or another kind of value.
+            row = self._database.execute(
+                "SELECT CAST(checksum AS BLOB), CAST(content AS BLOB) FROM results WHERE key = ?", (key,)
+            ).fetchone()
+        except (sqlite3.Error, UnicodeDecodeError) as error:
             raise self._told(error) from error
         if row is None:
             return None
         checksum, content = row
-        if hashlib.sha256(content).hexdigest() != checksum:
+        if content is None or hashlib.sha256(content).hexdigest().encode() != checksum:
             self.damaged += 1
             return None
         return unpack(content)
@@ -221,7 +224,7 @@ class Store:
         """Run one writing statement."""
         try:
             self._database.execute(statement, values)
-        except sqlite3.Error as error:
+        except (sqlite3.Error, UnicodeDecodeError) as error:
             raise self._told(error) from error
 
     def _open(self) -> sqlite3.Connection:
@@ -247,6 +250,10 @@ class Store:
         except sqlite3.Error:
             database.close()
             raise
+        except UnicodeDecodeError as error:
+            # What SQLite says names a table or an index by what stands in the file.
+            database.close()
+            raise sqlite3.DatabaseError("malformed database schema") from error
         return database
 
     def _drop(self) -> None:
@@ -261,7 +268,7 @@ class Store:
             "choose another output with -o"
         )
 
-    def _told(self, error: sqlite3.Error) -> StoreError:
+    def _told(self, error: Exception) -> StoreError:
         """Say what went wrong with the store, and what to do."""
         code = _code(error)
         if code in _BUSY:
@@ -303,7 +310,7 @@ def _is_ours(path: Path) -> bool:
     return head.startswith(b"SQLite format 3\0") and head[_ID_AT:] == _APPLICATION_ID.to_bytes(4, "big")
 
 
-def _code(error: sqlite3.Error) -> int:
+def _code(error: Exception) -> int:
     """Return SQLite's primary result code; a file of another kind counts as not a database."""
     code = getattr(error, "sqlite_errorcode", None)
     return sqlite3.SQLITE_NOTADB if code is None else int(code) & 0xFF

@@ -11,6 +11,9 @@ from ehdmaps.units import Display, closest, quantity, short
 
 _Read = TypeVar("_Read")
 
+_LONGEST_NAME = 200
+"""Letters of the name of a table or key in a message."""
+
 
 class Table:
     """A table and the list of problems that it shares with the other tables of its file.
@@ -29,7 +32,7 @@ class Table:
     """
 
     def __init__(self, values: object, where: str, problems: list[str]) -> None:
-        self.where = where
+        self.where = _brief(where)
         self.problems = problems
         self._known: list[str] = []
         self._values: dict[str, Any] = {}
@@ -47,7 +50,7 @@ class Table:
 
     def note(self, key: str, problem: str) -> None:
         """Note a problem of a key."""
-        self.problems.append(f"{self.where}{' ' if key else ''}{key}: {problem}")
+        self.problems.append(f"{self.where}{' ' if key else ''}{_brief(key)}: {problem}")
 
     def get(self, key: str, required: str = "") -> Any:
         """Return the raw value; `required` is what a missing key should have been."""
@@ -242,3 +245,8 @@ class Table:
         for key in self._values:
             if key not in self._known:
                 self.note(short(key)[1:-1], f"unknown key{closest(key, known)}; allowed: {', '.join(known)}")
+
+
+def _brief(name: str) -> str:
+    """A name as it is, or its ends: a user may choose names of any length."""
+    return name if len(name) <= _LONGEST_NAME else f"{name[:50]}...{name[-50:]}"

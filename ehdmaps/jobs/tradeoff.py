@@ -1,189 +1,228 @@
-"""Speed against accuracy, measured: solvers and settings on a sample of a job, against a fine solve."""
+"""Speed against accuracy of contacts, measured: solvers, settings and physics at random points, against a fine solve.
+
+Numerical error is what a choice differs by from the finest affordable solution of its own model; error of the model is
+what that one differs by from the reference. Both are relative to the reference, see `ehdmaps.jobs.answers`, so
+that at each point they add up to the error.
+"""
 
 from __future__ import annotations
 
+import math
+import os
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
+from ehdmaps.jobs.answers import QUANTITIES, Answer, Question, scales
+from ehdmaps.jobs.contact_ways import ContactModel
+from ehdmaps.jobs.contestants import Entry, contestants
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.tasks import LineTask, film_arrays, line_tasks
-from ehdmaps.physics.solution import ContactSolver, Status
-from ehdmaps.units import LOAD, SPEED, TEMPERATURE
+from ehdmaps.jobs.sampling import SamplePoint, draw_sample, log_uniform
+from ehdmaps.jobs.trade_frame import (
+    NATURAL_FREQUENCIES,
+    Asked,
+    Truth,
+    openfoam_words,
+    reference_words,
+    sample_words,
+    truth_words,
+)
+from ehdmaps.physics.closed_form import FormulaSolver
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solution import natural_to_hertz
+from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY
+from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade
 
-JUDGED = ("film_offset", "film_compliance", "loss_compliance", "central_film", "minimum_film")
-REFINEMENT = 4
-"""Grid density of the reference over that of the default; its inlet is twice as long."""
+POINTS, OPENFOAM_POINTS, SEED = 60, 3, 1
+"""Size of the sample, points of it that are asked of the slow solvers, and seed, where nothing is said."""
 
-_RESOLUTIONS = (0.5, 0.7, 1.0, 1.4, 2.0)
-"""Grid densities that are measured, over that of the default."""
-
-_DENSITIES = (3.0, 60.0)
-
-
-@dataclass(frozen=True)
-class Contestant:
-    """One solver with its settings, and what it is called in the table."""
-
-    label: str
-    solver: ContactSolver
-
-
-@dataclass(frozen=True)
-class Measured:
-    """What one contestant did on the sample.
-
-    Attributes
-    ----------
-    label : str
-        Name of the contestant.
-    seconds_per_point : float
-        Wall time on one core.
-    solved : int
-        Points with a usable status.
-    lost : tuple of str
-        Points of the reference without a solution, each with its place and cause: nothing is compared there.
-    errors : dict
-        Relative errors by variable, at the points that it and the reference solved.
-    """
-
-    label: str
-    seconds_per_point: float
-    solved: int
-    lost: tuple[str, ...]
-    errors: dict[str, FloatArray]
-
-
-def contestants(job: Job) -> tuple[tuple[Contestant, ...], Contestant]:
-    """Return who is measured, and the reference; the one place to change either."""
-    own = dict(job.solver_options) if job.solver == "reynolds" else {}
-    settings = solvers.build("reynolds", own).settings()
-    density, inlet = float(settings["density"]), float(settings["inlet_length"])
-
-    def reynolds(factor: float, **further: float) -> Contestant:
-        used = round(min(max(density * factor, _DENSITIES[0]), _DENSITIES[1]), 2)
-        return Contestant(f"reynolds, density {used:g}", solvers.build("reynolds", {**own, "density": used, **further}))
-
-    field = [Contestant("hertz", solvers.build("hertz", {}))]
-    field += [
-        Contestant(f"formula, {formula}", solvers.build("formula", {"film_formula": formula}))
-        for formula in ("moes", "dowson-toyoda", "pan-hamrock")
-    ]
-    field += [reynolds(factor) for factor in _RESOLUTIONS]
-    return tuple(field), reynolds(REFINEMENT, inlet_length=2.0 * inlet)
+Told = Callable[[str], None]
+"""Takes a line of progress."""
 
 
 def measure(
-    job: Job, lines: int, entries: Sequence[Contestant], reference: Contestant
-) -> tuple[tuple[Measured, ...], Measured]:
-    """Solve a sample of load lines with every contestant and the reference.
+    job: Job,
+    points: int = POINTS,
+    seed: int = SEED,
+    openfoam: int = OPENFOAM_POINTS,
+    entries: Sequence[Entry] | None = None,
+    tell: Told = lambda line: None,
+) -> Trade:
+    """Measure solvers, settings and physics at random points of a job.
 
     Parameters
     ----------
     job : Job
-        Job whose lines are sampled evenly.
-    lines : int
-        How many.
-    entries : sequence of Contestant
-        Measured one after the other, on one core.
-    reference : Contestant
-        What the others are compared with.
-
-    Returns
-    -------
-    measured : tuple of Measured
-        One a contestant.
-    truth : Measured
-        The reference itself, without errors, with the points that it could not solve.
-    """
-    chosen = _sample(job, lines)
-    truth, seconds = _solve(reference.solver, chosen)
-    known = _usable(truth["status"])
-    lost = _lost(chosen, truth)
-    measured = []
-    for entry in entries:
-        films, spent = _solve(entry.solver, chosen)
-        both = known & _usable(films["status"])
-        errors = {}
-        for name in JUDGED:
-            scale = np.abs(truth[name][both])
-            difference = np.abs(films[name][both] - truth[name][both])
-            errors[name] = difference[scale > 0] / scale[scale > 0]
-        measured.append(Measured(entry.label, spent / known.size, int(_usable(films["status"]).sum()), (), errors))
-    return tuple(measured), Measured(reference.label, seconds / known.size, int(known.sum()), lost, {})
-
-
-def table(measured: Sequence[Measured], truth: Measured, points: int) -> str:
-    """Return the measurement as a printed table.
-
-    Parameters
-    ----------
-    measured : sequence of Measured
-        Settings with their cost and errors.
-    truth : Measured
-        The fine solution that errors are measured against.
+        Job over whose range points are drawn.
     points : int
-        Number of points of the measurement.
+        How many.
+    seed : int
+        Seed of the points.
+    openfoam : int
+        How many of them are asked of what takes seconds a point; 0 leaves it out.
+    entries : sequence of Entry, optional
+        Who is measured; all of `ehdmaps.jobs.contestants.contestants` if left out.
+    tell : callable
+        Is told what is being measured.
+
+    Raises
+    ------
+    InputError
+        If the job has no speed above zero.
     """
-    lines = [
-        f"{points} points; errors relative to {truth.label} ({truth.seconds_per_point * 1e3:.3g} ms a point, "
-        f"{truth.solved} solved); median / 95 %",
-        f"{'':26s}{'ms/point':>9s}{'solved':>8s}" + "".join(f"{name.replace('_', ' '):>20s}" for name in JUDGED),
-    ]
-    for entry in measured:
-        cells = []
-        for name in JUDGED:
-            errors = entry.errors[name]
-            if errors.size:
-                middle, high = (float(value) for value in np.quantile(errors, (0.5, 0.95)))
-                cells.append(f"{middle:.1e} / {high:.1e}")
-            else:
-                cells.append("-")
-        numbers = f"{entry.seconds_per_point * 1e3:9.3g}{entry.solved:8d}"
-        lines.append(f"{entry.label:26s}{numbers}" + "".join(f"{cell:>20s}" for cell in cells))
-    if truth.lost:
-        lines.append(f"without a solution by {truth.label}, and left out of the errors:")
-        lines += [f"  {point}" for point in truth.lost]
-    return "\n".join(lines)
+    questions = _questions(job, points, seed)
+    missing = solvers.SOLVERS["openfoam"].missing()
+    with_openfoam = openfoam > 0 and not missing
+    chosen = tuple(contestants(job, with_openfoam) if entries is None else entries)
+    few = questions[: min(openfoam, len(questions))]
+    known: dict[tuple[ContactModel, int], Asked] = {}
 
+    def asked(model: ContactModel, at: Sequence[Question], words: str) -> Asked:
+        if (model, len(at)) not in known:
+            tell(f"{words}: {len(at)} points")
+            known[model, len(at)] = _ask(model, at)
+        return known[model, len(at)]
 
-def _sample(job: Job, lines: int) -> tuple[LineTask, ...]:
-    """Return lines spread over contacts, speeds and temperatures; the same ones each time."""
-    tasks = line_tasks(job, solvers.build("hertz", {}))
-    order = np.random.default_rng(0).permutation(len(tasks))[:lines]
-    return tuple(tasks[index] for index in sorted(order))
-
-
-def _solve(solver: ContactSolver, chosen: Sequence[LineTask]) -> tuple[dict[str, FloatArray], float]:
-    """Return the films of all lines, and the time; a first solve that compiles is not in it."""
-    first = chosen[0]
-    solver.solve_line(first.contact, first.lubricant, first.loads[:1], first.entrainment_speed, first.temperature)
-    begin = time.perf_counter()
-    films = [
-        film
-        for line in chosen
-        for film in solver.solve_line(
-            line.contact, line.lubricant, line.loads, line.entrainment_speed, line.temperature
-        )
-    ]
-    return film_arrays(films), time.perf_counter() - begin
-
-
-def _lost(chosen: Sequence[LineTask], truth: dict[str, FloatArray]) -> tuple[str, ...]:
-    """Place, status and cause of each point without a solution."""
-    points = [(line, load) for line in chosen for load in line.loads]
-    return tuple(
-        f"{line.contact.name}, {LOAD.text(load)}, {SPEED.text(line.entrainment_speed)}, "
-        f"{TEMPERATURE.text(line.temperature)}: {Status(int(status)).word}" + (f"; {reason}" if reason else "")
-        for (line, load), status, reason in zip(points, truth["status"], truth["reason"], strict=True)
-        if not Status(int(status)).usable
+    choices, groups = [], dict.fromkeys(entry.group for entry in chosen)
+    lost_finest: dict[str, None] = {}
+    for entry in chosen:
+        at = few if entry.few else questions
+        # the truth is asked at all points once, the few are the first of them
+        truth = asked(entry.group.truth, questions, f"reference of {entry.group.name}").answers[: len(at)]
+        found = asked(entry.model, at, entry.label)
+        finest = None
+        if entry.finest is entry.group.truth or entry.finest == entry.group.truth:
+            finest = truth
+        elif entry.finest is not None:
+            longer = (entry.finest, len(questions)) in known
+            finest = asked(entry.finest, questions if longer else at, f"finest of {entry.label}").answers[: len(at)]
+            lost_finest.update(
+                (f"no numerical error told apart: finest of {entry.label} at {question.place}: {answer.lost}", None)
+                for question, answer in zip(at, finest, strict=True)
+                if answer.lost
+            )
+        choices.append(_choice(entry, at, found, truth, finest))
+    truths = [Truth(group, known[group.truth, len(questions)]) for group in groups]
+    return Trade(
+        level="contact",
+        title=f"{job.title}, {job.lubricant.title}: contacts by solvers, settings and physics",
+        cost="s a point",
+        reference=reference_words(truths),
+        judged=tuple(Judged(name) for name in QUANTITIES),
+        choices=tuple(choices),
+        frame=(
+            *sample_words(job, len(questions), seed),
+            *(openfoam_words(openfoam, missing) if entries is None else ()),
+            *truth_words(truths, questions),
+            *lost_finest,
+        ),
     )
 
 
-def _usable(status: FloatArray) -> BoolArray:
-    """Whether points have a solution."""
-    return np.isin(status, [int(known) for known in Status if known.usable])
+def _questions(job: Job, points: int, seed: int) -> tuple[Question, ...]:
+    """Random points of a job, with a frequency each."""
+    if not any(speed > 0.0 for speed in job.entrainment_speeds):
+        raise InputError(
+            f"tradeoff, entrainment_speed of {job.name}: got 0 m/s only; allowed: a job with a speed above zero, since "
+            "a dry contact needs no film"
+        )
+    rng = np.random.default_rng(seed)
+    sample = draw_sample(job, points, rng)
+    return tuple(_question(job, point, log_uniform(rng, *NATURAL_FREQUENCIES)) for point in sample)
+
+
+def _question(job: Job, sample: SamplePoint, natural: float) -> Question:
+    """One point, at a natural frequency of the film of Moes' formula."""
+    contact, *values = sample
+    point = OperatingPoint(*values)
+    (film,) = FormulaSolver("moes", thickest_film=math.inf).solve_line(contact, job.lubricant, *_line(point))
+    frequency = float(natural_to_hertz((natural,), film, contact, point)[0])
+    return Question(contact, job.lubricant, point, min(max(frequency, LOWEST_FREQUENCY), HIGHEST_FREQUENCY))
+
+
+def _line(point: OperatingPoint) -> tuple[tuple[float, ...], float, float]:
+    """A point as the line of loads that it is."""
+    return (point.load,), point.entrainment_speed, point.temperature
+
+
+def _ask(model: ContactModel, questions: Sequence[Question]) -> Asked:
+    """Answers to all questions, and what one took; a first answer that compiles is not in it."""
+    if questions and not _slow(model):
+        model(questions[0])
+    began = cpu_seconds()
+    answers = tuple(model(question) for question in questions)
+    spent = cpu_seconds() - began
+    return Asked(answers, spent / len(questions) if questions else math.nan)
+
+
+def _slow(model: ContactModel) -> bool:
+    """Whether an answer is too expensive to be given twice; programs of their own compile nothing here."""
+    return bool(getattr(getattr(model, "solver", None), "slow", False))
+
+
+def cpu_seconds() -> float:
+    """Processor time of this process and of the programs that it ran and that ended [s]."""
+    times = os.times()
+    return time.process_time() + times.children_user + times.children_system
+
+
+def _choice(
+    entry: Entry, questions: Sequence[Question], found: Asked, truth: Sequence[Answer], finest: Sequence[Answer] | None
+) -> Choice:
+    """One row: errors at the points that both the choice and the reference answer."""
+    units = [
+        scales(answer, question, entry.group.least_film) for answer, question in zip(truth, questions, strict=True)
+    ]
+    places = [question.place for question in questions]
+    judged = [name for name in QUANTITIES if any(name in answer.values for answer in found.answers)]
+
+    def summed(first: Sequence[Answer], second: Sequence[Answer], stated: bool) -> dict[str, ErrorSummary]:
+        summaries = {}
+        for name in judged:
+            unit = _column([scale.get(name, math.nan) for scale in units])
+            errors = (_values(first, name) - _values(second, name)) / unit
+            own = _column([answer.stated.get(name, math.nan) for answer in first]) / unit if stated else None
+            summary = ErrorSummary.of(errors, places, own)
+            if summary.points:
+                summaries[name] = summary
+        return summaries
+
+    errors = summed(found.answers, truth, True)
+    numerical: Mapping[str, ErrorSummary] = {}
+    model: Mapping[str, ErrorSummary] = errors if entry.closed else {}
+    if finest is not None:
+        numerical = summed(found.answers, finest, True)
+        if finest is not truth:
+            model = summed(finest, truth, False)
+    lost = tuple(
+        f"{question.place}: {answer.lost}"
+        for question, answer in zip(questions, found.answers, strict=True)
+        if answer.lost
+    )
+    return Choice(
+        group=entry.group.name,
+        label=entry.label,
+        seconds=found.seconds,
+        errors=errors,
+        numerical=numerical,
+        model=model,
+        solved=len(questions) - len(lost),
+        asked=len(questions),
+        lost=lost,
+        default=entry.default,
+        reference=entry.group.reference,
+    )
+
+
+def _values(answers: Sequence[Answer], name: str) -> FloatArray:
+    """One quantity of all answers; NaN where there is none."""
+    return _column([answer.values.get(name, math.nan) for answer in answers])
+
+
+def _column(values: Sequence[float]) -> FloatArray:
+    """Numbers as an array."""
+    return np.array(values, dtype=np.float64)

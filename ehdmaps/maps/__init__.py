@@ -33,6 +33,8 @@ lines          splines and states in compiled code
 kernel         the law at run time, one point at a time, for compiled code
 bulk           the law at run time, many points
 excursions     calls outside the map
+law_errors     bounds of the errors of a law, from what the map states
+law_change     the table of a law with another stiffness, damping and film
 law_arguments  arguments of a law: arrays of doubles, of one shape, finite
 law            `ContactLaw`, `LawAtPoint`
 =============  =======================================================================================

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -59,7 +59,18 @@ class Steps:
 
 
 STEPS = Steps()
-"""Where every backbone begins."""
+"""Where a backbone begins for which a job says nothing."""
+
+
+class StepLimits(NamedTuple):
+    """Smallest and largest step along each axis, in the units of `Steps`."""
+
+    load: tuple[float, float] = (0.005, 1.0)
+    entrainment_speed: tuple[float, float] = (0.05, 10.0)
+    temperature: tuple[float, float] = (1.0, 1000.0)
+
+
+STEP_LIMITS = StepLimits()
 
 
 @dataclass(frozen=True)

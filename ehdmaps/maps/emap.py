@@ -17,6 +17,7 @@ from ehdmaps.maps.checksum import check_content, content_sha256
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
+from ehdmaps.maps.law_errors import LawErrors
 from ehdmaps.maps.low_loads import FirstLoads, LowLoads, first_loads, known_from, low_loads, same_load
 from ehdmaps.maps.reading import read_map
 from ehdmaps.maps.records import (
@@ -205,7 +206,13 @@ class EHDMap:
             rolling=self.rolling_film,
             supply=supply or self.supply,
             surface=self.surface if surface is None else surface,
+            errors=self.law_errors,
         )
+
+    @cached_property
+    def law_errors(self) -> LawErrors:
+        """Bounds of the errors of the laws of this map."""
+        return LawErrors(self.dataset, self.contacts, self.lubricant)
 
     def film_field(self, contacts: tuple[str, ...] | None = None) -> FilmField:
         """Film between the solved points, what a law is made from: of the backbone, or of the map's own grid.

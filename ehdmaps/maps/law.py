@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -25,6 +26,8 @@ from ehdmaps.maps.dry import DryField
 from ehdmaps.maps.excursions import Axis, Excursion, Range
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.law_arguments import broadcast, check_finite, floats
+from ehdmaps.maps.law_change import LawChange, changed_table
+from ehdmaps.maps.law_errors import LawBounds, LawErrors
 from ehdmaps.maps.locked_film import FORMULA, LockedFactors, locked_compliances
 from ehdmaps.maps.low_loads import LowLoads, guessed_at, looked_at, low_loads
 from ehdmaps.maps.memory import FilmMemory, FilmState
@@ -84,6 +87,8 @@ class ContactLaw:
     surface : Surface
         Roughness of the surfaces: film and asperities share the load, see `ehdmaps.maps.rough_layer`. The law then
         has a table down to a speed without a film, and goes over into the rough dry contact at standstill.
+    errors : LawErrors, optional
+        How wrong the law may be, where its map says so; see `LawAtPoint.bounds`.
 
     Raises
     ------
@@ -111,6 +116,7 @@ class ContactLaw:
         rolling: RollingFilm | None = None,
         supply: OilSupply = FLOODED,
         surface: Surface = SMOOTH,
+        errors: LawErrors | None = None,
     ) -> None:
         if outside not in get_args(OutsidePolicy):
             raise InputError(f"contact law, outside: got {outside!r}; allowed: {', '.join(get_args(OutsidePolicy))}")
@@ -129,6 +135,7 @@ class ContactLaw:
         self._resolution = resolution
         self.rolling = rolling
         self.supply = supply
+        self.errors = errors
         self._plain = self._law_table()
         self._latest: LawAtPoint | None = None
 
@@ -148,6 +155,30 @@ class ContactLaw:
     def workspace(self) -> FloatArray:
         """Scratch for `kernel.collapse` and `kernel.evaluate`, one for each thread and each `Point` kept."""
         return _workspace(self.table)
+
+    def changed(self, change: LawChange) -> ContactLaw:
+        """The law with another stiffness, damping and film, for samples of what its errors do.
+
+        Parameters
+        ----------
+        change : LawChange
+            What is changed.
+        """
+        other = copy.copy(self)
+        # Of the copy nothing is kept that follows from the table, or is counted.
+        for name in ("table", "low_loads", "_guessed_below"):
+            other.__dict__.pop(name, None)
+        other.counts, other._excursions, other._latest = np.zeros_like(self.counts), {}, None
+        own = changed_table(self._plain.own, change)
+        other._plain = self._plain._replace(own=own, inner=own, outer=own)
+        if self.kind == "series":
+            half = change._replace(film=0.5 * change.film)
+            other.table = self.table._replace(
+                own=own,
+                inner=changed_table(self.table.inner, half),
+                outer=changed_table(self.table.outer, half),
+            )
+        return other
 
     @cached_property
     def low_loads(self) -> LowLoads | None:
@@ -279,7 +310,8 @@ class ContactLaw:
         temperature : float
             T [K].
         centrifugal_load : float
-            Centrifugal load of the roller, per unit length [N/m].
+            Centrifugal load of the roller, per unit length [N/m]. That of the last call is given again where all three
+            are the same.
 
         Raises
         ------
@@ -292,12 +324,17 @@ class ContactLaw:
                 raise InputError(f"contact law, {name}: got an array; allowed: one number in `at`")
         check_finite(named)
         self._check_centrifugal(named["centrifugal_load"])
+        u, T, q = (float(value) for value in named.values())
+        latest = self._latest
+        # One that lies outside the map is made again, to be counted again.
+        if latest is not None and not latest.outside and latest.conditions == (u, T, q):
+            return latest
         table = self.table if centrifugal_load else self._plain
         counts = np.zeros(4, dtype=np.int64)
-        u, T, q = (float(value) for value in named.values())
         point = kernel.collapse(table, _workspace(table), u, T, q, counts)
         self._settle(counts, named, [])
-        return LawAtPoint(u, T, q, point, self, bool(counts.any()))
+        self._latest = LawAtPoint(u, T, q, point, self, bool(counts.any()))
+        return self._latest
 
     def advance(
         self, state: FilmState | None, delta: npt.ArrayLike, dt: float, entrainment_speed: float, temperature: float
@@ -327,12 +364,10 @@ class ContactLaw:
         InputError, OutsideMapError
             As `at` and `FilmMemory.advance` do.
         """
-        if self._latest is None or (self._latest.entrainment_speed, self._latest.temperature) != (
-            entrainment_speed,
-            temperature,
-        ):
-            self._latest = self.at(entrainment_speed, temperature)
-        memory = self._latest.memory
+        latest = self._latest
+        if latest is None or latest.conditions != (entrainment_speed, temperature, 0.0):
+            latest = self.at(entrainment_speed, temperature)
+        memory = latest.memory
         return memory.advance(memory.settled(delta) if state is None else state, delta, dt)
 
     def locked_factors(self, entrainment_speed: float, temperature: float) -> LockedFactors:
@@ -530,6 +565,11 @@ class LawAtPoint:
     law: ContactLaw
     outside: bool
 
+    @property
+    def conditions(self) -> tuple[float, float, float]:
+        """Entrainment speed, temperature and centrifugal load."""
+        return self.entrainment_speed, self.temperature, self.centrifugal_load
+
     @cached_property
     def _guessed_below(self) -> float:
         """Load below which the film is a guess [N/m]; 0 where it is none."""
@@ -540,6 +580,24 @@ class LawAtPoint:
         """The law with films that need time, for steps in time."""
         factors = self.law.locked_factors(self.entrainment_speed, self.temperature)
         return FilmMemory(self.point, self.law.contacts, self.entrainment_speed, factors, self._check_loads)
+
+    def bounds(self, loads: FloatArray) -> LawBounds | None:
+        """How wrong stiffness, damping and approach may be at some loads; None where the law states no errors.
+
+        Parameters
+        ----------
+        loads : array (n,)
+            Loads on the inner contact [N/m].
+
+        Returns
+        -------
+        LawBounds or None
+            None for a law that is not made from a map, and at standstill.
+        """
+        if self.law.errors is None:
+            return None
+        names = [contact.name for contact in self.law.contacts]
+        return self.law.errors.bounds(names, loads, self.entrainment_speed, self.temperature)
 
     def rolling_force(self, load: npt.ArrayLike) -> FloatArray:
         """Rolling force of each contact at a load on the inner one, both walls together [N/m].

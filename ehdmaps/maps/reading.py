@@ -22,9 +22,7 @@ from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.schema import Variable
 from ehdmaps.maps.validation import attribute_problems, refuse, shape_problems, version_problems
-
-_DAMAGE = (OSError, RuntimeError, ValueError, LookupError, AttributeError, TypeError, MemoryError)
-"""What netCDF4 raises on damaged files, depending on what its C library stumbles over."""
+from ehdmaps.netcdf_structure import DAMAGE, structure_problem
 
 _OF_THE_FILE = ("_FillValue", "_Encoding", "_Unsigned", "missing_value", "coordinates")
 """Attributes that say how values are stored; values themselves are read as they are."""
@@ -44,9 +42,12 @@ def read_map(path: str | PathLike[str]) -> tuple[xr.Dataset, xr.Dataset | None]:
     try:
         if not stat.S_ISREG(Path(name).stat().st_mode):
             raise OSError("no regular file")
+        damage = structure_problem(name)
+        if damage:
+            raise OSError(damage)
         with netCDF4.Dataset(name) as file:
             return _read(file, name)
-    except _DAMAGE as error:
+    except DAMAGE as error:
         cause = " ".join(str(error).split()) or type(error).__name__
         raise MapError(
             f"{name}: cannot be read ({cause:.300}); expected a map file written by `ehdmaps generate`"

@@ -27,6 +27,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -83,6 +84,7 @@ class Asperities(NamedTuple):
     log_gap_slope: FloatArray
 
 
+@lru_cache(maxsize=8)  # one table serves all contacts of a surface and a material; nobody writes into it
 def asperities_of(surface: Surface, reduced_modulus: float) -> Asperities:
     """Asperities of a surface at even steps of ln p; within 1e-8 of x between x = -35 and 14.
 

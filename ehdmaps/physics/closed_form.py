@@ -21,6 +21,7 @@ from ehdmaps.physics.film_limits import THICKEST_FILM, THIN_FILM_LIMIT, too_thic
 from ehdmaps.physics.films import (
     dowson_higginson_minimum,
     dowson_toyoda_central,
+    elastic_piezoviscous,
     martin_minimum,
     moes_central_and_slope,
     pan_hamrock_central,
@@ -71,7 +72,8 @@ class FormulaSolver(ContactSolverDefaults):
     Attributes
     ----------
     film_formula : {"moes", "dowson-toyoda", "pan-hamrock"}
-        `moes` covers all regimes; the other two are for M >= 2 in the piezoviscous-elastic regime.
+        `moes` covers all regimes; the other two are for loaded contacts, 2 <= M <= 1000, and say so elsewhere
+        as the reason of a film.
     thickest_film : float
         Largest h/R that is no refusal; infinite for lines that stand for their groups only.
 
@@ -137,6 +139,13 @@ class FormulaSolver(ContactSolverDefaults):
         if film / contact.radius > THIN_FILM_LIMIT:
             status = Status.ASYMPTOTE
             reason = f"film h/R = {film / contact.radius:.3g} above {THIN_FILM_LIMIT}: outside thin-film theory"
+        elif self.film_formula != "moes":
+            M, L = moes_groups(*_group_arguments(contact, state, load, speed))
+            if not elastic_piezoviscous(M, L):
+                reason = (
+                    f"M = {M:.3g}, L = {L:.3g} outside the range of {self.film_formula}: 2 <= M <= 1000, L <= 150, "
+                    "elastic and piezoviscous"
+                )
         return FilmSolution(
             status=status,
             reason=reason,

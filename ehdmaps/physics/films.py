@@ -137,6 +137,50 @@ def pan_hamrock_central(speed_number: float, load_number: Values, material_numbe
     return as_given(2.922 * load_number**-0.166 * speed_number**0.692 * material_number**0.470, load_number)
 
 
+def asymptotes(load_number: float, oil_number: float) -> tuple[float, float, float, float]:
+    """Film numbers of the four regimes: rigid and elastic isoviscous, rigid and elastic piezoviscous.
+
+    H_RI = 3/M, H_EI = 2.621 M^(-1/5), H_RP = 1.287 L^(2/3), H_EP = 1.311 M^(-1/8) L^(3/4), see `moes_central`.
+
+    Parameters
+    ----------
+    load_number : float
+        M, > 0.
+    oil_number : float
+        L, >= 0.
+
+    Examples
+    --------
+    >>> [round(H, 3) for H in asymptotes(20.0, 10.0)]
+    [0.15, 1.44, 5.974, 5.07]
+    """
+    M, L = load_number, oil_number
+    return 3.0 / M, 2.621 * M**-0.2, 1.287 * L ** (2.0 / 3.0), 1.311 * M**-0.125 * L**0.75
+
+
+def elastic_piezoviscous(load_number: float, oil_number: float) -> bool:
+    """Whether a contact is where the power laws of loaded contacts hold: 2 <= M <= 1000, piezoviscous and elastic.
+
+    Of the four regimes it is that whose asymptote is the smaller of the piezoviscous two and above the isoviscous ones.
+    Beyond L = 150 there are no full solutions to compare with.
+
+    Parameters
+    ----------
+    load_number : float
+        M, > 0.
+    oil_number : float
+        L, >= 0.
+
+    Examples
+    --------
+    >>> elastic_piezoviscous(20.0, 10.0), elastic_piezoviscous(20.0, 1.0), elastic_piezoviscous(0.2, 10.0)
+    (True, False, False)
+    """
+    rigid_isoviscous, elastic_isoviscous, rigid, elastic = asymptotes(load_number, oil_number)
+    known = 2.0 <= load_number <= 1000.0 and oil_number <= 150.0
+    return known and max(rigid_isoviscous, elastic_isoviscous) <= elastic <= rigid
+
+
 def moes_central(load_number: Values, oil_number: float) -> Values:
     """Central film number H of an incompressible oil over all four regimes.
 

@@ -53,6 +53,11 @@ def trade_dataset(trade: Trade) -> xr.Dataset:
             np.array([choice.default for choice in trade.choices], dtype=np.int8),
             {"units": "1", "long_name": "1: what is used where nothing is said"},
         ),
+        "against": (
+            "choice",
+            np.array([choice.reference for choice in trade.choices], dtype=object),
+            {"long_name": "what the errors are relative to where that is not the reference of the measurement"},
+        ),
         "lost": (
             "choice",
             np.array(["\n".join(choice.lost) for choice in trade.choices], dtype=object),

@@ -45,8 +45,8 @@ def trade_figure(trade: Trade) -> Figure:
 
 
 def _panel(panel: Axes, trade: Trade, judged: Judged, groups: list[str]) -> None:
-    """Draw the choices of one quantity, and which of them no other one beats."""
-    places = []
+    """Draw the choices of one quantity, and which of them no other one with the same reference beats."""
+    places: dict[str, list[tuple[float, float]]] = {}
     for index, choice in enumerate(trade.choices):
         if not _shown(choice, judged):
             continue
@@ -64,9 +64,11 @@ def _panel(panel: Axes, trade: Trade, judged: Judged, groups: list[str]) -> None
         panel.annotate(
             str(index + 1), (choice.seconds, found.median), xytext=(4, 2), textcoords="offset points", fontsize=6.5
         )
-        places.append((choice.seconds, found.median))
-    best = front([x for x, _ in places], [y for _, y in places])
-    panel.plot([places[i][0] for i in best], [places[i][1] for i in best], color="0.5", lw=0.9, ls="--", zorder=0)
+        places.setdefault(choice.reference, []).append((choice.seconds, found.median))
+    # errors that are relative to one thing do not beat those that are relative to another
+    for points in places.values():
+        best = front([x for x, _ in points], [y for _, y in points])
+        panel.plot([points[i][0] for i in best], [points[i][1] for i in best], color="0.5", lw=0.9, ls="--", zorder=0)
     panel.set_xscale("log")
     panel.set_yscale("log")
     panel.margins(0.12)

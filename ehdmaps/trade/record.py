@@ -119,6 +119,8 @@ class Choice:
         Points without one, each with its place and cause.
     default : bool
         Whether this is what is used where a user says nothing.
+    reference : str
+        What its errors are relative to where that is not the reference of the trade; empty where it is.
     """
 
     group: str
@@ -131,6 +133,7 @@ class Choice:
     asked: int = 1
     lost: tuple[str, ...] = ()
     default: bool = False
+    reference: str = ""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,9 @@ from itertools import groupby
 
 from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade
 
-_CELL = 18
+_COLUMNS, _CELL, _GAP = 4, 18, 2
+"""Quantities beside each other, least width of one, and the gap before its name."""
+
 _FACTOR = {"1": 100.0, "dB": 1.0}
 _UNIT = {"1": "%", "dB": "dB"}
 
@@ -53,17 +55,26 @@ def _table(
     cell: Callable[[Choice, Judged], str],
     wanted: Callable[[Choice], bool] = lambda choice: True,
 ) -> Iterator[str]:
-    """Yield a table of the choices that are wanted, by group."""
+    """Yield tables of the choices that are wanted, by group: so many that their lines do not become too long."""
     width = max(len(choice.label) for choice in trade.choices) + 4
-    heads = "".join(f"{f'{judged.name}, {_UNIT[judged.unit]}':>{_CELL}s}" for judged in trade.judged)
-    yield f"{'':{width}s}{trade.cost:>12s}{'solved':>12s}{heads}"
-    for group, choices in groupby(filter(wanted, trade.choices), key=lambda choice: choice.group):
-        yield group
-        for choice in choices:
-            mark = "*" if choice.default else " "
-            cells = "".join(f"{cell(choice, judged):>{_CELL}s}" for judged in trade.judged)
-            solved = f"{choice.solved}/{choice.asked}"
-            yield f"{mark} {choice.label:{width - 2}s}{number(choice.seconds):>12s}{solved:>12s}{cells}"
+    for first in range(0, len(trade.judged), _COLUMNS):
+        columns = trade.judged[first : first + _COLUMNS]
+        names = [f"{judged.name}, {_UNIT[judged.unit]}" for judged in columns]
+        widths = [max(_CELL, len(name) + _GAP) for name in names]
+        heads = "".join(f"{name:>{wide}s}" for name, wide in zip(names, widths, strict=True))
+        yield f"{'':{width}s}{trade.cost:>12s}{'solved':>12s}{heads}"
+        for (group, reference), choices in groupby(filter(wanted, trade.choices), key=_heading):
+            yield f"{group}, against {reference}" if reference else group
+            for choice in choices:
+                mark = "*" if choice.default else " "
+                cells = "".join(f"{cell(choice, one):>{wide}s}" for one, wide in zip(columns, widths, strict=True))
+                solved = f"{choice.solved}/{choice.asked}"
+                yield f"{mark} {choice.label:{width - 2}s}{number(choice.seconds):>12s}{solved:>12s}{cells}"
+
+
+def _heading(choice: Choice) -> tuple[str, str]:
+    """Group, and its own reference."""
+    return choice.group, choice.reference
 
 
 def _error(choice: Choice, judged: Judged) -> str:
@@ -119,12 +130,12 @@ def number(value: float) -> str:
 
     Examples
     --------
-    >>> number(0.01234), number(1.2e-7), number(12345.0), number(float("nan"))
-    ('0.012', '1.2e-07', '12345', '-')
+    >>> number(0.01234), number(1.2e-7), number(99.7), number(12345.0), number(float("nan"))
+    ('0.012', '1.2e-07', '100', '12345', '-')
     """
     if not math.isfinite(value):
         return "-"
-    return f"{value:.0f}" if 100.0 <= abs(value) < 1e6 else f"{value:.2g}"
+    return f"{value:.0f}" if 99.5 <= abs(value) < 1e6 else f"{value:.2g}"
 
 
 def _worst(choice: Choice, judged: tuple[Judged, ...]) -> Iterator[str]:

@@ -11,9 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import closest
 from mbs.analyses.case import Case, as_cases
+from mbs.analyses.changed_laws import SIGNS, law_changes, with_changed_laws
 from mbs.analyses.operating import held, states_of
 from mbs.analyses.progress import Progress, silent
 from mbs.linearised.sweep import sweep
@@ -21,7 +23,7 @@ from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Operation, Sensor
 from mbs.model.equilibrium import equilibrium
 from mbs.output.campbell_data import campbell_dataset
-from mbs.output.results import described
+from mbs.output.results import BAND, described
 from mbs.output.state_data import with_states
 from mbs.scene.assembly import Model, law_attributes, supply_attributes
 from mbs.scene.fields import HERTZ
@@ -36,6 +38,9 @@ from mbs.transient.run import run as run_system
 
 LEAST_SAMPLES, MOST_SAMPLES = 64, 5_000_000
 """Steps of a run: the fewest that have a spectrum, and 50 s of 10 us, beyond any run-up that is waited for."""
+
+MOST_BANDS = len(SIGNS)
+"""Runs of a law for its band, at most."""
 
 MODE_SPEEDS = 9
 """Speeds of the run at which modes are computed."""
@@ -57,6 +62,9 @@ class LawRun:
         Modes of the linear system at some speeds of the run, if they were asked for.
     seconds : float
         How long the run took [s].
+    level_error : array, shape (windows,), or None
+        Band of the sum level, either way [dB]: its largest difference in runs whose laws are wrong by the errors that
+        the map states. None where no such runs were asked for, or the law states no errors.
     """
 
     case: Case
@@ -64,6 +72,7 @@ class LawRun:
     spectra: RunUpSpectra
     modes: Sweep | None
     seconds: float
+    level_error: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +113,7 @@ def campbell(
     *,
     with_modes: bool = False,
     keep_partial: bool = False,
+    bands: int = 0,
 ) -> CampbellResult:
     """Run up with each contact law, and compute levels over speed, frequency and order.
 
@@ -119,6 +129,9 @@ def campbell(
         Whether modes of the linear system are computed at `MODE_SPEEDS` speeds of the run.
     keep_partial : bool
         Whether Ctrl-C returns the laws that have come to the end, if there are any; else it is raised.
+    bands : int
+        Runs more of each law that states errors, up to `MOST_BANDS`: its stiffness, damping and films are wrong there
+        by the bounds of these errors, with all signs in turn (`mbs.analyses.changed_laws`). Each costs a run.
 
     Raises
     ------
@@ -141,16 +154,24 @@ def campbell(
     problems: list[str] = []
     sensor = _sensor(settings.sensor, scene, problems)
     course = run_course(scene, settings.highest, problems)
+    if not 0 <= bands <= MOST_BANDS:
+        problems.append(f"bands: got {bands} runs; allowed: 0 to {MOST_BANDS}")
     if problems or sensor is None or course is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     orders = followed_orders(cases[0].model, settings, course)
     cases = tuple(dataclasses.replace(case, model=held(case.model)) for case in cases)
     _rehearse(settings, course, orders)
-    runs, failed = _runs(cases, settings, sensor, course, orders, progress or silent, with_modes, keep_partial)
+    runs, failed = _runs(cases, settings, sensor, course, orders, progress or silent, with_modes, keep_partial, bands)
     if not runs:
         raise AnalysisError("\n".join(f"warning: {line}" for line in failed))
+    known = runs[0].spectra.campbell.speeds
     dataset = campbell_dataset(
         [entry.case.label for entry in runs], [entry.spectra for entry in runs], Reference.of(sensor), sensor.name
+    )
+    dataset["sum_level_error"] = (
+        ("law", "speed"),
+        np.array([np.full(known.size, np.nan) if entry.level_error is None else entry.level_error for entry in runs]),
+        {"units": "dB", "long_name": f"{BAND} the sum level: largest difference of {bands} runs with wrong laws"},
     )
     dataset = with_states(dataset, [states_of(entry.case.model) for entry in runs], ("law",))
     # The dataset says of each law what it is.
@@ -177,10 +198,13 @@ def _runs(
     tell: Progress,
     with_modes: bool,
     keep_partial: bool,
+    bands: int,
 ) -> tuple[list[LawRun], list[str]]:
     """The run of each case, and why some have none."""
     each = round(course.duration / course.settings.sample)
-    total = len(cases) * each
+    speeds = [course.speed.at(part * course.duration)[0] for part in (0.0, 0.5, 1.0)]
+    changes = [law_changes(case.model, speeds) if bands else None for case in cases]
+    total = sum(1 if change is None else 1 + bands for change in changes) * each
     done = 0
 
     def told(samples: int) -> None:
@@ -189,18 +213,28 @@ def _runs(
     tell(0, total)
     runs: list[LawRun] = []
     failed: list[str] = []
-    for case in cases:
+    for index, (case, change) in enumerate(zip(cases, changes, strict=True)):
         try:
             runs.append(_one(case, settings, sensor, course, orders, told, with_modes))
+            done += each
+            if change is not None:
+                levels = []
+                for signs in SIGNS[:bands]:
+                    other = dataclasses.replace(case, model=with_changed_laws(case.model, change, signs))
+                    levels.append(_one(other, settings, sensor, course, orders, told, False).spectra.campbell.sum_level)
+                    done += each
+                wrong = np.abs(np.array(levels) - runs[-1].spectra.campbell.sum_level).max(axis=0)
+                runs[-1] = dataclasses.replace(runs[-1], level_error=wrong)
         except AnalysisError as error:
             # The run-ups with the other laws are worth minutes; keep them.
-            failed.append(f"{case.label}: {error}")
+            part = ", a run of its band" if runs and runs[-1].case is case else ""
+            failed.append(f"{case.label}{part}: {error}")
         except KeyboardInterrupt:
             if not (runs and keep_partial):
                 raise
-            failed += [f"{left.label}: stopped, no result" for left in cases[len(runs) + len(failed) :]]
+            left_out = cases[index + (runs[-1].case is case) :]
+            failed += [f"{left.label}: stopped, no result" for left in left_out]
             break
-        done += each
     return runs, failed
 
 

@@ -11,8 +11,9 @@ from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating, states_of
+from mbs.linearised.level_bands import level_bands
 from mbs.linearised.linear import StateSpace, frequency_response, state_space, with_peaks
-from mbs.linearised.modes import modes
+from mbs.linearised.modes import modes_of, state_modes, undamped_modes
 from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import DynamicLoad, FilmError, dynamic_loads
 from mbs.model.elements import Operation
@@ -57,6 +58,9 @@ class LsaResult:
         [Hz].
     responses : array of complex, shape (frequencies, sensors, inputs)
         Responses in the unit of the sensor's quantity, per N or N m.
+    level_error : array, shape (frequencies, sensors, inputs), or None
+        Bands of the levels of the responses, either way [dB], from the errors that the map states; None for laws that
+        state none.
     errors : tuple of FilmError
         How wrong the films of each bearing are estimated to be; empty for laws without films.
     lifting : tuple of DynamicLoad
@@ -71,6 +75,7 @@ class LsaResult:
     asked: int
     frequencies: FloatArray
     responses: ComplexArray
+    level_error: FloatArray | None
     errors: tuple[FilmError, ...]
     lifting: tuple[DynamicLoad, ...]
     dataset: xr.Dataset
@@ -117,11 +122,13 @@ def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
     operation = settings.operation or model.operation
     model = operating(model, operation.speed)
     balance = equilibrium(steady_system(model.system), operation)
-    frequencies = with_peaks(np.array(asked), modes(balance).eigenvalues)
+    states = state_modes(balance, undamped_modes(balance))
+    frequencies = with_peaks(np.array(asked), modes_of(balance, states).eigenvalues)
     responses = frequency_response(balance, scene.inputs, scene.sensors, frequencies)
+    level_error = level_bands(balance, states, scene.inputs, scene.sensors, frequencies, responses)
     space = state_space(balance, scene.inputs, scene.sensors)
     lifting = tuple(load for load in dynamic_loads(balance, scene.inputs, frequencies) if load.exceeds)
-    dataset = linear_dataset(balance, space, responses, frequencies, scene.inputs, scene.sensors)
+    dataset = linear_dataset(balance, space, responses, frequencies, scene.inputs, scene.sensors, level_error)
     return LsaResult(
         model=model,
         balance=balance,
@@ -129,6 +136,7 @@ def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
         asked=len(asked),
         frequencies=frequencies,
         responses=responses,
+        level_error=level_error,
         errors=tuple(film_errors(model, balance.displacement, balance.operation)),
         lifting=lifting,
         dataset=described(with_states(dataset, states_of(model)), **law_attributes(model)),

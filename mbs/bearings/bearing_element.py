@@ -16,7 +16,8 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.bearing_kernel import approaches_of_arrays
 from mbs.bearings.contact_energy import brought_by_speed, cage_moment, energy_at_rest
-from mbs.bearings.film_relaxation import bearing_relaxation, natural_times
+from mbs.bearings.contact_groups import ContactGroup
+from mbs.bearings.film_relaxation import bearing_relaxation, massless_rows, natural_times
 from mbs.bearings.force_at_point import Arrays
 from mbs.bearings.roller_loads import RollerLoads
 from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port, Powers
@@ -72,6 +73,21 @@ class RingElement(ElementDefaults):
             The same as for `film_relaxation`.
         """
         return np.zeros(0)
+
+    @property
+    def error_words(self) -> str:
+        """Which errors its law states, for people; empty for laws that state none."""
+        return ""
+
+    def contact_groups(self, displacement: FloatArray, operation: Operation) -> tuple[ContactGroup, ...]:
+        """Its slices by the law that they have, at rest; none without films.
+
+        Parameters
+        ----------
+        displacement, operation
+            The same as for `film_relaxation`.
+        """
+        return ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,6 +204,22 @@ class BearingElement(RingElement):
             return np.zeros(0)
         law = self.force.law.at(self.entrainment_speed(operation), self.temperature)
         return natural_times(law, self.rollers(displacement, operation).approach).reshape(-1)
+
+    @property
+    def error_words(self) -> str:
+        """See `RingElement.error_words`."""
+        law = self.force.law if isinstance(self.force, BearingForce) else None
+        return law.errors.words if isinstance(law, ContactLaw) and law.errors is not None else ""
+
+    def contact_groups(self, displacement: FloatArray, operation: Operation) -> tuple[ContactGroup, ...]:
+        """See `RingElement.contact_groups`: slices of both contacts in series."""
+        if not isinstance(self.force, BearingForce) or not isinstance(self.force.law, ContactLaw):
+            return ()
+        u, q = self.entrainment_speed(operation), self.centrifugal_load(operation)
+        rollers = self.rollers(displacement, operation)
+        law, length = self.force.law.at(u, self.temperature, q), self.bearing.slice_length
+        relaxes = self.films == "memory"
+        return (ContactGroup(law, massless_rows(rollers), rollers.approach.reshape(-1), length, relaxes),)
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on the inner ring, stiffness and damping, see `Element.evaluate`."""

@@ -88,6 +88,20 @@ def relaxing(rows: FloatArray, damping: FloatArray, times: FloatArray) -> Relaxa
     return Relaxation(rows * np.sqrt(np.where(relaxes, damping, 0.0) / times)[:, None], times)
 
 
+def massless_rows(rollers: RollerLoads) -> FloatArray:
+    """Approach of each slice of massless rollers by the pose of the inner ring, shape (Z n, 6).
+
+    Parameters
+    ----------
+    rollers : RollerLoads
+        The rollers at rest.
+    """
+    x = rollers.position
+    cos, sin = (np.repeat(part[:, None], x.size, axis=1) for part in (np.cos(rollers.angle), np.sin(rollers.angle)))
+    nothing = np.zeros_like(cos)
+    return np.stack([nothing, cos, sin, nothing, -sin * x, cos * x], axis=-1).reshape(-1, 6)
+
+
 def bearing_relaxation(law: LawAtPoint, rollers: RollerLoads, slice_length: float) -> Relaxation:
     """Relaxation of all slices of a bearing with massless rollers, in the pose (6,) of its inner ring.
 
@@ -100,9 +114,5 @@ def bearing_relaxation(law: LawAtPoint, rollers: RollerLoads, slice_length: floa
     slice_length : float
         Length of a slice [m].
     """
-    x = rollers.position
-    cos, sin = (np.repeat(part[:, None], x.size, axis=1) for part in (np.cos(rollers.angle), np.sin(rollers.angle)))
-    nothing = np.zeros_like(cos)
-    rows = np.stack([nothing, cos, sin, nothing, -sin * x, cos * x], axis=-1).reshape(-1, 6)
     times = relaxation_times(law, rollers.approach)
-    return relaxing(rows, rollers.damping.reshape(-1) * slice_length, times.reshape(-1))
+    return relaxing(massless_rows(rollers), rollers.damping.reshape(-1) * slice_length, times.reshape(-1))

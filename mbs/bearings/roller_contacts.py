@@ -20,6 +20,7 @@ from ehdmaps.errors import InputError, SolverError
 from ehdmaps.maps.law import ContactLaw, LawAtPoint
 from ehdmaps.maps.memory import FilmMemory, FilmState
 from mbs.bearings.bearing import Bearing
+from mbs.bearings.contact_groups import ContactGroup
 from mbs.bearings.film_relaxation import natural_times, relaxation_times, relaxing
 from mbs.bearings.laws import DryLaw, Law
 from mbs.model.elements import Forces
@@ -200,10 +201,42 @@ class RollerContacts:
             flat, tilted = self._rows(side, cage_angle)
             delta = self._approach(flat, tilted, q)
             _, _, c, _ = self._evaluate(side, delta, np.zeros_like(delta), entrainment_speed, temperature)
-            rows.append((flat[:, None, :] + self._x[:, None] * tilted[:, None, :]).reshape(-1, self.size))
+            rows.append(self._slice_rows(flat, tilted))
             damping.append(c.reshape(-1))
             times.append(relaxation_times(law.at(entrainment_speed, temperature), delta).reshape(-1))
         return relaxing(np.concatenate(rows), np.concatenate(damping), np.concatenate(times))
+
+    def groups(
+        self,
+        displacement: npt.ArrayLike,
+        *,
+        relaxes: bool,
+        cage_angle: float,
+        entrainment_speed: float,
+        temperature: float,
+    ) -> tuple[ContactGroup, ...]:
+        """Slices of the inner contacts and of the outer ones, at rest; none for laws without films.
+
+        Parameters
+        ----------
+        displacement : array (12 + Z,)
+            Displacements [m], [rad].
+        relaxes : bool
+            Whether films relax in linear analyses.
+        cage_angle, entrainment_speed, temperature : float
+            The same as for `BearingForce`.
+        """
+        q = self._vector("displacement", displacement)
+        found = []
+        for side, law in enumerate(self.laws):
+            if not isinstance(law, ContactLaw):
+                return ()
+            flat, tilted = self._rows(side, cage_angle)
+            point = self._point(side, law, entrainment_speed, temperature)
+            delta = self._approach(flat, tilted, q).reshape(-1)
+            rows = self._slice_rows(flat, tilted)
+            found.append(ContactGroup(point, rows, delta, self.bearing.slice_length, relaxes))
+        return tuple(found)
 
     def natural_times(
         self, displacement: npt.ArrayLike, *, cage_angle: float, entrainment_speed: float, temperature: float
@@ -311,6 +344,10 @@ class RollerContacts:
         tilted[:, 4], tilted[:, 5] = -0.5 * s, 0.5 * c
         tilted[:, 10], tilted[:, 11] = 0.5 * s, -0.5 * c
         return flat, tilted
+
+    def _slice_rows(self, flat: FloatArray, tilted: FloatArray) -> FloatArray:
+        """Approach of each slice by the displacements, shape (Z n, m)."""
+        return np.asarray((flat[:, None, :] + self._x[:, None] * tilted[:, None, :]).reshape(-1, self.size))
 
     def _approach(self, flat: FloatArray, tilted: FloatArray, q: FloatArray) -> FloatArray:
         """Approach of the slices of one side, shape (Z, n)."""

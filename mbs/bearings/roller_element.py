@@ -16,6 +16,7 @@ from ehdmaps.arrays import FloatArray
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement, RingElement
 from mbs.bearings.contact_energy import brought_by_speed, cage_moment, energy_at_rest
+from mbs.bearings.contact_groups import ContactGroup
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.model.body import Body
 from mbs.model.elements import Excitation, Forces, Operation, Port, Powers
@@ -92,6 +93,22 @@ class RollerElement(RingElement):
         plain = self.plain
         return self.contacts.natural_times(
             displacement,
+            cage_angle=plain.cage_angle(operation),
+            entrainment_speed=plain.entrainment_speed(operation),
+            temperature=plain.temperature,
+        )
+
+    @property
+    def error_words(self) -> str:
+        """See `RingElement.error_words`."""
+        return self.plain.error_words
+
+    def contact_groups(self, displacement: FloatArray, operation: Operation) -> tuple[ContactGroup, ...]:
+        """See `RingElement.contact_groups`: slices of the inner contacts, and of the outer ones."""
+        plain = self.plain
+        return self.contacts.groups(
+            displacement,
+            relaxes=self.films == "memory",
             cage_angle=plain.cage_angle(operation),
             entrainment_speed=plain.entrainment_speed(operation),
             temperature=plain.temperature,

@@ -13,12 +13,12 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.figures import typeset
 from ehdmaps.units import RPM
-from mbs.analyses.campbell import MODE_SPEEDS, CampbellResult, LawRun, campbell, campbell_problems
+from mbs.analyses.campbell import MODE_SPEEDS, MOST_BANDS, CampbellResult, LawRun, campbell, campbell_problems
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside, fade_of
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Told, film_course, heading, held_lines, read_option, write
+from mbs.commands.common import Told, band_lines, film_course, heading, held_lines, read_option, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
@@ -41,8 +41,8 @@ _MOST_DAMPED = 0.5
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run up with each law, and compare."""
-    cases, settings = _asked(arguments)
-    found = campbell(cases, settings, Told("step"), with_modes=arguments.modes, keep_partial=True)
+    cases, settings, bands = _asked(arguments)
+    found = campbell(cases, settings, Told("step"), with_modes=arguments.modes, keep_partial=True, bands=bands)
     runs, course = found.runs, found.course
     lines = [
         f"{runs[0].case.model.scene.title}: run-up from {RPM.text(course.speed.at(0.0)[0])} to "
@@ -51,15 +51,19 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *_resolution(runs[0].spectra, settings),
     ]
     for entry in runs:
-        lines += _report(entry)
+        lines += [*_report(entry), *_band(entry, bands)]
     lines += [*_differences(runs), *(f"warning: {line}" for line in found.failed)]
     lines += write(arguments, found.dataset, _figure(found) if arguments.plot else None)
     return "\n".join(lines), 1 if found.failed or any(any(entry.record.outside.values()) for entry in runs) else 0
 
 
-def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings]:
-    """Laws, and what is looked at; all problems at once."""
+def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings, int]:
+    """Laws, what is looked at, and how many runs a band has; all problems at once."""
     problems: list[str] = []
+    text = arguments.bands or "0"
+    bands = int(text) if text.isascii() and text.isdigit() and len(text) < 4 else -1
+    if not 0 <= bands <= MOST_BANDS:
+        problems.append(f"--bands: got {text!r:.40}; allowed: a whole number of runs, 0 to {MOST_BANDS}")
     highest = read_option("--highest", arguments.highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
     window = read_option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems)
     try:
@@ -81,7 +85,7 @@ def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings]
     problems += campbell_problems(scene, settings)
     if problems:
         raise InputError(tuple(dict.fromkeys(problems)))
-    return cases, settings
+    return cases, settings, bands
 
 
 def _figure(found: CampbellResult) -> Figure:
@@ -94,6 +98,7 @@ def _figure(found: CampbellResult) -> Figure:
         found.orders,
         [_overlay(entry) for entry in found.runs],
         [_reach(entry) for entry in found.runs],
+        [entry.level_error for entry in found.runs],
     )
 
 
@@ -163,6 +168,25 @@ def _report(entry: LawRun) -> list[str]:
     lines += [f"  {line}" for line in energy_lines(record.energy)]
     ends = (float(found.speeds[0]), float(found.speeds[-1]))
     return [*lines, *fade_lines(entry.case.model, record.speed, "the run"), *film_course(entry.case.model, ends)]
+
+
+def _band(entry: LawRun, runs: int) -> list[str]:
+    """Lines on the band of the sum level, where runs for it were asked for."""
+    if not runs:
+        return []
+    words = band_lines(entry.case.model)
+    if entry.level_error is None:
+        return words
+    found = entry.spectra.campbell
+    worst = int(np.argmax(entry.level_error))
+    middle, at = float(np.median(entry.level_error)), RPM.text(float(found.speeds[worst]))
+    highest = float(entry.level_error[int(np.argmax(found.sum_level))])
+    return [
+        f"  band of the sum level by {runs} runs with laws wrong by the errors of the map: +- {middle:.2g} dB in the "
+        f"median of the windows, +- {highest:.2g} dB at the highest level, at most +- "
+        f"{entry.level_error[worst]:.2g} dB, at {at}",
+        *words,
+    ]
 
 
 def _differences(found: Sequence[LawRun]) -> list[str]:

@@ -23,6 +23,7 @@ from mbs.analyses.rings import ring_motions
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.heat import HeatPaths
 from mbs.commands.reach import outside_lines
+from mbs.linearised.bands import error_words
 from mbs.linearised.validity import NOTABLE, FilmError
 from mbs.model.equilibrium import Equilibrium
 from mbs.output.results import write_dataset
@@ -79,6 +80,18 @@ def held_lines(model: Model) -> list[str]:
     if not any(isinstance(bearing.thermal, HeatPaths) for bearing in model.scene.bearings):
         return []
     return [f"  temperatures and clearances are held at those of {RPM.text(model.scene.speed)}, of [operation]"]
+
+
+def band_lines(model: Model) -> list[str]:
+    """A line on what the bands of a result hold; none without bearings.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    """
+    words = error_words(model.system)
+    return [f"  bands (+-): {words}"] if words else []
 
 
 def film_lines(errors: Sequence[FilmError], frequencies: Iterable[float], words: str = "") -> list[str]:

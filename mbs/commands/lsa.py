@@ -9,12 +9,11 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.signal import find_peaks
 
-from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
 from mbs.analyses.case import Case
 from mbs.analyses.lsa import LsaResult, lsa
 from mbs.commands.cases import load_cases
-from mbs.commands.common import film_lines, heading, outside_at, write
+from mbs.commands.common import band_lines, film_lines, heading, outside_at, write
 from mbs.commands.reach import fade_lines
 from mbs.linearised.linear import response_unit
 from mbs.linearised.validity import DynamicLoad
@@ -34,6 +33,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
                 entry.frequencies,
                 entry.responses,
                 min((error.frequency for error in entry.errors), default=math.inf),
+                entry.level_error,
             )
             for label, entry in found
         ]
@@ -81,7 +81,8 @@ def _report(found: LsaResult, label: str) -> list[str]:
         f"state space: {found.space.A.shape[0]} states, {len(scene.inputs)} inputs, {len(scene.sensors)} outputs; "
         f"{found.asked} frequencies, and {frequencies.size - found.asked} more around lightly "
         "damped modes",
-        *_peaks(model, frequencies, found.responses),
+        *_peaks(model, found),
+        *band_lines(model),
         *film_lines(found.errors, frequencies),
         *(
             f"warning: {load.element}: {load.dynamic:.3g} N of dynamic load at {load.frequency:.4g} Hz exceed the "
@@ -106,15 +107,19 @@ def _lifting_notes(loads: Sequence[DynamicLoad], label: str) -> list[str]:
     ]
 
 
-def _peaks(model: Model, frequencies: FloatArray, responses: ComplexArray) -> list[str]:
-    """Lines of the peaks of each response."""
+def _peaks(model: Model, found: LsaResult) -> list[str]:
+    """Lines of the peaks of each response, with the bands of their levels."""
     lines = []
+    frequencies, responses, bands = found.frequencies, found.responses, found.level_error
     for s, sensor in enumerate(model.scene.sensors):
         for i, entry in enumerate(model.scene.inputs):
             size = np.abs(responses[:, s, i])
             # A peak stands out of both valleys beside it.
             places, _ = find_peaks(np.log(np.maximum(size, 1e-300)), prominence=0.05)
-            shown = [f"{frequencies[k]:.5g} Hz ({size[k]:.3g})" for k in places]
+            shown = [
+                f"{frequencies[k]:.5g} Hz ({size[k]:.3g}{'' if bands is None else f' +- {bands[k, s, i]:.2g} dB'})"
+                for k in places
+            ]
             lines.append(
                 f"  {sensor.name} ({sensor.quantity}, {response_unit(sensor, entry)}) by {entry.name}: "
                 + (f"peaks at {', '.join(shown)}" if shown else "no peak")

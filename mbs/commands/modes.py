@@ -11,7 +11,7 @@ from ehdmaps.arrays import IntArray
 from ehdmaps.errors import InputError
 from mbs.analyses.modes import modes
 from mbs.commands.cases import load_model
-from mbs.commands.common import film_lines, heading, outside_at, read_option, write
+from mbs.commands.common import band_lines, film_lines, heading, outside_at, read_option, write
 from mbs.commands.reach import fade_lines
 from mbs.linearised.modes import Modes
 from mbs.output.modes_plot import modes_figure
@@ -46,6 +46,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines = [
         *heading(model, model.scene.speed),
         *_table(found, shown),
+        *band_lines(model),
         *_overdamped(found, overdamped),
         *(f"  {note}" for note in notes),
         *_lost(found),
@@ -83,11 +84,16 @@ def _kinds(found: Modes) -> tuple[IntArray, IntArray, IntArray]:
 
 def _table(found: Modes, shown: IntArray) -> list[str]:
     """Lines of modes: frequency, damping ratio, and the parts that have most of the strain energy."""
-    lines = ["  mode   frequency/Hz   damping ratio   strain energy        (frequency: |eigenvalue|/(2 pi))"]
+    bands = found.bands
+    wide = "" if bands is None else "        +-"
+    lines = [
+        f"  mode   frequency/Hz{wide}   damping ratio{wide}   strain energy        (frequency: |eigenvalue|/(2 pi))"
+    ]
     for k in shown:
         ratio = float(found.damping_ratio[k])
         ratio = ratio if abs(ratio) > _ROUND_OFF else 0.0
-        lines.append(f"  {k + 1:4d} {found.frequency[k]:14.6g} {ratio:15.4g}   {_shares(found, k)}")
+        by = ("", "") if bands is None else (f"{bands.frequency[k]:10.2g}", f"{bands.damping_ratio[k]:10.2g}")
+        lines.append(f"  {k + 1:4d} {found.frequency[k]:14.6g}{by[0]} {ratio:15.4g}{by[1]}   {_shares(found, k)}")
     return lines
 
 

@@ -17,7 +17,7 @@ from mbs.analyses.operating import operating
 from mbs.analyses.reach import axes_outside, fade_of
 from mbs.analyses.sweep import SweepSettings, sweep
 from mbs.commands.cases import load_cases
-from mbs.commands.common import film_lines, heading, write
+from mbs.commands.common import band_lines, film_lines, heading, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.crossings import exchanged
 from mbs.linearised.sweep import MOST_ANGLES
@@ -54,6 +54,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *(f"  {line}" for line in flooded_note(_largest(torque), case.model.supplies.values())),
             *_undamped(entry),
             *_complex(entry),
+            *band_lines(case.model),
             *_exchanged(entry),
             *_unsure(entry),
             *_lost(entry),
@@ -178,6 +179,8 @@ def _bearings(result: Sweep, torque: FloatArray) -> list[str]:
         lines.append(
             f"  {name}: {changed}; along the load k {k[0] * 1e-6:.4g} to {k[1] * 1e-6:.4g} N/um ({_change(*k)}), "
             f"c {c[0]:.4g} to {c[1]:.4g} N s/m ({_change(*c)}){spread}"
+            + _band("; k", entry.stiffness_error[:, index], entry.stiffness[:, index])
+            + _band(", c", entry.damping_error[:, index], entry.damping[:, index])
         )
         if np.all(np.isfinite(torque[:, index])):
             lines.append(
@@ -207,7 +210,7 @@ def _undamped(result: Sweep) -> list[str]:
         lines.append(
             f"  {k + 1:4d} {f[0]:12.5g} to {f[1]:9.5g} {_change(*f):>11} {_percent(found.summed_shift[-1, k]):>16}, "
             f"{_percent(found.direct_shift[k]):>10} {_clean(z[0]):9.3g} to {_clean(z[1]):.3g} "
-            f"{s[0]:12.2f} to {s[1]:.2f}"
+            f"{s[0]:12.2f} to {s[1]:.2f}" + _band("; frequency", found.frequency_error[:, k], found.frequency[:, k])
         )
     return lines
 
@@ -231,6 +234,8 @@ def _complex(result: Sweep) -> list[str]:
             f"  {found.number[k] + 1:4d} {f[0]:12.5g} to {f[1]:9.5g} {_change(*f):>11} "
             f"{_clean(z[0]):10.3g} to {_clean(z[1]):.3g} "
             f"{_clean(w[1]):+14.2g}           {'everywhere' if whole else f'{begin} to {end}'}"
+            + _band("; frequency", found.frequency_error[:, k], found.frequency[:, k])
+            + _band(", damping ratio", found.damping_ratio_error[:, k], found.damping_ratio[:, k])
         )
     return lines
 
@@ -304,6 +309,14 @@ def _lost(result: Sweep) -> list[str]:
         "is missing there"
         for reason, number in count.items()
     ]
+
+
+def _band(words: str, errors: FloatArray, values: FloatArray) -> str:
+    """The largest band over the speeds, in per cent of the value there; nothing where none is stated."""
+    there = np.isfinite(errors) & (np.abs(values) > _ROUND_OFF)
+    if not there.any():
+        return ""
+    return f"{words} +- {100.0 * float(np.max(errors[there] / np.abs(values[there]))):.2g} %"
 
 
 def _change(begin: float, end: float) -> str:

@@ -24,6 +24,13 @@ _ASYMMETRY = 1e-9
 """Of the largest entry; text files of 10 digits and more stay below it."""
 
 
+_LARGEST_ENTRY = 1e100
+"""Magnitude beyond which an entry of a matrix in SI is damage; products of two of them are still numbers."""
+
+_FARTHEST = 1e9
+"""Distance of a node from the origin beyond which it is damage [m]."""
+
+
 @dataclass(frozen=True, eq=False)
 class FiniteElementModel:
     """Matrices of a body and what their rows mean.
@@ -64,8 +71,10 @@ class FiniteElementModel:
         if not problems:
             for name in ("stiffness", "mass"):
                 matrix = sparse.csc_array(getattr(self, name), dtype=np.float64)
-                problems += _matrix_problems(name, matrix)
-                object.__setattr__(self, name, sparse.csc_array(0.5 * (matrix + matrix.T)))
+                wrong = _matrix_problems(name, matrix)
+                problems += wrong
+                if not wrong:
+                    object.__setattr__(self, name, sparse.csc_array(0.5 * (matrix + matrix.T)))
             problems += self._label_problems()
         if not problems:
             massless = np.flatnonzero(self.mass.diagonal() <= 0.0)
@@ -135,11 +144,11 @@ class FiniteElementModel:
         problems += self._list("nodes", first[counts > 1], "is there twice; allowed: each degree of freedom once")
         if np.unique(self.numbers).size != self.numbers.size:
             problems.append("finite-element body, numbers: a node has two positions; allowed: one for each")
-        if not np.all(np.isfinite(self.positions)):
-            bad = self.numbers[~np.isfinite(self.positions).all(axis=1)]
+        placed = np.all(np.abs(self.positions) <= _FARTHEST, axis=1)
+        if not np.all(placed):
             problems.append(
-                f"finite-element body, positions: got values that are no finite numbers at {named(bad)}; allowed: "
-                "finite lengths in m"
+                f"finite-element body, positions: got values that are no finite numbers, or too large ones, at "
+                f"{named(self.numbers[~placed])}; allowed: lengths up to {_FARTHEST:g} m; check the file and its units"
             )
         return problems
 
@@ -162,6 +171,11 @@ def _matrix_problems(name: str, matrix: sparse.csc_array) -> list[str]:
     """What is wrong with the entries of a matrix."""
     if not np.all(np.isfinite(matrix.data)):
         return [f"finite-element body, {name}: got entries that are no finite numbers; allowed: finite ones"]
+    if np.any(np.abs(matrix.data) > _LARGEST_ENTRY):
+        return [
+            f"finite-element body, {name}: got an entry of {np.max(np.abs(matrix.data)):.3g}; allowed: up to "
+            f"{_LARGEST_ENTRY:g}; check the file and its units"
+        ]
     largest = float(np.max(np.abs(matrix.data), initial=0.0))
     apart = float(np.max(np.abs((matrix - matrix.T).data), initial=0.0))
     if apart > _ASYMMETRY * largest:

@@ -18,6 +18,9 @@ from mbs.flexible.finite_elements import MOST_FREEDOMS, FiniteElementModel
 from mbs.flexible.number_table import NumberTable, check_file, check_last_line, read_numbers
 from mbs.flexible.plan import UNIT_SYSTEMS
 
+_BLOCK = 2**20
+"""Bytes of a file that are looked at in one piece."""
+
 _FIXED = 1e35
 """Stiffness from which on a degree of freedom is taken as fixed: Abaqus writes 1e36 for those."""
 
@@ -81,7 +84,8 @@ def assemble_model(stiffness: Labelled, mass: Labelled, nodes: NodePositions, un
     for entry, order in zip((stiffness, mass), orders, strict=True):
         matrix = sparse.coo_array(sparse.csc_array(entry.matrix)[order][:, order])
         factors = np.array([force, force * length, force * length**2])
-        scaled = matrix.data * factors[step[matrix.row] + step[matrix.col]]
+        with np.errstate(over="ignore"):  # the model refuses what is infinite
+            scaled = matrix.data * factors[step[matrix.row] + step[matrix.col]]
         matrices.append(sparse.csc_array((scaled, (matrix.row, matrix.col)), shape=matrix.shape))
     return FiniteElementModel(
         stiffness=matrices[0],
@@ -110,6 +114,7 @@ def read_matrix_market(path: Path, dofs: Path) -> Labelled:
     """
     nodes, directions = read_dof_table(dofs)
     check_file(path)
+    _check_plain(path)
     try:
         rows, columns, entries, _, values, _ = io.mminfo(path)
     except (OSError, ValueError, OverflowError) as error:
@@ -276,4 +281,14 @@ def _symmetric(table: NumberTable, rows: IntArray, columns: IntArray, size: int)
 
 def _first_line(error: BaseException) -> str:
     """What an error says, in one line."""
-    return (str(error).splitlines() or [type(error).__name__])[0]
+    return (str(error).splitlines() or [type(error).__name__])[0][:200]
+
+
+def _check_plain(path: Path) -> None:
+    """Refuse a text with zero bytes: the library that reads Matrix Market files reads on behind them, and crashes."""
+    with path.open("rb") as file:
+        while block := file.read(_BLOCK):
+            if b"\0" in block:
+                raise InputError(
+                    f"{path}: is no Matrix Market file (it has zero bytes); allowed: text; was it damaged?"
+                )

@@ -18,6 +18,9 @@ UNITS = ("m", "rad", "1")
 
 MOST_COORDINATES = 1000
 
+_LARGEST_ENTRY, _LIGHTEST = 1e100, 1e-100
+"""Largest entry of a matrix, and smallest mass of a coordinate, in their units; what is beyond is damage."""
+
 _ROUNDING = 1e-8
 """Of the largest entry of a scaled matrix: what asymmetry or negative stiffness may be rounding of a file."""
 
@@ -77,6 +80,11 @@ class ReducedBody:
                 problems.append(f"reduced body, {name}: got shape {matrix.shape}; allowed: {(size, size)}")
             elif not np.all(np.isfinite(matrix)):
                 problems.append(f"reduced body, {name}: got entries that are no finite numbers; allowed: finite ones")
+            elif size and np.max(np.abs(matrix)) > _LARGEST_ENTRY:
+                problems.append(
+                    f"reduced body, {name}: got an entry of {np.max(np.abs(matrix)):.3g}; allowed: up to "
+                    f"{_LARGEST_ENTRY:g} in the units of the coordinates; the file is damaged"
+                )
         for name, frame in self.frames.items():
             shapes = (np.shape(frame.position), np.shape(frame.transform))
             if shapes != ((3,), (6, size)):
@@ -101,7 +109,7 @@ class ReducedBody:
     def _matrix_problems(self) -> list[str]:
         """What is wrong with matrices of the right shape."""
         diagonal = np.diag(self.mass)
-        if np.any(diagonal <= 0.0):
+        if np.any(diagonal <= _LIGHTEST):
             name = self.coordinates[int(np.argmin(diagonal))]
             return [f"reduced body, mass: got {diagonal.min():.4g} on the diagonal at {name}; allowed: > 0"]
         scale = 1.0 / np.sqrt(diagonal)

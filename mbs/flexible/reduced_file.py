@@ -17,6 +17,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.errors import InputError
+from ehdmaps.netcdf_structure import structure_problem
 from ehdmaps.outputs import MADE_AS, Kind, root_attributes, written_aside
 from mbs.flexible.plan import REDUCED_SUFFIXES, check_reduced, check_reduced_suffix
 from mbs.flexible.reduced_body import MOST_COORDINATES, ReducedBody
@@ -177,6 +178,9 @@ def _npz(path: Path) -> dict[str, Any]:
 def _netcdf(path: Path) -> dict[str, Any]:
     """Arrays of a netCDF file."""
     try:
+        damage = structure_problem(path)
+        if damage:
+            raise OSError(damage)
         with xr.open_dataset(path, engine="netcdf4", decode_times=False) as file:
             dataset = file.load()
     except _DAMAGED as error:

@@ -101,6 +101,7 @@ def _swapped(found: UndampedSweep, first: int, second: int) -> UndampedSweep:
         damping_ratio=np.take_along_axis(found.damping_ratio, order, axis=1),
         shares=np.take_along_axis(found.shares, order[None], axis=2),
         bearing_share=np.take_along_axis(found.bearing_share, order, axis=1),
+        frequency_error=np.take_along_axis(found.frequency_error, order, axis=1),
         assurance=np.take_along_axis(found.assurance, order, axis=1),
         summed_shift=np.expm1(shift),
         resembles=resembles,

@@ -62,6 +62,36 @@ def modal_response(
     return result
 
 
+def modal_motion(
+    balance: Equilibrium,
+    states: StateModes,
+    inputs: Sequence[Input],
+    sensors: Sequence[Sensor],
+    frequencies: FloatArray,
+) -> tuple[ComplexArray, ComplexArray]:
+    """Motion of all coordinates by each input, and what each sensor sees of a load on each coordinate.
+
+    Arguments as of `modal_response`.
+
+    Returns
+    -------
+    motion : array, shape (frequencies, n, inputs)
+        Complex amplitudes of the coordinates at 1 N or 1 N m.
+    back : array, shape (frequencies, sensors, n)
+        Response of each sensor to a load of 1 N or 1 N m on each coordinate.
+    """
+    n = balance.system.size
+    right = states.right[:n]
+    by_load = np.linalg.solve(balance.system.mass.T, states.left[:, n : 2 * n].T).T
+    seen, driven = sensor_matrix(balance, sensors) @ right, by_load @ input_matrix(balance, inputs)
+    rate = 2j * np.pi * np.asarray(frequencies, dtype=np.float64)
+    resonance = 1.0 / (rate[:, None] - states.eigenvalues)
+    orders = np.array([_ORDER[sensor.quantity] for sensor in sensors], dtype=np.int64)
+    motion = right @ (resonance[:, :, None] * driven)
+    back = (seen * resonance[:, None, :]) @ by_load
+    return motion, back * (rate[:, None] ** orders)[:, :, None]
+
+
 def checked_response(
     balance: Equilibrium,
     states: StateModes,

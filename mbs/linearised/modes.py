@@ -18,6 +18,7 @@ from scipy.linalg import eigh
 
 from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError
+from mbs.linearised.bands import ModeBands, law_bands
 from mbs.linearised.dynamic import system_film_states
 from mbs.linearised.film_states import FilmStates
 from mbs.linearised.own_frequency import LostMode, OwnFrequency, at_own_frequency
@@ -49,6 +50,8 @@ class Modes:
     among_films : int
         Motions that do not oscillate and are as quick as films relax. They cannot be told from these, and are in no
         array.
+    bands : ModeBands or None
+        What the errors that a map states may change, see `mbs.linearised.bands`; None for laws that state none.
     """
 
     eigenvalues: ComplexArray
@@ -57,6 +60,7 @@ class Modes:
     shares: FloatArray
     lost: tuple[LostMode, ...] = ()
     among_films: int = 0
+    bands: ModeBands | None = None
 
     @property
     def frequency(self) -> FloatArray:
@@ -169,15 +173,30 @@ def modes(balance: Equilibrium) -> Modes:
     AnalysisError
         If a stiffness or damping is not finite.
     """
+    return modes_of(balance, state_modes(balance, undamped_modes(balance)))
+
+
+def modes_of(balance: Equilibrium, states: StateModes) -> Modes:
+    """Modes of small motion from all eigenvalues of the state.
+
+    Parameters
+    ----------
+    balance : Equilibrium
+        Equilibrium to linearise at.
+    states : StateModes
+        What `state_modes` finds there.
+    """
     n = balance.system.size
-    states = state_modes(balance, undamped_modes(balance))
     # A pair of real eigenvalues is one overdamped freedom: both are kept, as is one of each conjugate pair.
     among = states.among_films
     kept = np.flatnonzero((states.eigenvalues.imag >= 0.0) & ~among)
     own = states.at_own_frequency(balance, kept)
-    values, shapes = own.eigenvalues[own.found], states.right[:n, kept[own.found]]
+    values, kept = own.eigenvalues[own.found], kept[own.found]
     order = np.argsort(np.abs(values), kind="stable")
-    values, shapes = values[order], shapes[:, order]
+    values, kept = values[order], kept[order]
+    shapes = states.right[:n, kept]
+    laws = law_bands(balance)
+    bands = None if laws is None else laws.of_modes(values, shapes, states.left[kept, n : 2 * n])
     translations = np.array([unit != "rad" for unit in balance.system.units])
     for k in range(shapes.shape[1]):
         column = shapes[:, k]
@@ -187,7 +206,7 @@ def modes(balance: Equilibrium) -> Modes:
         largest = int(np.argmax(shown if shown.max() > 1e-6 * size.max() else size))
         shapes[:, k] = column / column[largest]
     shares = energy_shares(balance, shapes, np.abs(values))
-    return Modes(values, shapes, tuple(balance.parts), shares, own.lost, int(np.count_nonzero(among)))
+    return Modes(values, shapes, tuple(balance.parts), shares, own.lost, int(np.count_nonzero(among)), bands)
 
 
 def undamped_modes(balance: Equilibrium) -> UndampedModes:

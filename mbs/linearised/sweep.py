@@ -17,6 +17,7 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError, InputError
+from mbs.linearised.bands import law_bands
 from mbs.linearised.crossings import straightened
 from mbs.linearised.modal_response import checked_response
 from mbs.linearised.own_frequency import LostMode
@@ -132,6 +133,9 @@ class _Recorded:
     bearings: FloatArray
     kinship: FloatArray
     lost: tuple[LostMode, ...]
+    frequency_error: FloatArray
+    complex_errors: FloatArray
+    bearing_errors: FloatArray
 
 
 def _record(point: Point, cage_angles: int) -> _Recorded:
@@ -149,7 +153,20 @@ def _record(point: Point, cage_angles: int) -> _Recorded:
         over_pitch(point.balance, cage_angles),
         point.kinship,
         point.lost,
+        *_errors(point),
     )
+
+
+def _errors(point: Point) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Bands of undamped frequencies (n,), of complex modes (2, modes) and of bearings (2, bearings); NaN if unknown."""
+    n, kept, states = point.balance.system.size, point.kept, point.states
+    laws = law_bands(point.balance)
+    if laws is None:
+        shape = (2, bearing_parts(point.balance).size)
+        return np.full(n, np.nan), np.full((2, kept.size), np.nan), np.full(shape, np.nan)
+    damped = laws.of_modes(point.damped.eigenvalues, states.right[:n, kept], states.left[kept, n : 2 * n])
+    undamped = laws.of_undamped(point.undamped.frequency, point.undamped.shapes)
+    return undamped, np.array(damped), laws.of_bearings()
 
 
 def _check(speeds: FloatArray, frequencies: FloatArray, pairs: int, cage_angles: int) -> None:
@@ -185,6 +202,7 @@ def _undamped(points: Sequence[_Recorded], links: Sequence[Along], first: Point,
         damping_ratio=np.array([point.damping_ratio[row] for point, row in zip(points, order, strict=True)]),
         shares=shares,
         bearing_share=shares[bearing_parts(first.balance)].sum(axis=0),
+        frequency_error=np.array([point.frequency_error[row] for point, row in zip(points, order, strict=True)]),
         assurance=sure,
         summed_shift=np.expm1(logarithm),
         direct_shift=first_order_shift(first, last)[0],
@@ -201,18 +219,19 @@ def _damped(points: Sequence[_Recorded], links: Sequence[Along], here: IntArray)
     values = np.full(shape, complex(np.nan, np.nan))
     whirl, sure = np.full(shape, np.nan), np.full(shape, np.nan)
     shares = np.full((points[0].complex_shares.shape[0], *shape), np.nan)
+    errors = np.full((2, *shape), np.nan)
     for index, (point, row) in enumerate(zip(points, order, strict=True)):
         there = np.nonzero(row >= 0)[0]
         values[index, there] = point.eigenvalues[row[there]]
         whirl[index, there] = point.whirl[row[there]]
         shares[:, index, there] = point.complex_shares[:, row[there]]
+        errors[:, index, there] = point.complex_errors[:, row[there]]
         sure[index, there] = 1.0
         if index:
             old = there[order[index - 1, there] >= 0]
             sure[index, old] = links[index - 1].damped.assurance[order[index - 1, old]]
-    return ComplexSweep(
-        values, shares, shares[here].sum(axis=0), whirl, sure, number, tuple(point.lost for point in points)
-    )
+    lost = tuple(point.lost for point in points)
+    return ComplexSweep(values, shares, shares[here].sum(axis=0), whirl, sure, number, errors[0], errors[1], lost)
 
 
 def _bearings(points: Sequence[_Recorded], first: Point) -> BearingSweep:
@@ -223,4 +242,7 @@ def _bearings(points: Sequence[_Recorded], first: Point) -> BearingSweep:
     load, stiffness, damping = np.moveaxis(found.mean(axis=1), 1, 0)
     half = 0.5 * np.ptp(found, axis=1)
     spread = np.divide(half, found.mean(axis=1), out=np.zeros_like(half), where=half != 0.0)
-    return BearingSweep(names, load, stiffness, damping, spread[:, 1], spread[:, 2], found.shape[1])
+    errors = np.moveaxis(np.array([point.bearing_errors for point in points]), 1, 0)
+    return BearingSweep(
+        names, load, stiffness, damping, spread[:, 1], spread[:, 2], found.shape[1], errors[0], errors[1]
+    )

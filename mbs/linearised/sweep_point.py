@@ -48,6 +48,8 @@ class Point:
         d omega/d Omega by gyroscopic terms [1]; of an equal pair, as at rest, anything between those of both.
     kinship : array, shape (complex modes, n)
         Part of each undamped mode in the shape of a complex one, by kinetic energy: rows sum to 1.
+    kept : array of int, shape (complex modes,)
+        Which of `states` the complex modes are.
     lost : tuple of LostMode
         Complex modes that could not be brought to the films of their own frequency; they are not there.
     """
@@ -60,6 +62,7 @@ class Point:
     complex_shares: FloatArray
     whirl: FloatArray
     kinship: FloatArray
+    kept: IntArray
     lost: tuple[LostMode, ...] = ()
 
 
@@ -117,6 +120,7 @@ def solve_modes(balance: Equilibrium) -> Point:
         # d lambda/d Omega = left . dA/dOmega . right, exact with damping too.
         -np.sum(states.left[kept, n : 2 * n].T * turned, axis=0).imag,
         _kinship(undamped.shapes.T @ system.mass @ shapes),
+        kept,
         own.lost,
     )
 

@@ -25,6 +25,8 @@ class UndampedSweep:
         Part of the strain energy that each part has.
     bearing_share : array, shape (speeds, n)
         That of all bearings.
+    frequency_error : array, shape (speeds, n)
+        Band of the frequency, either way, from the errors that the map states [Hz]; NaN for laws that state none.
     assurance : array, shape (speeds, n)
         Least assurance on the way from the speed before, 1 at the first.
     summed_shift : array, shape (speeds, n)
@@ -41,6 +43,7 @@ class UndampedSweep:
     damping_ratio: FloatArray
     shares: FloatArray
     bearing_share: FloatArray
+    frequency_error: FloatArray
     assurance: FloatArray
     summed_shift: FloatArray
     direct_shift: FloatArray
@@ -74,6 +77,8 @@ class ComplexSweep:
         Least assurance on the way from the speed before, 1 where a mode begins.
     number : array of int, shape (modes,)
         Undamped mode, from 0 on, that it is nearest to where it begins; two that are never there together may share it.
+    frequency_error, damping_ratio_error : array, shape (speeds, modes)
+        Bands of both, either way, from the errors that the map states [Hz], [1]; NaN for laws that state none.
     lost : tuple of tuple of LostMode
         Modes that could not be brought to the films of their own frequency, at each speed.
     """
@@ -84,6 +89,8 @@ class ComplexSweep:
     whirl: FloatArray
     assurance: FloatArray
     number: IntArray
+    frequency_error: FloatArray
+    damping_ratio_error: FloatArray
     lost: tuple[tuple[LostMode, ...], ...] = ()
 
     @property
@@ -113,6 +120,9 @@ class BearingSweep:
         Half of what they vary over these angles, as a part of the mean; 0 for one angle.
     angles : int
         Angles of the cage within one pitch of the rollers.
+    stiffness_error, damping_error : array, shape (speeds, bearings)
+        Bands of both at the first angle, either way, from the errors that the map states [N/m], [N s/m]; NaN for laws
+        that state none.
     """
 
     names: tuple[str, ...]
@@ -122,6 +132,8 @@ class BearingSweep:
     stiffness_spread: FloatArray
     damping_spread: FloatArray
     angles: int
+    stiffness_error: FloatArray
+    damping_error: FloatArray
 
 
 @dataclass(frozen=True, eq=False)

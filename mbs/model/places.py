@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.units import closest
+from ehdmaps.units import closest, short
 from mbs.model.body import CENTRE, Body, Frame
 from mbs.model.elements import GROUND
 
@@ -29,10 +29,10 @@ class Places:
             return ""
         if body not in self._by_name:
             names = (*self._by_name, GROUND)
-            return f"got the body {body!r}{closest(body, names)}; allowed: {', '.join(names)}"
+            return f"got the body {short(body)}{closest(body, names)}; allowed: {', '.join(names)}"
         frames = self._by_name[body].frames
         if (frame or CENTRE) not in frames:
-            return f"got the frame {frame or CENTRE!r} of {body!r}; allowed: {', '.join(frames)}"
+            return f"got the frame {short(frame or CENTRE)} of {body!r}; allowed: {', '.join(frames)}"
         return ""
 
     def frame(self, place: str) -> Frame:

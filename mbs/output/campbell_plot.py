@@ -17,7 +17,7 @@ from matplotlib.patheffects import withStroke
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import COLOURS, SHADE
-from mbs.output.page import ESTIMATED, shade_handle
+from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, shade_handle
 from mbs.spectral.campbell import Campbell, RunUpSpectra
 from mbs.spectral.levels import Reference, level
 from mbs.spectral.run_signal import RPM
@@ -100,6 +100,7 @@ def campbell_figure(
     orders: Sequence[tuple[float, str]] = (),
     overlays: Sequence[Overlay | None] = (),
     reaches: Sequence[Reach] = (),
+    bands: Sequence[FloatArray | None] = (),
 ) -> Figure:
     """Draw up to four laws.
 
@@ -119,9 +120,12 @@ def campbell_figure(
         Natural frequencies to draw into the diagram of each law.
     reaches : sequence of Reach
         How far the films of each law reach.
+    bands : sequence of array, shape (windows,), or None
+        Band of the sum level of each law, either way [dB].
     """
     figure = Figure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
     figure.suptitle(title, fontsize=8)
+    bands = bands or [None] * len(laws)
     upper, lower = np.ravel(figure.subfigures(2, 1, squeeze=False, height_ratios=(1.35, 1.0)))
     panels = upper.subplots(1, len(laws), sharex=True, sharey=True, squeeze=False)[0]
     colours = _colours(results)
@@ -148,15 +152,19 @@ def campbell_figure(
     last = _highest_order(results[0], orders)
     for order, _ in orders:
         right.axvline(order, color="0.7", lw=0.5, ls=":")
-    for law, result, colour, dashes in zip(laws, results, COLOURS, _DASHES, strict=False):
-        left.plot(result.campbell.speeds * RPM, result.campbell.sum_level, dashes, color=colour, lw=1.0, label=law)
+    for law, result, band, colour, dashes in zip(laws, results, bands, COLOURS, _DASHES, strict=False):
+        sums, rpm = result.campbell.sum_level, result.campbell.speeds * RPM
+        left.plot(rpm, sums, dashes, color=colour, lw=1.0, label=law)
+        if band is not None:
+            left.fill_between(rpm, sums - band, sums + band, color=colour, alpha=BAND_ALPHA, lw=0.0, zorder=1.5)
         spectrum = level(result.spectra.mean(), reference.value)
         place = result.spectra.orders
         # Below two lines is the mean.
         shown = (place > 2.0 / result.spectra.window) & (place <= last) & np.isfinite(spectrum)
         right.plot(place[shown], spectrum[shown], dashes, color=colour, lw=0.8)
     left.set_xlabel("speed, rpm", fontsize=7)
-    left.set_ylabel(f"sum level, {_reference(reference)}", fontsize=7)
+    shaded = f"\nshaded: {BAND_WORDS}" if any(band is not None for band in bands) else ""
+    left.set_ylabel(f"sum level, {_reference(reference)}{shaded}", fontsize=7)
     short = max(map(len, laws)) <= _SHORT_LABEL
     if short or len(laws) < MOST_LAWS:
         left.legend(fontsize=7, frameon=False, ncols=2 if short and len(laws) > 2 else 1)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from ehdmaps.arrays import IntArray
 from mbs.linearised.modes import Modes
-from mbs.output.page import ESTIMATED, headed, shade, shade_handle
+from mbs.output.page import BAND_WORDS, ESTIMATED, headed, shade, shade_handle
 from mbs.scene.assembly import Model
 
 _RPM = 30.0 / np.pi
@@ -61,7 +61,9 @@ def modes_figure(model: Model, found: Modes, shown: IntArray, limit: float = mat
     if quick.size:
         # A strip above the bars, which keep their colours.
         shade(panel, quick[0] - 0.5, quick[-1] + 0.5, bottom=100.0 / _TOP)
-    panel.set_xlabel("mode: frequency |eigenvalue|/(2π), damping ratio ζ" + (f"\n{words}" if words else ""))
+    panel.set_xlabel(
+        "mode: frequency |eigenvalue|/(2π), damping ratio ζ" + _bands(found, level) + (f"\n{words}" if words else "")
+    )
     panel.set_ylabel("part of the strain energy, %")
     handles = panel.get_legend_handles_labels()[0] + ([shade_handle(_quick(limit))] if quick.size else [])
     panel.legend(handles=handles, fontsize=7, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
@@ -71,8 +73,18 @@ def modes_figure(model: Model, found: Modes, shown: IntArray, limit: float = mat
 def _label(found: Modes, mode: int, level: bool) -> str:
     """Number, frequency and damping ratio of a mode."""
     ratio = float(found.damping_ratio[mode])
-    parts = (f"{mode + 1}:", f"{found.frequency[mode]:.5g} Hz", f"ζ {ratio if abs(ratio) > _ROUND_OFF else 0.0:.2g}")
+    parts = [f"{mode + 1}:", f"{found.frequency[mode]:.5g} Hz", f"ζ {ratio if abs(ratio) > _ROUND_OFF else 0.0:.2g}"]
+    if level and found.bands is not None:
+        parts[1:] = [
+            *(parts[1], f"± {found.bands.frequency[mode]:.1g} Hz"),
+            *(parts[2], f"± {found.bands.damping_ratio[mode]:.1g}"),
+        ]
     return "\n".join(parts) if level else " ".join(parts)
+
+
+def _bands(found: Modes, level: bool) -> str:
+    """What the label of the axis adds on bands."""
+    return f", ±: {BAND_WORDS}" if level and found.bands is not None else ""
 
 
 def _quick(limit: float) -> str:

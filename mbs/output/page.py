@@ -16,6 +16,12 @@ from mbs.scene.assembly import Model
 
 _SIZE = (9.0, 5.5)
 
+BAND_ALPHA = 0.3
+"""Opacity of the bands of errors."""
+
+BAND_WORDS = "band by the errors that the map states"
+"""How figures call them."""
+
 ESTIMATED = f"estimated error of the films above {100.0 * NOTABLE:g} %"
 """How figures call the range in which the films that an analysis has are notably wrong."""
 

@@ -15,7 +15,7 @@ from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.figures import COLOURS, typeset
 from ehdmaps.units import RPM
 from mbs.linearised.linear import response_unit
-from mbs.output.page import ESTIMATED, grid, headed, page, shade
+from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, grid, headed, page, shade
 from mbs.scene.assembly import Model
 
 MOST_COMPARED = 8
@@ -40,12 +40,15 @@ class Curves:
         Sensor unit per N or N m.
     limit : float
         Frequency from which on the films are notably wrong [Hz].
+    level_error : array, shape (frequencies, sensors, inputs), optional
+        Bands of the levels, either way [dB]; none are drawn without.
     """
 
     label: str
     frequencies: FloatArray
     responses: ComplexArray
     limit: float = math.inf
+    level_error: FloatArray | None = None
 
 
 def response_figure(model: Model, case: Curves, notes: Sequence[str] = ()) -> Figure:
@@ -79,6 +82,7 @@ def response_figure(model: Model, case: Curves, notes: Sequence[str] = ()) -> Fi
     for panel in axes:
         grid(panel)
     _limit(axes, case.limit)
+    notes = [*_band_note([case]), *notes]
     if notes:
         figure.supxlabel("\n".join(notes), fontsize=7)
     return figure
@@ -126,7 +130,7 @@ def comparison_figure(model: Model, cases: Sequence[Curves], notes: Sequence[str
         panel.set_xlim(low, high)
     for panel in rows[-1]:
         panel.set_xlabel("frequency, Hz")
-    below = [*notes, *([f"{left_out} more responses not drawn"] if left_out > 0 else [])]
+    below = [*_band_note(cases), *notes, *([f"{left_out} more responses not drawn"] if left_out > 0 else [])]
     figure.legend(
         handles=handles, title="\n".join(below), title_fontsize=7, fontsize=8, frameon=False, loc="outside lower center"
     )
@@ -137,6 +141,16 @@ def _magnitude(panel: Axes, case: Curves, pair: tuple[int, int], **style: str) -
     """The size of a response; nothing where it is zero."""
     size = np.abs(case.responses[:, pair[0], pair[1]])
     panel.loglog(case.frequencies, np.where(size > 0.0, size, np.nan), lw=1.0, **style)
+    if case.level_error is not None:
+        factor = 10.0 ** (case.level_error[:, pair[0], pair[1]] / 20.0)
+        panel.fill_between(
+            case.frequencies, size / factor, size * factor, color=style["color"], alpha=BAND_ALPHA, lw=0.0, zorder=1.5
+        )
+
+
+def _band_note(cases: Sequence[Curves]) -> list[str]:
+    """What the shade about the curves is; nothing where no case has one."""
+    return [f"shaded: {BAND_WORDS}"] if any(case.level_error is not None for case in cases) else []
 
 
 def _phase(frequencies: FloatArray, response: ComplexArray) -> tuple[FloatArray, FloatArray]:

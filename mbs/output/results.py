@@ -18,6 +18,7 @@ from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.films import SIDES
 from mbs.bearings.roller_element import ring_matrices
 from mbs.bearings.rolling_loss import RollingLoss
+from mbs.linearised.bands import ModeBands, error_words
 from mbs.linearised.linear import StateSpace
 from mbs.linearised.modes import Modes
 from mbs.model.body import FREEDOMS
@@ -31,6 +32,9 @@ SCHEMA_VERSION = 1
 _RESULT = "result of mbs"
 RESULT = dataset_kind("a result of mbs", _RESULT)
 """What -o writes, but where a command says otherwise."""
+
+BAND = "band, either way, by the errors that the map states, of"
+"""How datasets call the bands; they are NaN where none is stated."""
 
 _KINDS = (("translation", "m", "displacement"), ("rotation", "rad", "rotation"), ("modal", "1", "modal amplitude"))
 _UNITS = {"m": "m", "rad": "rad", "1": "1"}
@@ -111,9 +115,13 @@ def modes_dataset(found: Modes, balance: Equilibrium) -> xr.Dataset:
         _by_kind(balance.system, part.T, ("mode",), f"shape_{name}")
         for name, part in (("real", found.shapes.real), ("imaginary", found.shapes.imag))
     )
+    none = np.full(found.frequency.shape, np.nan)
+    bands = ModeBands(none, none) if found.bands is None else found.bands
     variables = {
         "frequency": ("mode", found.frequency, {"units": "Hz", "long_name": "|eigenvalue|/(2 pi)"}),
         "damping_ratio": ("mode", found.damping_ratio, {"units": "1", "long_name": "damping ratio"}),
+        "frequency_error": ("mode", bands.frequency, {"units": "Hz", "long_name": f"{BAND} the frequency"}),
+        "damping_ratio_error": ("mode", bands.damping_ratio, {"units": "1", "long_name": f"{BAND} the damping ratio"}),
         "eigenvalue_real": ("mode", found.eigenvalues.real, {"units": "1/s", "long_name": "decay"}),
         "eigenvalue_imaginary": ("mode", found.eigenvalues.imag, {"units": "rad/s", "long_name": "damped frequency"}),
         "energy_share": (
@@ -135,6 +143,7 @@ def linear_dataset(
     frequencies: FloatArray,
     inputs: Sequence[Input],
     sensors: Sequence[Sensor],
+    level_error: FloatArray | None = None,
 ) -> xr.Dataset:
     """State space and frequency responses.
 
@@ -152,6 +161,8 @@ def linear_dataset(
         Inputs, where forces act.
     sensors : sequence of Sensor
         Sensors, where motion is measured.
+    level_error : ndarray, optional
+        Bands of the levels [dB], in the shape of the responses; NaN if left out.
     """
     names = list(balance.system.coordinates)
     films = space.A.shape[0] - 2 * len(names)
@@ -162,6 +173,11 @@ def linear_dataset(
     variables = {
         "response_real": (dims, responses.real, {"units": units, "long_name": "real part of the response"}),
         "response_imaginary": (dims, responses.imag, {"units": units, "long_name": "imaginary part of the response"}),
+        "response_level_error": (
+            dims,
+            np.full(responses.shape, np.nan) if level_error is None else level_error,
+            {"units": "dB", "long_name": f"{BAND} the level of the response"},
+        ),
         "A": (("state", "of_state"), space.A, {"units": "SI", "long_name": "system matrix"}),
         "B": (("state", "input"), space.B, {"units": "SI", "long_name": "input matrix"}),
         "C": (("sensor", "of_state"), space.C, {"units": "SI", "long_name": "output matrix"}),
@@ -292,6 +308,7 @@ def _operation(balance: Equilibrium) -> dict[str, Any]:
     return {
         "speed_rad_per_s": balance.operation.speed,
         "angle_rad": balance.operation.angle,
+        "bands": error_words(balance.system),
         "residual": balance.residual,
         "newton_steps": balance.steps,
     }

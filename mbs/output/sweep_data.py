@@ -11,6 +11,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from mbs.linearised.sweep_result import Sweep
+from mbs.output.results import BAND
 
 _Entry = tuple[tuple[str, ...], Any, dict[str, str]]
 """A variable as xarray takes it."""
@@ -59,6 +60,7 @@ VARIABLES = (
         UNDAMPED,
         lambda found: found.undamped.frequency,
     ),
+    Variable("frequency_error", "Hz", f"{BAND} the frequency", UNDAMPED, lambda found: found.undamped.frequency_error),
     Variable("damping_ratio", "1", "modal damping ratio", UNDAMPED, lambda found: found.undamped.damping_ratio),
     Variable(
         "energy_share",
@@ -108,6 +110,20 @@ VARIABLES = (
         "damping ratio of complex modes",
         DAMPED,
         lambda found: found.damped.damping_ratio,
+    ),
+    Variable(
+        "complex_frequency_error",
+        "Hz",
+        f"{BAND} the frequency of the complex mode",
+        DAMPED,
+        lambda found: found.damped.frequency_error,
+    ),
+    Variable(
+        "complex_damping_ratio_error",
+        "1",
+        f"{BAND} the damping ratio of the complex mode",
+        DAMPED,
+        lambda found: found.damped.damping_ratio_error,
     ),
     Variable("eigenvalue_real", "1/s", "decay", DAMPED, lambda found: found.damped.eigenvalues.real),
     Variable(
@@ -173,6 +189,20 @@ VARIABLES = (
         "damping of the bearing along its force",
         BEARING,
         lambda found: found.bearings.damping,
+    ),
+    Variable(
+        "bearing_stiffness_error",
+        "N/m",
+        f"{BAND} the stiffness",
+        BEARING,
+        lambda found: found.bearings.stiffness_error,
+    ),
+    Variable(
+        "bearing_damping_error",
+        "N s/m",
+        f"{BAND} the damping",
+        BEARING,
+        lambda found: found.bearings.damping_error,
     ),
     Variable(
         "bearing_stiffness_spread",

@@ -10,13 +10,14 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import COLOURS, typeset
 from ehdmaps.units import RPM
 from mbs.linearised.linear import response_unit
 from mbs.linearised.sweep_result import Sweep, UndampedSweep
-from mbs.output.page import ESTIMATED, shade, shade_handle, whole_numbers
+from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, shade, shade_handle, whole_numbers
 
 _LEAST_SHARE = 0.05
 _MOST_MAPS = 4
@@ -117,6 +118,8 @@ def sweep_figure(
                 label="films with memory: complex modes alone",
             )
         )
+    if any(np.isfinite(entry.bearings.stiffness_error).any() for entry in sweeps):
+        styles.append(Patch(color="0.3", alpha=BAND_ALPHA, lw=0.0, label=BAND_WORDS))
     if any(np.isfinite(limit).any() for limit in limits):
         styles.append(Line2D([], [], color="0.3", lw=1.2, ls=_LIMIT, label=_ABOVE))
     if below > sweeps[0].speeds[0]:
@@ -157,6 +160,16 @@ def _modes(axes: Sequence[Axes], entry: Sweep, colour: str, relaxing: bool) -> N
                 width = 0.6 + 1.2 * float(np.nanmax(damped.bearing_share[:, k]))
                 there = np.isfinite(damped.frequency[:, k])
                 first = damped.frequency[there, k][0]
+                _band(
+                    axes[1],
+                    rpm,
+                    100.0 * (damped.frequency[:, k] / first - 1.0),
+                    100.0 * damped.frequency_error[:, k] / first,
+                    colour,
+                )
+                _band(
+                    axes[2], rpm, 100.0 * damped.damping_ratio[:, k], 100.0 * damped.damping_ratio_error[:, k], colour
+                )
                 axes[1].plot(rpm, 100.0 * (damped.frequency[:, k] / first - 1.0), color=colour, lw=width)
                 axes[2].plot(rpm, _positive(100.0 * damped.damping_ratio[:, k]), color=colour, lw=width)
 
@@ -167,6 +180,15 @@ def _bearings(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
     for index, dashes in zip(range(len(entry.bearings.names)), _DASHES * 16, strict=False):
         axes[0].plot(rpm, 1e-6 * entry.bearings.stiffness[:, index], dashes, color=colour, lw=1.3)
         axes[1].plot(rpm, entry.bearings.damping[:, index], dashes, color=colour, lw=1.3)
+        of = entry.bearings
+        _band(axes[0], rpm, 1e-6 * of.stiffness[:, index], 1e-6 * of.stiffness_error[:, index], colour)
+        _band(axes[1], rpm, of.damping[:, index], of.damping_error[:, index], colour)
+
+
+def _band(panel: Axes, rpm: FloatArray, values: FloatArray, errors: FloatArray, colour: str) -> None:
+    """Shade what the errors that the map states may change; nothing where none are stated."""
+    if np.isfinite(errors).any():
+        panel.fill_between(rpm, values - errors, values + errors, color=colour, alpha=BAND_ALPHA, lw=0.0, zorder=1.5)
 
 
 def _numbers(panel: Axes, entry: Sweep, colour: str, last: bool) -> None:

@@ -191,16 +191,37 @@ def direction(section: Table) -> FloatArray | None:
     if value in FREEDOMS:
         direction[FREEDOMS.index(value)] = 1.0
         return direction
-    numbers = isinstance(value, list) and len(value) == 3
-    if not numbers or not all(isinstance(part, (int, float)) and not isinstance(part, bool) for part in value):
-        section.note("direction", f"got {value!r:.60}; allowed: {allowed}")
+    numbers = real_numbers(value)
+    if numbers is None or len(numbers) != 3:
+        section.note("direction", f"got {short(value)}; allowed: {allowed}")
         return None
-    length = math.hypot(*value)
-    if not (math.isfinite(length) and length > 0.0):
+    # Divided first: the length of numbers near the largest one is none.
+    largest = max(map(abs, numbers))
+    if largest == 0.0:
         section.note("direction", f"got {value!r:.60}; allowed: {allowed}, not all zero")
         return None
-    direction[:3] = np.array(value) / length
+    scaled = np.array(numbers) / largest
+    direction[:3] = scaled / math.hypot(*scaled)
     return direction
+
+
+def real_numbers(value: object) -> list[float] | None:
+    """Finite numbers of a list; None if it is no list of such numbers, without units and quotes.
+
+    Parameters
+    ----------
+    value : object
+        What was read.
+    """
+    if not isinstance(value, list) or any(
+        isinstance(part, bool) or not isinstance(part, (int, float)) for part in value
+    ):
+        return None
+    try:
+        numbers = [float(part) for part in value]
+    except OverflowError:  # a whole number of any length stands in a TOML file
+        return None
+    return numbers if all(map(math.isfinite, numbers)) else None
 
 
 def built(section: Table, make: Callable[[], Built]) -> Built | None:

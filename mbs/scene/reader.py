@@ -282,15 +282,12 @@ class _Reader:
             section.quantity_of(value, f"times[{index}]", "s", 0.0, 1e6, Display("s"))
             for index, value in enumerate(times if isinstance(times, list) else [])
         ]
-        if (
-            not isinstance(factors, list)
-            or not all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in factors)
-            or len(read) != len(factors)
-        ):
+        numbers = fields.real_numbers(factors)
+        if numbers is None or len(read) != len(numbers):
             section.note("factors", f"got {short(factors)}; allowed: as many numbers as there are times, both as lists")
             return Constant()
         course = tuple(value for value in read if value is not None)
-        return fields.built(section, lambda: Course(course, tuple(float(value) for value in factors))) or Constant()
+        return fields.built(section, lambda: Course(course, tuple(numbers))) or Constant()
 
     def _input(self, section: Table, name: str) -> Input | None:
         """Read an input of the linear analysis."""

@@ -364,11 +364,22 @@ def test_solve_lists_every_problem(capsys, arguments, messages):
     assert err.startswith(f"ehdmaps solve: {len(messages)} problem")
 
 
-def test_tradeoff_prints_its_table(here, capsys):
-    status, out, _ = run(capsys, "tradeoff", "mine.toml", "--lines", "1")
+def test_tradeoff_prints_its_tables_and_writes_its_files(here, capsys):
+    Path("mine.toml").write_text(TEXT.replace('"formula"', '"reynolds"\ndensity = 3.0'))  # which takes less time
+    arguments = ["tradeoff", "mine.toml", "--points", "2", "--seed", "4", "--openfoam", "0"]
+    status, out, err = run(capsys, *arguments, "-o", "t.nc", "--plot", "t.png")
     assert status == 0
-    assert "reynolds, density 6.5" in out
-    assert "errors relative to reynolds, density 26" in out
+    assert "2 random points, seed 4: " in out and "reference: reynolds, density 12, inlet length 600" in out
+    assert "  reynolds, density 4.2 " in out and "openfoam: left out, as asked" in out
+    assert "t.nc: written" in err and Path("t.png").stat().st_size > 0
+    status, out, _ = run(capsys, *arguments, "--json")
+    record = json.loads(out)
+    with xr.open_dataset("t.nc") as dataset:
+        assert dataset["choice"].values.tolist() == [choice["label"] for choice in record["choices"]]
+        found = [choice["errors"].get("stiffness", {}).get("largest", np.nan) for choice in record["choices"]]
+        np.testing.assert_array_equal(dataset["largest"].sel(quantity="stiffness"), found)  # one seed, one result
+    status, _, err = run(capsys, "tradeoff", "mine.toml", "-o", "mine.toml")
+    assert status == 2 and "-o: got mine.toml, which would be written over mine.toml, which is read" in err
 
 
 @pytest.mark.parametrize("command", [["show", "none.nc"], ["plot", "none.nc"], ["compare", "none.nc", "none.nc"]])

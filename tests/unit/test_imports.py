@@ -24,14 +24,22 @@ ALLOWED = {
     "ehdmaps.units": {"ehdmaps.errors"},
     "ehdmaps.figures": set(),
     "ehdmaps.inputs": {"ehdmaps.errors"},
-    "ehdmaps.outputs": {"ehdmaps.errors"},
+    "ehdmaps.netcdf_structure": set(),
+    "ehdmaps.outputs": {"ehdmaps.errors", "ehdmaps.netcdf_structure"},
     "ehdmaps.provenance": set(),
     "ehdmaps.version": {"ehdmaps.provenance"},
     "ehdmaps.interrupts": set(),
     "ehdmaps.program": {"ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.version"},
     "ehdmaps.physics": {"ehdmaps.arrays", "ehdmaps.errors"},
     "ehdmaps.ehl": {"ehdmaps.arrays", "ehdmaps.copies", "ehdmaps.errors", "ehdmaps.physics"},
-    "ehdmaps.maps": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.inputs", "ehdmaps.units", "ehdmaps.physics"},
+    "ehdmaps.maps": {
+        "ehdmaps.arrays",
+        "ehdmaps.errors",
+        "ehdmaps.inputs",
+        "ehdmaps.netcdf_structure",
+        "ehdmaps.units",
+        "ehdmaps.physics",
+    },
     "ehdmaps.openfoam": {
         "ehdmaps.arrays",
         "ehdmaps.errors",
@@ -50,6 +58,7 @@ ALLOWED = {
         "ehdmaps.figures",
         "ehdmaps.inputs",
         "ehdmaps.interrupts",
+        "ehdmaps.netcdf_structure",
         "ehdmaps.outputs",
         "ehdmaps.program",
         "ehdmaps.units",
@@ -68,6 +77,7 @@ ALLOWED = {
         "ehdmaps.extras",
         "ehdmaps.figures",
         "ehdmaps.inputs",
+        "ehdmaps.netcdf_structure",
         "ehdmaps.outputs",
         "ehdmaps.program",
         "ehdmaps.units",
@@ -84,6 +94,7 @@ ALLOWED = {
         "ehdmaps.extras",
         "ehdmaps.figures",
         "ehdmaps.inputs",
+        "ehdmaps.netcdf_structure",
         "ehdmaps.outputs",
         "ehdmaps.program",
         "ehdmaps.units",
@@ -111,7 +122,7 @@ ALLOWED = {
 }
 """What each layer may import besides itself and other distributions. `ehdmaps` itself is the shop window of all."""
 
-SCENES = ("__main__", "analyses", "cli", "commands", "output", "scene")
+SCENES = ("__main__", "analyses", "cli", "commands", "output", "scene", "stability")
 """Modules of mbs that plan a scene or are its command line: they may call ehdmaps.jobs; no other module of mbs may
 call them."""
 

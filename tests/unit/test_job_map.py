@@ -21,7 +21,6 @@ from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.report import ERRORS, holes
 from ehdmaps.jobs.summary import summary
 from ehdmaps.jobs.tasks import LATER_FIELDS, LONGEST_LINE, LineTask, line_tasks, solver_version
-from ehdmaps.jobs.tradeoff import Contestant, contestants, measure, table
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap, open_map
@@ -523,44 +522,6 @@ def test_the_check_of_dry_laws_holds_no_numbers_of_nothing(tmp_path):
     assert all(value == 1.0 for name, value in found.items() if name.endswith("_within_bar"))
     for text in (summary(generated, tmp_path / "dry.nc"), describe(EHDMap(generated.dataset), "dry.nc")):
         assert not re.search(r"\bnan\b|e\+\d\d\d", text)
-
-
-def test_tradeoff_measures_against_the_reference():
-    job = job_of()
-    entries = [
-        Contestant("same", FormulaSolver()),
-        Contestant("dry", HertzSolver()),
-        Contestant("holes", Holey(job.loads)),
-    ]
-    measured, truth = measure(job, 12, entries, Contestant("fine", FormulaSolver()))
-    same, dry, holey = measured
-    assert truth.solved == same.solved == dry.solved == 84
-    assert holey.solved == 56
-    assert same.errors["film_offset"].max() == 0.0
-    assert (dry.errors["film_compliance"] == 1.0).all()
-    text = table(measured, truth, 84)
-    assert "84 points; errors relative to fine" in text
-    assert "1.0e+00 / 1.0e+00" in text
-
-
-def test_tradeoff_names_the_points_that_the_reference_does_not_solve():
-    job = job_of()
-    lost = job.loads[3]
-    measured, truth = measure(job, 12, [Contestant("all", FormulaSolver())], Contestant("fine", Holey((lost,))))
-    assert (measured[0].solved, truth.solved, measured[0].errors["film_offset"].size) == (84, 80, 80)
-    told = table(measured, truth, 84).splitlines()
-    assert told[-5] == "without a solution by fine, and left out of the errors:"
-    assert told[-4:] == [f"  {point}" for point in truth.lost]
-    assert told[-1].startswith(f"  outer, {lost * 1e-3:.4g} N/mm, 1 m/s, ") and told[-1].endswith(
-        f" degC: stagnated; step {lost:g} too small"
-    )
-
-
-def test_tradeoff_knows_its_contestants():
-    entries, reference = contestants(job_of(SMALL.replace('"formula"', '"reynolds"\ndensity = 4.0')))
-    assert [entry.label for entry in entries][:2] == ["hertz", "formula, moes"]
-    assert "reynolds, density 4" in [entry.label for entry in entries]
-    assert reference.label == "reynolds, density 16"
 
 
 def test_provenance_is_enough_to_know_the_contacts():

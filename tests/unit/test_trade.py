@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -99,6 +100,22 @@ def test_picture_shows_choices_with_an_error_and_the_front(trade: Trade) -> None
     assert best.get_xdata().tolist() == [1e-3, 1e-2]
     assert any("4  exact (no error above zero)" in text.get_text() for text in key.texts)
     assert not [entry for entry in film.collections if isinstance(entry, LineCollection)]
+
+
+def test_choices_with_another_reference_have_a_front_and_a_heading_of_their_own(trade: Trade) -> None:
+    own = choice("wet", 2e-3, [0.003, 0.003, 0.003], group="layer", reference="films on it")
+    both = replace(trade, choices=(*trade.choices, own))
+    film, *_ = trade_figure(both).axes
+    fronts = [line.get_xdata().tolist() for line in film.lines if line.get_linestyle() == "--"]
+    assert fronts == [[1e-3, 1e-2], [2e-3]]  # it beats "fine" in cost and error, of something else
+    assert "layer, against films on it" in trade_text(both).splitlines()
+    assert trade_dataset(both)["against"].values.tolist()[-2:] == ["", "films on it"]
+
+
+def test_long_tables_are_broken_into_columns_that_fit(trade: Trade) -> None:
+    many = tuple(Judged(f"quantity {index}") for index in range(5))
+    heads = [line for line in trade_text(replace(trade, judged=many)).splitlines() if "s a point" in line]
+    assert [line.count("quantity") for line in heads[:2]] == [4, 1]  # errors; further tables are broken likewise
 
 
 def test_files_follow_the_rule_of_outputs(trade: Trade, tmp_path) -> None:

@@ -11,7 +11,9 @@ import pytest
 from scipy.optimize import brentq
 
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.maps.asperities import asperity_pressure, mean_gap
+from ehdmaps.errors import SolverError
+from ehdmaps.jobs.rough_solved import solved_sharing
+from ehdmaps.maps.asperities import asperity_pressure
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.rough_layer import RoughLayer, _moes, scaled_film
@@ -19,6 +21,7 @@ from ehdmaps.physics.films import moes_central_and_slope
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.roughness import Surface
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
@@ -99,36 +102,33 @@ def test_stiffness_at_speed_with_solved_films():
     It takes 10 % off k, and the law comes within 1 % of k (its film with a share of 0.7 is 2 to 4 % off). With the
     exponent of textbooks, h ~ g^-0.16, it would take 2 to 4 % off.
     """
-    load, speed, near = 5e3, 0.2, 0.02
-
-    def balance(load: float) -> tuple[float, float]:
-        pressure = 0.25 * math.pi * float(max_pressure(load, INNER.radius, INNER.reduced_modulus))
-
-        def distance(share: float) -> float:
-            soft = replace(INNER.material, youngs_modulus=share * INNER.material.youngs_modulus)
-            (film,) = SOLVER.solve_line(replace(INNER, material=soft), OIL, (share * load,), speed, CELSIUS_60)
-            wanted = film.film_offset / ELASTIC.roughness
-            return float(brentq(lambda x: float(mean_gap(x)[0]) - wanted, -8.0, 50.0))
-
-        def excess(share: float) -> float:
-            carried, _ = asperity_pressure(ELASTIC, distance(share), INNER.reduced_modulus)
-            return float(carried) - (1.0 - share) * pressure
-
-        share = float(brentq(excess, 0.3, 0.99, xtol=1e-6))
-        return share, ELASTIC.roughness * distance(share)
-
-    (_, thick), (share, _), (_, thin) = (balance(load * factor) for factor in (1.0 - near, 1.0, 1.0 + near))
+    load, speed = 5e3, 0.2
+    balance = solved_sharing(SOLVER, INNER, OIL, OperatingPoint(load, speed, CELSIUS_60), ELASTIC)
     films = SOLVER.solve_line(INNER, OIL, (load,), speed, CELSIUS_60)
     dry = INNER.structural_compliance(load)
-    solved = (dry + films[0].film_compliance) / (dry + (thick - thin) / (2.0 * near * load))
+    solved = (dry + films[0].film_compliance) / (dry + balance.compliance)
     assert solved == pytest.approx(0.896, abs=0.002)  # tolerance of the balance over the step of the quotient
     root = np.full((1, 1, 1), np.cbrt(load))
     offset, slope = np.full_like(root, films[0].film_offset), -3.0 * root**2 * films[0].film_compliance
     layer = RoughLayer(ELASTIC, INNER, OIL, 0.05)
     found = layer.shared(root, offset, slope, np.array([speed]), np.array([CELSIUS_60]))
-    assert found.share.item() == pytest.approx(share, abs=0.01)
+    assert found.share.item() == pytest.approx(balance.share, abs=0.01)
     by_law = (dry + films[0].film_compliance) / (dry - found.slope.item() / (3.0 * root.item() ** 2))
     assert by_law == pytest.approx(solved, abs=0.01)
+
+
+def test_a_thick_film_is_solved_as_between_smooth_surfaces():
+    point = OperatingPoint(5e3, 5.0, CELSIUS_60)
+    found = solved_sharing(SOLVER, INNER, OIL, point, Surface(2e-8))
+    (film,) = SOLVER.solve_line(INNER, OIL, (point.load,), point.entrainment_speed, CELSIUS_60)
+    assert (found.share, found.offset) == (1.0, film.film_offset)
+    # a difference quotient over 1 % of the load, of second order
+    assert found.compliance == pytest.approx(film.film_compliance, rel=1e-3)
+
+
+def test_a_film_that_carries_next_to_nothing_has_no_solved_balance():
+    with pytest.raises(SolverError, match=r"the film carries less than 0\.001 of the load"):
+        solved_sharing(SOLVER, INNER, OIL, OperatingPoint(1e5, 1e-3, CELSIUS_60), Surface(1e-5))
 
 
 def test_compliance_is_the_derivative_of_the_distance():

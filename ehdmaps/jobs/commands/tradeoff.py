@@ -1,17 +1,26 @@
-"""`ehdmaps tradeoff`: speed against accuracy of the solvers and settings, measured on a sample of a job."""
+"""`ehdmaps tradeoff`: speed against accuracy, of solvers at random points of a job or of whole maps of it."""
 
 from __future__ import annotations
 
 import argparse
 
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.jobs.tradeoff import contestants, measure, table
+from ehdmaps.jobs.tradeoff import measure
+from ehdmaps.jobs.tradeoff_map import measure_map
+from ehdmaps.program import tell
+from ehdmaps.trade.data import trade_json
+from ehdmaps.trade.files import check_trade_files, write_trade
+from ehdmaps.trade.text import trade_text
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Measure and print the table."""
+    """Measure, write what is asked for, and print the tables or JSON."""
+    check_trade_files(arguments.output, arguments.plot, [arguments.job])
     job = read_job(arguments.job)
-    entries, reference = contestants(job)
-    measured, truth = measure(job, arguments.lines, entries, reference)
-    points = truth.solved if not measured else max(truth.solved, *(entry.solved for entry in measured))
-    return f"{job.title}, {job.lubricant.title}\n{table(measured, truth, points)}", 0
+    if arguments.level == "map":
+        trade = measure_map(job, arguments.points, arguments.seed, tell=tell)
+    else:
+        trade = measure(job, arguments.points, arguments.seed, arguments.openfoam, tell=tell)
+    for line in write_trade(trade, arguments.output, arguments.plot):
+        tell(line)
+    return trade_json(trade) if arguments.json else trade_text(trade), 0

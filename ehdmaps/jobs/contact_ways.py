@@ -1,0 +1,312 @@
+"""Ways of computing a contact, from one question to one answer: solvers, oil layers, rough surfaces, frequencies.
+
+Each is a frozen value that is called with a `Question`. `ehdmaps.jobs.contestants` lists those that are measured.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from ehdmaps.ehl.solver import ReynoldsSolver
+from ehdmaps.errors import SolverError
+from ehdmaps.jobs.answers import Answer, Question, film_answer, known
+from ehdmaps.jobs.rough_solved import solved_sharing
+from ehdmaps.maps.contact_curve import FilmSamples
+from ehdmaps.maps.locked_film import film_of, locked_stiffness
+from ehdmaps.maps.locked_fit import fitted_factor, response_error
+from ehdmaps.maps.oil_layer import OilLayer
+from ehdmaps.maps.rough_layer import RoughLayer
+from ehdmaps.maps.tail import Tail
+from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.roughness import Surface
+from ehdmaps.physics.solution import ContactSolver, FilmSolution
+from ehdmaps.physics.spectrum import contact_spectrum
+
+_STEP = 0.01
+"""Step of the load over which the flow of the flooded film is read, relative."""
+
+
+class ContactModel(Protocol):
+    """A way of computing a contact."""
+
+    def __call__(self, question: Question) -> Answer:
+        """Answer a question.
+
+        Parameters
+        ----------
+        question : Question
+            One contact at one operating point.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class Flooded:
+    """The film of a solver: flooded, smooth, in the limit of slow motion.
+
+    Attributes
+    ----------
+    solver : ContactSolver
+        The solver.
+    """
+
+    solver: ContactSolver
+
+    def __call__(self, question: Question) -> Answer:
+        """Answer of the film as it is solved."""
+        return film_answer(_film(self.solver, question), question)
+
+
+@dataclass(frozen=True)
+class OnLayer:
+    """The film behind an oil layer, solved with the place of its meniscus.
+
+    Stiffness and film compliance are those of a contact whose meniscus follows until all of the layer goes through
+    again, as for slow changes; damping is that of a meniscus that stays where it is.
+
+    Attributes
+    ----------
+    solver : ReynoldsSolver
+        The solver.
+    supply : OilSupply
+        Oil layer before the contact.
+    """
+
+    solver: ReynoldsSolver
+    supply: OilSupply
+
+    def __call__(self, question: Question) -> Answer:
+        """Answer of the supplied film."""
+        found = self.solver.supplied_film(question.contact, question.lubricant, question.point, self.supply)
+        held = film_answer(found.film, question)
+        if held.lost or not math.isfinite(found.supplied_compliance):
+            return held
+        stiffness = 1.0 / (question.dry_compliance + found.supplied_compliance)
+        following = {
+            "film compliance": found.supplied_compliance,
+            "stiffness": stiffness,
+            "loss compliance": held.values["damping"] / stiffness**2,
+        }
+        stated = {name: error for name, error in held.stated.items() if name not in following}
+        return Answer({**held.values, **following}, stated)
+
+
+@dataclass(frozen=True)
+class LayerRule:
+    """The flooded film, capped by the rule of contact laws on an oil layer.
+
+    Attributes
+    ----------
+    solver : ContactSolver
+        What solves the flooded film; it gives a mass flow.
+    supply : OilSupply
+        Oil layer before the contact.
+    """
+
+    solver: ContactSolver
+    supply: OilSupply
+
+    def __call__(self, question: Question) -> Answer:
+        """Answer of the capped film."""
+        contact, point = question.contact, question.point
+        loads = tuple(point.load * factor for factor in (1.0 - _STEP, 1.0, 1.0 + _STEP))
+        films = self.solver.solve_line(contact, question.lubricant, loads, point.entrainment_speed, point.temperature)
+        for film in films:
+            if not film.status.usable:
+                return film_answer(film, question)
+        full = films[1]
+        mass = question.lubricant.at(point.temperature).density * point.entrainment_speed
+        flow = CubicSpline(np.log(loads), np.log([film.mass_flow / mass for film in films])[:, None, None])
+        # the load is known: nothing is read of the tail but that it begins here
+        one = np.ones((1, 1))
+        slow = film_answer(full, question).values["damping"]
+        tail = Tail(
+            point.load * one, full.film_offset * one, full.film_compliance * one, slow * one, one, contact.radius
+        )
+        layer = OilLayer(contact, self.supply.oil_layer, tail, flow)
+        return _sampled(layer(_samples(full, point.load)), full, question)
+
+
+@dataclass(frozen=True)
+class RoughRule:
+    """The film between smooth surfaces, shared with asperities by the rule of contact laws of rough surfaces.
+
+    Attributes
+    ----------
+    solver : ContactSolver
+        What solves the film between smooth surfaces.
+    surface : Surface
+        Rough surfaces.
+    """
+
+    solver: ContactSolver
+    surface: Surface
+
+    def __call__(self, question: Question) -> Answer:
+        """Answer of the film and the asperities."""
+        smooth = _film(self.solver, question)
+        if not smooth.status.usable:
+            return film_answer(smooth, question)
+        point = question.point
+        layer = RoughLayer(self.surface, question.contact, question.lubricant, point.entrainment_speed)
+        speeds, temperatures = np.array([point.entrainment_speed]), np.array([point.temperature])
+        return _sampled(layer(_samples(smooth, point.load), speeds, temperatures), smooth, question)
+
+
+@dataclass(frozen=True)
+class RoughSolved:
+    """Film and asperities, every film on the way to their balance solved. Damping is not known.
+
+    Attributes
+    ----------
+    solver : ContactSolver
+        What solves the films.
+    surface : Surface
+        Rough surfaces.
+    """
+
+    solver: ContactSolver
+    surface: Surface
+
+    def __call__(self, question: Question) -> Answer:
+        """Answer of the balance."""
+        contact, point = question.contact, question.point
+        try:
+            found = solved_sharing(self.solver, contact, question.lubricant, point, self.surface)
+        except SolverError as error:
+            return Answer(lost=str(error))
+        return Answer(
+            {
+                "approach": float(contact.structural_approach(point.load)) - found.offset,
+                "stiffness": 1.0 / (question.dry_compliance + found.compliance),
+                "film offset": found.offset,
+                "film compliance": found.compliance,
+            }
+        )
+
+
+@dataclass(frozen=True)
+class AtFrequency:
+    """Stiffness and damping at the frequency, from the linearised equations there.
+
+    Attributes
+    ----------
+    solver : ContactSolver
+        The solver; one whose films have no memory gives its limit of slow motion.
+    """
+
+    solver: ContactSolver
+
+    def __call__(self, question: Question) -> Answer:
+        """Answer of the response."""
+        contact, point = question.contact, question.point
+        film = self.solver.film_spectrum(contact, question.lubricant, point, np.array([question.frequency]))
+        if not film.film.status.usable:
+            return film_answer(film.film, question)
+        found = contact_spectrum(film, contact, point)
+        k, c = float(found.stiffness[0]), float(found.damping[0])
+        stated = {
+            "stiffness": abs(k) * float(found.stiffness_error[0]),
+            "damping": abs(c) * float(found.damping_error[0]),
+        }
+        return Answer({"stiffness": k, "damping": c}, known(stated))
+
+
+@dataclass(frozen=True)
+class Slow:
+    """Stiffness and damping at the frequency, taken from the limit of slow motion.
+
+    Attributes
+    ----------
+    solver : ContactSolver
+        The solver.
+    """
+
+    solver: ContactSolver
+
+    def __call__(self, question: Question) -> Answer:
+        """Answer of slow motion; it states no error of that limit."""
+        found = film_answer(_film(self.solver, question), question)
+        return replace(found, values={name: found.values[name] for name in _DYNAMIC if name in found.values}, stated={})
+
+
+@dataclass(frozen=True)
+class LockedPole:
+    """Stiffness and damping at the frequency by one pole between slow motion and the locked film, as laws with memory.
+
+    Attributes
+    ----------
+    solver : ContactSolver
+        The solver.
+    fitted : bool
+        Whether the stiffness of the locked film is fitted to responses at the solver's natural frequencies, as in a map
+        that holds them; else it is that of the closed formula.
+    """
+
+    solver: ContactSolver
+    fitted: bool
+
+    def __call__(self, question: Question) -> Answer:
+        """Answer of the pole; damping of slow motion below zero counts as zero, as in contact laws."""
+        contact, point = question.contact, question.point
+        at = (contact, question.lubricant, (point.load,), point.entrainment_speed, point.temperature)
+        spectrum = self.solver.line_spectra(*at)[0] if self.fitted else None
+        film = self.solver.solve_line(*at)[0] if spectrum is None else spectrum.film
+        slow = film_answer(film, question)
+        if slow.lost:
+            return slow
+        solids, k = question.dry_compliance, slow.values["stiffness"]
+        loss = max(film.loss_compliance, 0.0)
+        c = loss * k * k
+        geometry = film_of((contact,), point.entrainment_speed)
+        factor = 1.0
+        if spectrum is not None:
+            error = response_error(np.array([solids]), spectrum.compliance[None], spectrum.largest_error[None])
+            factor = fitted_factor(
+                geometry, point.load, film.film_offset, solids, film.film_compliance, loss,
+                np.array(self.solver.natural_frequencies), spectrum.compliance, float(error[0]),
+            )  # fmt: skip
+        locked = locked_stiffness(geometry, film.film_offset, point.load, k, c, solids, factor)
+        omega = 2.0 * math.pi * question.frequency
+        relaxation = c / (locked - k) if locked > k else 0.0
+        dynamic = k + 1j * omega * c / (1.0 + 1j * omega * relaxation)
+        return Answer({"stiffness": dynamic.real, "damping": dynamic.imag / omega})
+
+
+_DYNAMIC = ("stiffness", "damping")
+
+
+def _film(solver: ContactSolver, question: Question) -> FilmSolution:
+    """The film of the point, solved on its own."""
+    point = question.point
+    (film,) = solver.solve_line(
+        question.contact, question.lubricant, (point.load,), point.entrainment_speed, point.temperature
+    )
+    return film
+
+
+def _samples(film: FilmSolution, load: float) -> FilmSamples:
+    """A film as contact laws take it; damping below zero counts as zero."""
+    root = np.full((1, 1, 1), np.cbrt(load))
+    # (c/w) D^2 with D = 3 g^2/k and w = g^3
+    loss = 9.0 * root * max(film.loss_compliance, 0.0)
+    return FilmSamples(root, np.full_like(root, film.film_offset), -3.0 * root**2 * film.film_compliance, loss)
+
+
+def _sampled(samples: FilmSamples, film: FilmSolution, question: Question) -> Answer:
+    """Answer of one sample; the films themselves, but for the offset, and errors are not told by it."""
+    root = samples.root.item()
+    changed = replace(
+        film,
+        film_offset=samples.offset.item(),
+        film_compliance=-samples.slope.item() / (3.0 * root**2),
+        loss_compliance=samples.loss.item() / (9.0 * root),
+        central_film=math.nan,
+        minimum_film=math.nan,
+    )
+    return replace(film_answer(changed, question), stated={})

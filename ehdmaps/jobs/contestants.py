@@ -1,0 +1,196 @@
+"""Who takes part in `ehdmaps tradeoff`: the one table, to which a further solver or physics is added.
+
+An entry is a way of computing a contact. It stands in a group, whose truth is the best affordable solution of the same
+physics, and may name the finest affordable solution of its own model, by which its numerical error is told from that of
+the model.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, get_args
+
+from ehdmaps.ehl.limits import SETTING_LIMITS
+from ehdmaps.ehl.solver import ReynoldsSolver
+from ehdmaps.jobs import solvers
+from ehdmaps.jobs.contact_ways import (
+    AtFrequency,
+    ContactModel,
+    Flooded,
+    LayerRule,
+    LockedPole,
+    OnLayer,
+    RoughRule,
+    RoughSolved,
+    Slow,
+)
+from ehdmaps.jobs.job import Job
+from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
+from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.roughness import Surface
+
+REFINEMENT = 4.0
+"""Grid density of the reference over that of the job; its inlet is twice as long."""
+
+RULE_REFINEMENT = 2.0
+"""Grid density of the films of the finest solution of a rule, over that of the job."""
+
+OPENFOAM_REFINEMENT = 1.5
+"""Cells each way of the finest solution by openfoam, over those of the job: twice as many take most of a minute."""
+
+OPENFOAM_TIMEOUT = 900.0
+"""Seconds after which a point of openfoam is stopped: a slow machine is no property of a solver."""
+
+OIL_LAYER, ROUGHNESS = OilSupply.named("oil air"), Surface(2e-7)
+"""Oil supply and surface that are measured where the job states none of its own."""
+
+_RESOLUTIONS = (0.5, 0.7, 1.0, 1.4, 2.0)
+"""Grid densities that are measured, over that of the job."""
+
+_INLETS = (0.2, 1.0 / 3.0)
+"""Inlets that are measured, over that of the job."""
+
+
+@dataclass(frozen=True)
+class Group:
+    """Entries with one truth.
+
+    Attributes
+    ----------
+    name : str
+        What is chosen, in words.
+    truth : ContactModel
+        Best affordable solution of the same physics.
+    reference : str
+        The truth in words, where it is not that of the flooded, smooth, slow film.
+    least_film : float
+        Film that errors of films are relative to at least [m], where films go through zero.
+    """
+
+    name: str
+    truth: ContactModel
+    reference: str = ""
+    least_film: float = 0.0
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One way of computing a contact, as it is measured.
+
+    Attributes
+    ----------
+    group : Group
+        Group that it stands in.
+    label : str
+        Name in the table, different from all others.
+    model : ContactModel
+        What answers.
+    finest : ContactModel, optional
+        Finest affordable solution of the same model; None where it has no discretisation, or that is not affordable.
+    closed : bool
+        Whether it is a closed form: all of its error is that of the model.
+    default : bool
+        Whether it is what is used where nothing is said.
+    few : bool
+        Whether a point takes seconds: it is asked at a few points only.
+    """
+
+    group: Group
+    label: str
+    model: ContactModel
+    finest: ContactModel | None = None
+    closed: bool = False
+    default: bool = False
+    few: bool = False
+
+
+def contestants(job: Job, openfoam: bool) -> tuple[Entry, ...]:
+    """Return who is measured; the one place to change it.
+
+    Parameters
+    ----------
+    job : Job
+        Job whose settings, oil supply and surface are taken, where it states them.
+    openfoam : bool
+        Whether the solver `openfoam` takes part; it has to be installed.
+    """
+    own = _own(job, "reynolds")
+    usual, fine, rule = _finer(own, 1.0), _finer(own, REFINEMENT, 2.0), _finer(own, RULE_REFINEMENT)
+    layer = OIL_LAYER if job.supply is None or job.supply.flooded else job.supply
+    surface = ROUGHNESS if job.surface is None or job.surface.smooth else job.surface
+    density = f"density {usual.density:g}"
+    solved = Flooded(fine)
+    closed, grids = Group("closed forms", solved), Group("reynolds", solved)
+    supplied = Group(layer.label, OnLayer(fine, layer), f"reynolds with it, density {fine.density:g}")
+    rough = Group(
+        surface.label,
+        RoughSolved(usual, surface),
+        f"reynolds for the film of each share, {density}",
+        surface.roughness,
+    )
+    moving = Group("at a frequency", AtFrequency(fine), f"reynolds at it, density {fine.density:g}")
+    return (
+        Entry(closed, "hertz", Flooded(solvers.build("hertz", {})), closed=True),
+        *(
+            Entry(closed, f"formula, {word}", Flooded(FormulaSolver(word)), closed=True, default=word == "moes")
+            for word in get_args(FilmFormula)
+        ),
+        *(
+            Entry(grids, f"reynolds, density {grid.density:g}", Flooded(grid), solved, default=grid == ReynoldsSolver())
+            for grid in dict.fromkeys(_finer(own, factor) for factor in _RESOLUTIONS)
+        ),
+        *(
+            Entry(grids, f"reynolds, {density}, inlet {grid.inlet_length:g}", Flooded(grid), solved)
+            for grid in dict.fromkeys(_finer(own, 1.0, factor) for factor in _INLETS)
+        ),
+        *(_openfoam_entries(job, solved, moving) if openfoam else ()),
+        Entry(supplied, "layer: flooded film", Flooded(usual), solved, default=True),
+        Entry(supplied, "layer: rule of contact laws", LayerRule(usual, layer), LayerRule(rule, layer)),
+        Entry(supplied, f"layer: reynolds, {density}", OnLayer(usual, layer), supplied.truth),
+        Entry(rough, "rough: smooth film", Flooded(usual), solved, default=True),
+        Entry(rough, "rough: rule of contact laws", RoughRule(usual, surface), RoughRule(rule, surface)),
+        Entry(moving, "frequency: slow motion", Slow(usual), Slow(rule)),
+        Entry(moving, "frequency: one pole, formula", LockedPole(usual, False), LockedPole(rule, False)),
+        Entry(moving, "frequency: one pole, fitted", LockedPole(usual, True), LockedPole(rule, True), default=True),
+        Entry(moving, f"frequency: reynolds, {density}", AtFrequency(usual), moving.truth),
+    )
+
+
+def _openfoam_entries(job: Job, solved: ContactModel, moving: Group) -> tuple[Entry, ...]:
+    """Entries of the solver `openfoam`: half, all and twice the cells of the job."""
+    own = _own(job, "openfoam")
+
+    def solver(flow: str, factor: float = 1.0) -> Any:
+        cells = {"columns": own.get("columns", 400), "rows": own.get("rows", 16)}
+        # each has to be even, and so has its half, the coarse grid
+        used = {name: 4 * max(round(count * factor / 4), 1) for name, count in cells.items()}
+        return solvers.build("openfoam", {"timeout": OPENFOAM_TIMEOUT, **own, **used, "flow": flow})
+
+    group = Group("openfoam", solved)
+    thin, full = (Flooded(solver(flow, OPENFOAM_REFINEMENT)) for flow in ("thin_film", "full_stress"))
+    coarse, usual, whole = solver("thin_film", 0.5), solver("thin_film"), solver("full_stress")
+    cells = f"{usual.columns} x {usual.rows}"
+    return (
+        Entry(group, f"openfoam, thin_film, {coarse.columns} x {coarse.rows}", Flooded(coarse), thin, few=True),
+        Entry(group, f"openfoam, thin_film, {cells}", Flooded(usual), thin, few=True, default=not own),
+        Entry(group, f"openfoam, full_stress, {cells}", Flooded(whole), full, few=True),
+        Entry(moving, f"frequency: openfoam, {cells}", AtFrequency(usual), few=True),
+    )
+
+
+def _own(job: Job, solver: str) -> dict[str, Any]:
+    """Settings of a solver that the job states."""
+    return dict(job.solver_options) if job.solver == solver else {}
+
+
+def _finer(own: dict[str, Any], density: float, inlet: float = 1.0) -> ReynoldsSolver:
+    """`reynolds` with other grids, as far as they are allowed."""
+    used = ReynoldsSolver(**own)
+    (low, high), (short, long) = SETTING_LIMITS["density"], SETTING_LIMITS["inlet_length"]
+    return ReynoldsSolver(
+        **{
+            **own,
+            "density": min(max(round(used.density * density, 2), low), high),
+            "inlet_length": min(max(round(used.inlet_length * inlet, 1), short), long),
+        }
+    )

@@ -1,0 +1,243 @@
+"""What is right about a film and a contact, by what theory says of them, and what a hair may change."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+from ehdmaps.jobs.stability_points import WildPoint
+from ehdmaps.physics.film_limits import THICKEST_FILM, THIN_FILM_LIMIT
+from ehdmaps.physics.films import MARTIN_CONSTANT, asymptotes
+from ehdmaps.physics.hertz import half_width
+from ehdmaps.physics.moes import film_from_moes, moes_groups
+from ehdmaps.physics.solution import ContactSolution, FilmSolution, Status
+
+HAIR = 1e-6
+"""Relative change of load and speed between points a hair apart; a thousandth of a degree of temperature."""
+
+_VALUES = ("film_offset", "film_compliance", "loss_compliance", "central_film", "minimum_film", "max_pressure")
+
+
+JUMP = 1e-3
+"""What a hair may change: a thousand times the hair, which is more than any power of load, speed or viscosity."""
+
+_GROSS = 3.0
+"""Factor beyond the asymptotes of Moes that a film may have: other laws of the oil over pressure, compressibility."""
+
+
+@dataclass(frozen=True)
+class Groups:
+    """A point as theory sees it: Moes' numbers, the unit of his film number [m], pressure of Hertz [Pa], half-width."""
+
+    M: float
+    L: float
+    unit: float
+    peak: float
+    half: float
+
+
+Judge = Callable[[WildPoint, FilmSolution, ContactSolution], tuple[str, float]]
+"""Says what is wrong with a value, or nothing, and how much of its bound it takes."""
+
+
+def groups_of(wild: WildPoint) -> Groups:
+    """Return what theory needs of a point.
+
+    Parameters
+    ----------
+    wild : WildPoint
+        The point.
+    """
+    contact, load, speed, temperature = wild.point
+    state, modulus = wild.oil.at(temperature), contact.reduced_modulus
+    alpha = state.pressure_viscosity.pressure_viscosity
+    M, L = moes_groups(load, speed, state.viscosity, alpha, contact.radius, modulus)
+    unit = film_from_moes(1.0, speed, state.viscosity, contact.radius, modulus)
+    peak = math.sqrt(load * modulus / (2.0 * math.pi * contact.radius))
+    return Groups(float(M), float(L), float(unit), peak, float(half_width(load, contact.radius, modulus)))
+
+
+def status_problem(film: FilmSolution) -> str:
+    """What is wrong with the status of a film."""
+    values = [getattr(film, name) for name in _VALUES]
+    if not film.status.usable:
+        if not film.reason:
+            return f"status {film.status.word} without a reason"
+        return "" if all(map(math.isnan, values)) else f"status {film.status.word} with numbers"
+    return "" if all(map(math.isfinite, values)) else f"a value that is not finite: {film!r:.300}"
+
+
+def _whole_problem(film: FilmSolution, whole: ContactSolution) -> str:
+    """What is wrong with a contact whatever its solver."""
+    numbers = (whole.approach, whole.stiffness, whole.damping)
+    if not all(map(math.isfinite, numbers)):
+        return f"approach, stiffness, damping are {numbers}"
+    if not whole.stiffness > 0.0:
+        return f"a stiffness of {whole.stiffness:.4g} N/m2"
+    if not 0.0 <= film.minimum_film <= film.central_film * (1.0 + 1e-4):
+        return f"a minimum film of {film.minimum_film:.4g} m beside a central one of {film.central_film:.4g} m"
+    return ""
+
+
+def _hertz_problem(wild: WildPoint, film: FilmSolution, whole: ContactSolution) -> tuple[str, float]:
+    """Pressure of Hertz, and stiffness as the slope of the structural law."""
+    contact, load, _, _ = wild.point
+    step = 1e-4
+    peak = math.sqrt(load * contact.reduced_modulus / (2.0 * math.pi * contact.radius))
+    rise = contact.structural_approach(load * (1.0 + step)) - contact.structural_approach(load * (1.0 - step))
+    # The third derivative of w^0.9 and of w ln w leaves a share of step^2; round-off leaves 1e-16/step.
+    off = max(abs(film.max_pressure / peak - 1.0), abs(whole.stiffness * rise / (2.0 * step * load) - 1.0))
+    wrong = _whole_problem(film, whole) or (f"pressure or stiffness off by {off:.3g}" if off > 1e-6 else "")
+    return wrong, off / 1e-6
+
+
+def _formula_problem(wild: WildPoint, film: FilmSolution, whole: ContactSolution) -> tuple[str, float]:
+    """A film that falls with load; without a reason it lies near what the asymptotes of Moes allow."""
+    wrong = _whole_problem(film, whole)
+    if wrong or film.film_offset == 0.0:
+        return wrong, 0.0
+    if not film.film_compliance > 0.0 or not film.loss_compliance >= 0.0:
+        return f"film compliance {film.film_compliance:.4g} m2/N, loss {film.loss_compliance:.4g} m2 s/N", 0.0
+    return ("", 0.0) if film.reason else _gross_problem(film, groups_of(wild))
+
+
+def _gross_problem(film: FilmSolution, groups: Groups) -> tuple[str, float]:
+    """A film beside the asymptotes of Moes."""
+    low, high = _moes_range(groups)
+    H = film.film_offset / groups.unit
+    share = abs(math.log(H / math.sqrt(low * high))) / (0.5 * math.log(high / low) + math.log(_GROSS))
+    words = f"H = {H:.4g} at M = {groups.M:.4g}, L = {groups.L:.4g}; asymptotes of Moes {low:.4g} to {high:.4g}"
+    return (words if share > 1.0 else ""), share
+
+
+def _moes_problem(wild: WildPoint, film: FilmSolution, whole: ContactSolution) -> tuple[str, float]:
+    """The film number between the largest asymptote and what their sums can be at most."""
+    wrong, share = _formula_problem(wild, film, whole)
+    if wrong or film.film_offset == 0.0:
+        return wrong, share
+    groups = groups_of(wild)
+    low, high = _moes_range(groups)
+    H = film.film_offset / groups.unit
+    if not low * (1.0 - 1e-9) <= H <= high * (1.0 + 1e-9):
+        return f"H = {H:.6g} at M = {groups.M:.4g}, L = {groups.L:.4g}; asymptotes allow {low:.6g} to {high:.6g}", 0.0
+    return "", (H / low - 1.0) / (high / low - 1.0)
+
+
+def _moes_range(groups: Groups) -> tuple[float, float]:
+    """Lowest and highest film number that the four asymptotes allow, whatever the exponents that join them."""
+    rigid, elastic, rigid_viscous, elastic_viscous = asymptotes(groups.M, groups.L)
+    low = max(rigid, elastic)
+    high = low * 2.0 ** (3.0 / 7.0)
+    if groups.L > 0.0:
+        viscous = min(rigid_viscous, elastic_viscous)
+        low, high = max(low, viscous * 2.0 ** (-2.0 / 7.0)), max(high, viscous)
+    return low, high * 2.0 ** (5.0 / 7.0)  # the exponent s is 7/5 at least
+
+
+def film_problem(wild: WildPoint, film: FilmSolution, whole: ContactSolution) -> tuple[str, float]:
+    """A solved film beside Martin's, Hertz' and Moes'."""
+    wrong = _whole_problem(film, whole)
+    if wrong or film.film_offset == 0.0:
+        return wrong, 0.0
+    groups = groups_of(wild)
+    thick = film.film_offset / wild.point.contact.radius
+    if thick > THICKEST_FILM or (film.status is Status.ASYMPTOTE) != (thick > THIN_FILM_LIMIT):
+        return f"status {film.status.word} with h/R = {thick:.4g}", 0.0
+    wrong, share = _gross_problem(film, groups)
+    if wrong:
+        return wrong, share
+    alpha = groups.L / wild.point.contact.reduced_modulus / max(_speed_root(groups, wild), 1e-300)
+    if groups.M < 0.01 and alpha * film.max_pressure < 1e-3 and film.max_pressure < 1e6:
+        # Elastic and viscous shares are below 0.1 %, compressibility below 0.06 %.
+        martin = MARTIN_CONSTANT / groups.M * groups.unit
+        off = abs(film.minimum_film / martin - 1.0) / (2e-3 + 3.0 * stated_size(film.minimum_film_error))
+        share = max(share, off)
+        if off > 1.0:
+            return f"a film of {film.minimum_film / martin:.6g} times Martin's", off
+    if groups.M > 100.0:
+        # A spike may stand above Hertz' pressure, a film only takes some per cent from it.
+        lacking = (1.0 - film.max_pressure / groups.peak) / 0.1
+        share = max(share, lacking)
+        if lacking > 1.0:
+            return f"a pressure of {film.max_pressure / groups.peak:.4g} times Hertz' at M = {groups.M:.4g}", lacking
+    return "", share
+
+
+def _speed_root(groups: Groups, wild: WildPoint) -> float:
+    """(eta us/(E'R))^(1/4), from the unit of the film number."""
+    return math.sqrt(groups.unit / wild.point.contact.radius)
+
+
+def stated_size(error: float) -> float:
+    """Size of a stated error; 0 where none is stated."""
+    return 0.0 if math.isnan(error) else abs(error)
+
+
+def jump(
+    wild: WildPoint, film: FilmSolution, whole: ContactSolution, other: FilmSolution, its: ContactSolution
+) -> tuple[str, float]:
+    """What changes too much between points a hair apart, and how much of its bound the largest change takes."""
+    worst, share = "", 0.0
+    for name, apart, size, error in _differences(wild, film, whole, other, its):
+        bound = JUMP * size + error
+        if apart > share * bound:
+            worst, share = (
+                f"{name} changes by {apart / size if size else math.inf:.3g} within a hair",
+                apart / max(bound, 1e-300),
+            )
+    return (worst if share > 1.0 else ""), share
+
+
+def error_ratios(
+    wild: WildPoint, film: FilmSolution, whole: ContactSolution, exact: FilmSolution, best: ContactSolution
+) -> dict[str, float]:
+    """Errors over what is stated of them; round-off counts as stated."""
+    found = {}
+    for name, apart, size, _ in _differences(wild, film, whole, exact, best):
+        stated = {"film": film.film_offset_error, "stiffness": whole.stiffness_error, "damping": whole.damping_error}[
+            name
+        ]
+        own = abs(whole.damping) if name == "damping" else size
+        found[name] = apart / (stated_size(stated) * own + 1e-6 * size)
+    return found
+
+
+def _differences(
+    wild: WildPoint, film: FilmSolution, whole: ContactSolution, other: FilmSolution, its: ContactSolution
+) -> Iterator[tuple[str, float, float, float]]:
+    """Yield name, difference, size and stated error of what is compared between two solutions."""
+    contact, load, speed, _ = wild.point
+    half = float(half_width(load, contact.radius, contact.reduced_modulus))
+    # Damping goes through zero in its valley: there its size is that of the stiffness times the time of passage.
+    passage = whole.stiffness * half / speed if speed > 0.0 else 0.0
+    rows = (
+        ("film", film.film_offset, other.film_offset, 0.0, film.film_offset_error),
+        ("stiffness", whole.stiffness, its.stiffness, 0.0, whole.stiffness_error),
+        ("damping", whole.damping, its.damping, 1e-3 * passage, whole.damping_error),
+    )
+    for name, first, second, scale, error in rows:
+        yield name, abs(first - second), max(abs(first), scale), 2.0 * stated_size(error) * abs(first)
+
+
+_NEAR = "a film that falls with load; within a factor of 3 of what the asymptotes of Moes allow, or outside its range"
+
+RULES: Mapping[str, str] = {
+    "hertz": "pressure of Hertz to 1e-6; stiffness is the slope of the structural law, to 1e-6 (a difference of 1e-4)",
+    "formula moes": "a film that falls with load, where the four asymptotes allow",
+    "formula dowson-toyoda": _NEAR,
+    "formula pan-hamrock": _NEAR,
+    "reynolds": "film within a factor of 3 of what the asymptotes of Moes allow; Martin's to 0.2 % and three times the "
+    "stated error where M < 0.01 and alpha p < 0.001; 0.9 of the pressure of Hertz at least where M > 100; thick films "
+    "said to be so",
+}
+"""When a value counts as right, by what the solver is called."""
+
+JUDGES: Mapping[str, Judge] = {
+    "hertz": _hertz_problem,
+    "formula moes": _moes_problem,
+    "formula dowson-toyoda": _formula_problem,
+    "formula pan-hamrock": _formula_problem,
+    "reynolds": film_problem,
+}
+"""What judges a value, by the same names."""

@@ -1,0 +1,288 @@
+"""How wrong a contact law may be: bounds of its stiffness, damping and film offset from the errors that a map states.
+
+Three kinds of error, each relative, at a load, entrainment speed and temperature:
+
+- numerical: the estimates of the map at its points, `stiffness_error`, `damping_error` and `film_offset_error`,
+  linear in ln(load), ln(speed) and temperature between them and held at the edges;
+- of the law: what its check against fresh solves found, the 95 % quantile over the map, in the damping valley the
+  larger one of that and the quantile of the valley;
+- of the model: `stiffness_model_error` and `damping_model_error`, where the map has them.
+
+All are taken as systematic: an estimate that has one sign at one point has it at all loads, in both contacts of a
+roller, and in all bearings that share the map. So the three kinds are added, and so are the contacts of a roller. Where
+signs alternate, as those of an interpolation do, that is more than need be.
+
+What a map does not state is in no bound: physics that its solver leaves out (heat, starvation, roughness, shear
+thinning, slip), the structural law, geometry, and the relaxation of the film beyond slow motion. A bound of 0.1 % of a
+map without model errors says that the equations are solved that well, and nothing of how well they are chosen.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.maps import schema
+from ehdmaps.maps.backbone_plan import VALLEY
+from ehdmaps.maps.low_loads import valley_loads
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.lubricant import Lubricant
+
+QUANTILES = {"median": 0.5, "95 %": 0.95, "99 %": 0.99, "largest": 1.0}
+"""Words and numbers of the quantiles that the check of a law writes."""
+
+TAKEN = "95 %"
+"""Quantile of the errors of a law that a bound takes."""
+
+MODEL_ERRORS = ("stiffness_model_error", "damping_model_error")
+"""Relative errors of the model that a map may state, of k and of c."""
+
+NOT_IN = "physics that the solver leaves out, the structure of the solids and the geometry are not in it"
+"""What no bound has, for people."""
+
+_NUMBER = r"([0-9.eE+-]+)"
+
+
+def quantiles_text(errors: FloatArray) -> str:
+    """Quantiles of errors in words, as attributes of a map have them.
+
+    Parameters
+    ----------
+    errors : array (n,)
+        Relative errors, n > 0.
+
+    Examples
+    --------
+    >>> quantiles_text(np.array([0.01, 0.02, 0.03]))
+    'median 0.02, 95 % 0.029, 99 % 0.03, largest 0.03'
+    """
+    values = np.quantile(errors, list(QUANTILES.values()))
+    return ", ".join(f"{word} {value:.2g}" for word, value in zip(QUANTILES, values, strict=True))
+
+
+def quantile_of(text: object, word: str = TAKEN) -> float | None:
+    """One of the quantiles that `quantiles_text` wrote; None where the text has none.
+
+    Parameters
+    ----------
+    text : object
+        The attribute.
+    word : str
+        Key of `QUANTILES`.
+
+    Examples
+    --------
+    >>> quantile_of("median 0.02, 95 % 0.029, 99 % 0.03, largest 0.03")
+    0.029
+    """
+    found = re.search(rf"{re.escape(word)} {_NUMBER}", str(text))
+    return float(found.group(1)) if found else None
+
+
+@dataclass(frozen=True)
+class LawBounds:
+    """Bounds of the errors of a law at some loads.
+
+    Attributes
+    ----------
+    stiffness, damping : array (n,)
+        Relative, of k and c at the load.
+    film_offset : array (n,)
+        Of the approach at the load [m]: where the film stands.
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+    film_offset: FloatArray
+
+
+@dataclass(frozen=True)
+class _Checked:
+    """What the check of the laws found in a region: relative errors of film compliance, k, c and film offset."""
+
+    film_compliance: float
+    damping: float
+    stiffness: float | None
+    film_offset: float | None
+
+    @classmethod
+    def of(cls, attributes: Mapping[str, Any], region: str) -> _Checked | None:
+        """Those of a region of the map, by its check or the confirmation of its tolerance; None without either."""
+        names = ("film_compliance", "damping", "stiffness", "film_offset")
+        for check in ("law", "tolerance"):
+            found = [quantile_of(attributes.get(f"{check}{region}_{name}_error", "")) for name in names]
+            if any(value is not None for value in found):
+                return cls(found[0] or 0.0, found[1] or 0.0, found[2], found[3])
+        return None
+
+    def relative_stiffness(self, share: FloatArray) -> FloatArray:
+        """Relative error of k for films with a share (n,) of the compliance, which older maps state no other way."""
+        return share * self.film_compliance if self.stiffness is None else np.full(share.shape, self.stiffness)
+
+
+class LawErrors:
+    """Bounds of the errors of the laws of a map.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map, with what is derived from its films.
+    contacts : sequence of LineContact
+        Its contacts, in the order of its first axis.
+    lubricant : Lubricant
+        Its oil, for the place of the damping valley.
+    """
+
+    def __init__(self, dataset: xr.Dataset, contacts: Sequence[LineContact], lubricant: Lubricant) -> None:
+        moving = dataset.sel(entrainment_speed=dataset["entrainment_speed"] > 0.0)
+        data = moving.transpose(*schema.DIMS, ...)
+        self._contacts = {contact.name: (index, contact) for index, contact in enumerate(contacts)}
+        self._lubricant = lubricant
+        self._logs = np.log(data["load"].values.astype(np.float64))
+        self._log_speeds = np.log(data["entrainment_speed"].values.astype(np.float64))
+        self._temperatures = data["temperature"].values.astype(np.float64)
+        self._checked, self._in_valley = (_Checked.of(dataset.attrs, region) for region in ("", "_valley"))
+        points = dataset.attrs.get("law_check_usable", dataset.attrs.get("tolerance_points"))
+        self.checked_points = 0 if self._checked is None or points is None else int(points)
+        self.has_model_errors = any(name in data for name in MODEL_ERRORS)
+        self.unknown: tuple[str, ...] = ()
+        values = {
+            name: data[name].values.astype(np.float64) for name in ("stiffness", "film_compliance", "loss_compliance")
+        }
+        errors = {
+            name: self._error(data, f"{name}_error", required=True) for name in ("stiffness", "damping", "film_offset")
+        }
+        model = [self._error(data, name, required=False) for name in MODEL_ERRORS]
+        # One array, so that it is read at a speed and temperature at once.
+        self._grid = np.stack(
+            [
+                errors["stiffness"] + model[0],
+                errors["damping"] + model[1],
+                errors["film_offset"] * np.abs(data["film_offset"].values.astype(np.float64)),
+                np.abs(data["film_offset"].values.astype(np.float64)),
+                1.0 / values["stiffness"],
+                np.abs(values["loss_compliance"]),
+                np.abs(values["film_compliance"]) * values["stiffness"],
+            ],
+            axis=1,
+        )
+        self._grid = np.nan_to_num(self._grid)
+
+    def _error(self, data: xr.Dataset, name: str, required: bool) -> FloatArray:
+        """Magnitudes of an error; where it is unknown at some points, the largest known one."""
+        shape = data["stiffness"].shape
+        found = np.abs(data[name].values.astype(np.float64)) if name in data else np.full(shape, np.nan)
+        known = np.isfinite(found)
+        if not np.any(known):
+            if required and self._log_speeds.size:
+                self.unknown += (name,)
+            return np.zeros(shape)
+        return np.where(known, found, found[known].max())
+
+    @property
+    def words(self) -> str:
+        """What is in the bounds and what is not, for people."""
+        parts = ["numerical errors of the map"]
+        if self._checked is not None:
+            parts.append(f"errors of its law ({TAKEN} of {self.checked_points} checked points)")
+        if self.has_model_errors:
+            parts.append("errors of its model")
+        lacking = [
+            *([] if self._checked is not None else ["errors of its law between its points (it was not checked)"]),
+            *([] if self.has_model_errors else ["errors of its model (none stated)"]),
+            *(f"{name} (not known)" for name in self.unknown),
+        ]
+        return (
+            f"{' and '.join(parts)}; without {', '.join(lacking)}; {NOT_IN}"
+            if lacking
+            else (f"{' and '.join(parts)}; {NOT_IN}")
+        )
+
+    def bounds(self, names: Sequence[str], loads: FloatArray, speed: float, temperature: float) -> LawBounds | None:
+        """Bounds of one contact, or of several in series.
+
+        Of contacts in series compliances add, and losses c/k^2 do: their relative errors are means with these weights.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Contacts of the law.
+        loads : array (n,)
+            w [N/m]; held at the ends of the map.
+        speed, temperature : float
+            u [m/s], of either sign, and T [K]; held likewise.
+
+        Returns
+        -------
+        LawBounds or None
+            None at standstill, and for maps that have no speed: the contact is dry, of which a map states no errors.
+        """
+        loads = np.asarray(loads, dtype=np.float64)
+        if speed == 0.0 or not self._log_speeds.size:
+            return None
+        single = [self._of_contact(name, loads, abs(speed), temperature) for name in names]
+        compliance = np.array([one[3] for one in single])
+        loss = np.array([one[4] for one in single])
+        weights = compliance / compliance.sum(axis=0)
+        loss_weights = loss / np.maximum(loss.sum(axis=0), 1e-300)
+        by_stiffness = np.array([one[0] for one in single])
+        stiffness = np.sum(weights * by_stiffness, axis=0)
+        damping = np.sum(
+            loss_weights * np.array([one[1] for one in single])
+            # c = loss k^2: what the weights of the losses do not account for
+            + 2.0 * np.abs(weights - loss_weights) * by_stiffness,
+            axis=0,
+        )
+        return LawBounds(stiffness, damping, np.sum([one[2] for one in single], axis=0))
+
+    def _of_contact(
+        self, name: str, loads: FloatArray, speed: float, temperature: float
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Relative errors of k and c, error of the film offset [m], 1/k and the loss compliance of one contact."""
+        index, contact = self._contacts[name]
+        log_speed = float(np.clip(np.log(speed), self._log_speeds[0], self._log_speeds[-1]))
+        kelvin = float(np.clip(temperature, self._temperatures[0], self._temperatures[-1]))
+        lines = _at(self._temperatures, kelvin, _at(self._log_speeds, log_speed, self._grid[index], 2), 2)
+        logs = np.log(np.maximum(loads, 1e-300))
+        k, c, offset, film, compliance, loss, share = (np.interp(logs, self._logs, line) for line in lines)
+        if self._checked is not None:
+            valley = valley_loads(contact, self._lubricant, np.array([np.exp(log_speed)]), np.array([kelvin]))[0, 0]
+            k, c, offset = (
+                numerical + added
+                for numerical, added in zip(
+                    (k, c, offset), self._of_law(logs - np.log(valley), share, film), strict=True
+                )
+            )
+        return k, c, offset, compliance, loss
+
+    def _of_law(self, zeta: FloatArray, share: FloatArray, film: FloatArray) -> tuple[FloatArray, ...]:
+        """Errors of the law: relative ones of k and c, and that of the film offset [m]."""
+        assert self._checked is not None
+        inside: BoolArray = (zeta > VALLEY[0]) & (zeta < VALLEY[1])
+        regions = [self._checked] if self._in_valley is None else [self._checked, self._in_valley]
+        found = [
+            (
+                region.relative_stiffness(share),
+                np.full(share.shape, region.damping),
+                (region.film_offset or 0.0) * film,
+            )
+            for region in regions
+        ]
+        return tuple(
+            np.where(inside, np.maximum.reduce(parts), parts[0]) for parts in map(list, zip(*found, strict=True))
+        )
+
+
+def _at(nodes: FloatArray, place: float, values: FloatArray, axis: int) -> FloatArray:
+    """Values at a place within the nodes of one axis, linear between them."""
+    if nodes.size == 1:
+        return np.asarray(values.take(0, axis))
+    cell = int(np.clip(np.searchsorted(nodes, place) - 1, 0, nodes.size - 2))
+    part = (place - nodes[cell]) / (nodes[cell + 1] - nodes[cell])
+    return np.asarray((1.0 - part) * values.take(cell, axis) + part * values.take(cell + 1, axis))

@@ -1,0 +1,146 @@
+"""The structure of a netCDF file, looked at before the library opens it: damage that would hang it or fill the memory.
+
+The C libraries below netCDF check most of what they read. Two things they do not: the objects of a global heap of HDF5,
+in which texts stand, may have a size with which their reader never comes to the end of the heap; and the header of a
+classic file is believed as to how many dimensions, attributes and variables follow, and memory is taken for them.
+
+References
+----------
+The HDF Group, HDF5 File Format Specification 3.0, section III.E (global heap). Unidata, NetCDF Classic Format
+Specification (CDF-1, 2 and 5).
+"""
+
+from __future__ import annotations
+
+import mmap
+from pathlib import Path
+
+DAMAGE = (OSError, RuntimeError, ValueError, LookupError, AttributeError, TypeError, MemoryError)
+"""What netCDF4 raises on damaged files, depending on what its C library stumbles over."""
+
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+_HEAP = b"GCOL\x01\x00\x00\x00"
+"""A global heap collection: signature, version 1, three reserved bytes."""
+
+_HEAD = 16
+"""Bytes of the head of a heap, and of each object in it."""
+
+_TYPE_BYTES = {1: 1, 2: 1, 3: 2, 4: 4, 5: 4, 6: 8, 7: 1, 8: 2, 9: 4, 10: 8, 11: 8}
+"""Bytes of a value, by the number of its type in a classic file."""
+
+_DIMENSIONS, _VARIABLES, _ATTRIBUTES = 10, 11, 12
+"""Tags of the lists of a classic header."""
+
+
+def structure_problem(path: str | Path) -> str:
+    """Say why the library must not open a file; empty where it may, whether it is a netCDF file or not.
+
+    Parameters
+    ----------
+    path : str or Path
+        A regular file that can be read.
+    """
+    with open(path, "rb") as file:
+        start = file.read(len(_HDF5))
+        if start == _HDF5:
+            with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+                return _heap_problem(content)
+        if start[:3] == b"CDF":
+            with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+                return _classic_problem(content)
+    return ""
+
+
+def _heap_problem(content: mmap.mmap) -> str:
+    """What is wrong with the global heaps of an HDF5 file."""
+    place = content.find(_HEAP)
+    while place >= 0:
+        size = int.from_bytes(content[place + 8 : place + _HEAD], "little")
+        if not _HEAD <= size <= len(content) - place:
+            return f"the heap at byte {place} is said to have {size} bytes; the file is damaged"
+        here = place + _HEAD
+        while here + _HEAD <= place + size:
+            index = int.from_bytes(content[here : here + 2], "little")
+            length = int.from_bytes(content[here + 8 : here + _HEAD], "little")
+            # Free space, object 0, counts its head; objects are filled up to 8 bytes.
+            step = _HEAD + (length + 7) // 8 * 8 if index else length
+            if not _HEAD <= step <= place + size - here:
+                return f"an object of the heap at byte {place} is said to have {length} bytes; the file is damaged"
+            here += step
+        place = content.find(_HEAP, place + size)
+    return ""
+
+
+class _BeyondError(Exception):
+    """A header promises more than the file has."""
+
+
+class _Header:
+    """Reads the header of a classic file from its beginning on.
+
+    Parameters
+    ----------
+    content : mmap
+        The file.
+    """
+
+    def __init__(self, content: mmap.mmap) -> None:
+        self._content = content
+        # CDF-5 counts with 8 bytes, CDF-2 and 5 have addresses of 8 bytes.
+        version = content[3] if len(content) > 3 else 0
+        self._count_bytes, self._address_bytes = (8 if version == 5 else 4), (4 if version == 1 else 8)
+        self._here = 4
+
+    def problem(self) -> str:
+        """What is wrong with it; empty where nothing is."""
+        try:
+            self._number(self._count_bytes)  # records
+            for _ in range(self._entries(_DIMENSIONS)):
+                self._name()
+                self._number(self._count_bytes)
+            self._attributes()
+            for _ in range(self._entries(_VARIABLES)):
+                self._name()
+                self._skip(self._number(self._count_bytes), self._count_bytes)
+                self._attributes()
+                self._skip(1, 4 + self._count_bytes + self._address_bytes)
+        except _BeyondError:
+            return f"its header promises more than the {len(self._content)} bytes of the file; the file is damaged"
+        return ""
+
+    def _attributes(self) -> None:
+        """Pass over a list of attributes."""
+        for _ in range(self._entries(_ATTRIBUTES)):
+            self._name()
+            # What is of no known type, the library says.
+            bytes_each = _TYPE_BYTES.get(self._number(4), 1)
+            count = self._number(self._count_bytes)
+            self._skip((count * bytes_each + 3) // 4, 4)
+
+    def _entries(self, tag: int) -> int:
+        """Number of entries of a list; each has 8 bytes at least."""
+        found = self._number(4)
+        count = self._number(self._count_bytes)
+        if (count and found != tag) or 8 * count > len(self._content) - self._here:
+            raise _BeyondError
+        return count
+
+    def _name(self) -> None:
+        """Pass over a name, filled up to 4 bytes."""
+        self._skip((self._number(self._count_bytes) + 3) // 4, 4)
+
+    def _number(self, length: int) -> int:
+        """Read a number."""
+        self._skip(1, length)
+        return int.from_bytes(self._content[self._here - length : self._here], "big")
+
+    def _skip(self, count: int, length: int) -> None:
+        """Pass over so many things of so many bytes."""
+        self._here += count * length
+        if self._here > len(self._content):
+            raise _BeyondError
+
+
+def _classic_problem(content: mmap.mmap) -> str:
+    """What is wrong with the header of a classic file."""
+    return _Header(content).problem()

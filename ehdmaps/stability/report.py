@@ -1,0 +1,96 @@
+"""Checks as a table, and as JSON."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+
+from ehdmaps.outputs import MARK, Kind, has_mark, write_text
+from ehdmaps.stability.findings import Check
+
+CHECKS = Kind("a table of checks of ehdmaps or mbs", (".txt", ".json"), has_mark)
+
+MOST_REASONS = 6
+"""Reasons of refusals that are printed of a check; JSON has all."""
+
+_WIDTH = 120
+
+
+def checks_text(checks: Sequence[Check]) -> str:
+    """Return the checks as a table: counts first, then how a value is judged, the worst case, and what failed.
+
+    Parameters
+    ----------
+    checks : sequence of Check
+        What was found, in the order in which it is shown.
+    """
+    width = max([len("total"), *(len(check.name) for check in checks)]) + 2
+    columns = ("tried", "right", "refused", "failed", "CPU s")
+    lines = ["".ljust(width) + "".join(f"{name:>10}" for name in columns)]
+    for check in checks:
+        counts = (check.tried, check.right, check.refused, check.failed)
+        lines.append(check.name.ljust(width) + "".join(f"{count:>10}" for count in counts) + f"{check.seconds:>10.3g}")
+    sums = [sum(getattr(check, name) for check in checks) for name in columns[:4]]
+    seconds = sum(check.seconds for check in checks)
+    lines.append("total".ljust(width) + "".join(f"{count:>10}" for count in sums) + f"{seconds:>10.3g}")
+    for check in checks:
+        lines += ["", check.name]
+        lines += _paragraph("right: ", check.rule)
+        if check.worst:
+            lines += _paragraph("worst: ", check.worst)
+        lines += _paragraph("refused: ", _reasons(check)) if check.reasons else []
+        for failure in check.failures:
+            lines += _paragraph("FAILED: ", f"{failure.what}; case: {failure.case}")
+        if check.failed > len(check.failures):
+            lines += _paragraph("FAILED: ", f"{check.failed - len(check.failures)} more")
+    return "\n".join(lines)
+
+
+def checks_json(checks: Sequence[Check]) -> str:
+    """Return the checks as JSON: under "checks" a list of objects with the attributes of `Check`.
+
+    Parameters
+    ----------
+    checks : sequence of Check
+        What was found.
+    """
+    entries = [dataclasses.asdict(check) | {"reasons": dict(check.reasons)} for check in checks]
+    return json.dumps({"mark": MARK, "checks": entries}, indent=1)
+
+
+def write_checks(path: Path, head: str, checks: Sequence[Check]) -> None:
+    """Write checks, by the rule of all files that are written.
+
+    Parameters
+    ----------
+    path : Path
+        .txt for the table, .json for JSON.
+    head : str
+        What was searched; first line of the table.
+    checks : sequence of Check
+        What was found.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    text = checks_json(checks) if path.suffix == ".json" else f"{head} ({MARK})\n{checks_text(checks)}"
+    write_text(path, f"{text}\n", CHECKS)
+
+
+def _reasons(check: Check) -> str:
+    """Why cases were refused, the most frequent reasons first."""
+    ordered = sorted(check.reasons.items(), key=lambda entry: -entry[1])
+    shown = [f"{count} {reason}" for reason, count in ordered[:MOST_REASONS]]
+    left = sum(count for _, count in ordered[MOST_REASONS:])
+    return "; ".join(shown + ([f"{left} for {len(ordered) - MOST_REASONS} other reasons"] if left else []))
+
+
+def _paragraph(begin: str, text: str) -> list[str]:
+    """Lines of a text below its check."""
+    flat = " ".join(text.split())
+    return textwrap.wrap(flat, _WIDTH, initial_indent=f"    {begin}", subsequent_indent=" " * 8)

@@ -1,0 +1,326 @@
+"""How much the errors that a map states move what a linear analysis finds: first derivatives, and sums of their sizes.
+
+A contact law is the approach, the stiffness and the damping at each load. Each may be wrong by its bound
+(`ehdmaps.maps.law_errors`), at all loads of a bearing with the same sign, which makes three changes a bearing:
+
+- stiffness: k of each slice by its bound, at the load that it has;
+- damping: c likewise;
+- film: each film thicker by its bound, which shifts the equilibrium, hence the loads, hence k and c.
+
+Each changes the dynamic stiffness Z(s) of the system by dZ(s). To first order an eigenvalue then moves by
+
+    d lambda = -y' dZ(lambda) x,    with y' Z'(lambda) x = 1,
+
+and a response by dH = -S Z^-1 dZ Z^-1 B. A slice with a film that relaxes has Z = k + s c/(1 + s theta) with
+theta = c/(k_s - k); k_s, the stiffness of the locked film, is held.
+
+A band is the sum of the sizes of these changes: of the three kinds, and over the bearings, which share the errors of
+one map. That is the largest change to first order that the bounds allow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.maps.law_errors import LawBounds
+from mbs.bearings.bearing_element import RingElement
+from mbs.bearings.contact_groups import ContactGroup
+from mbs.bearings.roller_element import ring_following
+from mbs.model.equilibrium import Equilibrium
+from mbs.model.system import System
+
+NO_MAP = "none stated: the law is not that of a map"
+"""What is said where laws state no errors."""
+
+KINDS = ("stiffness", "damping", "film")
+"""Kinds of changes, in the order in which each bearing has them."""
+
+_State = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+"""Load, stiffness, damping and relaxation time of the slices of a group, shape (r,) each."""
+
+_SMALL = 1e-10
+"""Step of the approach by which the law is differentiated once more [m]."""
+
+_SOFT = 1e-9
+"""Mass that is added to a singular stiffness, in squares of its mean frequency, as where an equilibrium is sought."""
+
+
+class ModeBands(NamedTuple):
+    """Bands of modes, either way, shape (modes,) each.
+
+    Attributes
+    ----------
+    frequency : array
+        Of |eigenvalue|/(2 pi) [Hz].
+    damping_ratio : array
+        Of the damping ratio.
+    """
+
+    frequency: FloatArray
+    damping_ratio: FloatArray
+
+
+class SliceChange(NamedTuple):
+    """What a change does to the slices of a group, shape (r,) each.
+
+    Attributes
+    ----------
+    group : int
+        Which group.
+    stiffness, damping, times : array
+        Changes of k [N/m], of c [N s/m] and of the relaxation times [s].
+    """
+
+    group: int
+    stiffness: FloatArray
+    damping: FloatArray
+    times: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class _Slices:
+    """Slices of a group in the coordinates of the system: damping [N s/m] and times [s] (r,), rows (r, n)."""
+
+    element: int
+    rows: FloatArray
+    port_rows: FloatArray
+    damping: FloatArray
+    times: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class LawBands:
+    """What the errors of the laws of a system may change at an equilibrium.
+
+    Attributes
+    ----------
+    changes : tuple of tuple of SliceChange
+        Each change with all slices that it reaches: for each bearing those of `KINDS`.
+    """
+
+    changes: tuple[tuple[SliceChange, ...], ...]
+    _balance: Equilibrium
+    _groups: tuple[_Slices, ...]
+
+    def eigenvalue_changes(self, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray) -> ComplexArray:
+        """Change of eigenvalues by each of the changes, shape (changes, modes) [1/s].
+
+        Parameters
+        ----------
+        eigenvalues : array, shape (modes,)
+            [1/s].
+        right : array, shape (n, modes)
+            Displacements of the right eigenvectors of the state.
+        left : array, shape (modes, n)
+            Velocities of the left ones, with left . right = 1 for the whole state.
+        """
+        turned = np.linalg.solve(self._balance.system.mass, left.T)
+        products = [(one.rows @ turned) * (one.rows @ right) for one in self._groups]
+        found = np.zeros((len(self.changes), eigenvalues.size), dtype=np.complex128)
+        for index, change in enumerate(self.changes):
+            for part in change:
+                slices = self._groups[part.group]
+                found[index] -= np.sum(_dynamic(slices, part, eigenvalues).T * products[part.group], axis=0)
+        return found
+
+    def of_modes(self, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray) -> ModeBands:
+        """Bands of modes; arguments as of `eigenvalue_changes`."""
+        changes = self.eigenvalue_changes(eigenvalues, right, left)
+        size = np.maximum(np.abs(eigenvalues), 1e-300)
+        grown = (changes * eigenvalues.conj()).real / size
+        ratio = -(changes.real - eigenvalues.real * grown / size) / size
+        return ModeBands(np.abs(grown).sum(axis=0) / (2.0 * np.pi), np.abs(ratio).sum(axis=0))
+
+    def of_undamped(self, frequency: FloatArray, shapes: FloatArray) -> FloatArray:
+        """Bands of undamped frequencies [Hz], either way, shape (n,).
+
+        Parameters
+        ----------
+        frequency : array, shape (n,)
+            [Hz].
+        shapes : array, shape (n, n)
+            Columns phi with phi' M phi = 1.
+        """
+        energy = np.array(
+            [
+                sum((part.stiffness @ (self._groups[part.group].rows @ shapes) ** 2 for part in change), np.zeros(1))
+                for change in self.changes
+            ]
+        )
+        omega = 2.0 * np.pi * frequency
+        swings = omega > 1e-6 * omega.max(initial=0.0)
+        band = np.abs(energy).sum(axis=0) / (2.0 * np.where(swings, omega, 1.0)) / (2.0 * np.pi)
+        return np.asarray(np.where(swings, band, 0.0))
+
+    def of_responses(
+        self, frequencies: FloatArray, motion: ComplexArray, back: ComplexArray, responses: ComplexArray
+    ) -> FloatArray:
+        """Bands of the size of frequency responses, either way, shape (frequencies, sensors, inputs) [their unit].
+
+        Parameters
+        ----------
+        frequencies : array, shape (frequencies,)
+            [Hz].
+        motion : array, shape (frequencies, n, inputs)
+            Complex amplitudes Z^-1 B of the coordinates for each input.
+        back : array, shape (frequencies, sensors, n)
+            S Z^-1: what each sensor sees of a load on each coordinate, in its unit.
+        responses : array, shape (frequencies, sensors, inputs)
+            S Z^-1 B.
+        """
+        s = np.asarray(2j * np.pi * frequencies, dtype=np.complex128)
+        seen = [(back @ one.rows.T, one.rows @ motion) for one in self._groups]
+        unit = responses.conj() / np.maximum(np.abs(responses), 1e-300)
+        band = np.zeros(responses.shape)
+        for change in self.changes:
+            moved = np.zeros(responses.shape, dtype=np.complex128)
+            for part in change:
+                left, right = seen[part.group]
+                moved -= (left * _dynamic(self._groups[part.group], part, s)[:, None, :]) @ right
+            band += np.abs((moved * unit).real)
+        return band
+
+    def of_bearings(self) -> FloatArray:
+        """Bands of k [N/m] and c [N s/m] of each bearing along its force, either way, shape (2, bearings).
+
+        Those of `mbs.linearised.sweep_point.along_load`; NaN for a bearing without force.
+        """
+        balance, found = self._balance, []
+        for index in balance.system.select(RingElement):
+            radial = balance.forces[index][1:3]
+            load = float(np.linalg.norm(radial))
+            if load == 0.0:
+                found.append([np.nan, np.nan])
+                continue
+            stiffness, damping = balance.element_stiffness[index], balance.element_damping[index]
+            following = ring_following(stiffness)
+            motion = following @ np.array([0.0, *(radial / load), 0.0, 0.0, 0.0])
+            sums = np.zeros(2)
+            for change in self.changes:
+                parts = [part for part in change if self._groups[part.group].element == index]
+                dk, dc = np.zeros((2, motion.size))
+                for part in parts:
+                    rows = self._groups[part.group].port_rows
+                    dk += rows.T @ (part.stiffness * (rows @ motion))
+                    dc += rows.T @ (part.damping * (rows @ motion))
+                sums += np.abs([motion @ dk, motion @ dc + 2.0 * (motion @ damping) @ _moved(stiffness, dk)])
+            found.append(sums.tolist())
+        return np.array(found).reshape(-1, 2).T
+
+
+def error_words(system: System) -> str:
+    """What is in the bands of a system, for people; empty without bearings."""
+    bearings = [system.elements[index].element for index in system.select(RingElement)]
+    if not bearings:
+        return ""
+    words = {element.error_words for element in bearings if isinstance(element, RingElement)}
+    return NO_MAP if "" in words else "; ".join(sorted(words))
+
+
+def law_bands(balance: Equilibrium) -> LawBands | None:
+    """What the errors of the laws of a system may change; None where a bearing states no errors, or none has films.
+
+    Parameters
+    ----------
+    balance : Equilibrium
+        Equilibrium at which the system is linearised.
+    """
+    system = balance.system
+    slices: list[_Slices] = []
+    groups: list[tuple[int, ContactGroup]] = []
+    for index in system.select(RingElement):
+        connected = system.elements[index]
+        assert isinstance(connected.element, RingElement)
+        ports = connected.transform @ balance.displacement
+        own = connected.element.contact_groups(ports, balance.operation)
+        if not own:
+            return None
+        groups += [(index, group) for group in own]
+    bounds: list[LawBounds] = []
+    states: list[_State] = []
+    for index, group in groups:
+        state = group.state()
+        bound = group.law.bounds(state[0])
+        if bound is None:
+            return None
+        states.append(state)
+        bounds.append(bound)
+        transform = system.elements[index].transform
+        slices.append(_Slices(index, group.rows @ transform, group.rows, state[2], state[3]))
+    if not groups:
+        return None
+    slopes = [_slopes(group, state) for (_, group), state in zip(groups, states, strict=True)]
+    changes: list[tuple[SliceChange, ...]] = []
+    for index in dict.fromkeys(index for index, _ in groups):
+        own_groups = [g for g, (of, _) in enumerate(groups) if of == index]
+        changes.append(tuple(_stiffer(g, states[g], bounds[g].stiffness) for g in own_groups))
+        changes.append(tuple(_damped(g, states[g], bounds[g].damping) for g in own_groups))
+        changes.append(_thicker(balance, slices, states, slopes, {g: bounds[g].film_offset for g in own_groups}))
+    return LawBands(tuple(changes), balance, tuple(slices))
+
+
+def _stiffer(group: int, state: _State, bound: FloatArray) -> SliceChange:
+    """Slices whose stiffness is higher by a relative bound; theta = c/(k_s - k) grows where k nears k_s."""
+    _, stiffness, damping, times = state
+    more = stiffness * bound
+    longer = np.where(damping > 0.0, times**2 * more / np.where(damping > 0.0, damping, 1.0), 0.0)
+    return SliceChange(group, more, np.zeros_like(more), longer)
+
+
+def _damped(group: int, state: _State, bound: FloatArray) -> SliceChange:
+    """Slices whose damping is higher by a relative bound, and theta with it."""
+    _, stiffness, damping, times = state
+    return SliceChange(group, np.zeros_like(stiffness), damping * bound, times * bound)
+
+
+def _slopes(group: ContactGroup, state: _State) -> _State:
+    """Derivatives of the state by the approach."""
+    after = group.state(_SMALL)
+    load, stiffness, damping, times = ((new - old) / _SMALL for new, old in zip(after, state, strict=True))
+    return load, stiffness, damping, times
+
+
+def _thicker(
+    balance: Equilibrium,
+    slices: Sequence[_Slices],
+    states: Sequence[_State],
+    slopes: Sequence[_State],
+    thicker: dict[int, FloatArray],
+) -> tuple[SliceChange, ...]:
+    """What thicker films [m] of some groups change: the equilibrium gives way, and all loads change with it."""
+    force = np.zeros(balance.system.size)
+    for g, films in thicker.items():
+        force -= slices[g].rows.T @ (states[g][1] * films)
+    stiffness, mass = 0.5 * (balance.stiffness + balance.stiffness.T), balance.system.mass
+    size = max(float(np.trace(stiffness) / np.trace(mass)), 1.0)
+    given = np.linalg.solve(stiffness + _SOFT * size * mass, force)
+    found = []
+    for g, (_, by_stiffness, by_damping, by_times) in enumerate(slopes):
+        shift = slices[g].rows @ given + thicker.get(g, 0.0)
+        found.append(SliceChange(g, by_stiffness * shift, by_damping * shift, by_times * shift))
+    return tuple(found)
+
+
+def _dynamic(slices: _Slices, change: SliceChange, s: ComplexArray) -> ComplexArray:
+    """Change of the dynamic stiffness of each slice at complex frequencies s (k,), shape (k, r)."""
+    rate = s[:, None]
+    slow = 1.0 / (1.0 + rate * slices.times)
+    return np.asarray(
+        change.stiffness + rate * slow * (change.damping - rate * slow * slices.damping * change.times),
+        dtype=np.complex128,
+    )
+
+
+def _moved(stiffness: FloatArray, force: FloatArray) -> FloatArray:
+    """How far rollers that are bodies follow a change of force on the ports, both rings held, shape (m,)."""
+    found = np.zeros_like(force)
+    if stiffness.shape[0] > 6:
+        own = stiffness[12:, 12:]
+        loaded = np.nonzero(np.diag(own) > 0.0)[0]
+        found[12 + loaded] = -np.linalg.solve(own[np.ix_(loaded, loaded)], force[12 + loaded])
+    return found

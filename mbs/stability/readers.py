@@ -1,0 +1,253 @@
+"""Every reader of mbs given damaged files: scenes, body files, matrices, reduced bodies, universal files."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Mapping
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy import io, sparse
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import DependencyError
+from ehdmaps.stability.findings import Check
+from ehdmaps.stability.fuzzing import Reader, fuzz
+from mbs.commands.reduce import read_body_file
+from mbs.flexible.carry_out import carry_out
+from mbs.flexible.reduced_body import ReducedBody
+from mbs.flexible.reduced_file import read_reduced, write_reduced
+from mbs.modal.records import Channel, Hits, Responses
+from mbs.modal.uff import Measurement
+from mbs.modal.uff_reading import read_uff
+from mbs.modal.uff_writing import write_uff
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import read_scene
+
+_SCENES = ("nu308_rigid", "n1014_rigid")
+"""Shipped scenes without files of their own."""
+
+_BODY = """matrices = {{ format = "{form}", stiffness = "k.txt", mass = "m.txt"{dofs} }}
+mesh = "mesh.inp"
+units = "SI"
+cutoff = "20 kHz"
+[interfaces]
+left = {{ at = ["0 mm", "50 mm", "50 mm"], plane = {{ axis = "x", tolerance = "0.1 mm" }}, kind = "rigid" }}
+right = {{ at = ["100 mm", "50 mm", "50 mm"], nodes = [50, 60, 70, 80], freedoms = ["x", "y", "z"] }}
+[points]
+top = ["100 mm", "100 mm", "100 mm"]
+node = 20
+"""
+
+_MATRICES = ("k.txt", "m.txt", "dofs.txt", "mesh.inp")
+
+
+def reader_checks(mutations: int, seed: int) -> tuple[Check, ...]:
+    """Give every reader of mbs damaged files.
+
+    Parameters
+    ----------
+    mutations : int
+        Damaged files for each reader.
+    seed : int
+        Seed of the search.
+
+    Returns
+    -------
+    tuple of Check
+        One for each reader; without a case where the reader needs a package that is not installed.
+    """
+    return tuple(_checked(name, mutations, seed) for name in READERS)
+
+
+def _checked(name: str, mutations: int, seed: int) -> Check:
+    """One reader."""
+    try:
+        return fuzz(READERS[name](), mutations, seed)
+    except DependencyError as error:
+        return Check(f"{name}, damaged", 0, 0, 0, f"not tried: {error}")
+
+
+def _scenes() -> Reader:
+    """Scene files, put together to a system of dry contacts."""
+    texts = [(resources.files("mbs") / "systems" / f"{name}.toml").read_bytes() for name in _SCENES]
+
+    def read(folder: Path) -> str:
+        model = assemble(read_scene(str(folder / "scene.toml")))
+        matrices = model.system.mass, model.system.stiffness
+        return "" if all(np.all(np.isfinite(matrix)) for matrix in matrices) else "a system that is not finite"
+
+    return Reader("scene", [{"scene.toml": text} for text in texts], read)
+
+
+def _body_files() -> Reader:
+    """Files that say what is reduced and how."""
+    return Reader("body file", [_calculix_files()], _reduced, ("body.toml",))
+
+
+def _calculix() -> Reader:
+    """Matrices as CalculiX writes them, with their deck."""
+    return Reader("matrices of CalculiX", [_calculix_files()], _reduced, _MATRICES)
+
+
+def _matrix_market() -> Reader:
+    """Matrices in the Matrix Market format."""
+    stiffness, mass, positions = _cube()
+    files = {name: _written_market(matrix) for name, matrix in (("k.txt", stiffness), ("m.txt", mass))}
+    dofs = "".join(f"{10 * (row // 3 + 1)} {row % 3 + 1}\n" for row in range(mass.shape[0]))
+    body = _BODY.format(form="matrix-market", dofs=', dofs = "dofs.txt"')
+    good = {**files, "dofs.txt": dofs.encode(), "mesh.inp": _deck(positions), "body.toml": body.encode()}
+    return Reader("matrices in Matrix Market", [good], _reduced, _MATRICES)
+
+
+def _abaqus() -> Reader:
+    """Matrices as Abaqus writes them."""
+    stiffness, mass, positions = _cube()
+
+    def lines(matrix: FloatArray) -> bytes:
+        found = [
+            f"{10 * (i // 3 + 1)},{i % 3 + 1}, {10 * (j // 3 + 1)},{j % 3 + 1}, {matrix[i, j]:.15e}\n"
+            for i, j in zip(*np.nonzero(np.tril(matrix)), strict=True)
+        ]
+        return "".join(found).encode()
+
+    body = _BODY.format(form="abaqus", dofs="")
+    good = {"k.txt": lines(stiffness), "m.txt": lines(mass), "mesh.inp": _deck(positions), "body.toml": body.encode()}
+    return Reader("matrices of Abaqus", [good], _reduced, _MATRICES)
+
+
+def _reduced_bodies(ending: str) -> Reader:
+    """Bodies that were reduced already."""
+    name = f"body{ending}"
+    body = _with_files(_calculix_files(), lambda folder: carry_out(read_body_file(folder / "body.toml")))
+    content = _as_written(name, lambda path: write_reduced(path, body))
+    return Reader(
+        f"reduced body {ending}", [{name: content}], lambda folder: _body_problem(read_reduced(folder / name))
+    )
+
+
+def _universal_files() -> Reader:
+    """Measured records: hits, and responses."""
+    time = np.arange(64) / 1024.0
+    place = Channel("hammer", 1, 2, "force")
+    sensors = (Channel("tip", 1, 2, "displacement"), Channel("root", 2, 2, "acceleration"))
+    force = np.zeros((2, 64))
+    force[:, 3] = (80.0, 120.0)
+    answer = np.exp(-20.0 * time) * np.sin(900.0 * time) * np.array([1e-5, 2.0])[:, None]
+    hits = Hits(1.0 / 1024.0, force, np.stack([answer, 1.5 * answer]), place, sensors)
+    axis = np.arange(1.0, 33.0)
+    values = np.stack([1.0 / (400.0 - axis**2 + 2j * axis), 3.0 / (900.0 - axis**2 + 4j * axis)])
+    responses = Responses(
+        axis, values.astype(np.complex128), np.ones(values.shape), tuple((sensor, place) for sensor in sensors)
+    )
+    contents = [
+        _as_written("good.uff", lambda path, given=given: write_uff(path, given))  # type: ignore[misc]
+        for given in (Measurement("hits", (hits,)), Measurement("both", (hits,), responses))
+    ]
+    return Reader("universal file", [{"records.uff": content} for content in contents], _records_problem)
+
+
+READERS: Mapping[str, Callable[[], Reader]] = {
+    "scene": _scenes,
+    "body file": _body_files,
+    "matrices of CalculiX": _calculix,
+    "matrices of Abaqus": _abaqus,
+    "matrices in Matrix Market": _matrix_market,
+    "reduced body .nc": lambda: _reduced_bodies(".nc"),
+    "reduced body .npz": lambda: _reduced_bodies(".npz"),
+    "universal file": _universal_files,
+}
+"""What makes each reader with its good files."""
+
+
+def _cube() -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Stiffness [N/m], mass [kg] and positions [m] of eight nodes, each pair joined by a rod."""
+    positions = 0.1 * np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
+    stiffness = np.zeros((24, 24))
+    for first in range(8):
+        for second in range(first):
+            apart = positions[first] - positions[second]
+            length = float(np.linalg.norm(apart))
+            block = 1e7 / length * np.outer(apart, apart) / length**2
+            for row, column, sign in ((first, first, 1), (second, second, 1), (first, second, -1), (second, first, -1)):
+                stiffness[3 * row : 3 * row + 3, 3 * column : 3 * column + 3] += sign * block
+    return stiffness, np.diag(np.full(24, 0.25)), positions
+
+
+def _deck(positions: FloatArray) -> bytes:
+    """The nodes as an input deck."""
+    lines = "".join(f"{10 * k}, {x!r}, {y!r}, {z!r}\n" for k, (x, y, z) in enumerate(positions.tolist(), start=1))
+    return (
+        f"*HEADING\na cube\n*NODE, NSET=ALL\n{lines}*ELEMENT, TYPE=C3D8\n1, 10, 20, 40, 30, 50, 60, 80, 70\n".encode()
+    )
+
+
+def _calculix_files() -> dict[str, bytes]:
+    """A body file and all that it names, in the format of CalculiX."""
+    stiffness, mass, positions = _cube()
+
+    def lines(matrix: FloatArray) -> bytes:
+        rows = zip(*np.nonzero(np.triu(matrix)), strict=True)
+        return "".join(f"{i + 1} {j + 1} {matrix[i, j]:.15e}\n" for i, j in rows).encode()
+
+    dofs = "".join(f"{10 * (row // 3 + 1)}.{row % 3 + 1}\n" for row in range(mass.shape[0]))
+    body = _BODY.format(form="calculix", dofs=', dofs = "dofs.txt"')
+    return {
+        "k.txt": lines(stiffness),
+        "m.txt": lines(mass),
+        "dofs.txt": dofs.encode(),
+        "mesh.inp": _deck(positions),
+        "body.toml": body.encode(),
+    }
+
+
+def _written_market(matrix: FloatArray) -> bytes:
+    """A matrix in the Matrix Market format."""
+
+    def write(path: Path) -> None:
+        with path.open("wb") as file:
+            io.mmwrite(file, sparse.coo_array(matrix), symmetry="symmetric")
+
+    return _as_written("matrix.mtx", write)
+
+
+def _reduced(folder: Path) -> str:
+    """Read a body file and all that it names, reduce, and say what is wrong about the result."""
+    return _body_problem(carry_out(read_body_file(folder / "body.toml")))
+
+
+def _body_problem(body: ReducedBody) -> str:
+    """What is wrong about a reduced body, beyond what it looks for itself."""
+    scale = 1.0 / np.sqrt(np.diag(body.mass))
+    squares = np.linalg.eigvalsh(scale[:, None] * body.stiffness * scale)
+    return "" if np.all(np.isfinite(squares)) else "own frequencies that are not finite"
+
+
+def _records_problem(folder: Path) -> str:
+    """What is wrong about measured records."""
+    measured = read_uff(folder / "records.uff")
+    arrays = [array for hits in measured.hits for array in (hits.force, hits.response, np.array([hits.step]))]
+    if measured.responses is not None:
+        arrays += [measured.responses.frequency, np.abs(measured.responses.response)]
+    return "" if all(np.all(np.isfinite(array)) for array in arrays) else "records that are not finite"
+
+
+def _with_files(files: Mapping[str, bytes], use: Callable[[Path], Any]) -> Any:
+    """What is made of files in a folder."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, content in files.items():
+            (Path(folder) / name).write_bytes(content)
+        return use(Path(folder))
+
+
+def _as_written(name: str, write: Callable[[Path], None]) -> bytes:
+    """What stands in a file that is written."""
+
+    def use(folder: Path) -> bytes:
+        write(folder / name)
+        return (folder / name).read_bytes()
+
+    content: bytes = _with_files({}, use)
+    return content
