@@ -1,8 +1,9 @@
 """The structure of a netCDF file, looked at before the library opens it: damage that would hang it or fill the memory.
 
-The C libraries below netCDF check most of what they read. Two things they do not: the objects of a global heap of HDF5,
-in which texts stand, may have a size with which their reader never comes to the end of the heap; and the header of a
-classic file is believed as to how many dimensions, attributes and variables follow, and memory is taken for them.
+The C libraries below netCDF check most of what they read. Three things they do not: the objects of a global heap of
+HDF5, in which texts stand, may have a size with which their reader never comes to the end of the heap; what points to a
+text is believed as to its length; and the header of a classic file is believed as to how many dimensions, attributes
+and variables follow. Memory is taken for all that they say.
 
 References
 ----------
@@ -24,6 +25,12 @@ _HEAP = b"GCOL\x01\x00\x00\x00"
 
 _HEAD = 16
 """Bytes of the head of a heap, and of each object in it."""
+
+_LONG = 2**24
+"""Length from which a text is looked at [bytes]: the library takes memory for it before it looks for the text."""
+
+_MOST_SOUGHT = 2**31
+"""Bytes that are looked through for what points to a heap, all heaps together: a second at most."""
 
 _TYPE_BYTES = {1: 1, 2: 1, 3: 2, 4: 4, 5: 4, 6: 8, 7: 1, 8: 2, 9: 4, 10: 8, 11: 8}
 """Bytes of a value, by the number of its type in a classic file."""
@@ -53,12 +60,12 @@ def structure_problem(path: str | Path) -> str:
 
 def _heap_problem(content: mmap.mmap) -> str:
     """What is wrong with the global heaps of an HDF5 file."""
-    place = content.find(_HEAP)
+    place, heaps = content.find(_HEAP), 0
     while place >= 0:
         size = int.from_bytes(content[place + 8 : place + _HEAD], "little")
         if not _HEAD <= size <= len(content) - place:
             return f"the heap at byte {place} is said to have {size} bytes; the file is damaged"
-        here = place + _HEAD
+        here, lengths = place + _HEAD, {}
         while here + _HEAD <= place + size:
             index = int.from_bytes(content[here : here + 2], "little")
             length = int.from_bytes(content[here + 8 : here + _HEAD], "little")
@@ -66,9 +73,29 @@ def _heap_problem(content: mmap.mmap) -> str:
             step = _HEAD + (length + 7) // 8 * 8 if index else length
             if not _HEAD <= step <= place + size - here:
                 return f"an object of the heap at byte {place} is said to have {length} bytes; the file is damaged"
+            lengths[index] = length
             here += step
+        heaps += 1
+        if heaps * len(content) < _MOST_SOUGHT and _long_text(content, place, lengths):
+            return f"a text of the heap at byte {place} is said to be longer than it is; the file is damaged"
         place = content.find(_HEAP, place + size)
     return ""
+
+
+def _long_text(content: mmap.mmap, place: int, lengths: dict[int, int]) -> bool:
+    """Whether a text is said to be far longer than the object of the heap in which it stands.
+
+    What points to a text has its length, the address of its heap and the number of the object, of 4, 8 and 4 bytes.
+    """
+    address = place.to_bytes(8, "little")
+    found = content.find(address)
+    while found >= 0:
+        said = int.from_bytes(content[max(found - 4, 0) : found], "little")
+        index = int.from_bytes(content[found + 8 : found + 12], "little")
+        if index and index in lengths and said > _LONG and said > lengths[index]:
+            return True
+        found = content.find(address, found + 8)
+    return False
 
 
 class _BeyondError(Exception):

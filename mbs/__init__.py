@@ -23,7 +23,7 @@ what bodies are     `flexible` (beams, finite elements, reduction)
 what connects them  `bearings` (the bearing force), `gears`
 linear              `linearised` (modes, responses, over speed); `modal` (identified from hammer hits)
 in time             `transient` (method, compiled runs); `spectral` (levels over speed and order)
-analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, variants, hammer, plan
+analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, variants, hammer, plan; `automatic`
 for people          `output` (datasets, figures), `commands`, `cli`; `systems` (shipped scenes)
 ==================  ====================================================================================
 
@@ -40,6 +40,7 @@ from ehdmaps.errors import AnalysisError
 if TYPE_CHECKING:
     __version__: str
 
+    from mbs.analyses.auto import AutoSettings, automatic
     from mbs.analyses.campbell import campbell
     from mbs.analyses.case import Case
     from mbs.analyses.hammer import HammerSettings, hammer
@@ -71,6 +72,7 @@ if TYPE_CHECKING:
 __all__ = [
     "AnalysisError",
     "Attached",
+    "AutoSettings",
     "Bearing",
     "BearingForce",
     "BearingSpec",
@@ -106,6 +108,7 @@ __all__ = [
     "SweepSettings",
     "Variation",
     "assemble",
+    "automatic",
     "campbell",
     "hammer",
     "lsa",
@@ -122,6 +125,7 @@ __all__ = [
 
 _HOMES = {
     "Attached": "flexible.attached",
+    "AutoSettings": "analyses.auto",
     "Bearing": "bearings.bearing",
     "BearingForce": "bearings.bearing_force",
     "BearingSpec": "scene.specs",
@@ -157,6 +161,7 @@ _HOMES = {
     "SweepSettings": "analyses.sweep",
     "Variation": "analyses.variants",
     "assemble": "scene.assembly",
+    "automatic": "analyses.auto",
     "campbell": "analyses.campbell",
     "hammer": "analyses.hammer",
     "lsa": "analyses.lsa",

@@ -69,6 +69,7 @@ def parser() -> argparse.ArgumentParser:
     _modal_fit(commands)
     _bearing(commands)
     _plan(commands)
+    _run(commands, top)
     _reduce(commands)
     _stability(commands)
     return top
@@ -318,7 +319,39 @@ def _scene_command(
     )
     command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
+    if name != "variants":
+        _auto(command)
     return command
+
+
+def _auto(command: argparse.ArgumentParser) -> None:
+    """Add what makes a map and chooses the physics."""
+    command.add_argument(
+        "--auto",
+        action="store_true",
+        help="plan and make the map that the scene needs, or reuse the one of the same plan; switch film memory, oil "
+        "supply and roughness on where they matter; check that all of it lies inside, else plan wider",
+    )
+    command.add_argument("--maps", metavar="FOLDER", help="where --auto makes and keeps maps; default: this folder")
+    command.add_argument(
+        "--tolerance",
+        metavar="PART",
+        help="change of a stiffness or damping above which --auto switches physics on, such as '5 %%' (default), or of "
+        "a level, such as '1 dB'",
+    )
+
+
+def _run(commands: Any, top: argparse.ArgumentParser) -> None:
+    """Add the command that does every analysis for which the scene has a table."""
+    words = "every analysis for which the scene has a table: statics, modes, lsa, sweep, and campbell or runup"
+    command: argparse.ArgumentParser = commands.add_parser("run", help=words, description=words)
+    command.add_argument("scene", metavar="SCENE")
+    command.add_argument("--map", metavar="MAP.nc", help="made by `ehdmaps generate` for the same bearing; or --auto")
+    command.add_argument("--clearance", metavar="LENGTH", help='diametral clearance of all bearings, such as "20 um"')
+    command.add_argument("-o", "--output", metavar="FOLDER", help="results, figures and texts of all analyses")
+    _auto(command)
+    # The command asks for the others by their own words.
+    command.set_defaults(parse=top.parse_args)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -17,6 +17,9 @@ store        results by key in a file beside the map; survives kill -9
 sweep        tasks -> results, over all cores, past dead workers and Ctrl-C
 sampling     random operating points of a job
 refinement   the lines that a contact law needs besides the map, and the group they become
+regression   a smooth function through few points, with what it is uncertain by
+correction   films of one solver corrected by few points of a dearer one; `correction_design` chooses the points,
+             `correction_report` says what came of it
 law_points   what contact laws give at random points, and how far that is from fresh solves
 law_check    the contact laws against fresh solves, as every map with `law_check` has it
 tolerance    settings that bring the contact laws within a tolerance, confirmed by fresh solves
@@ -39,7 +42,9 @@ film_output  files with the film itself, beside the numbers of one point
 traction     traction of one point over the slide-to-roll ratio
 supplied     one point behind an oil layer: flow ratio and place of the meniscus
 film_plot    pressure, film and velocities of one point, on one page
+compare_films films of two maps at random points of their common range
 compare      differences between two maps
+compare_text the same in words and as JSON
 answers      what is asked of a contact and answered, and what errors are relative to
 rough_solved load sharing of film and asperities with solved films
 contact_ways ways of computing a contact: solvers, oil layers, rough surfaces, frequencies

@@ -12,14 +12,17 @@ import numpy.typing as npt
 import xarray as xr
 
 from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.jobs.correction import Correction, Films, Place
+from ehdmaps.jobs.correction_design import places_of
 from ehdmaps.jobs.holes import filled, isolated_holes
 from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask, solver_version, with_later_fields
 from ehdmaps.maps import schema
 from ehdmaps.maps.records import contacts_json, surface_json
-from ehdmaps.maps.structure import derived
+from ehdmaps.maps.structure import MODEL_ERRORS, derived
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.solution import ContactSolver, Status
 from ehdmaps.version import version
 
@@ -70,6 +73,49 @@ def assemble(job: Job, solver: ContactSolver, tasks: Sequence[LineTask], results
         "temperature": job.temperatures,
     }
     return schema.dataset(coordinates, values, _attributes(job, solver))
+
+
+def with_correction(dataset: xr.Dataset, job: Job, correction: Correction, corrector: ContactSolver) -> xr.Dataset:
+    """The map of a job whose films are corrected: with its model errors, and what corrected it.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map, as `assemble` makes it of corrected films.
+    job : Job
+        What was asked for.
+    correction : Correction
+        The correction.
+    corrector : ContactSolver
+        The dearer solver.
+    """
+    shape = job.shape
+    errors = np.zeros((len(MODEL_ERRORS), *shape))
+    loads = np.array(job.loads)
+    names = ("film_offset", "film_compliance", "loss_compliance")
+    for i, contact in enumerate(job.contacts):
+        width = half_width(loads, contact.radius, contact.reduced_modulus)
+        for j, speed in enumerate(job.entrainment_speeds):
+            for k, temperature in enumerate(job.temperatures if speed > 0.0 else ()):
+                places = places_of(contact, job.lubricant, loads, speed, temperature)
+                films = Films(*(dataset[name].values[i, :, j, k] for name in names))
+                errors[:, i, :, j, k] = correction.model_errors(contact, films, places, Place(loads, width, speed))
+    known = np.isfinite(dataset["film_offset"].values)
+    values = {name: np.where(known, error, np.nan) for name, error in zip(MODEL_ERRORS, errors, strict=True)}
+    made_by = {
+        "solver": corrector.name,
+        "settings": corrector.settings(),
+        "version": solver_version(corrector),
+        **correction.record(),
+    }
+    variables = {name: schema.typed(schema.variable(name), array) for name, array in values.items()}
+    return dataset.assign(variables).assign_attrs(
+        {
+            **corrector.provenance,
+            "title": f"{dataset.attrs['title']}, corrected by {corrector.name}",
+            schema.CORRECTION: record_json(made_by),
+        }
+    )
 
 
 def _films(job: Job, tasks: Sequence[LineTask], results: Mapping[str, Arrays]) -> dict[str, npt.NDArray[Any]]:

@@ -38,6 +38,7 @@ def generate(
     fresh: bool = False,
     progress: Callable[[int], Progress] | None = None,
     tolerance: float | None = None,
+    corrector: ContactSolver | None = None,
 ) -> xr.Dataset:
     """Make a map.
 
@@ -65,6 +66,8 @@ def generate(
         Relative tolerance of stiffness, damping and film offset of the contact laws, 0.01 say: density of the grid and
         refinement lines are chosen for it, fresh solves confirm it, and the attributes `tolerance_...` of the map say
         what was found. It needs an output file.
+    corrector : ContactSolver, optional
+        Solver in place of the one that the job names in `corrected_by`.
 
     Returns
     -------
@@ -85,22 +88,25 @@ def generate(
         )
     if output is None:
         plain = dataclasses.replace(chosen, backbone="none")
-        return generating.generate_in_memory(plain, workers, progress, made_by).dataset
+        return generating.generate_in_memory(plain, workers, progress, made_by, corrector).dataset
     check_outputs([Output("output", Path(output), MAP)], [] if isinstance(job, Job) else [fspath(job)])
-    return generating.generate(chosen, Path(output), workers, fresh, progress, made_by, tolerance).dataset
+    return generating.generate(chosen, Path(output), workers, fresh, progress, made_by, tolerance, corrector).dataset
 
 
 def _with_solver(job: Job, name: str | None) -> Job:
     """The job with another solver, which has its default settings."""
     if name is None or name == job.solver:
         return job
-    return dataclasses.replace(job, solver=_known(name), solver_options={})
+    return dataclasses.replace(job, solver=_known(name), solver_options={}, corrected_by=None)
 
 
 def compare(
     first: EHDMap | xr.Dataset | str | PathLike[str], second: EHDMap | xr.Dataset | str | PathLike[str]
 ) -> comparing.Comparison:
-    """Compare two maps on the points that they share.
+    """Compare two maps: on the points that they share, and where these are not all of one of them, between points.
+
+    Between points films are read as contact laws read them, at random points of the range that both maps have. A
+    dataset on its own has no refinement lines: give the file, or the `EHDMap`, of a map that has them.
 
     Parameters
     ----------
@@ -115,20 +121,18 @@ def compare(
     Raises
     ------
     MapError
-        If a file is no map, or they have no point in common.
+        If a file is no map, or they have no contact or range of an axis in common.
     """
     a, first_name = _opened(first, "first")
     b, second_name = _opened(second, "second")
     return comparing.compare(a, b, (first_name, second_name))
 
 
-def _opened(source: EHDMap | xr.Dataset | str | PathLike[str], name: str) -> tuple[xr.Dataset, str]:
+def _opened(source: EHDMap | xr.Dataset | str | PathLike[str], name: str) -> tuple[EHDMap | xr.Dataset, str]:
     """A map, and what it is called."""
-    if isinstance(source, xr.Dataset):
+    if isinstance(source, EHDMap | xr.Dataset):
         return source, name
-    if isinstance(source, EHDMap):
-        return source.dataset, name
-    return open_map(source).dataset, fspath(source)
+    return open_map(source), fspath(source)
 
 
 def solve(

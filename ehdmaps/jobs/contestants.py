@@ -28,6 +28,7 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import Surface
+from ehdmaps.physics.solution import ContactSolver
 
 REFINEMENT = 4.0
 """Grid density of the reference over that of the job; its inlet is twice as long."""
@@ -143,7 +144,7 @@ def contestants(job: Job, openfoam: bool) -> tuple[Entry, ...]:
             Entry(grids, f"reynolds, {density}, inlet {grid.inlet_length:g}", Flooded(grid), solved)
             for grid in dict.fromkeys(_finer(own, 1.0, factor) for factor in _INLETS)
         ),
-        *(_openfoam_entries(job, solved, moving) if openfoam else ()),
+        *(_openfoam_entries(job, solved) if openfoam else ()),
         Entry(supplied, "layer: flooded film", Flooded(usual), solved, default=True),
         Entry(supplied, "layer: rule of contact laws", LayerRule(usual, layer), LayerRule(rule, layer)),
         Entry(supplied, f"layer: reynolds, {density}", OnLayer(usual, layer), supplied.truth),
@@ -153,29 +154,46 @@ def contestants(job: Job, openfoam: bool) -> tuple[Entry, ...]:
         Entry(moving, "frequency: one pole, formula", LockedPole(usual, False), LockedPole(rule, False)),
         Entry(moving, "frequency: one pole, fitted", LockedPole(usual, True), LockedPole(rule, True), default=True),
         Entry(moving, f"frequency: reynolds, {density}", AtFrequency(usual), moving.truth),
+        *(_openfoam_responses(job, moving) if openfoam else ()),
     )
 
 
-def _openfoam_entries(job: Job, solved: ContactModel, moving: Group) -> tuple[Entry, ...]:
-    """Entries of the solver `openfoam`: half, all and twice the cells of the job."""
-    own = _own(job, "openfoam")
-
-    def solver(flow: str, factor: float = 1.0) -> Any:
-        cells = {"columns": own.get("columns", 400), "rows": own.get("rows", 16)}
-        # each has to be even, and so has its half, the coarse grid
-        used = {name: 4 * max(round(count * factor / 4), 1) for name, count in cells.items()}
-        return solvers.build("openfoam", {"timeout": OPENFOAM_TIMEOUT, **own, **used, "flow": flow})
-
+def _openfoam_entries(job: Job, solved: ContactModel) -> tuple[Entry, ...]:
+    """Entries of the solver `openfoam`: half, all and more of the cells of the job."""
     group = Group("openfoam", solved)
-    thin, full = (Flooded(solver(flow, OPENFOAM_REFINEMENT)) for flow in ("thin_film", "full_stress"))
-    coarse, usual, whole = solver("thin_film", 0.5), solver("thin_film"), solver("full_stress")
-    cells = f"{usual.columns} x {usual.rows}"
+    thin, full = (Flooded(_openfoam(job, flow, OPENFOAM_REFINEMENT)) for flow in ("thin_film", "full_stress"))
+    coarse, usual = (_openfoam(job, "thin_film", factor) for factor in (0.5, 1.0))
     return (
-        Entry(group, f"openfoam, thin_film, {coarse.columns} x {coarse.rows}", Flooded(coarse), thin, few=True),
-        Entry(group, f"openfoam, thin_film, {cells}", Flooded(usual), thin, few=True, default=not own),
-        Entry(group, f"openfoam, full_stress, {cells}", Flooded(whole), full, few=True),
-        Entry(moving, f"frequency: openfoam, {cells}", AtFrequency(usual), few=True),
-    )
+        Entry(group, f"openfoam, thin_film, {_cells(coarse)}", Flooded(coarse), thin, few=True),
+        Entry(
+            group, f"openfoam, thin_film, {_cells(usual)}", Flooded(usual), thin, few=True,
+            default=not _own(job, "openfoam"),
+        ),
+        Entry(
+            group, f"openfoam, full_stress, {_cells(usual)}", Flooded(_openfoam(job, "full_stress")), full, few=True
+        ),
+    )  # fmt: skip
+
+
+def _openfoam_responses(job: Job, moving: Group) -> tuple[Entry, ...]:
+    """Entry of the solver `openfoam` at a frequency; a finer grid of it is not affordable."""
+    usual = _openfoam(job, "thin_film")
+    return (Entry(moving, f"frequency: openfoam, {_cells(usual)}", AtFrequency(usual), few=True),)
+
+
+def _openfoam(job: Job, flow: str, factor: float = 1.0) -> ContactSolver:
+    """The solver `openfoam` with more or less than the cells of the job."""
+    own = _own(job, "openfoam")
+    cells = {"columns": own.get("columns", 400), "rows": own.get("rows", 16)}
+    # each has to be even, and so has its half, the coarse grid
+    used = {name: 4 * max(round(count * factor / 4), 1) for name, count in cells.items()}
+    return solvers.build("openfoam", {"timeout": OPENFOAM_TIMEOUT, **own, **used, "flow": flow})
+
+
+def _cells(solver: ContactSolver) -> str:
+    """Cells along and across the film, in words."""
+    settings = solver.settings()
+    return f"{settings['columns']} x {settings['rows']}"
 
 
 def _own(job: Job, solver: str) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.correction_report import correction_lines
 from ehdmaps.jobs.report import (
     AXES,
     error_lines,
@@ -92,6 +93,10 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     if law:
         yield ""
         yield from law
+    corrected = list(correction_lines(dataset))
+    if corrected:
+        yield ""
+        yield from corrected
     told = list(tolerance_lines(dataset))
     if told:
         yield ""

@@ -9,8 +9,10 @@ from pathlib import Path
 
 import xarray as xr
 
+from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.assemble import assemble
+from ehdmaps.jobs.assemble import assemble, with_correction
+from ehdmaps.jobs.correction import Correction, correction
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.law_check import HALVED, REFUSED, LawCheck, checked_laws, coarse_axis, met, plan_check
 from ehdmaps.jobs.refinement import MOST_LINE_POINTS, Refinement, backbone_group, refinement
@@ -58,6 +60,7 @@ def generate(
     progress: Callable[[int], Progress] | None = None,
     solver: ContactSolver | None = None,
     tolerance: float | None = None,
+    corrector: ContactSolver | None = None,
 ) -> Generated:
     """Make a map; what its store has already is taken over.
 
@@ -79,13 +82,15 @@ def generate(
     tolerance : float, optional
         Relative tolerance of the contact laws, for which density and refinement lines are chosen, see
         `ehdmaps.jobs.tolerance`; those of the job if left out.
+    corrector : ContactSolver, optional
+        Instead of the dearer solver that the job names in `corrected_by`; picklable.
 
     Raises
     ------
     InputError, StoreError, MapError
         With what to do; everything solved is kept.
     """
-    planned = _plan(job, solvers.complete(solver or solvers.build(job.solver, job.solver_options)))
+    planned = _plan(job, _solver(job, solver), _corrector(job, corrector))
     adjusted = None if tolerance is None else check_tolerance(job, planned.solver, tolerance)
     total = planned.points if adjusted is None else 0
     processes = workers or available_cores()
@@ -105,7 +110,8 @@ def generate(
         found: dict[str, float | int | str] = {}
         if tolerance is not None and adjusted is not None:
             chosen = within_tolerance(job, adjusted, tolerance, solve)
-            planned, found = _plan(chosen.job, chosen.solver), chosen.attributes
+            planned, found = _plan(chosen.job, chosen.solver, planned.corrector), chosen.attributes
+        planned = _corrected(planned, solve)
         solve(planned.everything, more=adjusted is not None)
         dataset, group = _refined(planned, result, str(output), solve)
         dataset.attrs.update(found)
@@ -118,19 +124,22 @@ def generate_in_memory(
     workers: int | None = None,
     progress: Callable[[int], Progress] | None = None,
     solver: ContactSolver | None = None,
+    corrector: ContactSolver | None = None,
 ) -> Generated:
     """Make a map without a file and without a store: what is not finished is lost.
 
     Arguments and errors as of `generate`.
     """
-    planned = _plan(job, solvers.complete(solver or solvers.build(job.solver, job.solver_options)))
+    planned = _plan(job, _solver(job, solver), _corrector(job, corrector))
 
     result = SweepResult()
 
-    def solve(tasks: Sequence[LineTask]) -> None:
+    def solve(tasks: Sequence[LineTask]) -> Mapping[str, Arrays]:
         points = sum(task.points for task in tasks)
         result.add(sweep(tasks, NoStore(), workers or available_cores(), progress(points) if progress else None))
+        return result.arrays
 
+    planned = _corrected(planned, solve)
     solve(planned.everything)
     dataset, group = _refined(planned, result, job.name, solve)
     return Generated(dataset, group, result)
@@ -140,15 +149,18 @@ def generate_in_memory(
 class _Plan:
     """All that is solved for a map: its points, the lines of a contact law, and the check of the laws.
 
-    `halved` are the axes along which the steps of the lines were halved, in turn.
+    `halved` are the axes along which the steps of the lines were halved, in turn; `correction` is what the points of
+    the `corrector` made, once they are solved.
     """
 
     job: Job
     solver: ContactSolver
+    corrector: ContactSolver | None
     tasks: tuple[LineTask, ...]
     refined: Refinement | None
     check: LawCheck | None
     halved: tuple[Axis, ...] = ()
+    correction: Correction | None = None
 
     @property
     def everything(self) -> tuple[LineTask, ...]:
@@ -162,9 +174,40 @@ class _Plan:
         return sum(task.points for task in self.everything)
 
 
-def _plan(job: Job, solver: ContactSolver) -> _Plan:
+def _solver(job: Job, instead: ContactSolver | None) -> ContactSolver:
+    """The solver of a job, or another one."""
+    return solvers.complete(instead or solvers.build(job.solver, job.solver_options))
+
+
+def _corrector(job: Job, instead: ContactSolver | None) -> ContactSolver | None:
+    """The solver that corrects the films of a job, or another one; None where nothing is to be corrected."""
+    by = job.corrected_by
+    if by is None:
+        if instead is not None:
+            raise InputError("corrector: got one for a job without corrected_by; allowed: for a job with it")
+        return None
+    return solvers.complete(instead or solvers.build(by.solver, by.options))
+
+
+def _plan(job: Job, solver: ContactSolver, corrector: ContactSolver | None) -> _Plan:
     """Lay out what is to be solved."""
-    return _Plan(job, solver, line_tasks(job, solver), refinement(job, solver), plan_check(job, solver))
+    return _Plan(job, solver, corrector, line_tasks(job, solver), refinement(job, solver), plan_check(job, solver))
+
+
+def _corrected(planned: _Plan, solve: Callable[[Sequence[LineTask]], Mapping[str, Arrays]]) -> _Plan:
+    """The plan with its correction, where there is to be one: first of all, since without it there is no map."""
+    by = planned.job.corrected_by
+    if by is None or planned.corrector is None:
+        return planned
+    made = correction(planned.job, planned.solver, planned.corrector, by.points, solve)
+    return replace(planned, correction=made)
+
+
+def _results(planned: _Plan, result: SweepResult) -> Mapping[str, Arrays]:
+    """Arrays of all tasks by key, corrected where that is wanted."""
+    if planned.correction is None:
+        return result.arrays
+    return {task.key: planned.correction.corrected(task, result.arrays[task.key]) for task in planned.everything}
 
 
 def _refined(
@@ -186,7 +229,7 @@ def _finer(planned: _Plan, dataset: xr.Dataset, group: xr.Dataset | None, result
     """The plan with half the step along one axis of its lines; None where that would not help, or be too much."""
     if planned.check is None or planned.refined is None or met(dataset.attrs) or REFUSED in dataset.attrs:
         return None
-    axis = coarse_axis(planned.check, EHDMap(dataset, group), result.arrays)
+    axis = coarse_axis(planned.check, EHDMap(dataset, group), _results(planned, result))
     if axis is None:
         return None
     lines = refinement(planned.job, planned.solver, planned.refined.steps.finer(axis))
@@ -197,11 +240,14 @@ def _finer(planned: _Plan, dataset: xr.Dataset, group: xr.Dataset | None, result
 
 def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Dataset, xr.Dataset | None]:
     """Put results together, with the check of the laws and a checksum: the map and its backbone."""
-    dataset = assemble(planned.job, planned.solver, planned.tasks, result.arrays)
+    found = _results(planned, result)
+    dataset = assemble(planned.job, planned.solver, planned.tasks, found)
+    if planned.correction and planned.corrector:
+        dataset = with_correction(dataset, planned.job, planned.correction, planned.corrector)
     validate(dataset, where)
-    group = backbone_group(planned.refined, result.arrays) if planned.refined else None
+    group = backbone_group(planned.refined, found) if planned.refined else None
     if planned.check:
-        dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), result.arrays))
+        dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), found))
     if planned.halved:
         dataset.attrs[HALVED] = ", ".join(planned.halved)
     dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, group)

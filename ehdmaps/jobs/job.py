@@ -27,6 +27,29 @@ MOST_CHECKS = 100_000
 """Random points for the check of the contact laws."""
 
 
+DEFAULT_CORRECTION_POINTS = 16
+"""Points of the dearer solver, where a job asks for a correction and does not say how many."""
+
+
+@dataclass(frozen=True)
+class CorrectedBy:
+    """By what the map of a job is corrected.
+
+    Attributes
+    ----------
+    solver : str
+        Name of the dearer solver.
+    points : int
+        How many points it is asked for.
+    options : mapping
+        The dearer solver's own keys, those that the file gives in [correction].
+    """
+
+    solver: str
+    points: int
+    options: Mapping[str, Any]
+
+
 @dataclass(frozen=True)
 class Job:
     """One map to be made.
@@ -67,6 +90,9 @@ class Job:
     surface : Surface or None
         Surfaces that the contact laws of the map have by default; None where the job states none, which is smooth. The
         points of the map are those of smooth surfaces.
+    corrected_by : CorrectedBy or None
+        Dearer solver by a few points of which the films of the map are corrected, see `ehdmaps.jobs.correction`; None
+        where they are those of `solver`.
     """
 
     name: str
@@ -85,6 +111,7 @@ class Job:
     line_steps: Steps = STEPS
     supply: OilSupply | None = None
     surface: Surface | None = None
+    corrected_by: CorrectedBy | None = None
 
     @classmethod
     def build(
@@ -106,6 +133,9 @@ class Job:
         backbone: str = "law",
         law_check: int = 0,
         line_steps: Steps = STEPS,
+        corrected_by: str | None = None,
+        correction_points: int = DEFAULT_CORRECTION_POINTS,
+        correction_options: Mapping[str, str | int | float | bool] | None = None,
         name: str = "job",
     ) -> Job:
         """Make a job from values, all in SI.
@@ -139,6 +169,12 @@ class Job:
             Structural law of the bearing's contacts.
         fill, backbone, law_check, line_steps
             See the attributes.
+        corrected_by : str, optional
+            Name of a dearer solver whose few points correct the films of `solver`.
+        correction_points : int
+            How many points it is asked for.
+        correction_options : mapping, optional
+            The dearer solver's own keys, as in [correction].
         name : str
             Name of the job.
 
@@ -166,6 +202,8 @@ class Job:
         if solids is None or (contact and bearing):
             got = "both" if solids else "none"
             raise InputError(f"Job.build, bearing and contact: got {got}; allowed: one of the two")
+        if not corrected_by and correction_options:
+            raise InputError("Job.build, correction_options: got some without corrected_by; allowed: together with it")
         text = job_text(
             solids,
             contact.material if contact else material,
@@ -178,10 +216,12 @@ class Job:
                 "backbone": backbone,
                 "law_check": law_check,
                 **({} if line_steps == STEPS else {"line_steps": steps_keys(line_steps)}),
+                **({"corrected_by": corrected_by, "correction_points": correction_points} if corrected_by else {}),
                 **(solver_options or {}),
             },
             supply,
             surface,
+            correction_options,
         )
         job = parse_job(text, name, "Job.build")
         check_oil(lubricant, job, "Job.build, ")

@@ -49,6 +49,7 @@ def job_text(
     solver: Mapping[str, Entry | Mapping[str, Entry]],
     supply: OilSupply | None = None,
     surface: Surface | None = None,
+    correction: Mapping[str, Entry] | None = None,
 ) -> str:
     """Write a job file.
 
@@ -68,6 +69,8 @@ def job_text(
         Oil supply for [supply]; no such table if left out.
     surface : Surface, optional
         Surfaces for [surface]; no such table if left out, or smooth.
+    correction : mapping, optional
+        All keys of [correction]; no such table if left out, or empty.
 
     Raises
     ------
@@ -95,6 +98,7 @@ def job_text(
             "temperature": [_quantity(value, "K") for value in temperatures],
         },
         "solver": dict(solver),
+        **({"correction": dict(correction)} if correction else {}),
     }
     lines = ["schema = 1"]
     for name, table in tables.items():

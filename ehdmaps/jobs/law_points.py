@@ -83,7 +83,7 @@ def by_solver(tasks: Sequence[LineTask], solver: ContactSolver) -> tuple[LineTas
     Parameters
     ----------
     tasks : sequence of LineTask
-        Points.
+        Points, one each.
     solver : ContactSolver
         What solves them.
     """
@@ -122,7 +122,7 @@ def fresh_solution(task: LineTask, arrays: Arrays) -> ContactSolution:
     task : LineTask
         The line.
     arrays : Arrays
-        Its films.
+        Films of the line.
     """
     film = FilmSolution(
         **{name: array[0].item() for name, array in arrays.items() if name != "status" and array.ndim == 1},
@@ -154,7 +154,7 @@ def at_loads(
     law : ContactLaw
         Law of one contact.
     approach : array (n,)
-        Where to begin [m].
+        Begin of the search [m].
     load, speed, temperature : array (n,)
         [N/m], [m/s] and [K].
     """
@@ -250,7 +250,7 @@ def errors_of(values: Mapping[str, FloatArray], points: FreshPoints) -> dict[str
     Parameters
     ----------
     values : mapping
-        Of a law, or of other solutions of the same points.
+        Values of a law, or of other solutions of the same points.
     points : FreshPoints
         The points.
     """

@@ -12,7 +12,7 @@ from ehdmaps import inputs
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers, toml_text
 from ehdmaps.jobs.axes import LOAD_AXIS, TEMPERATURE_AXIS, read_axis, read_speeds
-from ehdmaps.jobs.job import MOST_CHECKS, MOST_POINTS, Job
+from ehdmaps.jobs.job import DEFAULT_CORRECTION_POINTS, MOST_CHECKS, MOST_POINTS, CorrectedBy, Job
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
 from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.surface import read_surface
@@ -27,8 +27,11 @@ from ehdmaps.units import KELVIN, closest
 LONGEST_FILE = 1_000_000
 """Bytes of a job file; axes of a hundred thousand values still fit."""
 
+FEWEST_CORRECTION_POINTS, MOST_CORRECTION_POINTS = 4, 200
+"""Points of the dearer solver; beyond that a map of its own is the better use of them."""
+
 _SIGNATURES = (b"CDF", b"\x89HDF")
-_TABLES = ("schema", "bearing", "contact", "material", "lubricant", "supply", "surface", "grid", "solver")
+_TABLES = ("schema", "bearing", "contact", "material", "lubricant", "supply", "surface", "grid", "solver", "correction")
 
 
 def shipped_jobs() -> tuple[str, ...]:
@@ -105,14 +108,16 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
         top.note("schema", f"got {schema!r:.60}; allowed: 1; this version of ehdmaps reads no other")
 
     section = top.table("solver", "[solver]", required="a table with name and structural_law")
-    solver, options, law, rest = _solver(section) if section else (None, {}, None, {})
+    solver, options, law, rest = _solver(section, top) if section else (None, {}, None, {})
     if override is not None and override not in solvers.SOLVER_NAMES:
         top.note("--solver", f"got {override!r:.60}; allowed: {', '.join(solvers.SOLVER_NAMES)}")
     elif override is not None and override != solver:
-        solver, options = override, {}
+        solver, options, rest = override, {}, {**rest, "corrected_by": None}
     if to_run and solver is not None:
-        for problem in solvers.SOLVERS[solver].missing():
-            top.note("[solver] name", f"got {solver!r}, which needs more than is here: {problem}")
+        by: CorrectedBy | None = rest["corrected_by"]
+        for key, needed in (("name", solver), *([("corrected_by", by.solver)] if by else [])):
+            for problem in solvers.SOLVERS[needed].missing():
+                top.note(f"[solver] {key}", f"got {needed!r}, which needs more than is here: {problem}")
 
     bearing, contacts = read_contacts(top, law)
     oil_section = top.table("lubricant", "[lubricant]", required="a table with the name of an oil, or its data")
@@ -148,8 +153,8 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
     )
 
 
-def _solver(section: Table) -> tuple[str | None, dict[str, object], str | None, dict[str, Any]]:
-    """Read [solver]: name, its own keys, structural law, and the keys that every solver has."""
+def _solver(section: Table, top: Table) -> tuple[str | None, dict[str, object], str | None, dict[str, Any]]:
+    """Read [solver]: name, its own keys, structural law, and the keys that every solver has; and [correction]."""
     name = section.choice("name", solvers.SOLVER_NAMES, required=True)
     law = section.choice("structural_law", STRUCTURAL_LAWS, required=True)
     rest: dict[str, Any] = {
@@ -157,12 +162,42 @@ def _solver(section: Table) -> tuple[str | None, dict[str, object], str | None, 
         "backbone": section.choice("backbone", ("law", "none")) or "law",
         "law_check": section.integer("law_check", 0, MOST_CHECKS) or 0,
         "line_steps": section.optional("line_steps", "[solver] line_steps", _line_steps) or STEPS,
+        "corrected_by": None,
     }
+    top.get("correction")
     options: dict[str, object] = {}
     if name is not None:
         options = solvers.read_options(name, section)
+        rest["corrected_by"] = _corrected_by(section, top, name, options)
         section.close()
     return name, options, law, rest
+
+
+def _corrected_by(section: Table, top: Table, name: str, options: dict[str, object]) -> CorrectedBy | None:
+    """Read by what the films are corrected, and the keys of that solver in [correction]."""
+    with_films = tuple(known for known in solvers.SOLVER_NAMES if known != "hertz")
+    by = section.choice("corrected_by", with_films)
+    points = section.integer("correction_points", FEWEST_CORRECTION_POINTS, MOST_CORRECTION_POINTS)
+    own = top.table("correction", "[correction]")
+    if "corrected_by" not in section:
+        for table, key in ((section, "correction_points"), (top, "correction")):
+            if key in table:
+                table.note(key, "stands without corrected_by of [solver]; allowed: with it; delete it, or add that")
+        return None
+    if by is None:
+        return None
+    of_corrector = {} if own is None else solvers.read_options(by, own)
+    if own is not None:
+        own.close()
+    if name == "hertz":
+        section.note("corrected_by", "stands beside name = 'hertz', which has no film to correct; delete it")
+    elif by == name and of_corrector == options:
+        section.note(
+            "corrected_by",
+            f"got {by!r}, the solver of the map with the same keys, which corrects nothing; allowed: another solver, "
+            "or other keys in [correction]",
+        )
+    return CorrectedBy(by, points or DEFAULT_CORRECTION_POINTS, of_corrector)
 
 
 def _line_steps(section: Table) -> Steps:

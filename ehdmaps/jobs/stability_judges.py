@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ehdmaps.jobs.stability_points import WildPoint
 from ehdmaps.physics.film_limits import THICKEST_FILM, THIN_FILM_LIMIT
 from ehdmaps.physics.films import MARTIN_CONSTANT, asymptotes
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.moes import film_from_moes, moes_groups
+from ehdmaps.physics.pressure_viscosity import Barus
 from ehdmaps.physics.solution import ContactSolution, FilmSolution, Status
 
 HAIR = 1e-6
@@ -102,9 +103,11 @@ def _formula_problem(wild: WildPoint, film: FilmSolution, whole: ContactSolution
     return ("", 0.0) if film.reason else _gross_problem(film, groups_of(wild))
 
 
-def _gross_problem(film: FilmSolution, groups: Groups) -> tuple[str, float]:
-    """A film beside the asymptotes of Moes."""
+def _gross_problem(film: FilmSolution, groups: Groups, barus: bool = True) -> tuple[str, float]:
+    """A film beside the asymptotes of Moes; by laws other than Barus' it may be as thin as an isoviscous one."""
     low, high = _moes_range(groups)
+    if not barus:
+        low, _ = _moes_range(replace(groups, L=0.0))
     H = film.film_offset / groups.unit
     share = abs(math.log(H / math.sqrt(low * high))) / (0.5 * math.log(high / low) + math.log(_GROSS))
     words = f"H = {H:.4g} at M = {groups.M:.4g}, L = {groups.L:.4g}; asymptotes of Moes {low:.4g} to {high:.4g}"
@@ -144,7 +147,7 @@ def film_problem(wild: WildPoint, film: FilmSolution, whole: ContactSolution) ->
     thick = film.film_offset / wild.point.contact.radius
     if thick > THICKEST_FILM or (film.status is Status.ASYMPTOTE) != (thick > THIN_FILM_LIMIT):
         return f"status {film.status.word} with h/R = {thick:.4g}", 0.0
-    wrong, share = _gross_problem(film, groups)
+    wrong, share = _gross_problem(film, groups, isinstance(wild.oil.pressure_viscosity, Barus))
     if wrong:
         return wrong, share
     alpha = groups.L / wild.point.contact.reduced_modulus / max(_speed_root(groups, wild), 1e-300)
@@ -227,7 +230,8 @@ RULES: Mapping[str, str] = {
     "formula moes": "a film that falls with load, where the four asymptotes allow",
     "formula dowson-toyoda": _NEAR,
     "formula pan-hamrock": _NEAR,
-    "reynolds": "film within a factor of 3 of what the asymptotes of Moes allow; Martin's to 0.2 % and three times the "
+    "reynolds": "film within a factor of 3 of what the asymptotes of Moes allow, with pressure "
+    "or without; Martin's to 0.2 % and three times the "
     "stated error where M < 0.01 and alpha p < 0.001; 0.9 of the pressure of Hertz at least where M > 100; thick films "
     "said to be so",
 }

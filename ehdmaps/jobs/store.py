@@ -238,11 +238,11 @@ class Store:
             (tables,) = database.execute("SELECT count(*) FROM sqlite_master").fetchone()
             if tables and application_id != _APPLICATION_ID:
                 raise sqlite3.DatabaseError("a database of another program")
-            database.execute(f"PRAGMA application_id = {_APPLICATION_ID}")
-            database.execute(
-                "CREATE TABLE IF NOT EXISTS results (key TEXT PRIMARY KEY, checksum TEXT NOT NULL, "
-                "content BLOB NOT NULL)"
-            )
+            if not tables:  # a store that is there is not written to before a result comes
+                database.execute(f"PRAGMA application_id = {_APPLICATION_ID}")
+                database.execute(
+                    "CREATE TABLE results (key TEXT PRIMARY KEY, checksum TEXT NOT NULL, content BLOB NOT NULL)"
+                )
             (verdict,) = database.execute("PRAGMA quick_check(1)").fetchone()
             if verdict != "ok":
                 raise sqlite3.DatabaseError(verdict)

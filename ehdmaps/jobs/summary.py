@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ehdmaps.jobs.correction_report import correction_lines
 from ehdmaps.jobs.generate import Generated
 from ehdmaps.jobs.report import error_lines, extrapolated_lines, holes, law_lines, status_lines, tolerance_lines
 
@@ -37,6 +38,7 @@ def _lines(generated: Generated, output: Path) -> Iterator[str]:
     yield "accuracy"
     yield from error_lines(dataset)
     yield from law_lines(dataset)
+    yield from correction_lines(dataset)
     yield from tolerance_lines(dataset)
     seconds = float(np.nansum(dataset["solve_seconds"].values))
     yield f"time: {sweep.wall_seconds:.1f} s now; {seconds:.1f} s of solving in the whole map, all cores"

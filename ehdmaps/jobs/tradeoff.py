@@ -88,37 +88,38 @@ def measure(
         return known[model, len(at)]
 
     choices, groups = [], dict.fromkeys(entry.group for entry in chosen)
-    lost_finest: dict[str, None] = {}
+    truths, lost = {group.truth for group in groups}, list[str]()
     for entry in chosen:
         at = few if entry.few else questions
         # the truth is asked at all points once, the few are the first of them
         truth = asked(entry.group.truth, questions, f"reference of {entry.group.name}").answers[: len(at)]
         found = asked(entry.model, at, entry.label)
         finest = None
-        if entry.finest is entry.group.truth or entry.finest == entry.group.truth:
+        if entry.finest == entry.group.truth:
             finest = truth
         elif entry.finest is not None:
             longer = (entry.finest, len(questions)) in known
             finest = asked(entry.finest, questions if longer else at, f"finest of {entry.label}").answers[: len(at)]
-            lost_finest.update(
-                (f"no numerical error told apart: finest of {entry.label} at {question.place}: {answer.lost}", None)
-                for question, answer in zip(at, finest, strict=True)
-                if answer.lost
-            )
+            if entry.finest not in truths:  # whose gaps are told besides
+                lost += [
+                    f"no numerical error told apart: finest of {entry.label} at {question.place}: {answer.lost}"
+                    for question, answer in zip(at, finest, strict=True)
+                    if answer.lost
+                ]
         choices.append(_choice(entry, at, found, truth, finest))
-    truths = [Truth(group, known[group.truth, len(questions)]) for group in groups]
+    references = [Truth(group, known[group.truth, len(questions)]) for group in groups]
     return Trade(
         level="contact",
         title=f"{job.title}, {job.lubricant.title}: contacts by solvers, settings and physics",
         cost="s a point",
-        reference=reference_words(truths),
+        reference=reference_words(references),
         judged=tuple(Judged(name) for name in QUANTITIES),
         choices=tuple(choices),
         frame=(
             *sample_words(job, len(questions), seed),
             *(openfoam_words(openfoam, missing) if entries is None else ()),
-            *truth_words(truths, questions),
-            *lost_finest,
+            *truth_words(references, questions),
+            *dict.fromkeys(lost),  # several choices may have one finest solution
         ),
     )
 

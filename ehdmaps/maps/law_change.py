@@ -34,9 +34,9 @@ def changed_table(table: ApproachTable, change: LawChange) -> ApproachTable:
     Parameters
     ----------
     table : ApproachTable
-        Of the law as it is.
+        Table of the law as it is.
     change : LawChange
-        What is changed.
+        Change of the law.
     """
     coefficients, place = table.coefficients.copy(), table.place.copy()
     coefficients[..., 0::2] *= math.cbrt(1.0 + change.stiffness)

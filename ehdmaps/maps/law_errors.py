@@ -92,9 +92,9 @@ class LawBounds:
     Attributes
     ----------
     stiffness, damping : array (n,)
-        Relative, of k and c at the load.
+        Relative errors of k and c at the load.
     film_offset : array (n,)
-        Of the approach at the load [m]: where the film stands.
+        Error of the approach at the load [m]: how much thicker or thinner the films may be.
     """
 
     stiffness: FloatArray
@@ -134,9 +134,9 @@ class LawErrors:
     dataset : xarray.Dataset
         The map, with what is derived from its films.
     contacts : sequence of LineContact
-        Its contacts, in the order of its first axis.
+        Contacts of the map, in the order of its first axis.
     lubricant : Lubricant
-        Its oil, for the place of the damping valley.
+        Oil of the map, for the place of the damping valley.
     """
 
     def __init__(self, dataset: xr.Dataset, contacts: Sequence[LineContact], lubricant: Lubricant) -> None:

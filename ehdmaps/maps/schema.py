@@ -21,7 +21,8 @@ the table of its own version:
 Version 2 added film compliance, loss compliance and its error to the grid; version 1 had approach, stiffness and
 damping in their place. Version 3 added rolling force and mass flow, with their errors, and the film compliance at
 natural frequencies to the backbone, where the solver has it: complex, in units of the film alone, over
-omega sqrt(b^2 + 2 h R)/u with b and the film offset h of each point.
+omega sqrt(b^2 + 2 h R)/u with b and the film offset h of each point. Version 4 added the model errors of stiffness and
+damping, of a map whose films are corrected by a dearer solver.
 
 To add a variable, write one row in `TABLE` with ``since=`` the new version, and raise `SCHEMA_VERSION`. With
 ``required=False`` a map may lack it. It is then written, where `dataset` or `backbone` is given values for it, read,
@@ -40,7 +41,7 @@ import xarray as xr
 
 from ehdmaps.physics.solution import Status
 
-SCHEMA_VERSION = 3
+SCHEMA_VERSION = 4
 """Version of the table; files of this and of all lower versions are read."""
 
 DIMS = ("contact", "load", "entrainment_speed", "temperature")
@@ -168,6 +169,12 @@ def _error(name: str, of: str, required: bool = True, since: int = 1) -> Variabl
     return Variable(name, "1", f"estimated relative numerical error of {of}", required=required, since=since)
 
 
+def _model_error(name: str, of: str) -> Variable:
+    """Row of what remains, after a correction, to the solver that corrected the map."""
+    words = f"estimated standard deviation of {of} from that of the dearer solver that corrected the map, relative"
+    return Variable(name, "1", words, required=False, since=4)
+
+
 def _of_backbone(name: str, units: str, long_name: str, required: bool = True, since: int = 1) -> Variable:
     """Row of a film of the reference contact."""
     long_name = f"{long_name}, reference contact"
@@ -221,6 +228,8 @@ TABLE = (
     _error("max_pressure_error", "max_pressure", required=False),
     _error("rolling_force_error", "rolling_force", required=False, since=3),
     _error("mass_flow_error", "mass_flow", required=False, since=3),
+    _model_error("stiffness_model_error", "stiffness"),
+    _model_error("damping_model_error", "damping"),
     Variable("iterations", "1", "iterations of the solver, all grids together", "int32"),
     Variable("solve_seconds", "s", "time to solve the point"),
     Variable(
@@ -298,6 +307,9 @@ SURFACE = "surface"
 The points of a map are those of smooth surfaces, whatever it says.
 """
 
+CORRECTION = "correction"
+"""Attribute of a map whose films are corrected, JSON: the dearer solver, its points, the errors of leaving one out."""
+
 TEXTS = (
     "title",
     "job_name",
@@ -308,6 +320,7 @@ TEXTS = (
     "openfoam_build",
     OIL_SUPPLY,
     SURFACE,
+    CORRECTION,
     CHECKSUM,
 )
 """Attributes that are texts, where a map has them; others than those named here are left alone."""

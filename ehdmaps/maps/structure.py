@@ -22,6 +22,9 @@ from ehdmaps.physics.structure import Structured, structured
 DERIVED = Structured._fields
 """Variables that are derived."""
 
+MODEL_ERRORS = ("stiffness_model_error", "damping_model_error")
+"""What remains to the solver that corrected a map, of quantities that contain the solids; see `_model_errors`."""
+
 SAME = 1e-9
 """Relative difference up to which a derived variable is what its film and structural law say: far above the round-off
 of a few operations and powers, far below any error of a solver."""
@@ -80,6 +83,8 @@ def restructured(dataset: xr.Dataset, contacts: Sequence[LineContact]) -> xr.Dat
         If that law does not hold for the loads of the map.
     """
     values = _derived(dataset, contacts, DERIVED)
+    if all(name in dataset for name in MODEL_ERRORS):
+        values |= _model_errors(dataset, values["stiffness"])
     return dataset.assign(_typed(values)).assign_attrs(
         schema_version=schema.SCHEMA_VERSION,
         structural_law=contacts[0].structural_law,
@@ -159,6 +164,16 @@ def _derived(dataset: xr.Dataset, contacts: Sequence[LineContact], names: Sequen
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         values = derived(contacts, loads, films)
     return {name: values[name] for name in names}
+
+
+def _model_errors(dataset: xr.Dataset, stiffness: FloatArray) -> dict[str, FloatArray]:
+    """Model errors by another structural law: that of k is k times that of the film compliance, which stays.
+
+    That of c is made of independent ones, of the loss compliance, which stays, and of k^2.
+    """
+    of_k, of_c = (dataset[name].values.astype(np.float64) for name in MODEL_ERRORS)
+    new = of_k * stiffness / dataset["stiffness"].values
+    return dict(zip(MODEL_ERRORS, (new, np.sqrt(np.maximum(of_c**2 - 4.0 * of_k**2, 0.0) + 4.0 * new**2)), strict=True))
 
 
 def _typed(values: Mapping[str, Any]) -> dict[str, xr.Variable]:

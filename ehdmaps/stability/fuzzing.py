@@ -8,6 +8,7 @@ its number alone.
 from __future__ import annotations
 
 import contextlib
+import faulthandler
 import json
 import os
 import re
@@ -218,6 +219,7 @@ def _work(reader: Reader, seed: int, begin: int, end: int, sink: int) -> NoRetur
     """Run cases in a child, tell of each, and leave."""
     status = 1
     try:
+        faulthandler.disable()
         # What a library prints about a broken file is no finding, and no use to anybody.
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for stream in (1, 2):

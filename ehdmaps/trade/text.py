@@ -11,6 +11,7 @@ from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade
 _COLUMNS, _CELL, _GAP = 4, 18, 2
 """Quantities beside each other, least width of one, and the gap before its name."""
 
+_NOTHING = "-"
 _FACTOR = {"1": 100.0, "dB": 1.0}
 _UNIT = {"1": "%", "dB": "dB"}
 
@@ -63,24 +64,22 @@ def _table(
         widths = [max(_CELL, len(name) + _GAP) for name in names]
         heads = "".join(f"{name:>{wide}s}" for name, wide in zip(names, widths, strict=True))
         yield f"{'':{width}s}{trade.cost:>12s}{'solved':>12s}{heads}"
-        for (group, reference), choices in groupby(filter(wanted, trade.choices), key=_heading):
+        rows = [(choice, [cell(choice, one) for one in columns]) for choice in trade.choices if wanted(choice)]
+        # the first table has all of them, further ones those with something to say
+        shown = [row for row in rows if first == 0 or set(row[1]) != {_NOTHING}]
+        for (group, reference), chosen in groupby(shown, key=lambda row: (row[0].group, row[0].reference)):
             yield f"{group}, against {reference}" if reference else group
-            for choice in choices:
+            for choice, texts in chosen:
                 mark = "*" if choice.default else " "
-                cells = "".join(f"{cell(choice, one):>{wide}s}" for one, wide in zip(columns, widths, strict=True))
+                cells = "".join(f"{text:>{wide}s}" for text, wide in zip(texts, widths, strict=True))
                 solved = f"{choice.solved}/{choice.asked}"
                 yield f"{mark} {choice.label:{width - 2}s}{number(choice.seconds):>12s}{solved:>12s}{cells}"
-
-
-def _heading(choice: Choice) -> tuple[str, str]:
-    """Group, and its own reference."""
-    return choice.group, choice.reference
 
 
 def _error(choice: Choice, judged: Judged) -> str:
     """Median and 95 % quantile."""
     found = choice.errors.get(judged.name)
-    return "-" if found is None else _pair(found.median, found.high, judged)
+    return _NOTHING if found is None else _pair(found.median, found.high, judged)
 
 
 def _apart(choice: Choice, judged: Judged) -> str:
@@ -96,7 +95,7 @@ def _stated(choice: Choice, judged: Judged) -> str:
     """Error that is stated, and how often it holds."""
     found = _own(choice, judged.name)
     if found is None or not math.isfinite(found.stated):
-        return "-"
+        return _NOTHING
     return f"{number(found.stated * _FACTOR[judged.unit])} / {found.covered:.0%}"
 
 
@@ -116,7 +115,7 @@ def _pair(first: float, second: float, judged: Judged) -> str:
     """Two errors in the unit of the column."""
     factor = _FACTOR[judged.unit]
     if not (math.isfinite(first) or math.isfinite(second)):
-        return "-"
+        return _NOTHING
     return f"{number(first * factor)} / {number(second * factor)}"
 
 
@@ -134,7 +133,7 @@ def number(value: float) -> str:
     ('0.012', '1.2e-07', '100', '12345', '-')
     """
     if not math.isfinite(value):
-        return "-"
+        return _NOTHING
     return f"{value:.0f}" if 99.5 <= abs(value) < 1e6 else f"{value:.2g}"
 
 

@@ -17,6 +17,10 @@ plan           which ranges a scene needs of a contact map, and the jobs that co
 planning       operating points of a scene and the loads and speeds seen there
 planned_job    such a job, from the bearings and the oil of the scene
 coverage       whether a map covers what is needed
+auto           an analysis with a map that is planned, made or reused, and checked for it
+kept_map       a map for a planned job: one that is there, or a new one
+film_verdicts  which physics of the films a scene requires
+film_criteria  such criteria at a contact, in closed form
 case           the models that an analysis compares, with their labels
 varied         what comparisons vary, one row a key
 progress       how an analysis tells how far it is

@@ -12,7 +12,8 @@ from ehdmaps.errors import InputError
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating, states_of
 from mbs.linearised.level_bands import level_bands
-from mbs.linearised.linear import StateSpace, frequency_response, state_space, with_peaks
+from mbs.linearised.linear import StateSpace, sensed, state_space, with_peaks
+from mbs.linearised.linear import responses as responses_of
 from mbs.linearised.modes import modes_of, state_modes, undamped_modes
 from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import DynamicLoad, FilmError, dynamic_loads
@@ -124,10 +125,11 @@ def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
     balance = equilibrium(steady_system(model.system), operation)
     states = state_modes(balance, undamped_modes(balance))
     frequencies = with_peaks(np.array(asked), modes_of(balance, states).eigenvalues)
-    responses = frequency_response(balance, scene.inputs, scene.sensors, frequencies)
-    level_error = level_bands(balance, states, scene.inputs, scene.sensors, frequencies, responses)
+    motion = responses_of(balance, scene.inputs, frequencies)
+    responses = sensed(balance, scene.sensors, frequencies, motion)
+    level_error = level_bands(balance, states, scene.sensors, frequencies, motion, responses)
     space = state_space(balance, scene.inputs, scene.sensors)
-    lifting = tuple(load for load in dynamic_loads(balance, scene.inputs, frequencies) if load.exceeds)
+    lifting = tuple(load for load in dynamic_loads(balance, scene.inputs, frequencies, motion) if load.exceeds)
     dataset = linear_dataset(balance, space, responses, frequencies, scene.inputs, scene.sensors, level_error)
     return LsaResult(
         model=model,

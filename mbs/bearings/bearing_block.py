@@ -16,7 +16,8 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.bearing_kernel import Work, bearing_force, ring_powers
 from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
-from mbs.bearings.rings import Rings, answer_ring, feels, gather_rings, motion_of, shape_of
+from mbs.bearings.level_kernel import level_force
+from mbs.bearings.rings import LEVEL, Rings, answer_ring, feels, gather_rings, motion_of, placed, shape_of
 from mbs.bearings.slice_table import CELLS, LawNumbers, PreparedLaw, law_numbers, store_numbers
 from mbs.bearings.speed_tables import NODES, SpeedTables
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
@@ -140,7 +141,11 @@ def _force(bearings: Bearings, b: int, moment: Moment, motion: FloatArray, out: 
     law = PreparedLaw(law_numbers(films.current[film]), films.cells[film])
     cells = z * n
     work = Work(bearings.rows[:cells].reshape(z, n), bearings.states[b][: 4 * cells].reshape(4, z, n))
-    status: int = bearing_force(motion_of(rings, b, moment, motion), shape_of(rings, b), law, work, out)
+    ring, shape = motion_of(rings, b, moment, motion), shape_of(rings, b)
+    if rings.felt[b] == LEVEL:
+        level: int = level_force(ring, shape, rings.weights[b][:n], law, work, out)
+        return level
+    status: int = bearing_force(ring, shape, law, work, out)
     return status
 
 
@@ -168,7 +173,7 @@ def bearings_answer(bearings: Bearings, moment: Moment, motion: FloatArray, answ
         if status != 0:
             return NO_SOLUTION if status < 0 else IN_PYTHON
         answers.outside[rings.places[b]] += course.outside[moment.step, rings.films_of[b]]
-        answer_ring(rings.firsts[b], moment, out, answers)
+        answer_ring(rings.firsts[b], rings.felt[b], moment, out, answers)
     return FOUND
 
 
@@ -190,7 +195,8 @@ def bearings_powers(bearings: Bearings, moment: Moment, motion: FloatArray, answ
         numbers = law_numbers(bearings.films.current[rings.films_of[b]])
         cage_rate = rings.cage_rates[b] * moment.speed
         ring, shape = motion_of(rings, b, moment, motion), shape_of(rings, b)
-        out[place, 0], out[place, 1] = ring_powers(ring, shape, numbers, states, cage_rate)
+        weights = rings.weights[b][:n]
+        out[place, 0], out[place, 1] = ring_powers(ring, shape, weights, numbers, states, cage_rate)
 
 
 class BearingBlock(FilmBlock[Bearings]):
@@ -256,6 +262,7 @@ BEARINGS = Kind(
     feels=feels,
     gather=BearingBlock,
     takes=_takes,
+    placed=placed,
     powers=bearings_powers,
 )
 """For `mbs.transient.kinds`."""

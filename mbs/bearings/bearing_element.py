@@ -114,6 +114,8 @@ class BearingElement(RingElement):
         Whether the rollers' centrifugal load is taken into account.
     films : {"slow", "memory"}
         Whether small oscillations see the films of slow motion at any frequency, or films that relax.
+    tilts : bool
+        Whether its rings may tilt against each other; runs in time feel less, and compute less, where they cannot.
 
     Raises
     ------
@@ -132,6 +134,7 @@ class BearingElement(RingElement):
     start_angle: float = 0.0
     centrifugal: bool = False
     films: Films = "slow"
+    tilts: bool = True
 
     def __post_init__(self) -> None:
         if self.films == "memory" and self.centrifugal:

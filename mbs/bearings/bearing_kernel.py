@@ -188,8 +188,22 @@ def roller_of(motion: RingMotion, shape: Shape, j: int) -> Roller:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _find_cells(motion: RingMotion, shape: Shape, numbers: LawNumbers, rows: IntArray, places: FloatArray) -> None:
-    """Row of the table of each slice, and the place in the cell."""
+def find_cells(motion: RingMotion, shape: Shape, numbers: LawNumbers, rows: IntArray, places: FloatArray) -> None:
+    """Row of the table of each slice, and the place in the cell.
+
+    Parameters
+    ----------
+    motion : RingMotion
+        Motion of the ring.
+    shape : Shape
+        The bearing.
+    numbers : LawNumbers
+        Centre and scale of the cells.
+    rows : array (Z, n), of int
+        Rows, written.
+    places : array (Z, n)
+        Places in the cells, written.
+    """
     x, lost = shape.positions, shape.profile
     inverse = numbers.inverse_scale
     for j in range(rows.shape[0]):
@@ -228,8 +242,20 @@ def slice_approaches(motion: RingMotion, shape: Shape, out: FloatArray) -> None:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray) -> None:
-    """States of w = a delta^b with c = damping + damping_time dw; rollers without load are left out."""
+def power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray) -> None:
+    """States of w = a delta^b with c = damping + damping_time dw; rollers without load are left out.
+
+    Parameters
+    ----------
+    motion : RingMotion
+        Motion of the ring.
+    shape : Shape
+        The bearing.
+    numbers : LawNumbers
+        The power law.
+    states : array (4, Z, n)
+        States of the slices, written.
+    """
     x, lost = shape.positions, shape.profile
     a, b, damping, time = numbers.coefficient, numbers.exponent, numbers.damping, numbers.damping_time
     bend = time * (b - 1.0) / b
@@ -390,7 +416,9 @@ def assemble(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: Floa
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def roller_power(roller: Roller, positions: FloatArray, states: FloatArray, j: int) -> tuple[float, float, float]:
+def roller_power(
+    roller: Roller, positions: FloatArray, weights: FloatArray, states: FloatArray, j: int
+) -> tuple[float, float, float]:
     """Power that a roller dissipates, its load at rest, and that load times its places; for each length of a slice.
 
     Parameters
@@ -399,6 +427,8 @@ def roller_power(roller: Roller, positions: FloatArray, states: FloatArray, j: i
         Motion of the roller.
     positions : array (n,)
         Places of the slices [m].
+    weights : array (n,)
+        How many slices each stands for.
     states : array (4, Z, n)
         States of the slices, as of `Work`.
     j : int
@@ -413,15 +443,15 @@ def roller_power(roller: Roller, positions: FloatArray, states: FloatArray, j: i
         parting = part < -0.5 * w[i]
         # the rule of `ehdmaps.physics.unilateral`, less the load at rest
         more = -0.25 * w[i] * w[i] / (part if parting else 1.0) - w[i] if parting else part
-        lost += more * rate
-        flat += w[i]
-        tilted += w[i] * x
+        lost += weights[i] * more * rate
+        flat += weights[i] * w[i]
+        tilted += weights[i] * w[i] * x
     return lost, flat, tilted
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def ring_powers(
-    motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray, cage_rate: float
+    motion: RingMotion, shape: Shape, weights: FloatArray, numbers: LawNumbers, states: FloatArray, cage_rate: float
 ) -> tuple[float, float]:
     """Power that the contacts of a bearing dissipate, and that the turning of the cage brings in [W].
 
@@ -429,8 +459,14 @@ def ring_powers(
 
     Parameters
     ----------
-    motion, shape, numbers, states
-        What `assemble` takes.
+    motion, shape : RingMotion, Shape
+        Motion of the ring, and the bearing.
+    weights : array (n,)
+        How many slices each slice stands for.
+    numbers : LawNumbers
+        The limits of the law.
+    states : array (4, Z, n)
+        States of the slices, as of `Work`.
     cage_rate : float
         [rad/s].
     """
@@ -439,7 +475,7 @@ def ring_powers(
         roller = roller_of(motion, shape, j)
         if roller.deepest <= numbers.lift_off:
             continue
-        power, flat, tilted = roller_power(roller, shape.positions, states, j)
+        power, flat, tilted = roller_power(roller, shape.positions, weights, states, j)
         c, s = roller.cos, roller.sin
         lost += power
         torque += flat * (motion.z * c - motion.y * s) - tilted * (motion.theta_z * s + motion.theta_y * c)
@@ -507,10 +543,10 @@ def bearing_force(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work
     states = work.states
     if law.numbers.kind == CELLS:
         # The places lie where the load is written, at the same time as they are read.
-        _find_cells(motion, shape, law.numbers, work.rows, states[0])
+        find_cells(motion, shape, law.numbers, work.rows, states[0])
         read_cells(law.cells, work.rows.reshape(-1), states.reshape(4, -1))
     else:
-        _power_states(motion, shape, law.numbers, states)
+        power_states(motion, shape, law.numbers, states)
     above = assemble(motion, shape, law.numbers, states, out)
     return 1 if above > 0 else 0
 

@@ -5,14 +5,16 @@ How a step begins, and what then goes on, has its home in `mbs.bearings.film_clo
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.maps.law import ContactLaw
+from ehdmaps.maps.memory import FilmState
 from ehdmaps.maps.memory_table import step_of
 from mbs.bearings.bearing_kernel import assemble_slices, check_motion, sizes_of, slice_approaches
 from mbs.bearings.film_clock import (
@@ -27,10 +29,22 @@ from mbs.bearings.film_clock import (
     resume_rows,
 )
 from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
+from mbs.bearings.level_kernel import assemble_level_slices
 from mbs.bearings.memory_element import FilmStates, MemoryBearing
 from mbs.bearings.memory_kernel import MEMORY, begin, commit, loads, spent
 from mbs.bearings.memory_tables import HIGHEST, MemoryFilms, MemoryTables, room, table_in_use
-from mbs.bearings.rings import Rings, answer_ring, feels, gather_rings, motion_of, shape_of, turned_by
+from mbs.bearings.rings import (
+    LEVEL,
+    Rings,
+    answer_ring,
+    feels,
+    folding_of,
+    gather_rings,
+    motion_of,
+    placed,
+    shape_of,
+    turned_by,
+)
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
 from mbs.model.elements import Element
 
@@ -103,7 +117,10 @@ def _answer(bearings: MemoryBearings, b: int, moment: Moment, motion: FloatArray
     slice_approaches(ring, shape, deltas)
     step = step_of(moment.time - bearings.clock[ACCEPTED], bearings.clock[LAST])
     loads(table, step, memory, deltas, states[0], states[1])
-    assemble_slices(ring, shape, states.reshape(4, z, n), out)
+    if rings.felt[b] == LEVEL:
+        assemble_level_slices(ring, shape, rings.weights[b][:n], states.reshape(4, z, n), out)
+    else:
+        assemble_slices(ring, shape, states.reshape(4, z, n), out)
     return 1 if np.max(states[0]) > bearings.films.mixed[film, HIGHEST] else 0
 
 
@@ -134,7 +151,7 @@ def memory_answer(bearings: MemoryBearings, moment: Moment, motion: FloatArray, 
             return IN_PYTHON
         outside = course.outside[moment.step, rings.films_of[b]]
         answers.outside[rings.places[b]] += 1 if status > 0 or outside > 0 else 0
-        answer_ring(rings.firsts[b], moment, out, answers)
+        answer_ring(rings.firsts[b], rings.felt[b], moment, out, answers)
     return FOUND
 
 
@@ -152,8 +169,9 @@ def memory_accept(bearings: MemoryBearings, moment: Moment) -> None:
     for b in range(bearings.rings.firsts.size):
         size = bearings.rings.rollers[b] * bearings.rings.slices[b]
         table, memory = table_in_use(bearings.films, bearings.rings.films_of[b]), memory_of(bearings, b)
-        loads_now = bearings.states[b][:size]
-        bearings.spent[b] = spent(table, memory, loads_now) * sizes_of(bearings.rings.sizes[b]).slice_length
+        loads_now, weights = bearings.states[b][:size], bearings.rings.weights[b][: bearings.rings.slices[b]]
+        taken = spent(table, memory, loads_now, weights)
+        bearings.spent[b] = taken * sizes_of(bearings.rings.sizes[b]).slice_length
         commit(table, memory, loads_now)
     make_step(bearings.clock, moment)
 
@@ -173,7 +191,7 @@ def memory_powers(
     """
     rings = bearings.rings
     for b in range(rings.firsts.size):
-        place, torque = rings.places[b], turned_by(rings.firsts[b], 2, motion, answers)
+        place, torque = rings.places[b], turned_by(rings.firsts[b], rings.felt[b] // 2, motion, answers)
         out[place, 0], out[place, 2] = 0.0, bearings.spent[b]
         out[place, 1] = torque * rings.cage_rates[b] * moment.speed
 
@@ -211,13 +229,14 @@ class MemoryBlock(FilmBlock[MemoryBearings]):
             course=course_of(0, len(tables)),
         )
         super().__init__(course, arrays)
+        self._folds = [folding_of(element) for element in elements]
 
     def states(self) -> list[FilmStates]:
         """Films of each bearing after the last step that was made."""
         last, time = float(self._arrays.clock[LAST]), float(self._arrays.clock[ACCEPTED])
         return [
-            FilmStates(films_of_rows(self._rows(b), self._shape(b), last), time)
-            for b in range(self._arrays.strict.size)
+            FilmStates(_slices(films_of_rows(self._rows(b), self._shape(b), last), fold.groups), time)
+            for b, fold in enumerate(self._folds)
         ]
 
     def resume(self, states: Sequence[FilmStates]) -> None:
@@ -228,8 +247,8 @@ class MemoryBlock(FilmBlock[MemoryBearings]):
         states : sequence of FilmStates
             One a bearing, all after the same step.
         """
-        for b, state in enumerate(states):
-            resume_rows(state.films, state.time, self._rows(b), self._arrays.clock)
+        for b, (state, fold) in enumerate(zip(states, self._folds, strict=True)):
+            resume_rows(_slices(state.films, fold.firsts), state.time, self._rows(b), self._arrays.clock)
 
     def _shape(self, b: int) -> tuple[int, int]:
         """Rollers and slices of a bearing."""
@@ -240,6 +259,13 @@ class MemoryBlock(FilmBlock[MemoryBearings]):
         """Memory of the slices of a bearing."""
         rows: FloatArray = memory_of.py_func(self._arrays, b)
         return rows
+
+
+def _slices(films: FilmState, which: IntArray) -> FilmState:
+    """Films of some slices of all rollers, in a given order."""
+    return dataclasses.replace(
+        films, approach=films.approach[:, which], change=films.change[:, which], load=films.load[:, which]
+    )
 
 
 def _takes(element: Element) -> bool:
@@ -255,5 +281,6 @@ MEMORY_BEARINGS = Kind(
     takes=_takes,
     accept=memory_accept,
     powers=memory_powers,
+    placed=placed,
 )
 """For `mbs.transient.kinds`."""

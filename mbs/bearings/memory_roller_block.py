@@ -220,11 +220,12 @@ def memory_rollers_accept(bearings: MemoryRollerBearings, moment: Moment) -> Non
     for b in range(bearings.strict.size):
         size = rollers.rings.rollers[b] * rollers.rings.slices[b]
         length = sizes_of(rollers.rings.sizes[b]).slice_length
+        weights = rollers.rings.weights[b][: rollers.rings.slices[b]]
         bearings.spent[b] = 0.0
         for side in range(2):
             table, memory = table_in_use(bearings.films, rollers.films_of[b, side]), _memory_of(bearings, b, side)
             loads_now = bearings.answered[b, side][:size]
-            bearings.spent[b] += spent(table, memory, loads_now) * length
+            bearings.spent[b] += spent(table, memory, loads_now, weights) * length
             commit(table, memory, loads_now)
     make_step(bearings.clock, moment)
 

@@ -1,11 +1,15 @@
 """Bearings of a compiled run as arrays: what does not change of them, and how their rings move.
 
 Blocks with and without memory of the films share this; `mbs.bearings.bearing_block` and `mbs.bearings.memory_block`
-add what each slice needs.
+add what each slice needs. Rings that cannot tilt against each other press slices of the same depth alike: each depth is
+looked at once, with the number of such slices as its weight, and neither tilts nor moments are computed
+(`mbs.bearings.level_kernel`). With memory it is both of a pair left and right of the middle, whatever the profile:
+slices take the parabolas of their films anew in turn, and with one slice a roller all of them would have the same turn.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
@@ -21,6 +25,15 @@ from mbs.model.blocks import Answers, Member, Moment
 
 FELT = np.array([1, 2, 4, 5])
 """Displacements of its port that a bearing feels: y, z, theta_y, theta_z."""
+
+LEVEL = 2
+"""How many of them one feels whose rings do not tilt: the first ones."""
+
+_TILTS = FELT[LEVEL:]
+_SAME = 12
+"""Digits of the deepest profile to which depths are the same."""
+
+_NO_DEPTH, _ROUND_OFF = 1e-30, 1e-12
 
 
 class Rings(NamedTuple):
@@ -40,6 +53,10 @@ class Rings(NamedTuple):
         Slices, see `Shape` [m].
     cos, sin : array (bearings, Z)
         Directions of the rollers, see `Shape`.
+    felt : array (bearings,), of int
+        How many displacements each feels: 4, or 2 of rings that do not tilt.
+    weights : array (bearings, n)
+        How many slices each slice stands for; 1 where rings tilt.
     """
 
     firsts: IntArray
@@ -54,6 +71,8 @@ class Rings(NamedTuple):
     profiles: FloatArray
     cos: FloatArray
     sin: FloatArray
+    felt: IntArray
+    weights: FloatArray
 
     @property
     def most_slices(self) -> int:
@@ -79,6 +98,8 @@ def motion_of(rings: Rings, b: int, moment: Moment, motion: FloatArray) -> RingM
     i, x, y = rings.firsts[b], motion[0], motion[1]
     angle = rings.start_angles[b] + rings.cage_rates[b] * moment.angle
     c, s = math.cos(angle), math.sin(angle)
+    if rings.felt[b] == LEVEL:
+        return RingMotion(x[i], x[i + 1], 0.0, 0.0, y[i], y[i + 1], 0.0, 0.0, c, s)
     return RingMotion(x[i], x[i + 1], x[i + 2], x[i + 3], y[i], y[i + 1], y[i + 2], y[i + 3], c, s)
 
 
@@ -92,13 +113,13 @@ def shape_of(rings: Rings, b: int) -> Shape:
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
-def answer_ring(first: int, moment: Moment, out: FloatArray, answers: Answers) -> None:
+def answer_ring(first: int, felt: int, moment: Moment, out: FloatArray, answers: Answers) -> None:
     """Put force, stiffness and damping of a bearing among the answers of all elements.
 
     Parameters
     ----------
-    first : int
-        First of what the bearing feels.
+    first, felt : int
+        First of what the bearing feels, and how many.
     moment : Moment
         Weights of the slopes.
     out : array (13, 6)
@@ -106,10 +127,10 @@ def answer_ring(first: int, moment: Moment, out: FloatArray, answers: Answers) -
     answers : Answers
         Answers of all elements, filled.
     """
-    for i in range(4):
+    for i in range(felt):
         k = FELT[i]
         answers.force[first + i] = out[0, k]
-        for j in range(4):
+        for j in range(felt):
             slope = moment.by_q * out[1 + k, FELT[j]] + moment.by_v * out[7 + k, FELT[j]]
             answers.slopes[first + i, first + j] = slope
 
@@ -136,27 +157,85 @@ def turned_by(first: int, pairs: int, motion: FloatArray, answers: Answers) -> f
 
 
 def feels(element: BearingElement) -> FloatArray:
-    """Rows of what a bearing feels, shape (4, 6)."""
-    return np.asarray(np.eye(6)[FELT])
+    """Rows of what a bearing feels, shape (4, 6), or (2, 6) of one whose rings do not tilt."""
+    return np.asarray(np.eye(6)[FELT[: _felt(element)]])
+
+
+def placed(element: BearingElement, transform: FloatArray) -> BearingElement:
+    """A bearing as it stands in a system: whether its rings can tilt against each other; see `mbs.model.blocks.Kind`.
+
+    Parameters
+    ----------
+    element : BearingElement
+        The bearing.
+    transform : array, shape (6, n)
+        Displacement of the inner ring against the outer one by the coordinates.
+    """
+    depths = element.bearing.profile_depths
+    # A profile that is not the same on both sides makes moments, which runs record.
+    mirrored = np.all(np.abs(depths - depths[::-1]) <= _ROUND_OFF * np.max(np.abs(depths)))
+    if np.any(transform[_TILTS]) or not mirrored:
+        return element
+    return dataclasses.replace(element, tilts=False)
+
+
+class Folding(NamedTuple):
+    """Slices of the same depth, which rings that do not tilt press alike.
+
+    Attributes
+    ----------
+    firsts : array (k,), of int
+        First slice of each depth.
+    groups : array (n,), of int
+        Which depth each slice has.
+    weights : array (k,)
+        How many slices each depth has.
+    """
+
+    firsts: IntArray
+    groups: IntArray
+    weights: FloatArray
+
+
+def folding_of(element: BearingElement) -> Folding:
+    """Which slices of a bearing are computed: all where its rings tilt, else one of each depth, or of each pair."""
+    depths = element.bearing.profile_depths
+    each = np.arange(depths.size)
+    if element.tilts:
+        return Folding(each, each, np.ones(depths.size))
+    if element.films == "memory":
+        alike = np.asarray(np.minimum(each, each[::-1]), dtype=np.float64)
+    else:
+        alike = np.round(depths / max(float(np.max(np.abs(depths))), _NO_DEPTH), _SAME)
+    _, firsts, groups, counts = np.unique(alike, return_index=True, return_inverse=True, return_counts=True)
+    return Folding(firsts, groups.reshape(-1), counts.astype(np.float64))
+
+
+def _felt(element: BearingElement) -> int:
+    """How many displacements a bearing feels."""
+    return FELT.size if element.tilts else LEVEL
 
 
 def gather_rings(members: Sequence[Member], films_of: Sequence[int]) -> Rings:
     """The arrays of some bearings, and which film each has."""
     elements: list[BearingElement] = [member.element for member in members]
     works = [Arrays(element.bearing) for element in elements]
+    folds = [folding_of(element) for element in elements]
     return Rings(
         firsts=_whole(member.first for member in members),
         places=_whole(member.place for member in members),
         films_of=_whole(films_of),
         rollers=_whole(work.angles.shape[1] for work in works),
-        slices=_whole(work.slices.shape[1] for work in works),
+        slices=_whole(fold.firsts.size for fold in folds),
         start_angles=np.array([element.start_angle for element in elements], dtype=np.float64),
         cage_rates=np.array([element.rates[0] for element in elements], dtype=np.float64),
         sizes=np.array([work.sizes for work in works], dtype=np.float64).reshape(len(works), 6),
-        positions=_padded([work.slices[0] for work in works]),
-        profiles=_padded([work.slices[1] for work in works]),
+        positions=_padded([work.slices[0][fold.firsts] for work, fold in zip(works, folds, strict=True)]),
+        profiles=_padded([work.slices[1][fold.firsts] for work, fold in zip(works, folds, strict=True)]),
         cos=_padded([work.angles[0] for work in works]),
         sin=_padded([work.angles[1] for work in works]),
+        felt=_whole(_felt(element) for element in elements),
+        weights=_padded([fold.weights for fold in folds]),
     )
 
 

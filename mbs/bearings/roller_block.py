@@ -113,7 +113,9 @@ def rollers_answer(bearings: RollerBearings, moment: Moment, motion: FloatArray,
                     moment.by_q * stiffness[_THETA_Z, _THETA_Z] + moment.by_v * damping[_THETA_Z, _THETA_Z],
                 )
                 add_contact(rollers, b, j, side, place, contact, answers)
-                power, flat, tilted = roller_power(roller_of(ring, shape, 0), shape.positions, work.states, 0)
+                power, flat, tilted = roller_power(
+                    roller_of(ring, shape, 0), shape.positions, rings.weights[b][:n], work.states, 0
+                )
                 sign, c, s, r = 1.0 - 2.0 * side, place.cos, place.sin, first + 2 * side
                 across = x[r + 1] * c - x[r] * s
                 lost += power

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -17,6 +18,7 @@ from mbs.analyses.campbell import MODE_SPEEDS, MOST_BANDS, CampbellResult, LawRu
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside, fade_of
+from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Told, band_lines, film_course, heading, held_lines, read_option, write
 from mbs.commands.reach import fade_lines, outside_lines
@@ -41,10 +43,23 @@ _MOST_DAMPED = 0.5
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run up with each law, and compare."""
-    cases, settings, bands = _asked(arguments)
-    found = campbell(cases, settings, Told("step"), with_modes=arguments.modes, keep_partial=True, bands=bands)
-    runs, course = found.runs, found.course
+    done = analysed(
+        arguments,
+        lambda given: _Asked(*_asked(given)),
+        lambda asked: campbell(
+            asked.cases,
+            asked.settings,
+            Told("step"),
+            with_modes=arguments.modes,
+            keep_partial=True,
+            bands=asked.bands,
+        ),
+        _looks_at,
+    )
+    found, bands = done.result, int(arguments.bands or "0")
+    settings, runs, course = found.settings, found.runs, found.course
     lines = [
+        *done.lines,
         f"{runs[0].case.model.scene.title}: run-up from {RPM.text(course.speed.at(0.0)[0])} to "
         f"{RPM.text(course.speed.at(course.duration)[0])} in {course.duration:.4g} s; "
         f"sensor {found.sensor.name}, {Reference.of(found.sensor).text}",
@@ -54,7 +69,21 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         lines += [*_report(entry), *_band(entry, bands)]
     lines += [*_differences(runs), *(f"warning: {line}" for line in found.failed)]
     lines += write(arguments, found.dataset, _figure(found) if arguments.plot else None)
-    return "\n".join(lines), 1 if found.failed or any(any(entry.record.outside.values()) for entry in runs) else 0
+    unsound = found.failed or any(any(entry.record.outside.values()) for entry in runs)
+    return "\n".join(lines), 1 if unsound else done.status
+
+
+class _Asked(NamedTuple):
+    """Laws that are run, what is looked at, and how many runs a band has."""
+
+    cases: list[Case]
+    settings: CampbellSettings
+    bands: int
+
+
+def _looks_at(asked: _Asked) -> Looked:
+    """The scene with the largest loads, and the highest frequency."""
+    return Looked(max(asked.cases, key=lambda case: case.load_factor).model.scene, asked.settings.highest)
 
 
 def _asked(arguments: argparse.Namespace) -> tuple[list[Case], CampbellSettings, int]:

@@ -80,6 +80,8 @@ def load_cases(
             for option in ("law", "map", "clearance", "films", "supply")
             if len(given := _given(arguments, option)) > 1 and not (option in ("films", "supply") and several_films)
         ]
+        if _ready(arguments) is not None and _given(arguments, "law"):
+            problems.append("--law: stands beside --auto, whose law is that of a map; leave one of them out")
         laws = laws[:1] if _given(arguments, "law") else laws
     if hasattr(arguments, "films"):
         laws = _with_films(laws, _given(arguments, "films"), problems)
@@ -147,7 +149,9 @@ def read_compared(
 
 
 def _read_scene(arguments: argparse.Namespace, problems: list[str]) -> Scene | None:
-    """Read the scene; None where problems were noted."""
+    """Read the scene; None where problems were noted. A subject that stands ready has it."""
+    if (subject := _ready(arguments)) is not None:
+        return subject.scene
     try:
         return read_scene(arguments.scene)
     except InputError as error:
@@ -156,9 +160,18 @@ def _read_scene(arguments: argparse.Namespace, problems: list[str]) -> Scene | N
 
 
 def _named_laws(arguments: argparse.Namespace, problems: list[str]) -> list[LawChoice]:
-    """The laws of --law and --map."""
+    """The laws of --law and --map; a subject that stands ready has the first one."""
     structure = getattr(arguments, "structure", None)
-    return _laws(_given(arguments, "law"), _given(arguments, "map"), structure, problems)
+    if (subject := _ready(arguments)) is None:
+        return _laws(_given(arguments, "law"), _given(arguments, "map"), structure, problems)
+    named = _given(arguments, "law")
+    return [subject.law, *(_laws(named, [], None, problems) if named else ())]
+
+
+def _ready(arguments: argparse.Namespace) -> Subject | None:
+    """Scene and law that stand ready in place of those to be read, as `--auto` puts them there."""
+    subject: Subject | None = getattr(arguments, "subject", None)
+    return subject
 
 
 def _output_problems(arguments: argparse.Namespace, scene: Scene | None, kind: Kind) -> list[str]:
@@ -228,7 +241,10 @@ def _laws(names: list[str], paths: list[str], structure: str | None, problems: l
 
 
 def _with_films(laws: list[LawChoice], given: list[str], problems: list[str]) -> list[LawChoice]:
-    """Each law that has films with the films that are meant, or dry; laws without films as they are."""
+    """Each law that has films with the films that are meant, or dry; laws without films as they are.
+
+    A law that stands ready has its kind of films already, which stays where none is given.
+    """
     wrong = [text for text in given if text not in FILMS]
     problems += [f"--films: got {text!r:.60}{closest(text, FILMS)}; allowed: {', '.join(FILMS)}" for text in wrong]
     twice = sorted(text for text in set(given) if given.count(text) > 1)

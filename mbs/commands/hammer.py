@@ -11,7 +11,8 @@ from ehdmaps.errors import InputError
 from ehdmaps.extras import lacking
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.units import quantity
-from mbs.analyses.hammer import HammerSettings, hammer
+from mbs.analyses.hammer import HIGHEST, HammerSettings, hammer
+from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_model
 from mbs.commands.common import Told, film_lines, heading, outside_at
 from mbs.linearised.modes import Modes
@@ -25,9 +26,14 @@ from mbs.transient.hammer import HammerTest
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Hit, and write the records."""
     highest, duration = _options(arguments)
-    model = load_model(arguments, UFF)
     settings = HammerSettings(highest, duration, arguments.hits, arguments.noise, arguments.seed, arguments.nonlinear)
-    found = hammer(model, settings, Told("hit"))
+    done = analysed(
+        arguments,
+        lambda given: load_model(given, UFF),
+        lambda model: hammer(model, settings, Told("hit")),
+        lambda model: Looked(model.scene, highest or max(model.scene.frequencies, default=HIGHEST)),
+    )
+    found = done.result
     model = found.model
     scene, test, hits = model.scene, found.test, found.hits
     outside = [
@@ -43,6 +49,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     title = f"{scene.name}, {label}: {test.hits} hits, simulated"
     write_uff(path, Measurement(title, hits))
     lines = [
+        *done.lines,
         *heading(model, scene.speed),
         f"{test.hits} hits at each of {len(hits)} places, {len(scene.sensors)} sensors, "
         + ("nonlinear" if arguments.nonlinear else "linearised at the equilibrium"),
@@ -54,7 +61,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *outside,
         f"{path}: written",
     ]
-    return "\n".join(lines), 1 if outside else 0
+    return "\n".join(lines), 1 if outside else done.status
 
 
 def _options(arguments: argparse.Namespace) -> tuple[float | None, float | None]:

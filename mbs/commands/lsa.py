@@ -12,6 +12,7 @@ from scipy.signal import find_peaks
 from ehdmaps.errors import InputError
 from mbs.analyses.case import Case
 from mbs.analyses.lsa import LsaResult, lsa
+from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import band_lines, film_lines, heading, outside_at, write
 from mbs.commands.reach import fade_lines
@@ -23,8 +24,13 @@ from mbs.scene.assembly import Model
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Linearise, and compute the responses over the frequencies of the scene, with each kind of films and supply."""
-    cases = _asked(arguments)
-    found = [(case.label, lsa(case.model)) for case in cases]
+    done = analysed(
+        arguments,
+        _asked,
+        lambda cases: [(case.label, lsa(case.model)) for case in cases],
+        lambda cases: Looked(cases[0].model.scene, max(cases[0].model.scene.frequencies, default=0.0)),
+    )
+    found = done.result
     figure = None
     if arguments.plot:
         curves = [
@@ -40,13 +46,13 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         notes = [note for label, entry in found for note in _lifting_notes(entry.lifting, label if found[1:] else "")]
         first = found[0][1].model
         figure = comparison_figure(first, curves, notes) if found[1:] else response_figure(first, curves[0], notes)
-    lines: list[str] = []
+    lines = list(done.lines)
     outside: list[str] = []
     for label, entry in found:
         outside += [line for line in outside_at(entry.model, entry.balance) if line not in outside]
         lines += _report(entry, label if found[1:] else "")
     lines += [*outside, *write(arguments, found[0][1].dataset, figure)]
-    return "\n".join(lines), 1 if outside else 0
+    return "\n".join(lines), 1 if outside else done.status
 
 
 def _asked(arguments: argparse.Namespace) -> list[Case]:

@@ -10,6 +10,7 @@ import numpy as np
 from ehdmaps.arrays import IntArray
 from ehdmaps.errors import InputError
 from mbs.analyses.modes import modes
+from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_model
 from mbs.commands.common import band_lines, film_lines, heading, outside_at, read_option, write
 from mbs.commands.reach import fade_lines
@@ -18,6 +19,7 @@ from mbs.output.modes_plot import modes_figure
 from mbs.scene.assembly import Model
 from mbs.scene.campbell import HIGHEST_HIGHEST, LOWEST_HIGHEST
 from mbs.scene.fields import HERTZ, MILLISECOND
+from mbs.scene.scene import Scene
 
 HIGHEST = 10e3
 """Highest frequency shown of a scene that asks for no responses [Hz]."""
@@ -31,8 +33,8 @@ _ROUND_OFF = 1e-12
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Find the modes."""
-    model, highest = _asked(arguments)
-    result = modes(model)
+    done = analysed(arguments, _asked, lambda asked: modes(asked[0]), lambda asked: Looked(asked[0].scene, asked[1]))
+    result, highest = done.result, _highest(arguments, done.result.model.scene, [])
     model, found = result.model, result.modes
     free, overdamped, swinging = _kinds(found)
     shown = swinging[found.frequency[swinging] <= highest]
@@ -44,6 +46,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         figure = modes_figure(model, found, shown, limit, "; ".join([*notes, *_overdamped_count(overdamped)]))
     outside = outside_at(model, result.balance)
     lines = [
+        *done.lines,
         *heading(model, model.scene.speed),
         *_table(found, shown),
         *band_lines(model),
@@ -55,21 +58,28 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *outside,
         *write(arguments, result.dataset, figure),
     ]
-    return "\n".join(lines), 1 if outside else 0
+    return "\n".join(lines), 1 if outside else done.status
 
 
 def _asked(arguments: argparse.Namespace) -> tuple[Model, float]:
     """The model, and the highest frequency to show [Hz]; all problems at once."""
     problems: list[str] = []
-    text = getattr(arguments, "highest", None)
-    highest = read_option("--highest", text, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
     try:
         model = load_model(arguments)
     except InputError as error:
-        raise InputError((*problems, *error.problems)) from error
-    if problems:
-        raise InputError(problems)
-    return model, max(model.scene.frequencies, default=HIGHEST) if highest is None else highest
+        problems += error.problems
+        model = None
+    highest = _highest(arguments, None if model is None else model.scene, problems)
+    if problems or model is None:
+        raise InputError(tuple(dict.fromkeys(problems)))
+    return model, highest
+
+
+def _highest(arguments: argparse.Namespace, scene: Scene | None, problems: list[str]) -> float:
+    """The highest frequency to show [Hz]."""
+    text = getattr(arguments, "highest", None)
+    highest = read_option("--highest", text, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
+    return max(scene.frequencies if scene else (), default=HIGHEST) if highest is None else highest
 
 
 def _kinds(found: Modes) -> tuple[IntArray, IntArray, IntArray]:

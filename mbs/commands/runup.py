@@ -11,6 +11,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.units import RPM
 from mbs.analyses.reach import Fade, axes_outside, fade_of
 from mbs.analyses.runup import runup
+from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_model
 from mbs.commands.common import Told, film_course, heading, held_lines, write
 from mbs.commands.reach import fade_lines, outside_lines
@@ -22,12 +23,14 @@ from mbs.transient.run import Recording
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run, and say what was found."""
-    found = runup(load_model(arguments), progress=Told("step"))
+    done = analysed(arguments, load_model, lambda model: runup(model, progress=Told("step")), _looks_at)
+    found = done.result
     model, result, outside = found.model, found.record, found.record.outside
     fade = fade_of(model)
     figure = _figure(model, result, fade) if arguments.plot else None
     first, last = (RPM.text(float(speed)) for speed in (result.speed[0], result.speed[-1]))
     lines = [
+        *done.lines,
         *heading(model),
         *held_lines(model),
         f"from {first} to {last} in {found.course.duration:.4g} s: {result.steps} steps, {result.halved} taken back, "
@@ -49,7 +52,12 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     # The equilibria of this line are no part of the run, whose calls were counted above.
     lines += film_course(model, (float(result.speed[0]), float(result.speed[-1])))
     lines += write(arguments, found.dataset, figure)
-    return "\n".join(lines), 1 if any(outside.values()) else 0
+    return "\n".join(lines), 1 if any(outside.values()) else done.status
+
+
+def _looks_at(model: Model) -> Looked:
+    """What the run looks at; frequencies up to those of a Campbell diagram."""
+    return Looked(model.scene, model.scene.campbell.highest)
 
 
 def _changes(size: FloatArray, speed: FloatArray, fade: Fade | None) -> str:

@@ -15,6 +15,7 @@ from mbs.analyses.rings import ring_motions
 from mbs.analyses.statics import statics
 from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.roller_element import ring_matrices
+from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_model
 from mbs.commands.common import heading, outside_at, write
 from mbs.commands.reach import fade_lines
@@ -31,14 +32,13 @@ _NAMES = ("y", "z", "theta_y", "theta_z")
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Find the equilibrium at the operating speed and describe it."""
-    model = load_model(arguments)
-    if arguments.plot and not model.bearings:
-        raise InputError(f"--plot: {model.scene.name} has no bearing whose rollers could be drawn; leave it out")
-    found = statics(model)
+    done = analysed(arguments, _asked, statics, lambda model: Looked(model.scene, 0.0))
+    found = done.result
     model = found.model
     balance, contacts = found.balance, found.contacts
     figure = statics_figure(model, balance, contacts, found.overloads) if arguments.plot else None
     lines = [
+        *done.lines,
         *heading(model, model.scene.speed),
         f"equilibrium in {balance.steps} Newton steps, residual {balance.residual:.1e} of the largest force",
         *_coordinates(model, balance),
@@ -71,7 +71,15 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     outside = outside_at(model, balance)
     lines += [f"warning: {line}" for line in (*found.overloads, *found.free)] + outside
     lines += write(arguments, found.dataset, figure)
-    return "\n".join(lines), 1 if outside or found.overloads else 0
+    return "\n".join(lines), 1 if outside or found.overloads else done.status
+
+
+def _asked(arguments: argparse.Namespace) -> Model:
+    """The model, whose rollers are drawn if asked for."""
+    model = load_model(arguments)
+    if arguments.plot and not model.bearings:
+        raise InputError(f"--plot: {model.scene.name} has no bearing whose rollers could be drawn; leave it out")
+    return model
 
 
 def _contact_words(contacts: BearingContacts) -> str:

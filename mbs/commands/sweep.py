@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -16,6 +18,7 @@ from mbs.analyses.film_errors import film_errors, notable_from
 from mbs.analyses.operating import operating
 from mbs.analyses.reach import axes_outside, fade_of
 from mbs.analyses.sweep import SweepSettings, sweep
+from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import band_lines, film_lines, heading, write
 from mbs.commands.reach import fade_lines, outside_lines
@@ -36,10 +39,12 @@ _ROUND_OFF = 1e-12
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Sweep over speed."""
-    settings, cases = _read(arguments)
-    result = sweep(cases, settings)
-    found = result.sweeps
-    lines: list[str] = []
+    done = analysed(
+        arguments, lambda given: _Asked(*_read(given)), lambda asked: sweep(asked.cases, asked.settings), _looks_at
+    )
+    result = done.result
+    cases, found = result.cases, result.sweeps
+    lines = list(done.lines)
     outside: list[str] = []
     torques = result.dataset["rolling_torque"].values
     for case, entry, calls, torque in zip(cases, found, result.outside, torques, strict=True):
@@ -63,7 +68,21 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         ]
     figure = _figure(cases, found) if arguments.plot else None
     lines += outside + write(arguments, result.dataset, figure)
-    return "\n".join(lines), 1 if outside else 0
+    return "\n".join(lines), 1 if outside else done.status
+
+
+class _Asked(NamedTuple):
+    """What is swept, and over which speeds."""
+
+    settings: SweepSettings
+    cases: list[Case]
+
+
+def _looks_at(asked: _Asked) -> Looked:
+    """The scene with the speeds and the largest loads of the sweep; modes and responses up to those of [linear]."""
+    scene = max(asked.cases, key=lambda case: case.load_factor).model.scene
+    speeds = asked.settings.speeds or scene.sweep
+    return Looked(dataclasses.replace(scene, sweep=speeds), max(scene.frequencies, default=scene.campbell.highest))
 
 
 def _figure(cases: Sequence[Case], found: Sequence[Sweep]) -> Figure:

@@ -23,7 +23,7 @@ from mbs.flexible.matrix_files import NodePositions, assemble_model, checked_lab
 from mbs.flexible.number_table import check_file, read_numbers
 
 _REFUSED = ("RIGIDBODY", "TRANSFORM", "MPC", "DISTRIBUTINGCOUPLING", "KINEMATIC", "DISTRIBUTING", "COUPLING")
-_ROW = re.compile(r"([0-9]+)\.([0-9]+)")
+_ROW = re.compile(r"([0-9]{1,20})\.([0-9]{1,20})")
 
 
 def read_calculix(

@@ -20,13 +20,16 @@ one map. That is the largest change to first order that the bounds allow.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
-from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.maps.law_errors import LawBounds
 from mbs.bearings.bearing_element import RingElement
 from mbs.bearings.contact_groups import ContactGroup
@@ -46,6 +49,10 @@ _State = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 _SMALL = 1e-10
 """Step of the approach by which the law is differentiated once more [m]."""
 
+_PER_DECADE = 12
+"""Frequencies of a decade at which the change of a dynamic stiffness is worked out, for cubic splines between them.
+Each slice turns from damper to spring over about a decade, so that they are right within a thousandth."""
+
 _SOFT = 1e-9
 """Mass that is added to a singular stiffness, in squares of its mean frequency, as where an equilibrium is sought."""
 
@@ -56,9 +63,9 @@ class ModeBands(NamedTuple):
     Attributes
     ----------
     frequency : array
-        Of |eigenvalue|/(2 pi) [Hz].
+        Bands of |eigenvalue|/(2 pi) [Hz].
     damping_ratio : array
-        Of the damping ratio.
+        Bands of the damping ratio.
     """
 
     frequency: FloatArray
@@ -120,12 +127,19 @@ class LawBands:
             Velocities of the left ones, with left . right = 1 for the whole state.
         """
         turned = np.linalg.solve(self._balance.system.mass, left.T)
-        products = [(one.rows @ turned) * (one.rows @ right) for one in self._groups]
         found = np.zeros((len(self.changes), eigenvalues.size), dtype=np.complex128)
-        for index, change in enumerate(self.changes):
-            for part in change:
-                slices = self._groups[part.group]
-                found[index] -= np.sum(_dynamic(slices, part, eigenvalues).T * products[part.group], axis=0)
+        for g, slices in enumerate(self._groups):
+            product = (slices.rows @ turned) * (slices.rows @ right)
+            # Of dZ = dk + s dc/(1 + s theta) - s^2 c d theta/(1 + s theta)^2 what all changes have alike.
+            slow = eigenvalues / (1.0 + np.multiply.outer(slices.times, eigenvalues))
+            by_damping = slow * product
+            by_times = slices.damping[:, None] * slow * by_damping
+            own = [next((part for part in change if part.group == g), None) for change in self.changes]
+            there = [index for index, part in enumerate(own) if part is not None]
+            parts = [part for part in own if part is not None]
+            found[there] -= np.array([part.stiffness for part in parts]) @ product
+            found[there] -= np.array([part.damping for part in parts]) @ by_damping
+            found[there] += np.array([part.times for part in parts]) @ by_times
         return found
 
     def of_modes(self, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray) -> ModeBands:
@@ -157,6 +171,21 @@ class LawBands:
         band = np.abs(energy).sum(axis=0) / (2.0 * np.where(swings, omega, 1.0)) / (2.0 * np.pi)
         return np.asarray(np.where(swings, band, 0.0))
 
+    @cached_property
+    def _active(self) -> dict[int, IntArray]:
+        """Which ports of each element its slices feel at all."""
+        found: dict[int, IntArray] = {}
+        for one in self._groups:
+            felt = np.flatnonzero(np.any(one.port_rows != 0.0, axis=0))
+            found[one.element] = np.union1d(found.get(one.element, felt), felt)
+        return found
+
+    @property
+    def ports(self) -> FloatArray:
+        """How the ports that slices feel follow the coordinates, shape (ports, n)."""
+        elements = self._balance.system.elements
+        return np.concatenate([elements[index].transform[active] for index, active in self._active.items()])
+
     def of_responses(
         self, frequencies: FloatArray, motion: ComplexArray, back: ComplexArray, responses: ComplexArray
     ) -> FloatArray:
@@ -166,22 +195,39 @@ class LawBands:
         ----------
         frequencies : array, shape (frequencies,)
             [Hz].
-        motion : array, shape (frequencies, n, inputs)
-            Complex amplitudes Z^-1 B of the coordinates for each input.
-        back : array, shape (frequencies, sensors, n)
-            S Z^-1: what each sensor sees of a load on each coordinate, in its unit.
+        motion : array, shape (frequencies, ports, inputs)
+            Complex amplitudes of the `ports` for each input.
+        back : array, shape (frequencies, sensors, ports)
+            What each sensor sees of a load on each of the ports, in its unit.
         responses : array, shape (frequencies, sensors, inputs)
-            S Z^-1 B.
+            The responses.
         """
-        s = np.asarray(2j * np.pi * frequencies, dtype=np.complex128)
-        seen = [(back @ one.rows.T, one.rows @ motion) for one in self._groups]
         unit = responses.conj() / np.maximum(np.abs(responses), 1e-300)
+        places = _places(frequencies)
+        logs = np.log(np.clip(2.0 * np.pi * frequencies, places[0], places[-1]))
         band = np.zeros(responses.shape)
+        ends = np.cumsum([active.size for active in self._active.values()]).tolist()
+        places_of = {
+            index: slice(end - active.size, end)
+            for (index, active), end in zip(self._active.items(), ends, strict=True)
+        }
+        products = []
+        for one in self._groups:
+            rows = one.port_rows[:, self._active[one.element]]
+            products.append((rows[:, :, None] * rows[:, None, :]).reshape(one.times.size, -1))
         for change in self.changes:
             moved = np.zeros(responses.shape, dtype=np.complex128)
+            by_element: dict[int, ComplexArray] = {}
             for part in change:
-                left, right = seen[part.group]
-                moved -= (left * _dynamic(self._groups[part.group], part, s)[:, None, :]) @ right
+                slices = self._groups[part.group]
+                dynamic = _dynamic(slices, part, np.asarray(1j * places, dtype=np.complex128))
+                matrix = (dynamic.real @ products[part.group]) + 1j * (dynamic.imag @ products[part.group])
+                before = by_element.get(slices.element)
+                by_element[slices.element] = matrix if before is None else before + matrix
+            for element, matrix in by_element.items():
+                at, size = places_of[element], self._active[element].size
+                at_all = CubicSpline(np.log(places), matrix)(logs) if places.size > 1 else matrix
+                moved -= back[:, :, at] @ at_all.reshape(-1, size, size) @ motion[:, at]
             band += np.abs((moved * unit).real)
         return band
 
@@ -314,6 +360,16 @@ def _dynamic(slices: _Slices, change: SliceChange, s: ComplexArray) -> ComplexAr
         change.stiffness + rate * slow * (change.damping - rate * slow * slices.damping * change.times),
         dtype=np.complex128,
     )
+
+
+def _places(frequencies: FloatArray) -> FloatArray:
+    """Angular frequencies [rad/s] at which the slices are looked at, evenly over the logarithm of a range, or one."""
+    omega = 2.0 * np.pi * np.asarray(frequencies, dtype=np.float64)
+    highest = float(omega.max())
+    lowest = float(omega[omega > 1e-6 * highest].min()) if highest > 0.0 else 0.0
+    if not highest > lowest:
+        return np.array([max(highest, 1e-300)])
+    return np.geomspace(lowest, highest, 2 + math.ceil(_PER_DECADE * math.log10(highest / lowest)))
 
 
 def _moved(stiffness: FloatArray, force: FloatArray) -> FloatArray:

@@ -8,18 +8,18 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.linearised.bands import law_bands
-from mbs.linearised.modal_response import modal_motion
+from mbs.linearised.modal_response import seen_of_loads
 from mbs.linearised.modes import StateModes
-from mbs.model.elements import Input, Sensor
+from mbs.model.elements import Sensor
 from mbs.model.equilibrium import Equilibrium
 
 
 def level_bands(
     balance: Equilibrium,
     states: StateModes,
-    inputs: Sequence[Input],
     sensors: Sequence[Sensor],
     frequencies: FloatArray,
+    motion: ComplexArray,
     responses: ComplexArray,
 ) -> FloatArray | None:
     """Bands of the levels of frequency responses, either way, shape (frequencies, sensors, inputs) [dB].
@@ -32,11 +32,13 @@ def level_bands(
     balance : Equilibrium
         Equilibrium at which the system is linearised.
     states : StateModes
-        Complex modes there: responses between all coordinates are their sums.
-    inputs, sensors : sequence
-        Inputs and sensors of the responses.
+        Complex modes there: what sensors see of loads on the bearings are their sums.
+    sensors : sequence of Sensor
+        Sensors of the responses.
     frequencies : array, shape (frequencies,)
         [Hz].
+    motion : array, shape (frequencies, n, inputs)
+        Amplitudes of the coordinates for each input.
     responses : array, shape (frequencies, sensors, inputs)
         The responses.
 
@@ -48,6 +50,6 @@ def level_bands(
     laws = law_bands(balance)
     if laws is None:
         return None
-    motion, back = modal_motion(balance, states, inputs, sensors, frequencies)
-    band = laws.of_responses(frequencies, motion, back, responses)
+    back = seen_of_loads(balance, states, sensors, frequencies, laws.ports)
+    band = laws.of_responses(frequencies, laws.ports @ motion, back, responses)
     return np.asarray(20.0 * np.log10(1.0 + band / np.maximum(np.abs(responses), 1e-300)))

@@ -170,7 +170,26 @@ def frequency_response(
     frequencies : array, shape (frequencies,)
         [Hz].
     """
-    seen = sensor_matrix(balance, sensors) @ responses(balance, inputs, frequencies)
+    return sensed(balance, sensors, frequencies, responses(balance, inputs, frequencies))
+
+
+def sensed(
+    balance: Equilibrium, sensors: Sequence[Sensor], frequencies: FloatArray, motion: ComplexArray
+) -> ComplexArray:
+    """Frequency responses from the motion of the coordinates, shape (frequencies, sensors, inputs).
+
+    Parameters
+    ----------
+    balance : Equilibrium
+        Equilibrium to linearise at.
+    sensors : sequence of Sensor
+        Sensors of the responses.
+    frequencies : array, shape (frequencies,)
+        [Hz].
+    motion : array, shape (frequencies, n, inputs)
+        What `responses` finds.
+    """
+    seen = sensor_matrix(balance, sensors) @ motion
     omega = 2.0 * np.pi * np.asarray(frequencies, dtype=np.float64)
     orders = np.array([_ORDER[sensor.quantity] for sensor in sensors])
     result: ComplexArray = seen * ((1j * omega[:, None]) ** orders[None, :])[:, :, None]

@@ -62,34 +62,30 @@ def modal_response(
     return result
 
 
-def modal_motion(
+def seen_of_loads(
     balance: Equilibrium,
     states: StateModes,
-    inputs: Sequence[Input],
     sensors: Sequence[Sensor],
     frequencies: FloatArray,
-) -> tuple[ComplexArray, ComplexArray]:
-    """Motion of all coordinates by each input, and what each sensor sees of a load on each coordinate.
+    ports: FloatArray,
+) -> ComplexArray:
+    """What each sensor sees of a load of 1 N or 1 N m on each of some ports, shape (frequencies, sensors, ports).
 
-    Arguments as of `modal_response`.
-
-    Returns
-    -------
-    motion : array, shape (frequencies, n, inputs)
-        Complex amplitudes of the coordinates at 1 N or 1 N m.
-    back : array, shape (frequencies, sensors, n)
-        Response of each sensor to a load of 1 N or 1 N m on each coordinate.
+    Parameters
+    ----------
+    balance, states, sensors, frequencies
+        The same as for `modal_response`.
+    ports : array, shape (ports, n)
+        How the ports follow the coordinates.
     """
     n = balance.system.size
-    right = states.right[:n]
-    by_load = np.linalg.solve(balance.system.mass.T, states.left[:, n : 2 * n].T).T
-    seen, driven = sensor_matrix(balance, sensors) @ right, by_load @ input_matrix(balance, inputs)
+    seen = sensor_matrix(balance, sensors) @ states.right[:n]
+    by_load = np.linalg.solve(balance.system.mass.T, states.left[:, n : 2 * n].T).T @ ports.T
     rate = 2j * np.pi * np.asarray(frequencies, dtype=np.float64)
     resonance = 1.0 / (rate[:, None] - states.eigenvalues)
     orders = np.array([_ORDER[sensor.quantity] for sensor in sensors], dtype=np.int64)
-    motion = right @ (resonance[:, :, None] * driven)
-    back = (seen * resonance[:, None, :]) @ by_load
-    return motion, back * (rate[:, None] ** orders)[:, :, None]
+    found = np.stack([(resonance * row) @ by_load for row in seen], axis=1)
+    return np.asarray(found * (rate[:, None] ** orders)[:, :, None])
 
 
 def checked_response(

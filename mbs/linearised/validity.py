@@ -8,10 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.bearings.bearing_element import RingElement
 from mbs.linearised.dynamic import element_dynamic_stiffness
-from mbs.linearised.linear import responses
 from mbs.model.elements import Input
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.relaxation import Films
@@ -132,7 +131,9 @@ class DynamicLoad:
         return self.dynamic > self.static
 
 
-def dynamic_loads(balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatArray) -> tuple[DynamicLoad, ...]:
+def dynamic_loads(
+    balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatArray, motion: ComplexArray
+) -> tuple[DynamicLoad, ...]:
     """Largest dynamic force of each bearing for each input.
 
     Parameters
@@ -143,12 +144,14 @@ def dynamic_loads(balance: Equilibrium, inputs: Sequence[Input], frequencies: Fl
         Inputs with their amplitudes.
     frequencies : array, shape (frequencies,)
         [Hz].
+    motion : array, shape (frequencies, n, inputs)
+        Amplitudes of the coordinates at 1 N or 1 N m of each input, see `mbs.linearised.linear.responses`.
     """
     found: list[DynamicLoad] = []
     if not inputs or not frequencies.size:
         return ()
     s = np.asarray(2j * np.pi * frequencies, dtype=np.complex128)
-    motion = responses(balance, inputs, frequencies) * np.array([entry.amplitude for entry in inputs])
+    motion = motion * np.array([entry.amplitude for entry in inputs])
     for index in balance.system.select(RingElement):
         connected = balance.system.elements[index]
         ports = np.einsum("mn,fni->fmi", connected.transform, motion)

@@ -166,6 +166,9 @@ class Kind:
     accept : callable or None
         Compiled function (arrays, Moment) that is called when a step is made, for elements with states of their own;
         the last answer was then that of the step. Their block is a `StatefulBlock`.
+    placed : callable or None
+        Gives an element as it stands in a system, from the rows (ports, coordinates) by which its ports move: one that
+        feels less, where the bodies cannot do all that it could feel. What is not felt costs nothing.
     """
 
     arrays: type
@@ -176,3 +179,4 @@ class Kind:
     alone: Callable[[Any], FloatArray] | None = None
     accept: Callable[..., None] | None = None
     powers: Callable[..., None] | None = None
+    placed: Callable[[Any, FloatArray], Any] | None = None

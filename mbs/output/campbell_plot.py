@@ -13,6 +13,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
 from ehdmaps.arrays import FloatArray
@@ -163,14 +164,18 @@ def campbell_figure(
         shown = (place > 2.0 / result.spectra.window) & (place <= last) & np.isfinite(spectrum)
         right.plot(place[shown], spectrum[shown], dashes, color=colour, lw=0.8)
     left.set_xlabel("speed, rpm", fontsize=7)
-    shaded = f"\nshaded: {BAND_WORDS}" if any(band is not None for band in bands) else ""
-    left.set_ylabel(f"sum level, {_reference(reference)}{shaded}", fontsize=7)
+    left.set_ylabel(f"sum level, {_reference(reference)}", fontsize=7)
+    shaded = (
+        [Patch(color="0.3", alpha=BAND_ALPHA, lw=0.0, label=BAND_WORDS)] if any(b is not None for b in bands) else []
+    )
     short = max(map(len, laws)) <= _SHORT_LABEL
     if short or len(laws) < MOST_LAWS:
-        left.legend(fontsize=7, frameon=False, ncols=2 if short and len(laws) > 2 else 1)
+        left.legend(
+            handles=[*left.lines, *shaded], fontsize=7, frameon=False, ncols=2 if short and len(laws) > 2 else 1
+        )
     else:
         # So many long names would lie on the lines.
-        lower.legend(handles=left.lines, loc="outside lower center", ncols=2, fontsize=7, frameon=False)
+        lower.legend(handles=[*left.lines, *shaded], loc="outside lower center", ncols=2, fontsize=7, frameon=False)
     right.set_xlabel("order (periods a turn)", fontsize=7)
     right.set_ylabel(f"mean level, {_reference(reference)}", fontsize=7)
     right.set_xlim(0.0, last)

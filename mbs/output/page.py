@@ -16,7 +16,7 @@ from mbs.scene.assembly import Model
 
 _SIZE = (9.0, 5.5)
 
-BAND_ALPHA = 0.3
+BAND_ALPHA = 0.2
 """Opacity of the bands of errors."""
 
 BAND_WORDS = "band by the errors that the map states"

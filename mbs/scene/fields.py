@@ -64,6 +64,14 @@ def text(section: Table, key: str, required: bool = False) -> str | None:
     return value
 
 
+def named(section: Table, key: str) -> bool:
+    """Whether a key that the user chose is the name of a place; notes a problem."""
+    good = 1 <= len(key) <= 100 and ":" not in key and "." not in key
+    if not good:
+        section.note("", f"got the name {short(key)}; allowed: a short name without : and .")
+    return good
+
+
 def words(section: Table, key: str, allowed: tuple[str, ...]) -> tuple[str, ...] | None:
     """Read a list of words.
 

@@ -117,13 +117,13 @@ def read_reduction(
         section.note("interfaces", "got none; allowed: at least one place where forces act")
     for key in table.entries() if table else ():
         entry = table.table(key, f"{section.where} interfaces {key}") if table else None
-        planned = _interface(entry) if entry and _named(entry, key) else None
+        planned = _interface(entry) if entry and fields.named(entry, key) else None
         if planned:
             interfaces[key] = planned
     points: dict[str, PlannedPoint] = {}
     table = section.table("points", f"{section.where} points")
     for key in table.entries() if table else ():
-        point = _point(table, key) if table and _named(table, key) else None
+        point = _point(table, key) if table and fields.named(table, key) else None
         if point is not None:
             points[key] = point
     stiffness, mass = files.get("stiffness"), files.get("mass")
@@ -144,14 +144,6 @@ def _path(section: Table, key: str, folder: Path | None) -> Path | None:
         return None
     beside = Path(str(resources.files("mbs") / "systems")) if folder is None else folder
     return beside / value
-
-
-def _named(section: Table, key: str) -> bool:
-    """Whether a name is one; notes a problem."""
-    good = 1 <= len(key) <= 100 and ":" not in key and "." not in key
-    if not good:
-        section.note("", f"got the name {short(key)}; allowed: a short name without : and .")
-    return good
 
 
 def _interface(section: Table) -> PlannedInterface | None:

@@ -208,6 +208,7 @@ class _Reader:
         given = section.table("frames", f"{section.where} frames")
         if given:
             for key in given.entries():
+                fields.named(given, key)
                 place = fields.lengths(given, key, given.get(key))
                 frames[key] = place or (0.0, 0.0, 0.0)
         if len(section.problems) > before or freedoms is None:

@@ -43,6 +43,7 @@ def read_shaft(section: Table, name: str) -> ShaftSpec | None:
     given = section.table("frames", f"{section.where} frames", '{ left = "40 mm", right = "200 mm" }, along the axis')
     if given:
         for key in given.entries():
+            fields.named(given, key)
             frames[key] = given.quantity(key, "m", -100.0, 100.0, LENGTH) or 0.0
     cutoff = section.quantity("cutoff", "Hz", 1.0, 1e6, HERTZ, required=True)
     largest = section.quantity("largest_element", "m", 1e-6, 100.0, LENGTH)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, cast
@@ -27,6 +28,14 @@ def in_python(connected: Sequence[Connected]) -> list[str]:
         for entry in connected
         if kind_of(entry.element) is None
     ]
+
+
+def _placed(entry: Connected) -> Connected:
+    """An element as it stands between its bodies."""
+    kind = kind_of(entry.element)
+    if kind is None or kind.placed is None:
+        return entry
+    return dataclasses.replace(entry, element=kind.placed(entry.element, entry.transform))
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +74,8 @@ class RunElements:
 
     @classmethod
     def of(cls, connected: Sequence[Connected]) -> RunElements:
-        """Elements that all have a kind."""
+        """Elements that all have a kind, each as it stands between its bodies."""
+        connected = [_placed(entry) for entry in connected]
         members: dict[Kind, list[Member]] = {kind: [] for kind in KINDS.values()}
         of_connected = [kind_of(entry.element) for entry in connected]
         alone, felt = [], []

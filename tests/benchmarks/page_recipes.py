@@ -32,6 +32,7 @@ TIMES = tuple(
         r"\bx +(\d[\d.]*)  ",  # ratio of times, of bench_ehl
         r"^(?:law|scipy|xarray)[^\d\n]*?(?:grid 25x12x6)? +(\d[\d.]* +\d[\d.]*)",  # bench_law
         r"(\d+) times reynolds",
+        r" (\d\S*) +\d+/\d+(?: |$)",  # beside what was solved, of a trade
         r"distance to the solution (\S+)",  # round-off
         r"made (\d{4}-\S+)",  # date of a map
     )

@@ -128,15 +128,6 @@ def test_a_mutated_job_is_read_or_refused(changes):
     job_or_problems(written(mutated(changes)))
 
 
-@settings(max_examples=100, deadline=None)
-@given(st.data())
-def test_a_job_with_damaged_characters_is_read_or_refused(data):
-    text = list(written(GOOD))
-    for _ in range(data.draw(st.integers(1, 5))):
-        text[data.draw(st.integers(0, len(text) - 1))] = data.draw(st.characters(codec="utf-8"))
-    job_or_problems("".join(text))
-
-
 @settings(max_examples=400, deadline=None)
 @given(
     st.one_of(

@@ -61,6 +61,11 @@ def test_generate_show_plot_compare(here, capsys):
     status, out, _ = run(capsys, "compare", "mine.nc", "dry.nc")
     assert status == 0
     assert "48 points in common, 48 of them solved in both" in out
+    status, out, _ = run(capsys, "compare", "mine.nc", "dry.nc", "--json")
+    record = json.loads(out)
+    assert (status, record["solved"], record["differing"]) == (0, 48, ["solver", "solver_settings"])
+    (film,) = [entry for entry in record["differences"] if entry["variable"] == "film_offset"]
+    assert (film["bias"], film["worst"], film["largest"]) == (-1.0, -1.0, 1.0)  # the dry map has no film
 
 
 def test_generate_goes_on_and_fresh_begins_again(here, capsys):

@@ -10,7 +10,6 @@ import time
 import unicodedata
 from pathlib import Path
 
-import numpy as np
 import pytest
 from scipy import sparse
 
@@ -175,57 +174,6 @@ def test_mbs(name, here, capsys):
     hold("mbs", MBS[name], here, capsys)
 
 
-DAMAGES = {
-    "empty": lambda data: b"",
-    "one byte": lambda data: data[:1],
-    "cut in half": lambda data: data[: len(data) // 2],
-    "cut at the end": lambda data: data[:-7],
-    "zeros in the middle": lambda data: data[: len(data) // 3] + bytes(400) + data[len(data) // 3 + 400 :],
-    "zeros": lambda data: bytes(len(data)),
-    "twice": lambda data: data + data,
-    "another file": lambda data: b"%PDF-1.4\n" + data[9:],
-    "all bytes": lambda data: bytes(range(256)) * 8,
-}
-
-READERS = {
-    "b.sti": REDUCE,
-    "b.mas": REDUCE,
-    "b.dof": REDUCE,
-    "m.inp": REDUCE,
-    "body.nc": ("statics", "flexible.toml"),
-    "body.npz": ("statics", "flexible.toml"),
-    "good.uff": ("modal-fit", "good.uff"),
-}
-
-STILL_GOOD = {"m.inp: twice": 0, "body.nc: twice": 0, "body.npz: twice": 0, "good.uff: twice": 1}
-"""Damages that leave a file of this kind whole, with their exit status: the same nodes or records twice, or what stands
-behind the end of an archive. Records of the case hold no mode."""
-
-
-@pytest.mark.parametrize("damage", DAMAGES)
-@pytest.mark.parametrize("file", READERS)
-def test_damaged_files(file, damage, here, capsys):
-    body = f'[[flexible]]\nname = "housing"\nreduced = "{file}"\n'
-    files = {"flexible.toml": f"{SCENE}\n{body}".encode(), file: DAMAGES[damage]((here / file).read_bytes())}
-    status = STILL_GOOD.get(f"{file}: {damage}", 2)
-    hold("mbs", Case("", READERS[file], files, status, (file,)), here, capsys)
-
-
-@pytest.mark.parametrize("seed", range(20))
-def test_records_with_changed_characters(seed, here, capsys):
-    """Whether such a file is still one depends on the place: it ends with a result, or with the problem in words."""
-    random = np.random.default_rng(seed)
-    data = bytearray((here / "good.uff").read_bytes())
-    for place in random.integers(len(data), size=5):
-        data[place] = random.integers(32, 127)
-    (here / "good.uff").write_bytes(bytes(data))
-    before = snapshot(here)
-    status, _, err = ended("mbs", ("modal-fit", "good.uff"), capsys)
-    assert status in (0, 1, 2)
-    assert (status == 0) == (err == "")
-    assert snapshot(here) == before
-
-
 @pytest.mark.parametrize("name", tables.CONTROL)
 def test_control_characters_do_not_reach_the_terminal(name, here, capsys):
     program, line, content = tables.CONTROL[name]
@@ -243,4 +191,4 @@ def test_control_characters_do_not_reach_the_terminal(name, here, capsys):
 
 
 def test_there_are_enough_of_them():
-    assert len(EHDMAPS) + len(MBS) + len(DAMAGES) * len(READERS) + 20 + len(tables.CONTROL) > 400
+    assert len(EHDMAPS) + len(MBS) + len(tables.CONTROL) > 400

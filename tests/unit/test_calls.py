@@ -166,8 +166,10 @@ def test_maps_are_compared_from_files_and_from_memory(tmp_path):
         expected = second["stiffness"] / first["stiffness"] - 1.0
         # Rounding of a difference of two nearly equal numbers.
         np.testing.assert_allclose(found.relative["stiffness"], expected, atol=1e-14)
+    apart = ehdmaps.compare(first, ehdmaps.generate(built(loads=(2e4, 3e4))))
+    assert apart.common == 0 and apart.between is not None and not apart.differences
     with pytest.raises(MapError, match="first and second: no load in common"):
-        ehdmaps.compare(first, ehdmaps.generate(built(loads=(2e4, 3e4))))
+        ehdmaps.compare(first, ehdmaps.generate(built(loads=(2e5, 3e5))))
 
 
 GRID = xr.Dataset(

@@ -1,6 +1,7 @@
 """Assembling, writing, opening, describing, comparing and drawing a map."""
 
 import json
+import math
 import re
 from dataclasses import dataclass, fields, replace
 
@@ -11,7 +12,8 @@ import xarray as xr
 from ehdmaps.errors import MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.assemble import assemble
-from ehdmaps.jobs.compare import compare, comparison_text
+from ehdmaps.jobs.compare import compare
+from ehdmaps.jobs.compare_text import comparison_json, comparison_text
 from ehdmaps.jobs.curves import curves, law_field
 from ehdmaps.jobs.describe import describe
 from ehdmaps.jobs.generate import generate
@@ -368,7 +370,7 @@ def test_validate_lists_every_problem():
     ):
         assert part in text
     dataset.attrs["schema_version"] = 99
-    with pytest.raises(MapError, match=r"schema_version is 99; this ehdmaps reads 1 to 3; .*newer one: update"):
+    with pytest.raises(MapError, match=r"schema_version is 99; this ehdmaps reads 1 to 4; .*newer one: update"):
         validate(dataset)
 
 
@@ -417,7 +419,7 @@ def test_compare_finds_the_difference_and_its_place():
     assert "differ in solver" in text
     assert "84 points in common, 84 of them solved in both" in text
     (line,) = [line for line in text.splitlines() if line.startswith("  damping")]
-    assert line.split()[1:4] == ["0", "0", "0.25"]
+    assert line.split()[1:5] == ["0", "0", "+0.25", "0"]
     assert line.endswith("outer, 1000 N/mm, 2 m/s, 40 degC")
     (line,) = [line for line in text.splitlines() if line.startswith("  stiffness")]
     assert line.split()[1:4] == ["0", "0", "0"]
@@ -426,6 +428,29 @@ def test_compare_finds_the_difference_and_its_place():
     assert np.count_nonzero(found.relative["damping"]) == 1
     (damping,) = [entry for entry in found.differences if entry.variable == "damping"]
     assert damping.place == {"contact": "outer", "load": 1e6, "entrainment_speed": 2.0, "temperature": 313.15}
+    assert (damping.points, damping.largest, damping.worst) == (84, pytest.approx(0.25, rel=1e-12), damping.largest)
+    assert math.isnan(damping.over_stated) and "none stated" in text  # a formula has no numerical error
+    assert found.between is None
+    record = json.loads(comparison_json(found))
+    (told,) = [entry for entry in record["differences"] if entry["variable"] == "damping"]
+    assert told["worst"] == damping.worst and told["over_stated"] is None and record["between"] is None
+
+
+def test_compare_holds_differences_beside_what_both_maps_state():
+    """Films that are 3 % lower in B where both state 1 %, of values of nearly one size: 0.03/(0.01 + 0.01 0.97)."""
+    first = made(job_of(), Stated())
+    second = first.copy(deep=True)
+    second["film_offset"].values *= 0.97
+    second["central_film"].values *= 1.001
+    found = {entry.variable: entry for entry in compare(first, second, ("a", "b")).differences}
+    offset, central = found["film_offset"], found["central_film"]
+    # rounding of the quotients
+    assert (offset.bias, offset.worst) == (pytest.approx(-0.03, rel=1e-12), pytest.approx(-0.03, rel=1e-12))
+    assert (offset.over_stated, offset.beyond_stated) == (pytest.approx(0.03 / 0.0197, rel=1e-12), 1.0)
+    assert (central.over_stated, central.beyond_stated) == (pytest.approx(0.001 / 0.02001, rel=1e-9), 0.0)
+    text = comparison_text(compare(first, second, ("a", "b")))
+    (line,) = [line for line in text.splitlines() if line.startswith("  film_offset")]
+    assert "-0.03      -0.03       1.5, 100% > 1" in line
 
 
 def test_compare_takes_common_points_only():
@@ -443,12 +468,54 @@ def test_compare_leaves_zeros_out_and_says_so():
     assert "damping                   no point to compare  (84 points where A is zero left out)" in text
 
 
-def test_compare_refuses_maps_without_common_points():
+def test_maps_that_share_some_points_or_none_are_compared_between_them():
+    """The same formula on other axes. Bar: 1e-3 of a film.
+
+    Of temperatures 20 K apart a reading between them is 1.2 % off, of speeds an octave apart 0.12 %; a quarter and half
+    of these distances leave a sixteenth and a quarter, at order two.
+    """
+    temperatures = '"20 degC", "25 degC", "30 degC", "35 degC", "40 degC"'
+    close = SMALL.replace('"20 degC", "40 degC"', temperatures)
+    close = close.replace('"0.5 m/s", "1 m/s", "2 m/s"', '"0.5 m/s", "0.7 m/s", "1 m/s", "1.4 m/s", "2 m/s"')
+    first = made(job_of(close))
+    part = made(job_of(close.replace('"2 m/s"', '"3 m/s"')))
+    none = made(job_of(close.replace(temperatures, '"22 degC", "27 degC", "32 degC", "37 degC"')))
+    for second, common in ((part, 280), (none, 0)):
+        found = compare(first, second, ("a", "b"))
+        assert found.common == common and found.between is not None and not found.not_between
+        ranges = found.between.sample.ranges
+        assert ranges["load"] == (1e3, 1e6) and ranges["entrainment_speed"] == (0.5, 2.0)
+        for entry in found.between.differences:
+            assert entry.points == 300 and math.isnan(entry.over_stated)
+        films = {entry.variable: entry for entry in found.between.differences}
+        assert films["film_offset"].largest < 1e-3
+        assert 0.0 < films["film_offset"].largest == abs(films["film_offset"].worst)
+        assert "rolling_force" not in films  # formulas have none
+        text = comparison_text(found)
+        assert "300 random points (seed 1) of the common range, 1 N/mm to 1000 N/mm, 0.5 m/s to 2 m/s, " in text
+    assert compare(first, none, ("a", "b")).between.differences == found.between.differences
+    assert json.loads(comparison_json(found))["between"]["seed"] == 1
+    dry = compare(made(job_of(), HertzSolver()), none, ("a", "b")).between
+    assert {entry.variable: entry.left_out for entry in dry.differences}["film_offset"] == 300
+
+
+def test_compare_says_why_nothing_is_compared_between_points():
+    holey = made(job_of(fill="none"), Holey((job_of().loads[3],)))
+    second = made(job_of(SMALL.replace('"1 m/s", "2 m/s"', '"1 m/s", "3 m/s"')))
+    found = compare(holey, second, ("a", "b"))
+    assert found.between is None and found.common == 56
+    assert "nothing is compared between them: a: " in comparison_text(found)
+    apart = made(job_of(SMALL.replace('"20 degC", "40 degC"', '"25 degC"')))
+    with pytest.raises(MapError, match="a: "):
+        compare(holey, apart, ("a", "b"))
+
+
+def test_compare_refuses_maps_without_a_common_contact_or_range():
     first = made(job_of())
     with pytest.raises(MapError, match="contacts are inner, outer and line; allowed: maps that share a contact"):
         compare(first, made(job_of(LINE)), ("a", "b"))
-    other = made(job_of(SMALL.replace('"20 degC", "40 degC"', '"30 degC"')))
-    with pytest.raises(MapError, match=r"no temperature in common \(2 values, 20 to 40 degC, against 1, 30 degC\)"):
+    other = made(job_of(SMALL.replace('"20 degC", "40 degC"', '"50 degC"')))
+    with pytest.raises(MapError, match=r"no temperature in common \(2 values, 20 to 40 degC, against 1, 50 degC\)"):
         compare(first, other, ("a", "b"))
 
 

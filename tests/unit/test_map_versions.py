@@ -19,10 +19,10 @@ from ehdmaps.maps.emap import EHDMap, open_map
 from tests.cases.laws import dataset_of
 
 DATA = Path(__file__).parents[1] / "data"
-OLD, OLD_2 = DATA / "schema1.nc", DATA / "schema2.nc"
-"""NU308 by the solver reynolds, with a standstill and a backbone, as `ehdmaps generate` wrote it in schema 1 and 2."""
+OLD, OLD_2, OLD_3 = DATA / "schema1.nc", DATA / "schema2.nc", DATA / "schema3.nc"
+"""NU308 by the solver reynolds, with a standstill and a backbone, as `ehdmaps generate` wrote it in schema 1 to 3."""
 
-RECORDED = {path: json.loads(path.with_suffix(".json").read_text()) for path in (OLD, OLD_2)}
+RECORDED = {path: json.loads(path.with_suffix(".json").read_text()) for path in (OLD, OLD_2, OLD_3)}
 """Values of their laws, recorded when tables were laid along the solved valley, which moved them by the error of a
 table from the code that made the maps, 3e-6 of w, 7e-4 of k, 2e-3 of c at most: points (approach, rate, speed,
 temperature) and (w, dw/ddelta, dw/drate) of the laws of the backbone, and of those of the grid alone; of schema 2
@@ -42,6 +42,25 @@ def test_laws_of_an_old_map_are_as_they_were(path, laws, kind):
     law = (emap if laws == "laws" else EHDMap(emap.dataset)).law(kind)
     found = [law(*point) for point in recorded["points"]]
     np.testing.assert_allclose(found, recorded[laws][kind], rtol=SAME_CODE)
+
+
+def test_a_map_of_schema_3_gives_the_laws_that_it_gave_in_time_too():
+    """It has no model errors, and its films answer over frequency."""
+    emap, recorded = open_map(OLD_3), RECORDED[OLD_3]
+    assert emap.dataset.attrs["schema_version"] == 3 and "stiffness_model_error" not in emap.dataset
+    law = emap.law("series")
+    np.testing.assert_allclose(
+        [law(*point) for point in recorded["points"]], recorded["laws"]["series"], rtol=SAME_CODE
+    )
+    memory = law.at(1.0, 313.15).memory
+    state, found = memory.settled(recorded["course"][0]), []
+    for approach in recorded["course"]:
+        w, tangent, state = memory.advance(state, approach, recorded["step"])
+        found.append((w, tangent))
+    # The state is found to 1e-13 of the table's scale.
+    np.testing.assert_allclose(found, recorded["memory"]["series"], rtol=1e-10)
+    other = open_map(OLD_3, structural_law="half_space")
+    assert other.dataset.attrs["schema_version"] == schema.SCHEMA_VERSION
 
 
 @pytest.mark.parametrize("kind", ["series", "inner", "outer"])
@@ -232,4 +251,4 @@ def test_every_row_names_its_version():
 
 
 def test_fixture_is_small():
-    assert OLD.stat().st_size < 200_000 and OLD_2.stat().st_size < 200_000
+    assert max(path.stat().st_size for path in (OLD, OLD_2, OLD_3)) < 300_000

@@ -64,6 +64,12 @@ def test_a_wrong_digit_is_found():
     assert [(each.shown, each.found) for each in found.different] == [("1.528e7", "1.529e7")]
 
 
+def test_the_cost_of_a_choice_is_a_time_and_its_errors_are_figures():
+    row = "* reynolds, density 6.5   {}   60/60   0.0029 / 0.018"
+    found = compared_texts(row.format("0.0072"), row.format("4.7e-05"), TIMES)
+    assert (found.figures, found.times, found.different) == (5, 1, ())
+
+
 def test_other_words_and_missing_lines_are_found():
     assert compared_texts("a 1\nb 2", "a 1\nc 2").different
     assert "2 lines are shown, 1 found" in compared_texts("a 1\nb 2", "a 1").problem

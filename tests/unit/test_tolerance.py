@@ -20,6 +20,7 @@ from ehdmaps.jobs.law_points import DAMPING, OFFSET, STIFFNESS, errors_of, fresh
 from ehdmaps.jobs.reader import parse_job, read_job
 from ehdmaps.jobs.sweep import NoProgress
 from ehdmaps.jobs.tolerance import read_tolerance
+from ehdmaps.maps.law_errors import LawErrors
 from tests.cases.jobs import LINE
 
 ONE_SPEED = '["0 m/s", "1 m/s"]', '["1 m/s"]'
@@ -101,6 +102,13 @@ def test_it_is_shown(made: tuple[xr.Dataset, Path]) -> None:
     assert re.search(r"points within +100.00%", text)
 
 
+def test_bands_of_modes_take_its_errors(made: tuple[xr.Dataset, Path]) -> None:
+    emap = ehdmaps.open_map(made[1])
+    known = LawErrors(emap.dataset, emap.contacts, emap.lubricant)
+    assert known.checked_points == 20
+    assert "errors of its law (95 % of 20 checked points)" in known.words
+
+
 def test_lines_are_added_until_there_would_be_too_many(tmp_path: Path, capsys, monkeypatch) -> None:
     monkeypatch.setattr(tolerance, "USUAL", 1e-6)  # begins with lines far too coarse
     monkeypatch.setattr(tolerance, "MOST_LINE_POINTS", 30)
@@ -116,7 +124,7 @@ def test_lines_are_added_until_there_would_be_too_many(tmp_path: Path, capsys, m
     attributes = ehdmaps.open_map(output).dataset.attrs
     assert attributes["tolerance_met"] == 0
     first, last = (re.search(r"steps of the lines (\S+) over", attributes[f"tolerance_round_{n}"])[1] for n in (1, 2))
-    assert float(last) == pytest.approx(0.5 * float(first), rel=5e-3)  # three digits are told
+    assert float(last) == pytest.approx(tolerance.FINER * float(first), rel=5e-3)  # three digits are told
     # each round has new points
     assert attributes["tolerance_seed"] == tolerance.SEED + attributes["tolerance_rounds"]
 
@@ -146,6 +154,17 @@ def test_jobs_and_values_for_which_there_is_none_are_refused(change, value, mess
     with pytest.raises(InputError, match=message):
         ehdmaps.generate(job, tmp_path / "a.nc", tolerance=value)
     assert not list(tmp_path.iterdir())
+
+
+def test_the_solver_that_takes_the_place_of_the_jobs_is_in_its_text() -> None:
+    text = LINE.replace('"formula"', '"formula"\nfilm_formula = "moes"\nfill = "none"\nlaw_check = 9')
+    job = parse_job(text, "tiny", "tiny", solver="reynolds")
+    settings = tolerance.Settings(4.0, tolerance.STEPS)
+    chosen = tolerance._chosen(job, ReynoldsSolver(inlet_length=500.0), settings)
+    assert (chosen.solver, chosen.fill, chosen.law_check) == ("reynolds", "none", 0)
+    assert chosen.solver_options == {"density": 4.0, "inlet_length": 500.0, "tolerance": 1e-6}
+    assert parse_job(chosen.text, "tiny", "tiny") == chosen
+    assert (chosen.loads, chosen.contacts, chosen.lubricant) == (job.loads, job.contacts, job.lubricant)
 
 
 def test_a_tolerance_needs_a_file() -> None:

@@ -113,6 +113,14 @@ def test_choices_with_another_reference_have_a_front_and_a_heading_of_their_own(
 
 
 def test_long_tables_are_broken_into_columns_that_fit(trade: Trade) -> None:
+    many = (Judged("film"), *(Judged(f"quantity {index}") for index in range(3)), Judged("level", "dB"))
+    lines = trade_text(replace(trade, judged=many)).splitlines()
+    # a choice without any answer stands in the first table, and not in the next, which has nothing of it
+    rows = [
+        line.split()[0]
+        for line in lines[lines.index("resolution") : lines.index("* what is used where nothing is said")]
+    ]
+    assert (rows.count("none"), rows.count("coarse")) == (1, 2)
     many = tuple(Judged(f"quantity {index}") for index in range(5))
     heads = [line for line in trade_text(replace(trade, judged=many)).splitlines() if "s a point" in line]
     assert [line.count("quantity") for line in heads[:2]] == [4, 1]  # errors; further tables are broken likewise

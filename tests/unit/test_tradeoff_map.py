@@ -6,6 +6,7 @@ import pytest
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import tradeoff_map
+from ehdmaps.jobs.cli import main
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.tradeoff_map import measure_map
 from ehdmaps.trade.record import Choice, Trade
@@ -81,6 +82,16 @@ def test_it_is_printed(trade: Trade) -> None:
     text = trade_text(trade)
     assert "20 random points, seed 3; 4 in the damping valley" in text
     assert "structural law iso16281" in text
+
+
+def test_the_command_has_it(trade: Trade, monkeypatch, capsys) -> None:
+    asked = []
+    monkeypatch.setattr(
+        "ehdmaps.jobs.commands.tradeoff.measure_map", lambda job, *rest, tell: asked.append((job.name, *rest)) or trade
+    )
+    assert main(["tradeoff", "nu308", "--level", "map", "--points", "20", "--seed", "3"]) == 0
+    assert asked == [("nu308", 20, 3)]
+    assert "refinement lines" in capsys.readouterr().out
 
 
 def test_a_bare_contact_lacks_the_lengths_of_other_laws(monkeypatch) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.generate import available_cores
-from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.job import CorrectedBy, Job
 from ehdmaps.jobs.law_check import check_points
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.refinement import refinement
@@ -43,7 +43,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     ]
     names = ", ".join(contact.name for contact in job.contacts)
     refined = refinement(job, solver)
+    by = job.corrected_by
     extra = (refined.points if refined else 0) + check_points(job.law_check)
+    corrected = f", {by.points} for its correction" if by else ""
+    cheap = job.points + extra + (by.points if by else 0)
     lines = [
         f"{arguments.job}: no problems",
         f"  {job.title}, {job.lubricant.title}, solver {job.solver}, structural law {job.contacts[0].structural_law}",
@@ -53,11 +56,18 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"  surfaces {surface_words(job.surface)}",
         f"  {'contact':20s} {len(job.contacts):6d}  {names}",
         *axes,
-        f"  points  {job.points} of the map, {extra} for its contact laws",
-        f"  time    {estimated_time(job, solver, job.points + extra)}",
-        f"  memory  about {max(100.0 + (job.points + extra) * _BYTES_PER_POINT / 1e6, 1.0):.0f} MB",
+        f"  points  {job.points} of the map, {extra} for its contact laws{corrected}",
+        f"  time    {estimated_time(job, solver, cheap)}",
+        *([] if by is None else _correction_lines(job, by)),
+        f"  memory  about {max(100.0 + cheap * _BYTES_PER_POINT / 1e6, 1.0):.0f} MB",
     ]
     return "\n".join(lines), 0
+
+
+def _correction_lines(job: Job, by: CorrectedBy) -> Iterator[str]:
+    """Say what the points of the correcting solver would cost."""
+    yield f"  correction by {by.solver}: {by.points} points besides, chosen one after the other"
+    yield f"  time    {estimated_time(job, solvers.build(by.solver, by.options), by.points)}"
 
 
 def oil_lines(job: Job) -> Iterator[str]:

@@ -1,16 +1,17 @@
-"""`ehdmaps compare`: two maps, point by point."""
+"""`ehdmaps compare`: two maps, point by point, and between points where these are not shared."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
 
-from ehdmaps.jobs.compare import compare, comparison_text
+from ehdmaps.jobs.compare import compare
+from ehdmaps.jobs.compare_text import comparison_json, comparison_text
 from ehdmaps.maps.emap import open_map
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Compare the points that both maps have."""
+    """Compare two maps; the differences as a table or as JSON."""
     first, second = Path(arguments.first), Path(arguments.second)
-    found = compare(open_map(first).dataset, open_map(second).dataset, (str(first), str(second)))
-    return comparison_text(found), 0
+    found = compare(open_map(first), open_map(second), (str(first), str(second)))
+    return comparison_json(found) if arguments.json else comparison_text(found), 0

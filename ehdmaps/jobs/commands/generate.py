@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
+from ehdmaps.jobs.correction_report import unsolved
 from ehdmaps.jobs.generate import generate
 from ehdmaps.jobs.law_check import unmet
 from ehdmaps.jobs.progress import progress
@@ -16,6 +19,7 @@ from ehdmaps.jobs.store import store_path
 from ehdmaps.jobs.summary import summary
 from ehdmaps.jobs.tolerance import read_tolerance, unmet_tolerance
 from ehdmaps.outputs import MAP, Output, check_outputs
+from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.program import tell
 
 INTERRUPTED = 130
@@ -23,21 +27,35 @@ INTERRUPTED = 130
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Make the map; status 1 if points have no solution, or a contact law is not as good as it should be."""
+    """Make the map; status 1 if points of it or of its correction have no solution, or a law is not good enough."""
     tolerance = None if arguments.tolerance is None else read_tolerance(arguments.tolerance)
     job = read_job(arguments.job, arguments.solver, to_run=True)
     if arguments.output is None and is_map(arguments.job):
         raise InputError(f"-o: missing; {arguments.job} is a map itself; give the map to write with -o")
     output = Path(arguments.output or f"{job.name}.nc")
     check_outputs([Output("-o", output, MAP)], [arguments.job])
-    solver = solvers.build(job.solver, {**job.solver_options, **solvers.case_options(job.solver, arguments.keep_cases)})
+    by = job.corrected_by
+    kept = solvers.case_options(by.solver if by and _keeps_cases(by.solver) else job.solver, arguments.keep_cases)
+    solver = _built(job.solver, job.solver_options, kept)
+    corrector = _built(by.solver, by.options, kept) if by else None
     try:
-        generated = generate(job, output, arguments.workers, arguments.fresh, progress, solver, tolerance)
+        generated = generate(job, output, arguments.workers, arguments.fresh, progress, solver, tolerance, corrector)
     except KeyboardInterrupt:
         tell(f"\nstopped; what is solved is kept in {store_path(output)}: the same command goes on from there")
         return "", INTERRUPTED
+    lost = holes(generated.dataset) + unsolved(generated.dataset)
     missed = [
         *unmet(generated.dataset, generated.backbone is not None),
         *unmet_tolerance(generated.dataset.attrs),
     ]
-    return "\n".join([summary(generated, output), *missed]), 1 if holes(generated.dataset) or missed else 0
+    return "\n".join([summary(generated, output), *missed]), 1 if lost or missed else 0
+
+
+def _keeps_cases(name: str) -> bool:
+    """Whether a solver can keep its cases."""
+    return solvers.SOLVERS[name].keeps_cases
+
+
+def _built(name: str, options: Mapping[str, Any], kept: Mapping[str, Any]) -> ContactSolver:
+    """A solver of the job, which keeps its cases where it has some and that is wanted."""
+    return solvers.build(name, {**options, **(kept if _keeps_cases(name) else {})})

@@ -1,0 +1,359 @@
+"""An analysis that makes its own map: planned, made or reused, run, and checked; again with a wider plan where needed.
+
+The order of things: the ranges of the scene (`mbs.analyses.plan`), the physics that they require
+(`mbs.analyses.film_verdicts`), the map (`mbs.analyses.kept_map`), the analysis, and a look at what it visited. Loads
+outside the map widen the plan; films of slow motion that turn out too wrong at the bearings get their memory.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Generic, TypeVar
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from mbs.analyses import film_verdicts, planning
+from mbs.analyses.campbell import CampbellResult
+from mbs.analyses.film_errors import film_errors
+from mbs.analyses.film_verdicts import Verdict
+from mbs.analyses.hammer import HammerResult
+from mbs.analyses.kept_map import KeptMap, TellMap, kept_map
+from mbs.analyses.lsa import LsaResult
+from mbs.analyses.modes import ModesResult
+from mbs.analyses.operating import operating
+from mbs.analyses.plan import PlanResult, PlanSettings, plan
+from mbs.analyses.runup import RunUpResult
+from mbs.analyses.statics import StaticsResult
+from mbs.analyses.sweep import SweepResult
+from mbs.analyses.varied import LawChoice, Subject
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.model.relaxation import Films
+from mbs.scene.assembly import Model
+from mbs.scene.contact_laws import law_label
+from mbs.scene.scene import Scene
+
+R = TypeVar("R")
+
+TOLERANCE = 0.05
+"""Change of a stiffness or damping of a contact above which physics is switched on, as a part of it."""
+
+MOST_MAPS = 3
+"""How many plans are tried."""
+
+WIDER = 3.0
+"""Highest load of the next plan over that of the last one."""
+
+MOST_TOLERANCE = 9.0
+"""A tenfold stiffness or damping, 20 dB."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class AutoSettings:
+    """What an analysis that makes its own map is to look at.
+
+    Attributes
+    ----------
+    tolerance : float
+        Change of a stiffness or damping, as a part of it, above which physics is switched on.
+    highest : float or None
+        Highest frequency that matters [Hz]; None for that of [linear] of the scene, else of [campbell]; 0 for none.
+    folder : Path
+        Folder in which maps are made and kept.
+    others : tuple of Path
+        Further folders with maps.
+    clearance : float or None
+        Diametral clearance of all bearings [m]; None for those of the scene.
+    films : {"slow", "memory"} or None
+        Films that are asked for, whatever is required.
+    supply : OilSupply or None
+        Oil supply of all bearings that is asked for.
+    workers : int or None
+        Processes that make a map; all cores if None.
+
+    Raises
+    ------
+    InputError
+        For a tolerance out of range.
+    """
+
+    tolerance: float = TOLERANCE
+    highest: float | None = None
+    folder: Path = Path()
+    others: tuple[Path, ...] = ()
+    clearance: float | None = None
+    films: Films | None = None
+    supply: OilSupply | None = None
+    workers: int | None = None
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.tolerance <= MOST_TOLERANCE:
+            raise InputError(
+                f"auto, tolerance: got {self.tolerance!r}; allowed: above 0 up to {MOST_TOLERANCE:g}, a part of a "
+                "stiffness or damping"
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class Automatic(Generic[R]):
+    """An analysis with the map that was made for it.
+
+    Attributes
+    ----------
+    result : R
+        What the analysis gave.
+    subject : Subject
+        Scene and law that it was made with.
+    maps : tuple of KeptMap
+        Maps that were tried; the last one counts.
+    margins : tuple of float
+        Highest load of each of them over the largest one at rest.
+    verdicts : tuple of Verdict
+        Which physics is on, and why.
+    left : mapping of str to int
+        How often each bearing was still outside the last map; empty where it never was.
+    """
+
+    result: R
+    subject: Subject
+    maps: tuple[KeptMap, ...]
+    margins: tuple[float, ...]
+    verdicts: tuple[Verdict, ...]
+    left: Mapping[str, int]
+
+
+def automatic(
+    scene: Scene,
+    analysis: Callable[[Model], R],
+    settings: AutoSettings | None = None,
+    progress: TellMap | None = None,
+) -> Automatic[R]:
+    """Analyse a scene with a map that is planned and made, or reused, for it.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene with bearings of one geometry and a lubricant.
+    analysis : callable
+        One of `mbs.statics`, `modes`, `lsa`, `sweep`, `runup`, `campbell`, `hammer`, or a function that calls one.
+    settings : AutoSettings, optional
+        Tolerance, frequencies, folder of the maps.
+    progress : callable, optional
+        Told about maps that are made.
+
+    Raises
+    ------
+    InputError
+        With everything because of which there is no plan, or no map.
+    AnalysisError
+        If there is no equilibrium, or what the analysis raises.
+
+    Examples
+    --------
+    The map takes half a minute of processor time, and is there the next time::
+
+        from mbs import automatic, modes, read_scene
+
+        found = automatic(read_scene("nu308_rigid"), modes)
+        found.maps[-1].path, [verdict.line for verdict in found.verdicts]
+        found.result.dataset["frequency"]
+    """
+    return settled(scene, lambda subject: analysis(subject.model()), settings, progress)
+
+
+def settled(
+    scene: Scene,
+    analyse: Callable[[Subject], R],
+    settings: AutoSettings | None = None,
+    progress: TellMap | None = None,
+    planned_for: Scene | None = None,
+) -> Automatic[R]:
+    """As `automatic`, for an analysis of a subject, which may change its scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene with bearings of one geometry and a lubricant.
+    analyse : callable
+        The analysis.
+    settings : AutoSettings, optional
+        Tolerance, frequencies, folder of the maps.
+    progress : callable, optional
+        Told about maps that are made.
+    planned_for : Scene, optional
+        The scene as the analysis changes it: with its speeds, loads and clearances.
+    """
+    settings = settings or AutoSettings()
+    highest = settings.highest
+    if highest is None:
+        highest = max(scene.frequencies, default=scene.campbell.highest)
+    looked_at = planned_for or scene
+    margin = planning.MARGIN
+    found = _plan(looked_at, settings.clearance, margin)
+    supplies = _supplies(scene, settings.supply)
+    verdicts = _verdicts(scene, found, settings, supplies, highest)
+    maps: list[KeptMap] = []
+    margins: list[float] = []
+    while True:
+        (job,) = found.jobs()
+        kept = kept_map(scene.name, job, settings.folder, settings.others, settings.workers, progress)
+        maps.append(kept)
+        margins.append(margin)
+        subject = _subject(scene, kept, verdicts, supplies, settings)
+        result = analyse(subject)
+        left = outside_calls(result)
+        more = _with_memory(subject, looked_at, found, verdicts, settings, highest)
+        wider = _wider(looked_at, settings.clearance, WIDER * margin) if left else None
+        if len(maps) == MOST_MAPS or (wider is None and more is None):
+            return Automatic(result, subject, tuple(maps), tuple(margins), verdicts, left)
+        verdicts = more or verdicts
+        if wider is not None:
+            found, margin = wider, WIDER * margin
+
+
+def outside_calls(result: object) -> dict[str, int]:
+    """How often each bearing was outside its map in an analysis, by name; none that never was.
+
+    Parameters
+    ----------
+    result : object
+        What an analysis gave: `StaticsResult`, `ModesResult`, `LsaResult`, `SweepResult`, `RunUpResult`,
+        `CampbellResult`, `HammerResult`, or a sequence of these, with labels or without.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    counts: list[Mapping[str, int]]
+    if isinstance(result, (list, tuple)):
+        counts = [outside_calls(entry) for entry in result if not isinstance(entry, str)]
+    elif isinstance(result, (StaticsResult, ModesResult, LsaResult)):
+        counts = [result.balance.outside]
+    elif isinstance(result, HammerResult):
+        counts = [result.balance.outside, result.outside_hits]
+    elif isinstance(result, SweepResult):
+        counts = list(result.outside)
+    elif isinstance(result, RunUpResult):
+        counts = [result.record.outside]
+    elif isinstance(result, CampbellResult):
+        counts = [run.record.outside for run in result.runs]
+    else:
+        raise InputError(
+            f"auto, analysis: got a result of the type {type(result).__name__}; allowed: what statics, modes, lsa, "
+            "sweep, runup, campbell and hammer give"
+        )
+    total: dict[str, int] = {}
+    for entry in counts:
+        for name, count in entry.items():
+            if count:
+                total[name] = total.get(name, 0) + int(count)
+    return total
+
+
+def _plan(scene: Scene, clearance: float | None, margin: float) -> PlanResult:
+    """The plan of a scene, all of whose bearings have the same contacts."""
+    found = plan(scene, PlanSettings(clearance=clearance, margin=margin))
+    if len(found.needed) > 1:
+        groups = "; ".join(f"{entry.geometry.title}: {', '.join(entry.bearings)}" for entry in found.needed)
+        raise InputError(
+            f"{scene.name}: got bearings of {len(found.needed)} geometries ({groups}); allowed with --auto: one, as a "
+            "scene takes one map; `mbs plan` writes a job for each"
+        )
+    return found
+
+
+def _wider(scene: Scene, clearance: float | None, margin: float) -> PlanResult | None:
+    """A plan with another margin; None beyond what a job allows."""
+    if margin > planning.MOST_MARGIN:
+        return None
+    try:
+        found = _plan(scene, clearance, margin)
+        found.jobs()
+    except InputError:
+        return None
+    return found
+
+
+def _supplies(scene: Scene, asked: OilSupply | None) -> tuple[OilSupply, ...]:
+    """The oil supply of each bearing."""
+    return tuple(asked or entry.supply or scene.supply or FLOODED for entry in scene.bearings)
+
+
+def _verdicts(
+    scene: Scene, found: PlanResult, settings: AutoSettings, supplies: tuple[OilSupply, ...], highest: float
+) -> tuple[Verdict, ...]:
+    """Which physics is required, each in its place: memory, supply, roughness, heat."""
+    assert scene.lubricant is not None  # the plan saw to it
+    there = film_verdicts.visited(found.needed[0], scene.lubricant, settings.tolerance)
+    possible = not any(entry.centrifugal and not entry.rollers_as_bodies for entry in scene.bearings)
+    return (
+        film_verdicts.memory_verdict(there, highest, settings.films, possible),
+        film_verdicts.supply_verdict(there, supplies, settings.supply is not None),
+        film_verdicts.roughness_verdict(there, scene.surface),
+        film_verdicts.heat_verdict(there),
+    )
+
+
+def _subject(
+    scene: Scene,
+    kept: KeptMap,
+    verdicts: tuple[Verdict, ...],
+    supplies: tuple[OilSupply, ...],
+    settings: AutoSettings,
+) -> Subject:
+    """Scene and law with what is switched on."""
+    memory, supply, rough, _ = verdicts
+    surface = film_verdicts.surface_in_force(scene.surface, rough)
+    law = LawChoice(
+        law_label("map", kept.emap),
+        "map",
+        kept.emap,
+        "memory" if memory.on else "slow",
+        settings.supply or film_verdicts.in_force(supplies, supply),
+    )
+    return Subject(dataclasses.replace(scene, surface=surface), law, settings.clearance)
+
+
+def _with_memory(
+    subject: Subject,
+    scene: Scene,
+    found: PlanResult,
+    verdicts: tuple[Verdict, ...],
+    settings: AutoSettings,
+    highest: float,
+) -> tuple[Verdict, ...] | None:
+    """The verdicts with memory, where films without it turn out more than the tolerance wrong at a bearing."""
+    memory, *others = verdicts
+    if memory.on or settings.films is not None or highest == 0.0 or subject.law.films != "slow":
+        return None
+    error = slow_film_error(dataclasses.replace(subject, scene=scene), found.speeds, highest)
+    possible = not any(entry.centrifugal and not entry.rollers_as_bodies for entry in scene.bearings)
+    if error <= settings.tolerance or not possible:
+        return None
+    words = f"{memory.words}, but {100.0 * error:.2g} % at a bearing"
+    return (Verdict(memory.physics, True, max(memory.size, error), words), *others)
+
+
+def slow_film_error(subject: Subject, speeds: tuple[float, float], highest: float) -> float:
+    """Largest estimated error of films of slow motion at the bearings, at two speeds and one frequency, as a part.
+
+    Parameters
+    ----------
+    subject : Subject
+        Scene and law.
+    speeds : (float, float)
+        Lowest and highest speed [rad/s].
+    highest : float
+        Frequency [Hz].
+    """
+    model, errors = subject.model(), [0.0]
+    for speed in speeds:
+        there, operation = operating(model, speed), Operation(speed)
+        place = equilibrium(there.system, operation).displacement
+        errors += [entry.at(highest) for entry in film_errors(there, place, operation, "slow")]
+    return max(error for error in errors if math.isfinite(error))

@@ -1,0 +1,222 @@
+"""Which physics of the films matters at a contact, by closed forms alone: no map, no solution.
+
+Each criterion is a size to be held against a tolerance: by how much stiffness k or damping c of a contact would change,
+as a part of it. How often the criteria are right is measured by `python -m tests.benchmarks.bench_auto_criteria`.
+
+The contact behind them is that of Moes' central film h(w): the film gives way by s = -dh/dw, the solids by S, so that
+k = 1/(S + s). Between rigid surfaces the film follows with the natural time T = sqrt(b^2 + 2 h R)/u, so that its loss
+is s T; a loaded contact loses 4/(pi E') n h R/(b u) besides, because its inlet moves with the edge of the Hertz zone (n
+is the exponent of the film in the speed). c is k^2 times the loss.
+
+================  ================================================================================================
+film memory       |dZ/Z| of the dynamic stiffness k + i omega c beside k + i omega c/(1 + i omega theta)
+oil supply        k and c on a layer, by the closed forms of starved rigid surfaces (`ehdmaps.physics.starved`)
+inlet heating     film by the factor of Gupta et al. (`ehdmaps.physics.thermal`), loss by its square: no solver has it
+roughness         Lambda, the smallest film over the roughness: asperities touch below `TOUCHING`
+================  ================================================================================================
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.films import dowson_higginson_minimum, martin_minimum, moes_central_and_slope
+from ehdmaps.physics.hertz import half_width, max_pressure, natural_time
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
+from ehdmaps.physics.starved import CORNER, compliance_ratio, damping_ratio, film_ratio, passing
+from ehdmaps.physics.thermal import inlet_shear_heating_factor, thermal_loading
+
+TOUCHING = 3.0
+"""Lambda below which asperities touch, as of the usual charts of rolling bearings."""
+
+_SPEED_EXPONENT = 0.7
+"""Exponent of the film of a loaded line contact in the speed, as of Dowson and Higginson."""
+
+_LONGEST = 1.4
+"""Longest relaxation time in natural times, as in `ehdmaps.maps.locked_film`: a film that hardly gives way."""
+
+_KELVIN = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class ClosedContact:
+    """A contact in closed form, over its loads; arrays of the shape of `load`.
+
+    Attributes
+    ----------
+    contact : LineContact
+        The contact.
+    load : array
+        w [N/m], > 0.
+    speed, temperature : float
+        u [m/s], > 0, and T [K].
+    film, minimum_film : array
+        Moes' central film and the smallest film [m].
+    solids, film_compliance : array
+        S and s [m2/N].
+    loss : array
+        Loss compliance [m2 s/N].
+    time : array
+        Natural time [s].
+    """
+
+    contact: LineContact
+    load: FloatArray
+    speed: float
+    temperature: float
+    film: FloatArray
+    minimum_film: FloatArray
+    solids: FloatArray
+    film_compliance: FloatArray
+    loss: FloatArray
+    time: FloatArray
+
+    @property
+    def stiffness(self) -> FloatArray:
+        """k [N/m2]."""
+        return np.asarray(1.0 / (self.solids + self.film_compliance))
+
+    @property
+    def damping(self) -> FloatArray:
+        """c [N s/m2]."""
+        return np.asarray(self.loss * self.stiffness**2)
+
+
+def closed_contact(
+    contact: LineContact, lubricant: Lubricant, load: FloatArray, speed: float, temperature: float
+) -> ClosedContact:
+    """A contact in closed form.
+
+    Parameters
+    ----------
+    contact : LineContact
+        Radius, solids, structural law.
+    lubricant : Lubricant
+        The oil.
+    load : array
+        w [N/m], > 0.
+    speed, temperature : float
+        u [m/s], > 0, and T [K].
+
+    References
+    ----------
+    Films as of `ehdmaps.physics.films`: Moes, Dowson and Higginson, Martin.
+    """
+    state = lubricant.at(temperature)
+    viscosity, alpha = state.viscosity, state.pressure_viscosity.pressure_viscosity
+    radius, modulus = contact.radius, contact.reduced_modulus
+    groups = (load, speed, viscosity, alpha, radius, modulus)
+    M, L = moes_groups(*groups)
+    H, slope = moes_central_and_slope(M, L)
+    film = np.asarray(film_from_moes(H, speed, viscosity, radius, modulus))
+    rigid = film_from_moes(martin_minimum(M), speed, viscosity, radius, modulus)
+    smallest = np.minimum(np.maximum(rigid, radius * dowson_higginson_minimum(*dowson_groups(*groups))), film)
+    gives = np.maximum(-np.asarray(film_from_moes(slope * M / load, speed, viscosity, radius, modulus)), 0.0)
+    time = np.asarray(natural_time(load, film, speed, radius, modulus))
+    width = np.asarray(half_width(load, radius, modulus))
+    edge = 4.0 / (math.pi * modulus) * _SPEED_EXPONENT * film * radius / (width * speed)
+    solids = np.asarray(contact.structural_compliance(load))
+    return ClosedContact(contact, load, speed, temperature, film, smallest, solids, gives, gives * time + edge, time)
+
+
+def memory_effect(state: ClosedContact, frequency: float) -> FloatArray:
+    """How far the dynamic stiffness of slow motion is from that with memory, |dZ/Z|.
+
+    Parameters
+    ----------
+    state : ClosedContact
+        The contact.
+    frequency : float
+        Highest frequency that is looked at [Hz].
+
+    Notes
+    -----
+    The relaxation time is theta = c/(k_s - k) with the stiffness k_s of the solids, as of `ehdmaps.maps.memory_table`.
+    """
+    omega, k, c = 2.0 * math.pi * frequency, state.stiffness, state.damping
+    with np.errstate(divide="ignore"):
+        theta = np.minimum(c * state.solids / (state.film_compliance * k), _LONGEST * state.time)
+    followed = k + 1j * omega * c / (1.0 + 1j * omega * theta)
+    return np.asarray(np.abs(k + 1j * omega * c - followed) / np.abs(followed))
+
+
+def supply_effect(state: ClosedContact, layer: float) -> FloatArray:
+    """By how much an oil layer changes k or c of a contact, the larger of the two as a part of the flooded value.
+
+    Parameters
+    ----------
+    state : ClosedContact
+        The flooded contact.
+    layer : float
+        Oil layer before the contact [m]; inf changes nothing.
+
+    Notes
+    -----
+    Moes' film goes to the flow of the flooded contact at either end: 3/M is 1.2257 times the smallest film of rigid
+    surfaces, and a loaded contact carries its central film through. As in the law on a layer, the meniscus follows a
+    slow change of the load, which is in k, and is held in c (`ehdmaps.maps.oil_layer`).
+    """
+    passed = passing(state.film, layer)
+    root, exponent = np.sqrt(passed), state.film_compliance * state.load / state.film
+    ratio, slope = film_ratio(root)
+    capped = 1.0 - passed**CORNER  # -d ln(r)/d ln(flow)
+    following = passed * (ratio - capped * (ratio + 0.5 * root * slope))
+    held = (compliance_ratio(root) * root**2) ** exponent
+    lost = (damping_ratio(root) * root**-1.5) ** exponent * held**2
+    flooded = state.solids + state.film_compliance
+    k = flooded / (state.solids + state.film_compliance * np.maximum(following, 0.0))
+    c = lost * (flooded / (state.solids + state.film_compliance * held)) ** 2
+    return np.asarray(np.maximum(np.abs(k - 1.0), np.abs(c - 1.0)))
+
+
+def heat_effect(state: ClosedContact, lubricant: Lubricant) -> FloatArray:
+    """By how much heating of the inlet would lower c, as a part of it; 1 beyond the range of the formula.
+
+    Parameters
+    ----------
+    state : ClosedContact
+        The isothermal contact.
+    lubricant : Lubricant
+        The oil; without a thermal conductivity nothing is known, which is NaN.
+
+    Notes
+    -----
+    The loss of a film goes with its square, the compliance stays: so thermal solutions of loaded contacts have it,
+    within some per cent.
+    """
+    conductivity = lubricant.thermal_conductivity
+    if conductivity is None:
+        return np.full(state.load.shape, np.nan)
+    at, above = (lubricant.at(state.temperature + more).viscosity for more in (0.0, _KELVIN))
+    loading = thermal_loading(min((above - at) / _KELVIN, 0.0), state.speed, conductivity)
+    modulus = state.contact.reduced_modulus
+    pressures = np.asarray(max_pressure(state.load, state.contact.radius, modulus))
+    return np.array([1.0 - _heated(pressure, modulus, loading) ** 2 for pressure in pressures.ravel().tolist()])
+
+
+def _heated(pressure: float, modulus: float, loading: float) -> float:
+    """Factor of the film; 0 beyond the range of the formula."""
+    try:
+        return inlet_shear_heating_factor(pressure, modulus, loading)
+    except InputError:
+        return 0.0
+
+
+def film_over_roughness(state: ClosedContact, roughness: float) -> FloatArray:
+    """Lambda: the smallest film over the combined rms roughness of both surfaces.
+
+    Parameters
+    ----------
+    state : ClosedContact
+        The contact of smooth surfaces.
+    roughness : float
+        Combined rms roughness [m], > 0.
+    """
+    return np.asarray(state.minimum_film / roughness)

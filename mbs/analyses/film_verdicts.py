@@ -1,0 +1,278 @@
+"""Which physics of the films a scene requires, from the ranges that it visits: verdicts with their reasons.
+
+The criteria are those of `mbs.analyses.film_criteria`, each taken at its worst over both contacts, over the speeds of
+the scene, and over the loads of the rollers that carry it, `SHARES` of the highest load at rest. Rollers that carry
+less take less than that part in stiffness. The oil supply is looked at down to the lowest load of the planned map,
+that of idle rollers, whose films are the thick ones.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import FLOODED, THICKEST, THINNEST, OilSupply
+from ehdmaps.physics.roughness import FINEST, SMOOTH, Surface
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.units import SPEED
+from mbs.analyses.film_criteria import (
+    TOUCHING,
+    ClosedContact,
+    closed_contact,
+    film_over_roughness,
+    heat_effect,
+    memory_effect,
+    supply_effect,
+)
+from mbs.analyses.planning import Needed
+from mbs.model.relaxation import Films
+from mbs.scene.fields import HERTZ, MICROMETRE
+
+SHARES = (0.1, 1.0)
+"""Loads of rollers that carry a bearing, over the highest one at rest."""
+
+_LOADS, _SPEEDS = 9, 5
+_LAYERS = 241
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether one kind of physics is switched on, and why.
+
+    Attributes
+    ----------
+    physics : str
+        Which: "film memory", "oil supply", "roughness", "inlet heating".
+    on : bool
+        Whether the analysis has it.
+    size : float
+        How much it matters: the largest change of a stiffness or damping, as a part of it; of roughness the smallest
+        Lambda. NaN where it was not looked at.
+    words : str
+        The reason, for people.
+    """
+
+    physics: str
+    on: bool
+    size: float
+    words: str
+
+    @property
+    def line(self) -> str:
+        """The verdict in a line."""
+        return f"{self.physics}: {'on' if self.on else 'off'}, {self.words}"
+
+
+@dataclass(frozen=True, eq=False)
+class Range:
+    """Contacts at the operating points that a scene visits.
+
+    Attributes
+    ----------
+    states : tuple of ClosedContact
+        One a contact and speed, over loads from the lowest one of the plan to the highest one at rest.
+    highest : float
+        Highest load at rest [N/m].
+    lubricant : Lubricant
+        The oil.
+    tolerance : float
+        Change of a stiffness or damping that is still accepted, as a part of it.
+    """
+
+    states: tuple[ClosedContact, ...]
+    highest: float
+    lubricant: Lubricant
+    tolerance: float
+
+    @property
+    def percent(self) -> str:
+        """The tolerance, for people."""
+        return _percent(self.tolerance)
+
+    def carrying(self, values: Callable[[ClosedContact], FloatArray]) -> tuple[float, ClosedContact]:
+        """The largest of some values at the loads of rollers that carry the bearing, and where it is.
+
+        Parameters
+        ----------
+        values : callable
+            Gives a value for each load of a contact.
+        """
+        low = SHARES[0] * self.highest * (1.0 - 1e-9)
+        worst = [(float(np.max(values(state)[state.load >= low])), state) for state in self.states]
+        return max(worst, key=lambda entry: entry[0])
+
+
+def visited(needed: Needed, lubricant: Lubricant, tolerance: float) -> Range:
+    """The range of the bearings of one geometry.
+
+    Parameters
+    ----------
+    needed : Needed
+        What they need of a map.
+    lubricant : Lubricant
+        The oil.
+    tolerance : float
+        Accepted change, as a part.
+    """
+    highest = needed.static_load
+    carried = np.geomspace(SHARES[0] * highest, SHARES[1] * highest, _LOADS)
+    idle = np.geomspace(min(needed.load[0], carried[0]), carried[0], _LOADS)
+    loads = np.union1d(idle[:-1], carried)
+    speeds = np.unique(np.geomspace(*needed.entrainment_speed, _SPEEDS))
+    states = tuple(
+        closed_contact(contact, lubricant, loads, speed, needed.temperature)
+        for contact in needed.geometry.contacts(STEEL, "iso16281")
+        for speed in speeds.tolist()
+    )
+    return Range(states, highest, lubricant, tolerance)
+
+
+def memory_verdict(found: Range, frequency: float, asked: Films | None, possible: bool = True) -> Verdict:
+    """Whether films need their memory.
+
+    Parameters
+    ----------
+    found : Range
+        Operating points.
+    frequency : float
+        Highest frequency that is looked at [Hz]; 0 for an equilibrium.
+    asked : {"slow", "memory"} or None
+        What was asked for.
+    possible : bool
+        Whether the law can have it.
+    """
+    name = "film memory"
+    if frequency == 0.0:
+        return Verdict(name, False, math.nan, "as an equilibrium has no frequency")
+    size, state = found.carrying(lambda entry: memory_effect(entry, frequency))
+    words = (
+        f"films of slow motion would be up to {_percent(size)} wrong in k + i omega c of a contact at "
+        f"{HERTZ.text(frequency)} and {SPEED.text(state.speed)}"
+    )
+    if asked is not None:
+        return Verdict(name, asked == "memory", size, f"as asked; {words}")
+    if not possible:
+        return Verdict(name, False, size, f"{words}; with a centrifugal load of massless rollers there is none")
+    return Verdict(name, size > found.tolerance, size, f"{words} ({_beside(size, found)})")
+
+
+def supply_verdict(found: Range, supplies: tuple[OilSupply, ...], asked: bool = False) -> Verdict:
+    """Whether the stated oil supply matters; without one, which layer would.
+
+    Parameters
+    ----------
+    found : Range
+        Operating points.
+    supplies : tuple of OilSupply
+        Those of the bearings.
+    asked : bool
+        Whether they were asked for, so that they are taken in any case.
+    """
+    name = "oil supply"
+    stated = [supply for supply in supplies if not supply.flooded]
+    if not stated:
+        layer = _layer_that_matters(found)
+        return Verdict(name, False, math.nan, f"none is stated; a layer below {MICROMETRE.text(layer, 2)} would matter")
+    thinnest = min(stated, key=lambda supply: supply.oil_layer)
+    size = max(float(np.max(supply_effect(state, thinnest.oil_layer))) for state in found.states)
+    words = f"{thinnest.label} changes k or c of a contact by up to {_percent(size)} ({_beside(size, found)})"
+    return Verdict(name, asked or size > found.tolerance, size, f"{'as asked; ' if asked else ''}{words}")
+
+
+def roughness_verdict(found: Range, surface: Surface | None) -> Verdict:
+    """Whether the stated roughness matters; without one, which would.
+
+    Parameters
+    ----------
+    found : Range
+        Operating points.
+    surface : Surface or None
+        Surfaces that the scene states.
+    """
+    name = "roughness"
+    sizes, state = found.carrying(lambda entry: -film_over_roughness(entry, 1.0))
+    smallest = -sizes
+    if surface is None or surface.smooth:
+        least = max(smallest / TOUCHING, FINEST)
+        return Verdict(
+            name, False, math.nan, f"none is stated; above {MICROMETRE.text(least, 2)} asperities would touch"
+        )
+    size = smallest / surface.roughness
+    beside = "asperities touch" if size < TOUCHING else "asperities do not touch"
+    words = f"Lambda down to {size:.2g} at {SPEED.text(state.speed)} ({beside}; they do below {TOUCHING:g})"
+    return Verdict(name, size < TOUCHING, size, words)
+
+
+def heat_verdict(found: Range) -> Verdict:
+    """Whether heating of the inlet would matter, which no solver here has.
+
+    Parameters
+    ----------
+    found : Range
+        Operating points.
+    """
+    name = "inlet heating"
+    size, state = found.carrying(lambda entry: heat_effect(entry, found.lubricant))
+    if math.isnan(size):
+        return Verdict(name, False, size, f"unknown: no thermal conductivity of {found.lubricant.name} is known")
+    at = f"at {SPEED.text(state.speed)}"
+    if size <= found.tolerance:
+        return Verdict(name, False, size, f"it would lower c by up to {_percent(size)} {at} ({_beside(size, found)})")
+    change = "more than the formula covers" if size >= 1.0 else f"about {_percent(size)} {at}"
+    return Verdict(
+        name, False, size, f"not modelled here, though it would lower c by {change}: more than {found.percent}"
+    )
+
+
+def in_force(supplies: tuple[OilSupply, ...], verdict: Verdict) -> OilSupply | None:
+    """The supply that a law is made with: flooded where a stated one does not matter, else None, which is as stated.
+
+    Parameters
+    ----------
+    supplies : tuple of OilSupply
+        Those of the bearings.
+    verdict : Verdict
+        Verdict on these supplies.
+    """
+    stated = any(not supply.flooded for supply in supplies)
+    return FLOODED if stated and not verdict.on else None
+
+
+def surface_in_force(surface: Surface | None, verdict: Verdict) -> Surface | None:
+    """The surface that a law is made with: smooth where a stated roughness does not matter.
+
+    Parameters
+    ----------
+    surface : Surface or None
+        What the scene states.
+    verdict : Verdict
+        Verdict on this surface.
+    """
+    return surface if surface is None or verdict.on else SMOOTH
+
+
+def _layer_that_matters(found: Range) -> float:
+    """Thickest oil layer that changes a contact by more than the tolerance [m]."""
+    layers = np.geomspace(THINNEST, THICKEST, _LAYERS)
+    thickest = [layer for layer in layers.tolist() if _changes(found, layer)]
+    return max(thickest, default=THINNEST)
+
+
+def _changes(found: Range, layer: float) -> bool:
+    """Whether an oil layer changes a contact by more than the tolerance."""
+    return any(np.any(supply_effect(state, layer) > found.tolerance) for state in found.states)
+
+
+def _percent(part: float) -> str:
+    """A part in per cent, with two digits."""
+    return f"{100.0 * part:.2g} %"
+
+
+def _beside(size: float, found: Range) -> str:
+    """A size beside the tolerance."""
+    return f"{'more' if size > found.tolerance else 'not more'} than {found.percent}"

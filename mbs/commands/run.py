@@ -1,0 +1,84 @@
+"""`mbs run`: every analysis for which the scene has a table, with one map or with a map of its own (`--auto`)."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+from pathlib import Path
+
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.outputs import Kind, Output, check_outputs, write_text
+from mbs.analyses.campbell import campbell_problems
+from mbs.scene.reader import read_scene
+from mbs.scene.scene import Scene
+
+_AUTO = ("auto: ", "warning: auto: ")
+
+MARK = "mbs run"
+TEXT = Kind("a text of mbs run", (".txt",), lambda path: path.read_bytes().startswith(MARK.encode()))
+"""Texts that are replaced only if they were written by this command."""
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Do all of them; what has no result does not stop the others."""
+    scene = read_scene(arguments.scene)
+    folder = _folder(arguments.output)
+    planned = {name: arguments.parse(_words(arguments, name, folder)) for name in _analyses(scene)}
+    lines, status = [f"{scene.title}: {', '.join(planned)}"], 0
+    refused, told = 0, set[str]()
+    for name, one in planned.items():
+        try:
+            text, found = importlib.import_module(f"mbs.commands.{name}").run(one)
+        except (InputError, AnalysisError) as error:
+            refused += isinstance(error, InputError)
+            if refused == len(planned):
+                raise
+            text, found = "\n".join(f"warning: no result: {line}" for line in str(error).splitlines()), 1
+        status = max(status, found)
+        # The same plan and the same verdicts are told once.
+        shown = [line for line in text.splitlines() if line not in told or not line.startswith(_AUTO)]
+        told.update(text.splitlines())
+        lines += ["", f"=== mbs {name} {arguments.scene}", *shown]
+        if folder is not None:
+            path = folder / f"{name}.txt"
+            write_text(path, f"{MARK} {arguments.scene}: {name}\n{text}\n", TEXT)
+            lines.append(f"{path}: written")
+    return "\n".join(lines), status
+
+
+def _analyses(scene: Scene) -> list[str]:
+    """The analyses for which a scene has what they need, in the order in which a machine is examined."""
+    found = ["statics", "modes"]
+    if scene.frequencies and scene.inputs and scene.sensors:
+        found.append("lsa")
+    if scene.sweep is not None:
+        found.append("sweep")
+    if scene.run_up is not None:
+        found.append("runup" if campbell_problems(scene, scene.campbell) else "campbell")
+    return found
+
+
+def _folder(given: str | None) -> Path | None:
+    """The folder of the results, which is made where it is not there."""
+    if given is None:
+        return None
+    folder = Path(given)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"-o: got {given!r:.200}; allowed: a folder ({error.strerror or error})") from error
+    return folder
+
+
+def _words(arguments: argparse.Namespace, name: str, folder: Path | None) -> list[str]:
+    """The command line of one analysis."""
+    words = [name, arguments.scene]
+    for option in ("map", "clearance", "maps", "tolerance"):
+        if (value := getattr(arguments, option)) is not None:
+            words += [f"--{option}", value]
+    if arguments.auto:
+        words.append("--auto")
+    if folder is not None:
+        check_outputs([Output("-o", folder / f"{name}.txt", TEXT)])
+        words += ["-o", str(folder / f"{name}.nc"), "--plot", str(folder / f"{name}.png")]
+    return words

@@ -1,0 +1,253 @@
+"""Analyses that make their own map: planned, reused, checked, widened; physics that they choose; what is refused."""
+
+from __future__ import annotations
+
+import dataclasses
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehdmaps.errors import InputError
+from ehdmaps.jobs import solvers
+from ehdmaps.jobs.generate import generate
+from ehdmaps.maps.emap import open_map
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.roughness import Surface
+from ehdmaps.physics.solids import STEEL
+from mbs import AutoSettings, automatic, modes, parse_scene, statics
+from mbs.analyses import auto, kept_map, planned_job
+from mbs.analyses.auto import outside_calls, settled
+from mbs.analyses.film_criteria import (
+    closed_contact,
+    film_over_roughness,
+    heat_effect,
+    memory_effect,
+    supply_effect,
+)
+from mbs.commands.auto import read_tolerance
+from mbs.scene.changes import with_loads
+from tests.cases.commands import run
+
+TEXT = (resources.files("mbs") / "systems" / "nu308_rigid.toml").read_text(encoding="utf-8")
+SHORT = TEXT.replace("slices = 41", "slices = 3").replace("points = 2000", "points = 5").split("[runup]")[0]
+
+
+@pytest.fixture(autouse=True)
+def by_formula(monkeypatch):
+    """Maps by the film formula, in a moment: what is looked at here is when they are made, and for what."""
+    made = []
+
+    def quick(job, path, workers, progress=None):
+        made.append(path)
+        return generate(job, path, 1, solver=solvers.build("formula", {}))
+
+    monkeypatch.setattr(kept_map, "generate", quick)
+    monkeypatch.setattr(planned_job, "LAW_CHECK", 0)
+    return made
+
+
+def scene(text=SHORT):
+    return parse_scene(text, "short", "short.toml")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Maps of several tests, as the plans are the same."""
+    return tmp_path_factory.mktemp("maps")
+
+
+@pytest.fixture
+def file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "short.toml"
+    path.write_text(SHORT)
+    return str(path)
+
+
+def test_a_map_is_made_once_and_reused_for_the_same_plan_alone(file, capsys, by_formula):
+    status, out, _ = run(capsys, "modes", file, "--auto")
+    (path,) = Path().glob("short_nu308_*.nc")
+    assert status == 0
+    assert f"auto: {path}: made" in out
+    assert "law map of NU308" in out and "films with memory" in out
+    assert "all loads, speeds and temperatures of the analysis lie inside the map" in out
+    before = path.stat().st_mtime_ns
+    status, out, _ = run(capsys, "statics", file, "--auto")
+    assert status == 0
+    assert f"auto: {path}: reused" in out
+    assert path.stat().st_mtime_ns == before
+    # another clearance is another plan
+    assert run(capsys, "statics", file, "--auto", "--clearance", "20 um")[0] == 0
+    assert len(by_formula) == 2
+
+
+def test_what_stands_in_the_place_of_a_map_is_left_alone(file, capsys, tmp_path):
+    assert run(capsys, "statics", file, "--auto", "--maps", str(tmp_path))[0] == 0
+    (path,) = tmp_path.glob("*.nc")
+    other = open_map(path)
+    other.dataset.attrs["job_toml"] += "# another"
+    data = other.dataset
+    path.unlink()
+    data.attrs.pop("content_sha256")
+    data.to_netcdf(path, engine="netcdf4")
+    content = path.read_bytes()
+    status, _, err = run(capsys, "statics", file, "--auto")
+    assert status == 2
+    assert "was made for another job; move it away, or give another folder with --maps" in err
+    assert path.read_bytes() == content
+    path.write_text("mine")
+    assert run(capsys, "statics", file, "--auto")[0] == 2
+    assert path.read_text() == "mine"
+
+
+def loaded(factor):
+    """An analysis whose loads are larger than planned."""
+    return lambda subject: statics(dataclasses.replace(subject, scene=with_loads(subject.scene, factor)).model())
+
+
+@pytest.mark.parametrize(("factor", "margins", "left"), [(1.0, 1, False), (20.0, 2, False), (200.0, 3, True)])
+def test_loads_outside_the_map_widen_the_plan_up_to_three_times(folder, factor, margins, left):
+    found = settled(scene(), loaded(factor), AutoSettings(folder=folder, highest=0.0))
+    assert found.margins == (3.0, 9.0, 27.0)[:margins]
+    assert set(found.left) == ({"bearing_left", "bearing_right"} if left else set())
+    tops = [kept.emap.dataset["load"].values[-1] for kept in found.maps]
+    np.testing.assert_allclose(np.divide(tops[1:], tops[:-1]), 3.0, rtol=0.1)  # ends of axes have two digits
+
+
+def test_a_command_says_what_it_left_and_what_the_laws_miss(file, capsys, monkeypatch):
+    monkeypatch.setattr(auto, "MOST_MAPS", 1)
+    monkeypatch.setattr(kept_map, "unmet", lambda dataset, backbone: ["unmet: damping"])
+    monkeypatch.setattr(auto, "outside_calls", lambda result: {"bearing_left": 7})
+    status, out, _ = run(capsys, "statics", file, "--auto")
+    assert status == 1
+    assert "warning: auto: after 1 plans the analysis still left its map (bearing_left 7 times)" in out
+    assert ".nc: unmet: damping" in out
+
+
+def test_films_without_memory_get_it_where_a_bearing_needs_it(folder, monkeypatch):
+    monkeypatch.setattr("mbs.analyses.film_verdicts.memory_effect", lambda state, frequency: 0.0 * state.load)
+    found = automatic(scene(), modes, AutoSettings(folder=folder))
+    assert found.subject.law.films == "memory"
+    assert "% at a bearing" in found.verdicts[0].words
+    assert len(found.maps) == 2
+    assert found.maps[1].reused
+    slow = automatic(scene(), modes, AutoSettings(folder=folder, films="slow"))
+    assert slow.subject.law.films == "slow"
+
+
+def test_stated_physics_is_off_where_it_does_not_matter(folder):
+    plain = scene()
+    for supply, surface, on in (
+        (OilSupply(1e-3), Surface(1e-9), False),
+        (OilSupply(1e-7), Surface(1e-6), True),
+    ):
+        stated = dataclasses.replace(plain, supply=supply, surface=surface)
+        found = automatic(stated, statics, AutoSettings(folder=folder))
+        assert [verdict.on for verdict in found.verdicts[1:3]] == [on, on]
+        assert found.subject.law.supply == (None if on else FLOODED)
+        assert found.subject.scene.surface.smooth is not on
+    assert found.subject.model().supplies["bearing_left"] == supply
+
+
+def test_bearings_of_two_geometries_are_refused(folder):
+    first, _, second = SHORT.rpartition('{ name = "NU308"')
+    two = scene(f'{first}{{ name = "N1014"{second}')
+    with pytest.raises(InputError, match=r"got bearings of 2 geometries \(.*\); allowed with --auto: one"):
+        automatic(two, statics, AutoSettings(folder=folder))
+
+
+def test_options_that_do_not_go_together_are_refused_before_a_map_is_made(file, capsys, by_formula):
+    status, _, err = run(
+        capsys, "modes", file, "--auto", "--map", "a.nc", "--clearance", "1 um", "--clearance", "2 um",
+        "--maps", "nowhere", "--tolerance", "5", "--highest", "far", "--law", "hertz", "--films", "thick",
+        "--supply", "much",
+    )  # fmt: skip
+    assert status == 2
+    for words in (
+        "--map: stands beside --auto",
+        "--clearance: got 2 of them",
+        "--maps: got 'nowhere'",
+        "--tolerance: got '5'; allowed: above 0 up to 900 % or 20 dB",
+        "--highest: got 'far'",
+        "--law: stands beside --auto",
+        "--films: got 'thick'",
+        "--supply: ",
+    ):
+        assert words in err
+    assert run(capsys, "modes", file, "--maps", ".")[0] == 2
+    assert not by_formula
+
+
+def test_results_of_other_kinds_are_refused():
+    with pytest.raises(InputError, match="got a result of the type int; allowed: what statics, modes"):
+        outside_calls(1)
+
+
+@pytest.mark.parametrize("tolerance", [0.0, 9.5, float("nan")])
+def test_tolerances_out_of_range_are_refused(tolerance):
+    with pytest.raises(InputError, match="allowed: above 0 up to 9"):
+        AutoSettings(tolerance=tolerance)
+
+
+def test_a_decibel_is_twelve_per_cent():
+    assert read_tolerance("1 dB", []) == pytest.approx(0.1220, abs=5e-5)
+    assert read_tolerance("2 %", []) == 0.02
+    assert read_tolerance("20 dB", []) == auto.MOST_TOLERANCE
+    assert read_tolerance(None, []) == auto.TOLERANCE
+
+
+def test_run_does_what_the_scene_has_tables_for(file, capsys, tmp_path):
+    status, out, _ = run(capsys, "run", file, "--auto", "-o", "out")
+    assert status == 0
+    assert out.startswith("NU308: rigid shaft on two bearings: statics, modes, lsa\n")
+    assert out.count("inlet heating") == 1  # what is the same is told once
+    names = {path.name for path in (tmp_path / "out").iterdir()}
+    assert names == {f"{name}.{end}" for name in ("statics", "modes", "lsa") for end in ("nc", "png", "txt")}
+    (tmp_path / "out" / "modes.txt").write_text("mine")
+    assert run(capsys, "run", file, "-o", "out")[0] == 2
+    assert (tmp_path / "out" / "modes.txt").read_text() == "mine"
+
+
+# criteria
+
+
+def contact(load, speed=1.0, temperature=313.15):
+    oil = Lubricant.named("FVA3")
+    inner = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[0]
+    return closed_contact(inner, oil, np.atleast_1d(np.asarray(load, dtype=float)), speed, temperature)
+
+
+def test_a_light_contact_has_the_film_compliance_of_rigid_surfaces():
+    state = contact([1.0, 10.0])
+    # h goes with 1/w, so that -dh/dw is h/w; Moes' formula is there within its blend of regimes
+    np.testing.assert_allclose(state.film_compliance, state.film / state.load, rtol=0.05)
+    np.testing.assert_allclose(state.stiffness, state.load / state.film, rtol=0.15)
+
+
+def test_memory_grows_with_frequency_and_fades_without_it():
+    state = contact([500.0, 5e3, 5e4])
+    sizes = np.array([memory_effect(state, frequency) for frequency in (1.0, 100.0, 1e3, 1e4)])
+    assert np.all(np.diff(sizes, axis=0) > 0.0)
+    assert np.all(sizes[0] < 1e-3)
+    # to first order the error goes with the square of the frequency
+    np.testing.assert_allclose(memory_effect(state, 2.0) / sizes[0], 4.0, rtol=1e-2)
+
+
+def test_a_layer_that_floods_changes_nothing_and_a_thin_one_much():
+    state = contact([500.0, 5e3, 5e4])
+    assert np.all(supply_effect(state, np.inf) < 1e-9)  # the ratios are polynomials, to 1e-11
+    assert np.all(supply_effect(state, 20.0 * state.film.max()) < 1e-6)
+    assert np.all(supply_effect(state, 0.3 * state.film.min()) > 0.1)
+
+
+def test_heat_and_roughness_go_with_their_numbers():
+    oil = Lubricant.named("FVA3")
+    assert heat_effect(contact([5e4], 4.0), oil) > heat_effect(contact([5e4], 0.4), oil) > 0.0
+    unknown = dataclasses.replace(oil, thermal_conductivity=None)
+    assert np.isnan(heat_effect(contact([5e4]), unknown)).all()
+    rough = film_over_roughness(contact([5e4]), 2e-7)
+    np.testing.assert_allclose(film_over_roughness(contact([5e4]), 4e-7), 0.5 * rough)
