@@ -72,7 +72,22 @@ def parser() -> argparse.ArgumentParser:
     _plan(commands)
     _run(commands, top)
     _reduce(commands)
+    _stability(commands)
     return top
+
+
+def _stability(commands: Any) -> None:
+    """Add the command `stability`."""
+    words = "law, bearing element, integrator and readers at the extremes; takes an hour as it is"
+    command = commands.add_parser("stability", help=words, description=words)
+    command.add_argument("--runs", metavar="N", type=_count, default=1000, help="cases of each check; 1000")
+    command.add_argument(
+        "--mutations", metavar="N", type=_count, default=10_000, help="damaged files for each reader; 10000"
+    )
+    command.add_argument("--seed", metavar="S", type=_count, default=1, help="seed of all chance; default: 1")
+    command.add_argument("--only", metavar="NAME", help="element | integrator | readers; default: all")
+    command.add_argument("--json", action="store_true", help="the checks as JSON")
+    command.add_argument("-o", "--output", metavar="FILE", help="the same into a file, .txt or .json")
 
 
 def _modes(command: argparse.ArgumentParser) -> None:
@@ -395,6 +410,13 @@ def _command(arguments: argparse.Namespace) -> tuple[str, int]:
         arguments
     )
     return result
+
+
+def _count(text: str) -> int:
+    """Read a whole number >= 0."""
+    if not (text.isascii() and text.isdigit() and len(text) <= 9):
+        raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 0 to 999999999")
+    return int(text)
 
 
 if __name__ == "__main__":

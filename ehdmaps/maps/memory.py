@@ -24,6 +24,7 @@ from numba import njit
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps import memory_table
+from ehdmaps.maps.film_energy import energies_of, spent_by_all
 from ehdmaps.maps.locked_film import LockedFactors, film_of
 from ehdmaps.maps.memory_table import MemoryTable, advanced, equilibrium_at, fill_memory, step_of
 from ehdmaps.maps.tables import Point
@@ -161,6 +162,21 @@ class FilmMemory:
         w, tangent, approach, changed = (row.reshape(ends.shape) for row in found)
         self._check(w)
         return w[()], tangent[()], FilmState(approach, changed, w, float(dt))
+
+    def spent(self, before: FilmState, state: FilmState) -> FloatArray:
+        """Energy that films take up for good over a step from one state to another [J/m], in their shape."""
+        begin, load, end, last = (
+            part.reshape(-1) for part in (before.approach, before.load, state.approach, state.load)
+        )
+        out = np.empty(state.approach.size)
+        spent_by_all(self._table, begin, load, end, last, out)
+        return out.reshape(state.approach.shape)
+
+    def stored(self, state: FilmState) -> FloatArray:
+        """Energy that contacts store [J/m], in the shape of the state; zero without contact."""
+        out = np.empty(state.approach.size)
+        energies_of(self._table, state.approach.reshape(-1), state.load.reshape(-1), out)
+        return out.reshape(state.approach.shape)
 
 
 @njit(cache=True, error_model="numpy")

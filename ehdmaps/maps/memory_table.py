@@ -335,15 +335,20 @@ def advanced(
     last : float
         Change of G over the step before [N s/m2].
     start : float
-        Place to look for the state first [m].
+        State at its beginning, where the state is looked for first [m].
 
     Returns
     -------
     w, tangent, xi : float
         [N/m], dw/ddelta [N/m2], [m].
     """
-    left, right = table.lift_off, math.inf
+    left = table.lift_off
     xi = start if start > left else left
+    # A film that is squeezed lags behind the approach, one that is relieved behind its last state: the state is not
+    # above both, but for what cubics miss. Without that bound a film that has ended, whose y rises by rounding alone,
+    # sends Newton's first step beyond the table.
+    right = max(delta, xi)
+    right += right - left
     w = tangent = 0.0
     before_last = moved = math.inf
     fading = fading_of(last)
@@ -363,7 +368,7 @@ def advanced(
         following = xi + short / rise
         # bisection where Newton's steps leave the bracket or do not shrink
         if not (left <= following <= right and 2.0 * abs(following - xi) <= before_last):
-            following = 0.5 * (left + right) if right < math.inf else max(delta, 2.0 * xi - left)
+            following = 0.5 * (left + right)
         before_last, moved = moved, abs(following - xi)
         if moved * table.inverse_scale <= _EXACT * (1.0 + abs(xi - table.centre) * table.inverse_scale):
             break

@@ -13,6 +13,7 @@ from mbs.analyses.operating import held, states_of
 from mbs.analyses.progress import Progress, silent
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
+from mbs.output.energy_data import with_energy
 from mbs.output.results import described, run_dataset
 from mbs.output.state_data import with_states
 from mbs.scene.assembly import Model, law_attributes
@@ -93,6 +94,7 @@ def runup(model: Model, settings: RunUp | None = None, progress: Progress | None
         options=WITH_STATES,
     )
     seconds = time.perf_counter() - begin
-    dataset = with_states(run_dataset(model.system, record), states_of(model))
+    dataset = with_energy(run_dataset(model.system, record), record.energy)
+    dataset = with_states(dataset, states_of(model))
     dataset = described(dataset, **law_attributes(model))
     return RunUpResult(model, course, record, seconds, dataset)

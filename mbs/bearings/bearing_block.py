@@ -14,7 +14,7 @@ from ehdmaps.maps.lines import FAST
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.bearing_kernel import Work, bearing_force
+from mbs.bearings.bearing_kernel import Work, bearing_force, ring_powers
 from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
 from mbs.bearings.level_kernel import level_force
 from mbs.bearings.rings import LEVEL, Rings, answer_ring, feels, gather_rings, motion_of, placed, shape_of
@@ -51,8 +51,10 @@ class Bearings(NamedTuple):
     ----------
     rings : Rings
         What does not change.
-    rows, states : array (Z n,), (4 Z n,)
+    rows : array (Z n,)
         Work space for one bearing after the other.
+    states : array (bearings, 4 Z n)
+        Slices of each bearing at rest at the last answer, as of `mbs.bearings.bearing_kernel.Work`.
     films : Films
         Tables of the laws.
     course : Course
@@ -138,7 +140,7 @@ def _force(bearings: Bearings, b: int, moment: Moment, motion: FloatArray, out: 
     z, n, film = rings.rollers[b], rings.slices[b], rings.films_of[b]
     law = PreparedLaw(law_numbers(films.current[film]), films.cells[film])
     cells = z * n
-    work = Work(bearings.rows[:cells].reshape(z, n), bearings.states[: 4 * cells].reshape(4, z, n))
+    work = Work(bearings.rows[:cells].reshape(z, n), bearings.states[b][: 4 * cells].reshape(4, z, n))
     ring, shape = motion_of(rings, b, moment, motion), shape_of(rings, b)
     if rings.felt[b] == LEVEL:
         level: int = level_force(ring, shape, rings.weights[b][:n], law, work, out)
@@ -175,6 +177,28 @@ def bearings_answer(bearings: Bearings, moment: Moment, motion: FloatArray, answ
     return FOUND
 
 
+@njit(cache=True, error_model="numpy")
+def bearings_powers(bearings: Bearings, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
+    """What contacts dissipate, and what the cage brings in; see `mbs.model.blocks.Kind`.
+
+    Parameters
+    ----------
+    bearings, moment, motion, answers
+        The same as of `bearings_answer`.
+    out : array (elements, 3)
+        Powers of all elements; written.
+    """
+    rings = bearings.rings
+    for b in range(rings.firsts.size):
+        z, n, place = rings.rollers[b], rings.slices[b], rings.places[b]
+        states = bearings.states[b][: 4 * z * n].reshape(4, z, n)
+        numbers = law_numbers(bearings.films.current[rings.films_of[b]])
+        cage_rate = rings.cage_rates[b] * moment.speed
+        ring, shape = motion_of(rings, b, moment, motion), shape_of(rings, b)
+        weights = rings.weights[b][:n]
+        out[place, 0], out[place, 1] = ring_powers(ring, shape, weights, numbers, states, cage_rate)
+
+
 class BearingBlock(FilmBlock[Bearings]):
     """The bearings of a run; those with the same law at the same speed and temperature share their tables.
 
@@ -202,7 +226,7 @@ class BearingBlock(FilmBlock[Bearings]):
         arrays = Bearings(
             rings=rings,
             rows=np.zeros(rings.most_slices, dtype=np.int64),
-            states=np.zeros(4 * rings.most_slices),
+            states=np.zeros((len(elements), 4 * rings.most_slices)),
             films=films,
             course=course_of(0, len(tables)),
         )
@@ -232,5 +256,13 @@ def _takes(element: Element) -> bool:
     return isinstance(element, BearingElement) and type(element.force) is BearingForce
 
 
-BEARINGS = Kind(arrays=Bearings, answer=bearings_answer, feels=feels, gather=BearingBlock, takes=_takes, placed=placed)
+BEARINGS = Kind(
+    arrays=Bearings,
+    answer=bearings_answer,
+    feels=feels,
+    gather=BearingBlock,
+    takes=_takes,
+    placed=placed,
+    powers=bearings_powers,
+)
 """For `mbs.transient.kinds`."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -13,10 +14,13 @@ from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.bearing_kernel import approaches_of_arrays
+from mbs.bearings.contact_energy import brought_by_speed, cage_moment, energy_at_rest
 from mbs.bearings.contact_groups import ContactGroup
 from mbs.bearings.film_relaxation import bearing_relaxation, massless_rows, natural_times
+from mbs.bearings.force_at_point import Arrays
 from mbs.bearings.roller_loads import RollerLoads
-from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port
+from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port, Powers
 from mbs.model.relaxation import Films, Relaxation
 
 NO_CENTRIFUGAL = "got 'memory' with centrifugal = true; allowed: films with memory without it, or slow films"
@@ -230,3 +234,38 @@ class BearingElement(RingElement):
             temperature=self.temperature,
             centrifugal_load=self.centrifugal_load(operation),
         )
+
+    def powers(
+        self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> Powers | None:
+        """What its contacts dissipate, and what the turning of the cage brings in, see `Element.powers`."""
+        if not isinstance(self.force, BearingForce):
+            return None
+        at_rest = self.evaluate(displacement, np.zeros(6), operation).force
+        torque = cage_moment(at_rest, displacement, 1)
+        return Powers(-float((force - at_rest) @ velocity), torque * self.rates[0] * operation.speed)
+
+    def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float | None:
+        """Energy of its contacts at rest [J]: the integral of their loads over the approach; see `Element.stored`."""
+        if not isinstance(self.force, BearingForce):
+            return None
+        conditions = self.entrainment_speed(operation), self.temperature, self.centrifugal_load(operation)
+        approach = self.rollers(displacement, operation).approach
+        return energy_at_rest(self.force.law, conditions, self.bearing, approach)
+
+    def brought_by_speed(self, displacements: FloatArray, operations: Sequence[Operation]) -> float:
+        """Energy that changes of the speed brought into its films, see `mbs.bearings.contact_energy`."""
+        if not isinstance(self.force, BearingForce):
+            return 0.0
+        conditions = [(self.entrainment_speed(op), self.temperature, self.centrifugal_load(op)) for op in operations]
+
+        work, state = Arrays(self.force.bearing), np.zeros(13)
+        shape = np.array(work.sizes), work.slices, work.angles
+
+        def approaches(sample: int) -> FloatArray:
+            found = np.empty(work.rows.shape)
+            state[:6], state[12] = displacements[sample], self.cage_angle(operations[sample])
+            approaches_of_arrays(state, *shape, found)
+            return found
+
+        return brought_by_speed(self.force.law, self.force.bearing, conditions, approaches)

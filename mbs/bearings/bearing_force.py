@@ -229,6 +229,22 @@ class BearingForce:
         >>> round(1e6 * float(pose[1]), 1)  # um
         2.5
         """
+        in_time = self.in_time(entrainment_speed, temperature, centrifugal_load)
+        return in_time.advance(state, pose, dt, cage_angle)
+
+    def in_time(self, entrainment_speed: float, temperature: float, centrifugal_load: float = 0.0) -> ForceInTime:
+        """The force in time at one speed, temperature and centrifugal load: that of the last call, or a new one.
+
+        Parameters
+        ----------
+        entrainment_speed, temperature, centrifugal_load : float
+            The same as of `advance`.
+
+        Raises
+        ------
+        InputError
+            For a dry law, and for values that are no finite numbers.
+        """
         law = self.law
         if not isinstance(law, ContactLaw):
             raise InputError(
@@ -246,7 +262,7 @@ class BearingForce:
             self._in_time = None
             self._in_time = ForceInTime(law.at(*conditions), self._work)
         assert self._in_time is not None
-        return self._in_time.advance(state, pose, dt, cage_angle)
+        return self._in_time
 
     def rollers(
         self,

@@ -415,6 +415,74 @@ def assemble(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: Floa
     return above
 
 
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def roller_power(
+    roller: Roller, positions: FloatArray, weights: FloatArray, states: FloatArray, j: int
+) -> tuple[float, float, float]:
+    """Power that a roller dissipates, its load at rest, and that load times its places; for each length of a slice.
+
+    Parameters
+    ----------
+    roller : Roller
+        Motion of the roller.
+    positions : array (n,)
+        Places of the slices [m].
+    weights : array (n,)
+        How many slices each stands for.
+    states : array (4, Z, n)
+        States of the slices, as of `Work`.
+    j : int
+        Which roller.
+    """
+    w, c = states[0, j], states[2, j]
+    lost = flat = tilted = 0.0
+    for i in range(positions.size):
+        x = positions[i]
+        rate = roller.rate + x * roller.tilt_rate
+        part = c[i] * rate
+        parting = part < -0.5 * w[i]
+        # the rule of `ehdmaps.physics.unilateral`, less the load at rest
+        more = -0.25 * w[i] * w[i] / (part if parting else 1.0) - w[i] if parting else part
+        lost += weights[i] * more * rate
+        flat += weights[i] * w[i]
+        tilted += weights[i] * w[i] * x
+    return lost, flat, tilted
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def ring_powers(
+    motion: RingMotion, shape: Shape, weights: FloatArray, numbers: LawNumbers, states: FloatArray, cage_rate: float
+) -> tuple[float, float]:
+    """Power that the contacts of a bearing dissipate, and that the turning of the cage brings in [W].
+
+    Turning the cage by dphi moves the loads at rest by y' = -y sin + z cos in the approach; that work is stored.
+
+    Parameters
+    ----------
+    motion, shape : RingMotion, Shape
+        Motion of the ring, and the bearing.
+    weights : array (n,)
+        How many slices each slice stands for.
+    numbers : LawNumbers
+        The limits of the law.
+    states : array (4, Z, n)
+        States of the slices, as of `Work`.
+    cage_rate : float
+        [rad/s].
+    """
+    lost = torque = 0.0
+    for j in range(shape.cos.size):
+        roller = roller_of(motion, shape, j)
+        if roller.deepest <= numbers.lift_off:
+            continue
+        power, flat, tilted = roller_power(roller, shape.positions, weights, states, j)
+        c, s = roller.cos, roller.sin
+        lost += power
+        torque += flat * (motion.z * c - motion.y * s) - tilted * (motion.theta_z * s + motion.theta_y * c)
+    length = shape.sizes.slice_length
+    return lost * length, torque * cage_rate * length
+
+
 @njit(cache=True, error_model="numpy")
 def assemble_slices(motion: RingMotion, shape: Shape, states: FloatArray, out: FloatArray) -> None:
     """`assemble` for slices whose states are those of the motion itself, with whole slopes and loads of any size.

@@ -16,7 +16,7 @@ from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.memory import FilmState
 from ehdmaps.maps.memory_table import step_of
-from mbs.bearings.bearing_kernel import assemble_slices, check_motion, slice_approaches
+from mbs.bearings.bearing_kernel import assemble_slices, check_motion, sizes_of, slice_approaches
 from mbs.bearings.film_clock import (
     ACCEPTED,
     LAST,
@@ -31,7 +31,7 @@ from mbs.bearings.film_clock import (
 from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
 from mbs.bearings.level_kernel import assemble_level_slices
 from mbs.bearings.memory_element import FilmStates, MemoryBearing
-from mbs.bearings.memory_kernel import MEMORY, begin, commit, loads
+from mbs.bearings.memory_kernel import MEMORY, begin, commit, loads, spent
 from mbs.bearings.memory_tables import HIGHEST, MemoryFilms, MemoryTables, room, table_in_use
 from mbs.bearings.rings import (
     LEVEL,
@@ -43,6 +43,7 @@ from mbs.bearings.rings import (
     motion_of,
     placed,
     shape_of,
+    turned_by,
 )
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
 from mbs.model.elements import Element
@@ -63,6 +64,8 @@ class MemoryBearings(NamedTuple):
         Work space for one bearing after the other [m].
     states : array (bearings, 4 Z n)
         Loads and tangents of the last answer; the other rows are zero.
+    spent : array (bearings,)
+        What the films of each took up over the last step [J].
     clock : array (4,)
         Times of the run.
     films : MemoryFilms
@@ -76,6 +79,7 @@ class MemoryBearings(NamedTuple):
     memory: FloatArray
     approaches: FloatArray
     states: FloatArray
+    spent: FloatArray
     clock: FloatArray
     films: MemoryFilms
     course: Course
@@ -164,9 +168,32 @@ def memory_accept(bearings: MemoryBearings, moment: Moment) -> None:
     """
     for b in range(bearings.rings.firsts.size):
         size = bearings.rings.rollers[b] * bearings.rings.slices[b]
-        table = table_in_use(bearings.films, bearings.rings.films_of[b])
-        commit(table, memory_of(bearings, b), bearings.states[b][:size])
+        table, memory = table_in_use(bearings.films, bearings.rings.films_of[b]), memory_of(bearings, b)
+        loads_now, weights = bearings.states[b][:size], bearings.rings.weights[b][: bearings.rings.slices[b]]
+        taken = spent(table, memory, loads_now, weights)
+        bearings.spent[b] = taken * sizes_of(bearings.rings.sizes[b]).slice_length
+        commit(table, memory, loads_now)
     make_step(bearings.clock, moment)
+
+
+@njit(cache=True, error_model="numpy")
+def memory_powers(
+    bearings: MemoryBearings, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray
+) -> None:
+    """What films take up, and what the cage brings in; see `mbs.model.blocks.Kind`.
+
+    Parameters
+    ----------
+    bearings, moment, motion, answers
+        The same as of `memory_answer`.
+    out : array (elements, 3)
+        Powers of all elements; written.
+    """
+    rings = bearings.rings
+    for b in range(rings.firsts.size):
+        place, torque = rings.places[b], turned_by(rings.firsts[b], rings.felt[b] // 2, motion, answers)
+        out[place, 0], out[place, 2] = 0.0, bearings.spent[b]
+        out[place, 1] = torque * rings.cage_rates[b] * moment.speed
 
 
 class MemoryBlock(FilmBlock[MemoryBearings]):
@@ -196,6 +223,7 @@ class MemoryBlock(FilmBlock[MemoryBearings]):
             memory=np.zeros((len(elements), MEMORY * rings.most_slices)),
             approaches=np.zeros(rings.most_slices),
             states=np.zeros((len(elements), 4 * rings.most_slices)),
+            spent=np.zeros(len(elements)),
             clock=new_clock(),
             films=films,
             course=course_of(0, len(tables)),
@@ -219,8 +247,8 @@ class MemoryBlock(FilmBlock[MemoryBearings]):
         states : sequence of FilmStates
             One a bearing, all after the same step.
         """
-        for b, ((films, time), fold) in enumerate(zip(states, self._folds, strict=True)):
-            resume_rows(_slices(films, fold.firsts), time, self._rows(b), self._arrays.clock)
+        for b, (state, fold) in enumerate(zip(states, self._folds, strict=True)):
+            resume_rows(_slices(state.films, fold.firsts), state.time, self._rows(b), self._arrays.clock)
 
     def _shape(self, b: int) -> tuple[int, int]:
         """Rollers and slices of a bearing."""
@@ -252,6 +280,7 @@ MEMORY_BEARINGS = Kind(
     gather=MemoryBlock,
     takes=_takes,
     accept=memory_accept,
+    powers=memory_powers,
     placed=placed,
 )
 """For `mbs.transient.kinds`."""

@@ -6,13 +6,16 @@ import dataclasses
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
+
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.memory import FilmState
+from ehdmaps.maps.memory import FilmMemory, FilmState
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.model.elements import Forces, Operation
+from mbs.bearings.contact_energy import cage_moment
+from mbs.model.elements import Forces, Operation, Powers
 from mbs.model.relaxation import Films
 
 
@@ -25,10 +28,13 @@ class FilmStates(NamedTuple):
         Films of all slices of all rollers, shape (Z, n).
     time : float
         End of the step [s].
+    before : FilmState or None
+        Films at its beginning; None where that is not known.
     """
 
     films: FilmState
     time: float
+    before: FilmState | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +94,33 @@ class MemoryBearing(BearingElement):
             centrifugal_load=self.centrifugal_load(operation),
         )
         # A run begins with films that have not moved yet.
-        return forces, FilmStates(dataclasses.replace(films, step=0.0) if states is None else films, operation.time)
+        if states is None:
+            return forces, FilmStates(dataclasses.replace(films, step=0.0), operation.time)
+        return forces, FilmStates(films, operation.time, states.films)
+
+    def powers(
+        self,
+        states: FilmStates,
+        force: FloatArray,
+        displacement: FloatArray,
+        velocity: FloatArray,
+        operation: Operation,
+    ) -> Powers:
+        """What its films take up, and what the turning of the cage brings in, see `Element.powers`."""
+        driven, spent = cage_moment(force, displacement, 1) * self.rates[0] * operation.speed, 0.0
+        if states.before is not None:
+            spent = float(np.sum(self._memory(operation).spent(states.before, states.films)))
+        return Powers(0.0, driven, spent * self.bearing.slice_length)
+
+    def stored(self, states: FilmStates, displacement: FloatArray, operation: Operation) -> float:
+        """Energy of its contacts [J]: of the solids and of the films that follow; see `Element.stored`."""
+        return float(np.sum(self._memory(operation).stored(states.films))) * self.bearing.slice_length
+
+    def _memory(self, operation: Operation) -> FilmMemory:
+        """The law with memory at the speed."""
+        assert isinstance(self.force, BearingForce)
+        conditions = self.entrainment_speed(operation), self.temperature, self.centrifugal_load(operation)
+        return self.force.in_time(*conditions).law.memory
 
 
 _AT_REST = 1e6

@@ -16,6 +16,7 @@ from numba import njit
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.copies import put
+from ehdmaps.maps.film_energy import spent_by
 from ehdmaps.maps.lines import FAST
 from ehdmaps.maps.memory_table import (
     LIGHTEST,
@@ -259,3 +260,37 @@ def commit(table: MemoryTable, memory: FloatArray, load: FloatArray) -> None:
     for i in range(load.size):
         before[i], latest[i] = latest[i], trial[i]
     put(load, memory[LOAD])
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def spent(table: MemoryTable, memory: FloatArray, load: FloatArray, weights: FloatArray) -> float:
+    """Energy that all films take up over a step, before `commit`, for each length of a slice [J/m].
+
+    Parameters
+    ----------
+    table : MemoryTable
+        The law.
+    memory : array (MEMORY, Z n)
+        Memory of the slices.
+    load : array (Z n,)
+        What `loads` found last [N/m].
+    weights : array (n,)
+        How many slices each slice of a roller stands for.
+    """
+    trial, latest, around, reach, last = memory[TRIAL], memory[LATEST], memory[AROUND], memory[REACH], memory[LOAD]
+    p0, p1, p2, y1, y2 = memory[P], memory[P + 1], memory[P + 2], memory[Y + 1], memory[Y + 2]
+    total = far = 0.0
+    for first in range(0, load.size, weights.size):
+        for k in range(weights.size):
+            i = first + k
+            s, t = trial[i] - around[i], latest[i] - around[i]
+            near = (abs(s) <= reach[i]) & (abs(t) <= reach[i])
+            s, t = (s if near else 0.0), (t if near else 0.0)
+            rest = 2.0 * p0[i] + s * (p1[i] + s * p2[i]) + t * (p1[i] + t * p2[i])
+            total += 0.5 * weights[k] * (load[i] + last[i] - rest) * (s - t) * (y1[i] + (s + t) * y2[i])
+            far += 0.0 if near else 1.0
+    if far > 0.0:
+        for i in range(load.size):
+            if not (abs(trial[i] - around[i]) <= reach[i] and abs(latest[i] - around[i]) <= reach[i]):
+                total += weights[i % weights.size] * spent_by(table, latest[i], last[i], trial[i], load[i])
+    return total

@@ -27,9 +27,10 @@ from mbs.bearings.film_clock import (
     resume_rows,
 )
 from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
-from mbs.bearings.memory_kernel import MEMORY, begin, commit, loads
+from mbs.bearings.memory_kernel import MEMORY, begin, commit, loads, spent
 from mbs.bearings.memory_rollers import ContactStates, MemoryRollers
 from mbs.bearings.memory_tables import HIGHEST, MemoryFilms, MemoryTables, room, table_in_use
+from mbs.bearings.rings import turned_by
 from mbs.bearings.roller_places import (
     Contact,
     Place,
@@ -39,6 +40,7 @@ from mbs.bearings.roller_places import (
     begin_answer,
     feels,
     gather_rollers,
+    outward_power,
     place_of,
 )
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
@@ -59,6 +61,8 @@ class MemoryRollerBearings(NamedTuple):
         Work space for one row of contacts after the other [m].
     answered : array (bearings, 2, 2 Z n)
         Loads and tangents of the last answer.
+    spent : array (bearings,)
+        What the films of each took up over the last step [J].
     clock : array (4,)
         Times of the run, see `mbs.bearings.film_clock`.
     films : MemoryFilms
@@ -72,6 +76,7 @@ class MemoryRollerBearings(NamedTuple):
     memory: FloatArray
     approaches: FloatArray
     answered: FloatArray
+    spent: FloatArray
     clock: FloatArray
     films: MemoryFilms
     course: Course
@@ -179,6 +184,28 @@ def memory_rollers_answer(bearings: MemoryRollerBearings, moment: Moment, motion
 
 
 @njit(cache=True, error_model="numpy")
+def memory_rollers_powers(
+    bearings: MemoryRollerBearings, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray
+) -> None:
+    """What films take up, and what the cage brings in; see `mbs.model.blocks.Kind`.
+
+    Parameters
+    ----------
+    bearings, moment, motion, answers
+        The same as of `memory_rollers_answer`.
+    out : array (elements, 3)
+        Powers of all elements; written.
+    """
+    rollers = bearings.rollers
+    rings = rollers.rings
+    for b in range(bearings.strict.size):
+        out[rings.places[b], 0], out[rings.places[b], 2] = 0.0, bearings.spent[b]
+        torque = turned_by(rings.firsts[b], 3, motion, answers)
+        outward = outward_power(rollers, b, moment, motion)
+        out[rings.places[b], 1] = torque * rings.cage_rates[b] * moment.speed + outward
+
+
+@njit(cache=True, error_model="numpy")
 def memory_rollers_accept(bearings: MemoryRollerBearings, moment: Moment) -> None:
     """Make the step: states go on; see `mbs.model.blocks.Kind`.
 
@@ -192,9 +219,14 @@ def memory_rollers_accept(bearings: MemoryRollerBearings, moment: Moment) -> Non
     rollers = bearings.rollers
     for b in range(bearings.strict.size):
         size = rollers.rings.rollers[b] * rollers.rings.slices[b]
+        length = sizes_of(rollers.rings.sizes[b]).slice_length
+        weights = rollers.rings.weights[b][: rollers.rings.slices[b]]
+        bearings.spent[b] = 0.0
         for side in range(2):
-            table = table_in_use(bearings.films, rollers.films_of[b, side])
-            commit(table, _memory_of(bearings, b, side), bearings.answered[b, side][:size])
+            table, memory = table_in_use(bearings.films, rollers.films_of[b, side]), _memory_of(bearings, b, side)
+            loads_now = bearings.answered[b, side][:size]
+            bearings.spent[b] += spent(table, memory, loads_now, weights) * length
+            commit(table, memory, loads_now)
     make_step(bearings.clock, moment)
 
 
@@ -224,6 +256,7 @@ class MemoryRollerBlock(FilmBlock[MemoryRollerBearings]):
             memory=np.zeros((count, 2, MEMORY * most)),
             approaches=np.zeros(most),
             answered=np.zeros((count, 2, 2 * most)),
+            spent=np.zeros(len(elements)),
             clock=new_clock(),
             films=films,
             course=course_of(0, len(tables)),
@@ -247,9 +280,9 @@ class MemoryRollerBlock(FilmBlock[MemoryRollerBearings]):
         states : sequence of ContactStates
             One a bearing, all after the same step.
         """
-        for b, (both, time) in enumerate(states):
-            for side, films in enumerate(both):
-                resume_rows(films, time, self._rows(b, side), self._arrays.clock)
+        for b, state in enumerate(states):
+            for side, films in enumerate(state.films):
+                resume_rows(films, state.time, self._rows(b, side), self._arrays.clock)
 
     def _shape(self, b: int) -> tuple[int, int]:
         """Rollers and slices of a bearing."""
@@ -268,6 +301,7 @@ MEMORY_ROLLERS = Kind(
     feels=feels,
     gather=MemoryRollerBlock,
     accept=memory_rollers_accept,
+    powers=memory_rollers_powers,
     alone=alone,
 )
 """For `mbs.transient.kinds`."""

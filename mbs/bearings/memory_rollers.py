@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
+
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.memory import FilmState
+from ehdmaps.maps.memory import FilmMemory, FilmState
 from mbs.bearings.roller_element import RollerElement
-from mbs.model.elements import Forces, Operation
+from mbs.model.elements import Forces, Operation, Powers
 from mbs.model.relaxation import Films
 
 
@@ -23,10 +25,13 @@ class ContactStates(NamedTuple):
         Films of all slices of the inner and of the outer contacts, shape (Z, n) each.
     time : float
         End of the step [s].
+    before : (FilmState, FilmState) or None
+        Films at its beginning; None where that is not known.
     """
 
     films: tuple[FilmState, FilmState]
     time: float
+    before: tuple[FilmState, FilmState] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,4 +90,29 @@ class MemoryRollers(RollerElement):
             temperature=plain.temperature,
         )
         found.force[12:] += self.outward(operation)
-        return found, ContactStates(films, operation.time)
+        return found, ContactStates(films, operation.time, None if states is None else states.films)
+
+    def powers(
+        self,
+        states: ContactStates,
+        force: FloatArray,
+        displacement: FloatArray,
+        velocity: FloatArray,
+        operation: Operation,
+    ) -> Powers:
+        """What its films take up; what cage and centrifugal forces bring in, see `Element.powers`."""
+        spent = 0.0
+        if states.before is not None:
+            both = zip(self._memories(operation), states.before, states.films, strict=True)
+            spent = sum(float(np.sum(memory.spent(before, films))) for memory, before, films in both)
+        driven = self.brought_in(force, displacement, velocity, operation)
+        return Powers(0.0, driven, spent * self.plain.bearing.slice_length)
+
+    def stored(self, states: ContactStates, displacement: FloatArray, operation: Operation) -> float:
+        """Energy of its contacts [J]: of the solids and of the films that follow, see `Element.stored`."""
+        pairs = zip(self._memories(operation), states.films, strict=True)
+        return sum(float(np.sum(memory.stored(films))) for memory, films in pairs) * self.plain.bearing.slice_length
+
+    def _memories(self, operation: Operation) -> tuple[FilmMemory, FilmMemory]:
+        """The laws with memory at the speed."""
+        return self.contacts.memories(self.plain.entrainment_speed(operation), self.plain.temperature)

@@ -135,6 +135,27 @@ def answer_ring(first: int, felt: int, moment: Moment, out: FloatArray, answers:
             answers.slopes[first + i, first + j] = slope
 
 
+@njit(cache=True, error_model="numpy", forceinline=True)
+def turned_by(first: int, pairs: int, motion: FloatArray, answers: Answers) -> float:
+    """Moment that a bearing asks of its cage [N m]: sum of y f_z - z f_y over pairs of what it feels, tilts likewise.
+
+    Turning cage and rings together does no work, so that what the cage needs is what the rings give.
+
+    Parameters
+    ----------
+    first, pairs : int
+        First of what the bearing feels, and how many pairs it feels.
+    motion : array (2, m)
+        Displacements and their rates, among what all elements feel.
+    answers : Answers
+        Answers of all elements.
+    """
+    total = 0.0
+    for i in range(first, first + 2 * pairs, 2):
+        total += motion[0, i] * answers.force[i + 1] - motion[0, i + 1] * answers.force[i]
+    return total
+
+
 def feels(element: BearingElement) -> FloatArray:
     """Rows of what a bearing feels, shape (4, 6), or (2, 6) of one whose rings do not tilt."""
     return np.asarray(np.eye(6)[FELT[: _felt(element)]])

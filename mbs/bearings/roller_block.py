@@ -15,7 +15,7 @@ from numba import njit
 
 from ehdmaps.arrays import FloatArray, IntArray
 from mbs.bearings.bearing_block import Films, blend, room_of
-from mbs.bearings.bearing_kernel import RingMotion, Shape, Work, bearing_force, sizes_of
+from mbs.bearings.bearing_kernel import RingMotion, Shape, Work, bearing_force, roller_of, roller_power, sizes_of
 from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
 from mbs.bearings.force_at_point import FlatLaw
 from mbs.bearings.roller_element import RollerElement
@@ -27,6 +27,7 @@ from mbs.bearings.roller_places import (
     begin_answer,
     feels,
     gather_rollers,
+    outward_power,
     place_of,
 )
 from mbs.bearings.slice_table import PreparedLaw, law_numbers
@@ -49,6 +50,9 @@ class RollerBearings(NamedTuple):
         Tables of the laws of single contacts.
     course : Course
         Places of the steps on the tables.
+    lost, torques : array (bearings,)
+        Power that the contacts of each dissipated at the last answer [W], and moment of their loads at rest on the
+        cage [N m].
     """
 
     rollers: Rollers
@@ -56,6 +60,8 @@ class RollerBearings(NamedTuple):
     states: FloatArray
     films: Films
     course: Course
+    lost: FloatArray
+    torques: FloatArray
 
 
 @njit(cache=True, error_model="numpy")
@@ -86,6 +92,8 @@ def rollers_answer(bearings: RollerBearings, moment: Moment, motion: FloatArray,
         shape = Shape(sizes, rings.positions[b][:n], 0.5 * rings.profiles[b][:n], cos, sin)
         work = Work(bearings.rows[:n].reshape(1, n), bearings.states[: 4 * n].reshape(4, 1, n))
         begin_answer(rollers, b, moment, answers)
+        lost = torque = 0.0
+        first, x = rings.firsts[b], motion[0]
         for j in range(rings.rollers[b]):
             place = place_of(rollers, b, j, cage, motion)
             for side in range(2):
@@ -105,11 +113,39 @@ def rollers_answer(bearings: RollerBearings, moment: Moment, motion: FloatArray,
                     moment.by_q * stiffness[_THETA_Z, _THETA_Z] + moment.by_v * damping[_THETA_Z, _THETA_Z],
                 )
                 add_contact(rollers, b, j, side, place, contact, answers)
+                power, flat, tilted = roller_power(
+                    roller_of(ring, shape, 0), shape.positions, rings.weights[b][:n], work.states, 0
+                )
+                sign, c, s, r = 1.0 - 2.0 * side, place.cos, place.sin, first + 2 * side
+                across = x[r + 1] * c - x[r] * s
+                lost += power
+                torque += sign * across * flat - 0.5 * (x[first + 5] * s + x[first + 4] * c) * tilted
+        bearings.lost[b], bearings.torques[b] = lost * sizes.slice_length, torque * sizes.slice_length
         outside = 0
         for side in range(2):
             outside = max(outside, course.outside[moment.step, rollers.films_of[b, side]])
         answers.outside[rings.places[b]] += outside
     return FOUND
+
+
+@njit(cache=True, error_model="numpy")
+def rollers_powers(
+    bearings: RollerBearings, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray
+) -> None:
+    """What contacts dissipate, and what the cage brings in; see `mbs.model.blocks.Kind`.
+
+    Parameters
+    ----------
+    bearings, moment, motion, answers
+        The same as of `rollers_answer`.
+    out : array (elements, 3)
+        Powers of all elements; written.
+    """
+    rings = bearings.rollers.rings
+    for b in range(rings.firsts.size):
+        out[rings.places[b], 0] = bearings.lost[b]
+        outward = outward_power(bearings.rollers, b, moment, motion)
+        out[rings.places[b], 1] = bearings.torques[b] * rings.cage_rates[b] * moment.speed + outward
 
 
 class RollerBlock(FilmBlock[RollerBearings]):
@@ -142,9 +178,18 @@ class RollerBlock(FilmBlock[RollerBearings]):
             states=np.zeros(4 * most),
             films=films,
             course=course_of(0, len(tables)),
+            lost=np.zeros(len(elements)),
+            torques=np.zeros(len(elements)),
         )
         super().__init__(course, arrays)
 
 
-ROLLERS = Kind(arrays=RollerBearings, answer=rollers_answer, feels=feels, gather=RollerBlock, alone=alone)
+ROLLERS = Kind(
+    arrays=RollerBearings,
+    answer=rollers_answer,
+    feels=feels,
+    gather=RollerBlock,
+    alone=alone,
+    powers=rollers_powers,
+)
 """For `mbs.transient.kinds`."""

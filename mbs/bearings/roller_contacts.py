@@ -18,7 +18,7 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.maps.law import ContactLaw, LawAtPoint
-from ehdmaps.maps.memory import FilmState
+from ehdmaps.maps.memory import FilmMemory, FilmState
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.contact_groups import ContactGroup
 from mbs.bearings.film_relaxation import natural_times, relaxation_times, relaxing
@@ -309,6 +309,28 @@ class RollerContacts:
             f"roller contacts: no equilibrium of the rollers, still moving by {np.max(np.abs(step)):.3g} m after "
             f"{_STEPS} steps at the inner pose {q[:6].tolist()}; look at the law, or start from a smaller load"
         )
+
+    def approaches(self, displacement: npt.ArrayLike, cage_angle: float) -> tuple[FloatArray, FloatArray]:
+        """Approach of the slices of the inner and of the outer contacts, shape (Z, n) each [m].
+
+        Parameters
+        ----------
+        displacement : array (12 + Z,)
+            Displacements [m], [rad].
+        cage_angle : float
+            Angle of the first roller [rad].
+        """
+        q = self._vector("displacement", displacement)
+        inner, outer = (self._approach(*self._rows(side, cage_angle), q) for side in (0, 1))
+        return inner, outer
+
+    def memories(self, entrainment_speed: float, temperature: float) -> tuple[FilmMemory, FilmMemory]:
+        """Laws with memory of both contacts at a speed [m/s] and temperature [K]; for laws with films only."""
+        found = []
+        for side, law in enumerate(self.laws):
+            assert isinstance(law, ContactLaw)
+            found.append(self._point(side, law, entrainment_speed, temperature).memory)
+        return found[0], found[1]
 
     def _rows(self, side: int, cage_angle: float) -> tuple[FloatArray, FloatArray]:
         """Approach (Z, m) of the contacts by the displacements, and how it grows along the roller."""

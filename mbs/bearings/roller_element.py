@@ -6,17 +6,20 @@ centrifugal load is left out, as speeds of vibration are small against it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement, RingElement
+from mbs.bearings.contact_energy import brought_by_speed, cage_moment, energy_at_rest
 from mbs.bearings.contact_groups import ContactGroup
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.model.body import Body
-from mbs.model.elements import Excitation, Forces, Operation, Port
+from mbs.model.elements import Excitation, Forces, Operation, Port, Powers
 from mbs.model.relaxation import Films, Relaxation
 
 
@@ -123,6 +126,49 @@ class RollerElement(RingElement):
         )
         found.force[12:] += self.outward(operation)
         return found
+
+    def powers(
+        self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> Powers:
+        """What its contacts dissipate; what cage and centrifugal forces bring in, see `Element.powers`."""
+        at_rest = self.evaluate(displacement, np.zeros_like(velocity), operation).force
+        return Powers(-float((force - at_rest) @ velocity), self.brought_in(at_rest, displacement, velocity, operation))
+
+    def brought_in(
+        self, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> float:
+        """Power that the turning of the cage and the centrifugal forces of the rollers bring in [W].
+
+        Parameters
+        ----------
+        force, displacement, velocity, operation
+            What `powers` takes; the force is that which the cage feels.
+        """
+        turning = cage_moment(force, displacement, 2) * self.plain.rates[0] * operation.speed
+        return turning + self.outward(operation) * float(np.sum(velocity[12:]))
+
+    def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float:
+        """Energy of its contacts at rest [J], without that of a centrifugal field; see `Element.stored`."""
+        plain, contacts = self.plain, self.contacts
+        conditions = plain.entrainment_speed(operation), plain.temperature, 0.0
+        approaches = contacts.approaches(displacement, plain.cage_angle(operation))
+        return sum(
+            energy_at_rest(law, conditions, plain.bearing, approach)
+            for law, approach in zip(contacts.laws, approaches, strict=True)
+        )
+
+    def brought_by_speed(self, displacements: FloatArray, operations: Sequence[Operation]) -> float:
+        """Energy that changes of the speed brought into the films of both contacts."""
+        plain, total = self.plain, 0.0
+        conditions = [(plain.entrainment_speed(op), plain.temperature, 0.0) for op in operations]
+        for side, law in enumerate(self.contacts.laws):
+
+            def approaches(sample: int, side: int = side) -> FloatArray:
+                angle = plain.cage_angle(operations[sample])
+                return self.contacts.approaches(displacements[sample], angle)[side]
+
+            total += brought_by_speed(law, plain.bearing, conditions, approaches)
+        return total
 
     def outward(self, operation: Operation) -> float:
         """Centrifugal force of a roller [N]; zero where it is left out."""

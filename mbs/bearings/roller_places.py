@@ -176,6 +176,22 @@ def add_contact(rollers: Rollers, b: int, j: int, side: int, place: Place, conta
             answers.slopes[at[p], at[q]] += by_flat * flat[q] + by_tilt * tilted[q]
 
 
+@njit(cache=True, error_model="numpy")
+def outward_power(rollers: Rollers, b: int, moment: Moment, motion: FloatArray) -> float:
+    """Power of the centrifugal forces on the rollers of a bearing [W].
+
+    Parameters
+    ----------
+    rollers, b, moment, motion
+        What `place_of` and `begin_answer` take.
+    """
+    own, total = rollers.alone[b], 0.0
+    for r in range(own, own + rollers.rings.rollers[b]):
+        total += motion[1, r]
+    power: float = total * rollers.outward[b] * moment.speed * moment.speed
+    return power
+
+
 def feels(element: RollerElement) -> FloatArray:
     """Rows of what a bearing feels of its rings, shape (6, 12 + Z)."""
     rows = np.zeros((_FELT, element.contacts.size))

@@ -13,14 +13,15 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_force
+from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_energy, mesh_force, mesh_powers
 from mbs.gears.pair import GearPair
-from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port
+from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port, Powers
 
 HARMONICS = 5
 """Multiples of the meshing order that are worth following."""
@@ -106,6 +107,17 @@ class GearMesh(ElementDefaults):
             flanks[0, SLOPE] * driving + flanks[1, SLOPE] * other,
             flanks[0, BY_RATE] * driving + flanks[1, BY_RATE] * other,
         )
+
+    def powers(
+        self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> Powers:
+        """What its flanks dissipate, and what stiffness and error bring in, see `Element.powers`."""
+        motion, rate = self.rows @ displacement, self.rows @ velocity
+        return Powers(*mesh_powers(*self.arrays, operation.angle, operation.speed, motion, rate))
+
+    def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float:
+        """Energy of its flanks [J], see `Element.stored`."""
+        return float(mesh_energy(*self.arrays, operation.angle, self.rows @ displacement))
 
     @cached_property
     def _squares(self) -> tuple[FloatArray, FloatArray]:

@@ -10,7 +10,7 @@ from numba import njit
 
 from ehdmaps.arrays import FloatArray, IntArray
 from mbs.gears.gear import GearMesh
-from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_force
+from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_force, mesh_powers
 from mbs.model.blocks import FOUND, Answers, Kind, Member, Moment, SteadyBlock
 
 
@@ -19,13 +19,14 @@ class Meshes(NamedTuple):
 
     Attributes
     ----------
-    firsts : array (meshes,), of int
-        First of what each mesh feels.
+    firsts, places : array (meshes,), of int
+        First of what each mesh feels, and its place among all elements.
     constants, series : array (meshes, 5), (meshes, 4, harmonics)
         Arrays for `mesh_force`.
     """
 
     firsts: IntArray
+    places: IntArray
     constants: FloatArray
     series: FloatArray
 
@@ -61,6 +62,26 @@ def meshes_answer(meshes: Meshes, moment: Moment, motion: FloatArray, answers: A
     return FOUND
 
 
+@njit(cache=True, error_model="numpy")
+def meshes_powers(meshes: Meshes, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
+    """What flanks dissipate, and what stiffness and error bring in; see `mbs.model.blocks.Kind`.
+
+    Parameters
+    ----------
+    meshes, moment, motion, answers
+        The same as of `meshes_answer`.
+    out : array (elements, 3)
+        Powers of all elements; written.
+    """
+    x, y = motion[0], motion[1]
+    for g in range(meshes.firsts.size):
+        first, place = meshes.firsts[g], meshes.places[g]
+        compressions, rates = x[first : first + 2], y[first : first + 2]
+        out[place, 0], out[place, 1] = mesh_powers(
+            meshes.constants[g], meshes.series[g], moment.angle, moment.speed, compressions, rates
+        )
+
+
 def _gather(members: Sequence[Member]) -> SteadyBlock:
     """Arrays of some meshes; series as long as the longest."""
     made = [member.element.arrays for member in members]
@@ -68,7 +89,8 @@ def _gather(members: Sequence[Member]) -> SteadyBlock:
     for row, (_, part) in zip(series, made, strict=True):
         row[:, : part.shape[1]] = part
     constants = np.array([part for part, _ in made]).reshape(len(made), 5)
-    return SteadyBlock(Meshes(np.array([member.first for member in members], dtype=np.int64), constants, series))
+    firsts, places = (np.array([getattr(m, key) for m in members], dtype=np.int64) for key in ("first", "place"))
+    return SteadyBlock(Meshes(firsts, places, constants, series))
 
 
 def _compressions(mesh: GearMesh) -> FloatArray:
@@ -76,5 +98,5 @@ def _compressions(mesh: GearMesh) -> FloatArray:
     return mesh.rows
 
 
-GEAR_MESHES = Kind(arrays=Meshes, answer=meshes_answer, feels=_compressions, gather=_gather)
+GEAR_MESHES = Kind(arrays=Meshes, answer=meshes_answer, feels=_compressions, gather=_gather, powers=meshes_powers)
 """For `mbs.transient.kinds`."""

@@ -118,3 +118,63 @@ def mesh_force(
         lost = error if flank == 0 else backlash - error
         found = flank_force(motion[flank] - lost, rate[flank] - side * error_rate, stiffness, damping)
         out[flank, FORCE], out[flank, SLOPE], out[flank, BY_RATE] = found
+
+
+@njit(cache=True, error_model="numpy")
+def flank_energy(compression: float) -> float:
+    """Energy of a flank at rest for each stiffness [m2]: the integral of its load over the compression [m]."""
+    if compression <= 0.0:
+        return 0.0
+    if compression < TOUCH:
+        return compression * compression * compression / (6.0 * TOUCH)
+    middle = compression - 0.5 * TOUCH
+    return TOUCH * TOUCH / 6.0 + 0.5 * (middle * middle - 0.25 * TOUCH * TOUCH)
+
+
+@njit(cache=True, error_model="numpy")
+def mesh_powers(
+    constants: FloatArray, series: FloatArray, angle: float, speed: float, motion: FloatArray, rate: FloatArray
+) -> tuple[float, float]:
+    """Power that both flanks dissipate, and that stiffness and transmission error bring in as they turn [W].
+
+    With the compression p, its rate and the energy k(t) G(p) the force F does -F dp/dt - F de/dt on the gears, and
+    stores F_rest dp/dt + G dk/dt: dissipated is (F - F_rest) dp/dt, brought in G dk/dt - F de/dt.
+
+    Parameters
+    ----------
+    constants, series, angle, speed, motion, rate
+        What `mesh_force` takes.
+    """
+    stiffness, error, error_rate = mesh_course(constants, series, angle, speed)
+    phase, pace, change = constants[TEETH] * angle + constants[PHASE], constants[TEETH] * speed, 0.0
+    for j in range(series.shape[1]):
+        order = j + 1.0
+        change -= order * pace * series[BY_STIFFNESS, j] * math.sin(order * phase + series[STIFFNESS_PHASE, j])
+    change *= constants[STIFFNESS]
+    damping, backlash = constants[DAMPING], constants[BACKLASH]
+    dissipated = driven = 0.0
+    for flank in range(2):
+        side = 1.0 if flank == 0 else -1.0
+        compression = motion[flank] - (error if flank == 0 else backlash - error)
+        moving = rate[flank] - side * error_rate
+        force = flank_force(compression, moving, stiffness, damping)[0]
+        rest = flank_force(compression, 0.0, stiffness, damping)[0]
+        dissipated += (force - rest) * moving
+        driven += change * flank_energy(compression) - force * side * error_rate
+    return dissipated, driven
+
+
+@njit(cache=True, error_model="numpy")
+def mesh_energy(constants: FloatArray, series: FloatArray, angle: float, motion: FloatArray) -> float:
+    """Energy that both flanks store [J].
+
+    Parameters
+    ----------
+    constants, series, angle, motion
+        What `mesh_force` takes.
+    """
+    stiffness, error, _ = mesh_course(constants, series, angle, 0.0)
+    stored: float = stiffness * (
+        flank_energy(motion[0] - error) + flank_energy(motion[1] - (constants[BACKLASH] - error))
+    )
+    return stored

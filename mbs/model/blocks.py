@@ -159,6 +159,10 @@ class Kind:
     alone : callable or None
         Rows (felt, ports) of coordinates that the element feels and nothing else touches, such as its rollers. They
         come before what all elements feel of others, so that elimination, which begins with them, costs little.
+    powers : callable or None
+        Compiled function (arrays, Moment, motion, Answers, out) that writes the numbers of
+        `mbs.model.elements.Powers` of each of its elements into the row of `out` (elements, 3) that is its place;
+        called when a step is made, after `accept`. None where the elements do not say.
     accept : callable or None
         Compiled function (arrays, Moment) that is called when a step is made, for elements with states of their own;
         the last answer was then that of the step. Their block is a `StatefulBlock`.
@@ -174,4 +178,5 @@ class Kind:
     takes: Callable[[Element], bool] = _always
     alone: Callable[[Any], FloatArray] | None = None
     accept: Callable[..., None] | None = None
+    powers: Callable[..., None] | None = None
     placed: Callable[[Any, FloatArray], Any] | None = None

@@ -6,6 +6,7 @@ are at the same point of the system, so that forces and moments balance without 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple, Protocol
 
@@ -74,6 +75,24 @@ class Forces(NamedTuple):
     stiffness: FloatArray
     damping: FloatArray
     outside: bool = False
+
+
+class Powers(NamedTuple):
+    """What becomes of the power that an element exchanges, besides what it stores.
+
+    Attributes
+    ----------
+    dissipated : float
+        What it takes up for good, such as by its dampers [W].
+    driven : float
+        What its prescribed course brings in, such as the turning of a cage or a transmission error [W].
+    spent : float
+        What it took up for good over the last step, besides [J]: of states that follow within a step.
+    """
+
+    dissipated: float
+    driven: float
+    spent: float = 0.0
 
 
 class Excitation(NamedTuple):
@@ -148,6 +167,46 @@ class Element(Protocol):
         """
         ...
 
+    def powers(
+        self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> Powers | None:
+        """What it dissipates, and what its prescribed course brings in; None for an element that does not say.
+
+        With U of `stored`, at a steady speed, the power of its force on its ports is driven - dissipated - dU/dt.
+
+        Parameters
+        ----------
+        states : object
+            States that `advance` returned.
+        force : array, shape (m,)
+            Force that it returned.
+        displacement, velocity, operation
+            What it took.
+        """
+        ...
+
+    def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float | None:
+        """Energy that it stores [J]; None for an element that does not say.
+
+        Parameters
+        ----------
+        states, displacement, operation
+            What `advance` returned and took.
+        """
+        ...
+
+    def brought_by_speed(self, displacements: FloatArray, operations: Sequence[Operation]) -> float:
+        """Energy that changes of the speed brought into it by changing its law, over a run [J].
+
+        Parameters
+        ----------
+        displacements : array, shape (samples, m)
+            Displacements of all ports.
+        operations : sequence of Operation
+            Speed, angle and time of each sample.
+        """
+        ...
+
     def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """What of its stiffness needs time, for small oscillations about a rest; None for K and C at any frequency.
 
@@ -178,6 +237,20 @@ class ElementDefaults:
     def excitation(self) -> Excitation | None:
         """None: it answers motion only."""
         return None
+
+    def powers(
+        self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> Powers | None:
+        """None: it does not say; see `Element.powers`."""
+        return None
+
+    def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float | None:
+        """None: it does not say; see `Element.stored`."""
+        return None
+
+    def brought_by_speed(self, displacements: FloatArray, operations: Sequence[Operation]) -> float:
+        """None at all: its law is the same at any speed."""
+        return 0.0
 
     def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """None: stiffness and damping are the same at any frequency."""

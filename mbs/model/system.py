@@ -77,6 +77,8 @@ class System:
         M, D, G (per speed of the system) and K of bodies and springs.
     linear_parts : dict of str to array, shape (n, n)
         K by flexible body and spring.
+    damping_parts : dict of str to array, shape (n, n)
+        D by flexible body and spring, of those that damp.
     elements : tuple of Connected
         The nonlinear elements.
 
@@ -105,6 +107,7 @@ class System:
         self.units = tuple(unit for body in self.bodies for unit in body.units)
         self.mass, self.damping, self.gyroscopic, self.stiffness = (np.zeros((self.size, self.size)) for _ in range(4))
         self.linear_parts: dict[str, FloatArray] = {}
+        self.damping_parts: dict[str, FloatArray] = {}
         for body in self.bodies:
             here = self._slice(body)
             self.mass[here, here] = body.mass
@@ -114,12 +117,17 @@ class System:
             if np.any(body.stiffness):
                 self.linear_parts[body.name] = np.zeros((self.size, self.size))
                 self.linear_parts[body.name][here, here] = body.stiffness
+            if np.any(body.damping):
+                self.damping_parts[body.name] = np.zeros((self.size, self.size))
+                self.damping_parts[body.name][here, here] = body.damping
         for spring in springs:
             transform = self.relative(spring.on, spring.against)
             part = transform.T @ spring.stiffness @ transform
             self.linear_parts[spring.name] = part
             self.stiffness += part
-            self.damping += transform.T @ spring.damping @ transform
+            if np.any(spring.damping):
+                self.damping_parts[spring.name] = transform.T @ spring.damping @ transform
+                self.damping += self.damping_parts[spring.name]
         given = [
             (self.relative(load.on, load.against).T @ np.asarray(load.force, dtype=np.float64), load.profile)
             for load in loads

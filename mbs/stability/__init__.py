@@ -1,6 +1,8 @@
 """Stability at the extremes of the multibody side: what a search over wild input found.
 
-=======  ======================================================================
-readers  scenes, bodies of finite elements and measured records, damaged
-=======  ======================================================================
+==========  ===================================================================
+element     laws and bearing element: derivatives, symmetry, closed cycles
+integrator  stiffness and damping over decades, reversal, unbalance, impact
+readers     scenes, bodies of finite elements and measured records, damaged
+==========  ===================================================================
 """

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import scipy.linalg
@@ -17,11 +18,15 @@ from mbs.model.blocks import IN_PYTHON
 from mbs.model.profiles import LoadProfile, SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
+from mbs.transient.energy import Instant, Sums
 from mbs.transient.linear_part import LinearPart
-from mbs.transient.run_arrays import Course, Numbers, Records, State
+from mbs.transient.run_arrays import Course, Energies, Numbers, Records, State
 from mbs.transient.run_elements import RunElements
 from mbs.transient.run_kernel import advance, advance_anew, observe
 from mbs.transient.stepping import ITERATIONS, Method, Stepper
+
+_NOTHING = 1e-15
+"""Damping of a pair of modes, as a part of the largest, that is round-off."""
 
 
 class CompiledRun:
@@ -84,6 +89,8 @@ class CompiledRun:
             forces=np.zeros((samples, expand.shape[0])),
             motions=np.zeros((samples if states else 0, 3, system.size)),
         )
+        self._transform, self._expand = ports, expand
+        self._energies = _energies(system, modes, self._elements)
         self._counters = np.zeros(1, dtype=np.int64)
         self._advance = advance if self._elements.ours else advance_anew
         self.compiled = 0
@@ -141,8 +148,8 @@ class CompiledRun:
                     rows=rows[here],
                 )
                 made, status, error = self._advance(
-                    linear, numbers, blocks, course, self._state, self._records, self._elements.outside,
-                    self._counters,
+                    linear, numbers, blocks, course, self._state, self._records, self._energies,
+                    self._elements.outside, self._counters,
                 )  # fmt: skip
                 self.compiled += made
                 done += made
@@ -162,6 +169,21 @@ class CompiledRun:
         records = self._records
         return records.outputs, records.forces @ self._elements.expand, records.motions @ self._modes.T
 
+    def ends(self) -> tuple[FloatArray, FloatArray, list[Any]]:
+        """Displacement and velocity of the coordinates, and states of the elements, after the last step."""
+        p, v = self._state.motion[:2]
+        return self._modes @ p, self._modes @ v, self._elements.states(self._stepper.states)
+
+    @property
+    def sums(self) -> Sums:
+        """Energies of the steps so far."""
+        energies, elements = self._energies, self._elements
+        works = np.zeros(elements.outside.size)
+        np.add.at(works, elements.owners, energies.works)
+        exchanged = np.where(elements.told[:, None], energies.exchanged, math.nan)
+        loads, taken = energies.sums.tolist()
+        return self._stepper.account.sums.plus(Sums(loads, taken, energies.lost, works, exchanged))
+
     def _uncompiled(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
         """Make steps by the reference; as `steps`."""
         stepper = self._stepper
@@ -169,6 +191,7 @@ class CompiledRun:
             self._modes @ part for part in self._state.motion
         )
         stepper.states = self._elements.states(stepper.states)
+        stepper.account.last = self._instant()
         error = 0.0
         for done, (time, row) in enumerate(zip(times.tolist(), rows.tolist(), strict=True)):
             error = stepper.step(time, h)
@@ -187,6 +210,25 @@ class CompiledRun:
             part[:] = self._by_mass @ values
         self._state.forces[:] = stepper.forces @ self._back
         self._elements.resume(stepper.states)
+        last, energies = stepper.account.last, self._energies
+        energies.load[:] = self._modes.T @ last.load
+        energies.felt[0], energies.felt[1] = self._expand @ last.x, self._expand @ last.rate
+        energies.powers[:] = np.nan_to_num(last.powers)
+
+    def _instant(self) -> Instant:
+        """The end of the last step, for steps in Python."""
+        stepper, energies = self._stepper, self._energies
+        powers = np.where(np.isfinite(stepper.account.last.powers), energies.powers, math.nan)
+        return Instant(
+            q=stepper.q,
+            v=stepper.v,
+            a=stepper.acceleration,
+            load=self._by_mass.T @ energies.load,
+            x=self._transform @ stepper.q,
+            rate=self._transform @ stepper.v,
+            force=self._state.forces[0] @ self._expand,
+            powers=powers,
+        )
 
     def _numbers(self, h: float) -> Numbers:
         """Numbers of the method."""
@@ -206,6 +248,33 @@ class CompiledRun:
             residual=self._settings.residual,
             iterations=ITERATIONS,
         )
+
+
+def _energies(system: System, modes: FloatArray, elements: RunElements) -> Energies:
+    """Room for the energies of a run, with the damping of its parts by the modes."""
+    rows, columns, values, starts = [], [], [np.zeros(0)], [0]
+    for part in system.damping_parts.values():
+        upper = np.triu(modes.T @ part @ modes)
+        upper[np.abs(upper) <= _NOTHING * np.max(np.abs(upper))] = 0.0
+        i, j = np.nonzero(upper)
+        rows += i.tolist()
+        columns += j.tolist()
+        values.append(upper[i, j] * np.where(i == j, 1.0, 2.0))
+        starts.append(len(rows))
+    felt, count = elements.expand.shape[0], elements.outside.size
+    return Energies(
+        load=np.zeros(system.size),
+        felt=np.zeros((2, felt)),
+        powers=np.zeros((count, 3)),
+        sums=np.zeros(2),
+        works=np.zeros(felt),
+        exchanged=np.zeros((count, 2)),
+        lost=np.zeros(len(starts) - 1),
+        starts=np.array(starts, dtype=np.int64),
+        rows=np.array(rows, dtype=np.int64),
+        columns=np.array(columns, dtype=np.int64),
+        values=np.concatenate(values),
+    )
 
 
 def _loads(system: System, modes: FloatArray) -> tuple[FloatArray, FloatArray, list[LoadProfile]]:

@@ -14,17 +14,18 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.model.elements import Sensor
+from mbs.model.elements import Operation, Sensor
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
 from mbs.transient.compiled_run import CompiledRun
+from mbs.transient.energy import EnergyBalance, Sums, balance, stored_energy
 from mbs.transient.run_elements import in_python
 from mbs.transient.stepping import Stepper
 
@@ -76,6 +77,8 @@ class Recording:
         Why no step could be, in sentences; none where it could or was not asked for.
     states : States
         Motion of all coordinates; of no samples if it was not asked for.
+    energy : EnergyBalance
+        Energy balance: what came in, where it went, what does not close.
     """
 
     time: FloatArray
@@ -91,6 +94,7 @@ class Recording:
     compiled: int
     notes: tuple[str, ...]
     states: States
+    energy: EnergyBalance
 
 
 @dataclass(frozen=True)
@@ -161,7 +165,10 @@ def run(
         engine = CompiledRun(system, speed, settings, stepper, plan.rows, plan.orders, plan.samples + 1, plan.states)
     else:
         engine = _Reference(stepper, plan, settings)
+    begin = stored_energy(system, stepper.q, stepper.v, stepper.states, Operation(*speed.at(0.0), 0.0))
     steps, halved = _drive(engine, settings, plan.samples, progress)
+    last = plan.samples * settings.sample
+    end = stored_energy(system, *engine.ends(), Operation(*speed.at(last), last))
     outputs, forces, motions = engine.recorded()
     times = np.asarray(np.arange(plan.samples + 1) * settings.sample, dtype=np.float64)
     courses = np.array([speed.at(time) for time in times])
@@ -169,6 +176,11 @@ def run(
     ends = np.cumsum([0, *ports]).tolist()
     parts = [slice(begin, end) for begin, end in pairwise(ends)]
     count = len(sensors)
+    operations = [Operation(w, angle, at) for (w, angle), at in zip(courses.tolist(), times.tolist(), strict=True)]
+    by_speed = [
+        entry.element.brought_by_speed(outputs[:, count + part.start : count + part.stop], operations)
+        for entry, part in zip(system.elements, parts, strict=True)
+    ]
     return Recording(
         time=times,
         speed=courses[:, 0],
@@ -183,6 +195,7 @@ def run(
         compiled=engine.compiled,
         notes=notes,
         states=States(motions[:, 0], motions[:, 1], motions[:, 2]),
+        energy=balance(system, engine.sums, begin, end, by_speed),
     )
 
 
@@ -232,6 +245,15 @@ class _Engine(Protocol):
 
     def steps(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
         """Make steps of length h to the given times; how many were made, and the error of the last one tried."""
+        ...
+
+    @property
+    def sums(self) -> Sums:
+        """Energies of the steps so far."""
+        ...
+
+    def ends(self) -> tuple[FloatArray, FloatArray, Sequence[Any]]:
+        """Displacement and velocity of the coordinates, and states of the elements, after the last step."""
         ...
 
     def recorded(self) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -304,6 +326,15 @@ class _Reference:
             if row >= 0:
                 self._record(row)
         return times.size, error
+
+    @property
+    def sums(self) -> Sums:
+        """Energies of the steps so far."""
+        return self._stepper.account.sums
+
+    def ends(self) -> tuple[FloatArray, FloatArray, Sequence[Any]]:
+        """Displacement, velocity and states after the last step."""
+        return self._stepper.q, self._stepper.v, self._stepper.states
 
     def recorded(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Outputs, forces and motions."""

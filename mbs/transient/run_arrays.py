@@ -126,3 +126,41 @@ class Records(NamedTuple):
     outputs: FloatArray
     forces: FloatArray
     motions: FloatArray
+
+
+class Energies(NamedTuple):
+    """Energies of the steps of a run, summed up as `mbs.transient.energy` says, and what the last step left for that.
+
+    Attributes
+    ----------
+    load : array (n,)
+        Loads at the end of the last step, by mode.
+    felt : array (2, m)
+        What the elements felt there, and its rate.
+    powers : array (elements, 3)
+        Numbers of `mbs.model.elements.Powers` of each element there.
+    sums : array (2,)
+        Work of the loads, and what the method took [J].
+    works : array (m,)
+        Work of the forces of the elements, by what they feel [J].
+    exchanged : array (elements, 2)
+        What elements dissipated, and what their courses brought in [J].
+    lost : array (parts,)
+        What parts of the linear system dissipated [J].
+    starts : array (parts + 1,), of int
+        First entry of each part, and the number of all.
+    rows, columns, values : array (entries,)
+        Entries of the damping of all parts by the modes, on and above the diagonal; those above it doubled.
+    """
+
+    load: FloatArray
+    felt: FloatArray
+    powers: FloatArray
+    sums: FloatArray
+    works: FloatArray
+    exchanged: FloatArray
+    lost: FloatArray
+    starts: IntArray
+    rows: IntArray
+    columns: IntArray
+    values: FloatArray

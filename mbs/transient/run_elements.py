@@ -53,6 +53,10 @@ class RunElements:
         How many rows at the beginning of `expand` are of coordinates that nothing else touches.
     outside : array of int, shape (elements,)
         How often each was evaluated outside its map so far.
+    owners : array of int, shape (felt,)
+        Place of the element of each row of `expand`.
+    told : array of bool, shape (elements,)
+        Whether compiled code has the powers of each element.
     ours : bool
         Whether all kinds that are needed are of this package.
     stateful : tuple of (StatefulBlock, tuple of int)
@@ -63,6 +67,8 @@ class RunElements:
     expand: FloatArray
     alone: int
     outside: IntArray
+    owners: IntArray
+    told: BoolArray
     ours: bool
     stateful: tuple[tuple[StatefulBlock, tuple[int, ...]], ...]
 
@@ -84,6 +90,7 @@ class RunElements:
             assert kind is not None
             members[kind].append(Member(entry.element, place, first, own))
             own, first = own + alone[place].shape[0], first + felt[place].shape[0]
+        owners = [place for rows in (alone, felt) for place, part in enumerate(rows) for _ in range(part.shape[0])]
         ours = all(is_ours(kind) for kind, found in members.items() if found)
         used = [kind for kind, found in members.items() if found or (ours and is_ours(kind) and _is_common(kind))]
         parts = [scipy.linalg.block_diag(*rows) if rows else np.zeros((0, 0)) for rows in (alone, felt)]
@@ -93,6 +100,8 @@ class RunElements:
             expand=np.asarray(np.concatenate(parts), dtype=np.float64),
             alone=count,
             outside=np.zeros(len(connected), dtype=np.int64),
+            owners=np.array(owners, dtype=np.int64),
+            told=np.array([kind is not None and kind.powers is not None for kind in of_connected], dtype=np.bool_),
             ours=ours,
             stateful=tuple(
                 (cast(StatefulBlock, block), tuple(member.place for member in members[kind]))

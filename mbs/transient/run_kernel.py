@@ -33,7 +33,7 @@ from ehdmaps.maps.lines import FAST
 from mbs.model.blocks import FOUND, NO_SOLUTION, Answers, Moment
 from mbs.transient.integration_kernel import eliminate
 from mbs.transient.kinds import KINDS
-from mbs.transient.run_arrays import Course, Linear, Numbers, Records, State
+from mbs.transient.run_arrays import Course, Energies, Linear, Numbers, Records, State
 
 DONE, TOO_LARGE = FOUND, 3
 """How `advance` ended, besides `NO_SOLUTION` and `IN_PYTHON`: all steps made; error above the tolerance."""
@@ -168,6 +168,87 @@ def _all_accept(blocks: Any, moment: Any) -> Callable[..., None]:
     return first_and_rest
 
 
+def all_powers(blocks: tuple[Any, ...], moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
+    """Powers of all elements at the end of a step that is made, in compiled code only.
+
+    Parameters
+    ----------
+    blocks, moment, motion, answers
+        The same as of `all_answer`.
+    out : array (elements, 3)
+        Numbers of `mbs.model.elements.Powers` of each; written where its kind says so.
+    """
+    raise NotImplementedError
+
+
+@overload(all_powers, jit_options={"error_model": "numpy"})
+def _all_powers(blocks: Any, moment: Any, motion: Any, answers: Any, out: Any) -> Callable[..., None]:
+    """Compile for the types of some blocks: the first one, and then the rest likewise."""
+    if len(blocks) == 0:
+
+        def none(blocks: Any, moment: Any, motion: Any, answers: Any, out: Any) -> None:
+            return
+
+        return none
+    powers = {kind.arrays: kind.powers for kind in KINDS.values()}[blocks[0].instance_class]
+    if powers is None:
+
+        def rest(blocks: Any, moment: Any, motion: Any, answers: Any, out: Any) -> None:
+            all_powers(blocks[1:], moment, motion, answers, out)
+
+        return rest
+
+    def first_and_rest(blocks: Any, moment: Any, motion: Any, answers: Any, out: Any) -> None:
+        powers(blocks[0], moment, motion, answers, out)
+        all_powers(blocks[1:], moment, motion, answers, out)
+
+    return first_and_rest
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _account(
+    linear: Linear,
+    numbers: Numbers,
+    state: State,
+    begun: FloatArray,
+    found_a: FloatArray,
+    load: FloatArray,
+    motion: FloatArray,
+    force: FloatArray,
+    energies: Energies,
+    mean: FloatArray,
+) -> None:
+    """Add the energies of a step before its state is overwritten; see `mbs.transient.energy`.
+
+    `begun` (2, n) is what the step begins with, of displacement and velocity; `mean` (n,) is work space.
+    """
+    h, by_q, by_v = numbers.h, numbers.by_q, numbers.by_v
+    p, v, a = state.motion[0], state.motion[1], state.motion[2]
+    p0, v0 = begun[0], begun[1]
+    work = taken = 0.0
+    for i in range(p.size):
+        p1, v1 = p0[i] + by_q * found_a[i], v0[i] + by_v * found_a[i]
+        moved, middle, pull = p1 - p[i], 0.5 * (v[i] + v1), 0.5 * (energies.load[i] + load[i])
+        work += pull * moved
+        taken -= middle * (v1 - v[i] - 0.5 * h * (a[i] + found_a[i]))
+        taken -= (h * middle - moved) * (pull - 0.5 * linear.eigenvalues[i] * (p[i] + p1))
+        mean[i] = middle
+        energies.load[i] = load[i]
+    latest, x, rate = state.forces[0], energies.felt[0], energies.felt[1]
+    for i in range(force.size):
+        middle, moved = 0.5 * (latest[i] + force[i]), motion[0, i] - x[i]
+        energies.works[i] += middle * moved
+        taken -= (0.5 * h * (rate[i] + motion[1, i]) - moved) * middle
+        x[i], rate[i] = motion[0, i], motion[1, i]
+    energies.sums[0] += work
+    energies.sums[1] += taken
+    for part in range(energies.lost.size):
+        power = 0.0
+        for e in range(energies.starts[part], energies.starts[part + 1]):
+            power += energies.values[e] * mean[energies.rows[e]] * mean[energies.columns[e]]
+        energies.lost[part] += h * power
+
+
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def _jacobian(slopes: FloatArray, receptance: FloatArray, alone: int, out: FloatArray) -> None:
     """1 + (by_q K + by_v C) R; slopes are zero but for the elements' own, R is diagonal for what is alone."""
@@ -219,6 +300,7 @@ def advance(
     course: Course,
     state: State,
     records: Records,
+    energies: Energies,
     outside: IntArray,
     counters: IntArray,
 ) -> tuple[int, int, float]:
@@ -232,6 +314,8 @@ def advance(
         Overwritten after each step that is made.
     records : Records
         Records of the run, filled.
+    energies : Energies
+        Energies of the run, added to.
     outside : array (elements,), of int
         Evaluations outside the map, counted up.
     counters : array (1,), of int
@@ -245,7 +329,8 @@ def advance(
     """
     n, m = linear.eigenvalues.size, linear.ports.shape[0]
     p, v, a, carried = state.motion[0], state.motion[1], state.motion[2], state.motion[3]
-    p0, v0, known, right, free = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    begun, known, right, free, mean = np.empty((2, n)), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    p0, v0, powers = begun[0], begun[1], energies.powers.copy()
     found_a, load = np.empty(n), np.empty(n)
     unmoved, motion, answers = np.empty((2, m)), np.empty((2, m)), Answers(np.zeros(m), np.zeros((m, m)), outside)
     u, short, jacobian = np.empty(m), np.empty(m), np.empty((m, m))
@@ -326,12 +411,19 @@ def advance(
             error = numbers.error_weight * np.max(np.abs(free))
             if not error <= numbers.tolerance:
                 return step, TOO_LARGE, error
+        _account(linear, numbers, state, begun, found_a, load, motion, u, energies, mean)
         for i in range(n):
             p[i], v[i] = p0[i] + by_q * found_a[i], v0[i] + by_v * found_a[i]
             carried[i], a[i] = known[i] + numbers.ratio * found_a[i], found_a[i]
         for i in range(m):
             earlier[i], before[i], latest[i] = before[i], latest[i], u[i]
         all_accept(blocks, moment)
+        all_powers(blocks, moment, motion, answers, powers)
+        for i in range(powers.shape[0]):
+            energies.exchanged[i, 0] += powers[i, 2]
+            for k in range(2):
+                energies.exchanged[i, k] += 0.5 * h * (energies.powers[i, k] + powers[i, k])
+                energies.powers[i, k] = powers[i, k]
         if course.rows[step] >= 0:
             observe(state, records, course.rows[step])
     return course.speeds.size, DONE, error

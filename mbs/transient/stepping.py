@@ -24,6 +24,7 @@ from mbs.model.elements import Operation
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
+from mbs.transient.energy import Account, Instant
 from mbs.transient.integration_kernel import correction, port_motion, unbalanced
 
 ITERATIONS = 12
@@ -85,6 +86,8 @@ class Stepper:
         How often each element was evaluated outside its map so far.
     states : list
         What each element with states of its own returned at the end of the last step, see `Element.advance`.
+    account : Account
+        Energies of the steps.
     """
 
     def __init__(
@@ -118,6 +121,7 @@ class Stepper:
         self.states = list(self._trial)
         self.acceleration = np.asarray(np.linalg.solve(system.mass, -self._unbalanced), dtype=np.float64)
         self.carried = self.acceleration.copy()
+        self.account = Account(system, [rows for _, rows in self._elements], self._instant(0.0))
 
     def step(self, time: float, h: float) -> float:
         """Make a step and return the estimate of its error; leave the state as it is where that is too large.
@@ -156,7 +160,21 @@ class Stepper:
             self.carried = known + method.ratio * unknown
             self.acceleration = unknown
             self.states = list(self._trial)
+            self.account.add(h, self._instant(time))
         return error
+
+    def _instant(self, time: float) -> Instant:
+        """The end of the step that was evaluated last."""
+        speed, angle = self._speed.at(time)
+        operation = Operation(speed, angle, time)
+        x, rate = self._motion.copy()
+        force, powers = self._port_force.copy(), np.full((len(self._elements), 3), math.nan)
+        for row, state, (element, rows) in zip(powers, self.states, self._elements, strict=True):
+            found = element.powers(state, force[rows], x[rows], rate[rows], operation)
+            if found is not None:
+                row[:] = found
+        load = self._system.loads(time)
+        return Instant(self.q, self.v, self.acceleration, load, x, rate, force, powers)
 
     def _residual(self, q: FloatArray, v: FloatArray, acceleration: FloatArray, time: float) -> tuple[float, float]:
         """Find the forces that are out of balance: their size, and that of those which balance each other."""

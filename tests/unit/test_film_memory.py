@@ -265,3 +265,44 @@ def test_a_dry_map_has_no_memory():
     rest, k, _ = at(5e-6, 0.0)
     assert w == pytest.approx(rest, rel=1e-6)
     assert tangent == pytest.approx(k, rel=1e-5)
+
+
+def test_a_dry_slice_that_comes_into_contact_has_the_load_at_rest():
+    # Without a film y rises by rounding alone at lift-off, which sent Newton's first step beyond the table.
+    at = law().at(0.0, WARM)
+    apart = at.memory.settled(np.array([-1e-6, 0.0, -1e-6]))
+    deltas = np.array([1.3e-8, 7e-8, 1e-5])
+    w, _, after = at.memory.advance(apart, deltas, 1e-5)
+    rest = at(deltas, 0.0)[0]
+    # Cubics of the table in the cells next to lift-off.
+    assert w == pytest.approx(rest, rel=1e-3)
+    assert after.approach == pytest.approx(deltas, rel=1e-3)
+
+
+class TestEnergy:
+    @pytest.mark.parametrize("speed", [0.1, SPEED])
+    def test_work_is_stored_or_taken_up(self, speed):
+        memory, gone = law().at(speed, WARM).memory, []
+        middle, swing = approach_of(law().at(speed, WARM), 2e5), 2e-6
+        for steps in (200, 400):
+            # A rest, because cubics of a and y do not quite add up to the approach of a settled state.
+            state = memory.advance(memory.settled(np.array([middle])), np.array([middle]), 1e3)[2]
+            first, last, work, spent = memory.stored(state)[0], state.load[0], 0.0, 0.0
+            before = middle
+            for i in range(steps):
+                delta = middle + swing * math.sin(2.0 * math.pi * (i + 1.0) / steps)
+                w, _, after = memory.advance(state, np.array([delta]), 1e-3 / steps)
+                work += 0.5 * (last + w[0]) * (delta - before)
+                spent += memory.spent(state, after)[0]
+                state, last, before = after, w[0], delta
+            assert spent > 0.0
+            gone.append(abs(work - spent - memory.stored(state)[0] + first) / spent)
+        # The trapezoidal rule, of second order.
+        assert gone[1] < 0.3 * gone[0] < 0.01
+
+    def test_stored_is_the_integral_of_the_load_for_slow_motion(self):
+        at = law().at(SPEED, WARM)
+        deltas = np.linspace(approach_of(at, 1e4), approach_of(at, 3e5), 2001)
+        loads, stored = at(deltas, 0.0)[0], at.memory.stored(at.memory.settled(deltas[[0, -1]]))
+        # Cubics of a and y that do not quite add up to the approach.
+        assert stored[1] - stored[0] == pytest.approx(np.trapezoid(loads, deltas), rel=1e-5)

@@ -1,0 +1,63 @@
+"""The energy balance of a run in words."""
+
+from __future__ import annotations
+
+from mbs.transient.energy import ElementEnergy, EnergyBalance
+
+NOTABLE = 0.01
+"""Residual, and energy that the method took, as a part of what went through, from which a line warns."""
+
+
+def energy_lines(energy: EnergyBalance) -> list[str]:
+    """Lines on where the energy of a run came from and went to.
+
+    Parameters
+    ----------
+    energy : EnergyBalance
+        The balance.
+    """
+    sources = [("loads", energy.loads), *(pair for entry in energy.elements for pair in _sources(entry))]
+    sinks = [*energy.parts.items(), *((e.name, e.dissipated) for e in energy.elements if e.dissipated is not None)]
+    stores = [("kinetic", energy.kinetic), ("bodies and springs", energy.elastic)]
+    stores += [(e.name, e.change) for e in energy.elements if e.told and e.change is not None]
+    return [
+        f"energy: {energy.put_in:.4g} J put in ({_named(sources)})",
+        f"  {energy.dissipated:.4g} J dissipated ({_named(sinks)})",
+        f"  {energy.stored:.4g} J stored more at the end ({_named(stores)})",
+        *_method_lines(energy),
+    ]
+
+
+def _sources(entry: ElementEnergy) -> list[tuple[str, float]]:
+    """What came in through an element."""
+    if not entry.told:
+        return [(f"{entry.name}, which does not say what it stores", entry.work)]
+    found = [(f"turning of {entry.name}", entry.driven or 0.0)]
+    return [*found, (f"speed on {entry.name}, estimated", entry.by_speed)] if entry.by_speed else found
+
+
+def _named(terms: list[tuple[str, float]]) -> str:
+    """Terms with their names."""
+    return ", ".join(f"{name} {value:.3g} J" for name, value in terms) or "nothing"
+
+
+def _method_lines(energy: EnergyBalance) -> list[str]:
+    """What the method took, and what is left."""
+    through = energy.through
+    if through == 0.0:
+        return ["  no energy went through"]
+    share, left = energy.numerical / through, energy.relative_residual
+    took = f"the method of integration {'took' if share >= 0.0 else 'gave'} {abs(energy.numerical):.3g} J"
+    took += f", {_percent(abs(share))} of the {through:.4g} J that went through"
+    rest = f"residual {energy.residual:.3g} J, {_percent(left)}"
+    return [
+        f"  warning: {took}; take smaller steps, or a spectral radius nearer to 1"
+        if abs(share) > NOTABLE
+        else f"  {took}",
+        f"  warning: {rest}; it falls with the square of the step" if left > NOTABLE else f"  {rest}",
+    ]
+
+
+def _percent(part: float) -> str:
+    """A part in percent."""
+    return f"{100.0 * part:.2g} %"

@@ -1,0 +1,60 @@
+"""The search at the extremes of mbs in its short form: what it finds, and that it finds what is wrong."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from ehdmaps.maps.law import ContactLaw
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.laws import hertz
+from mbs.cli import main
+from mbs.model.elements import Forces
+from mbs.stability.element import element_checks
+from mbs.stability.integrator import SCENARIOS, integrator_checks
+from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
+
+
+def dry(bearing: Bearing):
+    return {"hertz": hertz(bearing, damping_time=1.25e-5)}
+
+
+def films(bearing: Bearing):
+    return {"films": ContactLaw("series", CONTACTS, OIL, SMALL_FIELD, "asymptote")}
+
+
+@pytest.mark.parametrize(("laws", "runs"), [(dry, 30), (films, 1)])
+def test_bearing_elements_pass(laws, runs):
+    checks = element_checks(runs, 3, laws)
+    assert [failure.what for check in checks for failure in check.failures] == []
+    assert sum(check.right for check in checks) == len(checks) * runs
+
+
+def test_a_damping_that_gives_power_is_found(monkeypatch):
+    evaluate = BearingElement.evaluate
+
+    def wrong(self, displacement, velocity, operation):
+        found = evaluate(self, displacement, velocity, operation)
+        return Forces(found.force + 1e-3 * found.stiffness @ velocity, found.stiffness, found.damping)
+
+    monkeypatch.setattr(BearingElement, "evaluate", wrong)
+    found = {check.name: check for check in element_checks(10, 3, dry)}
+    assert found["bearing: hertz, dampers take up"].failed > 0
+    assert found["bearing: hertz, derivatives"].failed > 0
+
+
+def test_integrator_passes_and_explicit_methods_fail_where_they_have_to():
+    checks = integrator_checks(4, 2)
+    assert [failure.what for check in checks for failure in check.failures] == []
+    assert len(checks) == 3 + len(SCENARIOS)
+    assert all(np.isfinite(check.seconds) for check in checks)
+
+
+def test_command_writes_json_and_refuses_unknown_parts(capsys):
+    assert main(["stability", "--only", "readers", "--mutations", "1", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["checks"]
+    assert main(["stability", "--only", "reader"]) == 2
+    assert "allowed: element, integrator, readers" in capsys.readouterr().err
