@@ -166,9 +166,9 @@ class Scenario:
     Attributes
     ----------
     system : System
-        The system.
+        The system that is run.
     speed : SpeedProfile
-        Its speed.
+        Speed of the shaft over time.
     displacement, velocity : array (n,)
         Motion at the beginning.
     duration : float

@@ -109,6 +109,7 @@ def test_first_block_of_python_runs(made_map, monkeypatch):
 PAGES = (
     "README.md",
     "FILMS.md",
+    "TRADE.md",
     "docs/accuracy.md",
     "ehdmaps/REFERENCE.md",
     "mbs/REFERENCE.md",
@@ -159,7 +160,7 @@ def test_pages_show_every_command(program, page):
 
 
 @pytest.mark.parametrize(
-    "wrong", ["mbs sweeps nu308_rigid", "mbs sweep nu308_rigid --maps a.nc", "ehdmaps solve n1014"]
+    "wrong", ["mbs sweeps nu308_rigid", "mbs sweep nu308_rigid --mapp a.nc", "ehdmaps solve n1014"]
 )
 def test_wrong_commands_are_found(wrong, capsys):
     program, words = words_of(wrong)
