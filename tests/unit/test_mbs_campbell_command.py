@@ -17,7 +17,7 @@ from tests.cases.run_up import refused
 
 
 def arguments(scene, **values):
-    names = ("law", "map", "clearance", "output", "plot", "sensor", "highest", "window")
+    names = ("law", "map", "clearance", "output", "plot", "sensor", "highest", "window", "bands", "tolerance")
     return argparse.Namespace(**{**dict.fromkeys(names), "modes": False, "scene": str(scene), **values})
 
 
