@@ -237,6 +237,7 @@ def _runs(
     runs: list[LawRun] = []
     failed: list[str] = []
     for index, (case, change) in enumerate(zip(cases, changes, strict=True)):
+        begun = done
         try:
             runs.append(_one(case, settings, sensor, course, orders, told, with_modes))
             done += each
@@ -258,6 +259,8 @@ def _runs(
             left_out = cases[index + (runs[-1].case is case) :]
             failed += [f"{left.label}: stopped, no result" for left in left_out]
             break
+        # A run that has no result counts as done.
+        done = begun + (1 if change is None else 1 + bands) * each
     return runs, failed
 
 
