@@ -10,6 +10,7 @@ s = (1 - rho)/(1 + rho), rho the spectral radius: with rho = 0.8 at 5 kHz by 1.9
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -77,8 +78,8 @@ class Recording:
         Why no step could be, in sentences; none where it could or was not asked for.
     states : States
         Motion of all coordinates; of no samples if it was not asked for.
-    energy : EnergyBalance
-        Energy balance: what came in, where it went, what does not close.
+    account : callable
+        Makes the energy balance; `energy` has it.
     """
 
     time: FloatArray
@@ -94,7 +95,12 @@ class Recording:
     compiled: int
     notes: tuple[str, ...]
     states: States
-    energy: EnergyBalance
+    account: Callable[[], EnergyBalance]
+
+    @functools.cached_property
+    def energy(self) -> EnergyBalance:
+        """Energy balance: what came in, where it went, what does not close. It is made when it is first asked for."""
+        return self.account()
 
 
 @dataclass(frozen=True)
@@ -177,17 +183,23 @@ def run(
     parts = [slice(begin, end) for begin, end in pairwise(ends)]
     count = len(sensors)
     operations = [Operation(w, angle, at) for (w, angle), at in zip(courses.tolist(), times.tolist(), strict=True)]
-    by_speed = [
-        entry.element.brought_by_speed(outputs[:, count + part.start : count + part.stop], operations)
-        for entry, part in zip(system.elements, parts, strict=True)
-    ]
+    seen = tuple(outputs[:, count + part.start : count + part.stop] for part in parts)
+
+    def account() -> EnergyBalance:
+        """The balance; what changes of the speed brought takes a second or two, whatever the length of the run."""
+        elements = [entry.element for entry in system.elements]
+        by_speed = [
+            element.brought_by_speed(motion, operations) for element, motion in zip(elements, seen, strict=True)
+        ]
+        return balance(system, engine.sums, begin, end, by_speed)
+
     return Recording(
         time=times,
         speed=courses[:, 0],
         angle=courses[:, 1],
         signals=outputs[:, :count],
         forces=tuple(forces[:, part] for part in parts),
-        motions=tuple(outputs[:, count + part.start : count + part.stop] for part in parts),
+        motions=seen,
         steps=steps,
         halved=halved,
         iterations=engine.iterations,
@@ -195,7 +207,7 @@ def run(
         compiled=engine.compiled,
         notes=notes,
         states=States(motions[:, 0], motions[:, 1], motions[:, 2]),
-        energy=balance(system, engine.sums, begin, end, by_speed),
+        account=account,
     )
 
 
