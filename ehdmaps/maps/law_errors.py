@@ -22,6 +22,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -149,39 +150,53 @@ class LawErrors:
         points = dataset.attrs.get("law_check_usable", dataset.attrs.get("tolerance_points"))
         self.checked_points = 0 if self._checked is None or points is None else int(points)
         self.has_model_errors = any(name in data for name in MODEL_ERRORS)
-        self.unknown: tuple[str, ...] = ()
+        self._data = data
+
+    @cached_property
+    def _read(self) -> tuple[FloatArray, tuple[str, ...]]:
+        """What bounds are read from, and which errors the map does not state; read when it is first asked for.
+
+        Laws are made without it: from the films of a map alone.
+        """
+        data = self._data
         values = {
             name: data[name].values.astype(np.float64) for name in ("stiffness", "film_compliance", "loss_compliance")
         }
+        needed = ("stiffness", "damping", "film_offset")
+        found = {name: self._error(name) for name in (*(f"{name}_error" for name in needed), *MODEL_ERRORS)}
+        size = values["stiffness"].size and self._log_speeds.size
+        unknown = tuple(f"{name}_error" for name in needed if found[f"{name}_error"] is None and size)
         errors = {
-            name: self._error(data, f"{name}_error", required=True) for name in ("stiffness", "damping", "film_offset")
+            name: np.zeros(values["stiffness"].shape) if error is None else error for name, error in found.items()
         }
-        model = [self._error(data, name, required=False) for name in MODEL_ERRORS]
+        offset = np.abs(data["film_offset"].values.astype(np.float64))
         # One array, so that it is read at a speed and temperature at once.
-        self._grid = np.stack(
+        grid = np.stack(
             [
-                errors["stiffness"] + model[0],
-                errors["damping"] + model[1],
-                errors["film_offset"] * np.abs(data["film_offset"].values.astype(np.float64)),
-                np.abs(data["film_offset"].values.astype(np.float64)),
+                errors["stiffness_error"] + errors[MODEL_ERRORS[0]],
+                errors["damping_error"] + errors[MODEL_ERRORS[1]],
+                errors["film_offset_error"] * offset,
+                offset,
                 1.0 / values["stiffness"],
                 np.abs(values["loss_compliance"]),
                 np.abs(values["film_compliance"]) * values["stiffness"],
             ],
             axis=1,
         )
-        self._grid = np.nan_to_num(self._grid)
+        return np.nan_to_num(grid), unknown
 
-    def _error(self, data: xr.Dataset, name: str, required: bool) -> FloatArray:
-        """Magnitudes of an error; where it is unknown at some points, the largest known one."""
-        shape = data["stiffness"].shape
-        found = np.abs(data[name].values.astype(np.float64)) if name in data else np.full(shape, np.nan)
+    def _error(self, name: str) -> FloatArray | None:
+        """Magnitudes of an error; where it is unknown at some points, the largest known one; None where at all."""
+        if name not in self._data:
+            return None
+        found = np.abs(self._data[name].values.astype(np.float64))
         known = np.isfinite(found)
-        if not np.any(known):
-            if required and self._log_speeds.size:
-                self.unknown += (name,)
-            return np.zeros(shape)
-        return np.where(known, found, found[known].max())
+        return np.where(known, found, found[known].max()) if np.any(known) else None
+
+    @property
+    def unknown(self) -> tuple[str, ...]:
+        """Errors that the map does not state."""
+        return self._read[1]
 
     @property
     def words(self) -> str:
@@ -246,7 +261,7 @@ class LawErrors:
         index, contact = self._contacts[name]
         log_speed = float(np.clip(np.log(speed), self._log_speeds[0], self._log_speeds[-1]))
         kelvin = float(np.clip(temperature, self._temperatures[0], self._temperatures[-1]))
-        lines = _at(self._temperatures, kelvin, _at(self._log_speeds, log_speed, self._grid[index], 2), 2)
+        lines = _at(self._temperatures, kelvin, _at(self._log_speeds, log_speed, self._read[0][index], 2), 2)
         logs = np.log(np.maximum(loads, 1e-300))
         k, c, offset, film, compliance, loss, share = (np.interp(logs, self._logs, line) for line in lines)
         if self._checked is not None:

@@ -285,7 +285,9 @@ class _Reader:
         ]
         numbers = fields.real_numbers(factors)
         if numbers is None or len(read) != len(numbers):
-            section.note("factors", f"got {short(factors)}; allowed: as many numbers as there are times, both as lists")
+            section.note(
+                "factors", f"got {short(factors)}; allowed: as many finite numbers as there are times, both as lists"
+            )
             return Constant()
         course = tuple(value for value in read if value is not None)
         return fields.built(section, lambda: Course(course, tuple(numbers))) or Constant()

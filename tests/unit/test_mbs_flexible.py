@@ -33,7 +33,7 @@ class TestModel:
             ),
             ({"directions": np.array([0, 1, 1, 0, 1, 2])}, "nodes: node 1 direction 1: is there twice"),
             ({"numbers": np.array([1, 1])}, "numbers: a node has two positions"),
-            ({"positions": np.full((2, 3), np.inf)}, "positions: got values that are no finite numbers at nodes 1, 2"),
+            ({"positions": np.full((2, 3), np.inf)}, "that are no finite numbers, or too large ones, at nodes 1, 2"),
             ({"stiffness": sparse.csc_array(-np.eye(6))}, "stiffness: has a negative diagonal"),
             ({"stiffness": sparse.csc_array(np.fliplr(np.eye(6)))}, "or entries larger than their diagonals allow"),
             (

@@ -202,7 +202,7 @@ def test_problems_come_all_at_once():
         ('on = "ring"\nstiffness', "on = 5\nstiffness", 'allowed: a place such as "shaft"'),
         ('force = ["0 N", "100 N", "0 N"]', 'force = "100 N"', "allowed: three values"),
         ('frequency = "50 Hz"\n', "", "stands without frequency"),
-        ("factors = [0, 1]", "factors = [0]", "as many numbers as there are times"),
+        ("factors = [0, 1]", "factors = [0]", "as many finite numbers as there are times"),
         ('times = ["0 s", "1 ms"]', 'times = ["1 ms", "0 s"]', "allowed: finite and rising"),
         ('name = "NU308"', 'name = "NU309"', "geometry: name: got 'NU309'"),
         ("direction = [0, 3, 4]", "direction = [0, 0, 0]", "not all zero"),
