@@ -1,4 +1,4 @@
-"""The CFD of the film against the Reynolds equation at places of both maps: two discretisations of one contact, each its own.
+"""The CFD of the film against the Reynolds equation: two discretisations of one contact, each its own.
 
 Bars, on 400 x 16 cells: films 1 %, film compliance 5 % or 0.2 % of the whole contact's, c 3 %. They bound the grid
 error of the CFD: 2/rows^2 of what pressure drives is 0.8 %, hence 0.6 to 0.9 % of the film; the film compliance is a
