@@ -12,8 +12,6 @@ from tests.cases import openfoam_runs
 
 pytestmark = pytest.mark.openfoam
 
-POINTS = [(0.3, 12.0), (5.0, 5.0), (100.0, 2.0)]
-
 
 def _numbers(results: Results) -> list[float]:
     return [
@@ -25,8 +23,9 @@ def _numbers(results: Results) -> list[float]:
     ]
 
 
-@pytest.mark.parametrize("flow", ["thin_film", "full_stress"])
-@pytest.mark.parametrize(("M", "L"), POINTS)
+@pytest.mark.parametrize(("M", "L", "flow"), [
+    (0.3, 12.0, "thin_film"), (5.0, 5.0, "full_stress"), (100.0, 2.0, "thin_film"),
+])  # fmt: skip
 def test_start_from_hertz(M: float, L: float, flow: Flow) -> None:
     """On the same mesh as from the Reynolds solution: a start only, no part of the equations."""
     warm, cold = (openfoam_runs.results(M, L, 200, 8, flow, hertz=hertz) for hertz in (False, True))
@@ -35,7 +34,7 @@ def test_start_from_hertz(M: float, L: float, flow: Flow) -> None:
 
 
 @pytest.mark.parametrize(("M", "L", "flow"), [
-    (1.0, 3.0, "thin_film"), (5.0, 5.0, "thin_film"), (5.0, 0.0, "thin_film"), (5.0, 5.0, "full_stress"),
+    (5.0, 5.0, "thin_film"), (5.0, 0.0, "thin_film"), (5.0, 5.0, "full_stress"),
 ])  # fmt: skip
 def test_compliance_is_the_derivative_of_the_film_offset(M: float, L: float, flow: Flow) -> None:
     """Against solves at two loads, whose meshes grow with the Hertz width.

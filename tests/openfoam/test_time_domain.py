@@ -48,10 +48,9 @@ def _differences(results: Results) -> tuple[float, float]:
     return film / results.film_compliance[1] - 1.0, loss / results.loss_compliance[1] - 1.0
 
 
-@pytest.mark.parametrize("omega", [0.3, 1.0])
 @pytest.mark.parametrize("flow", ["thin_film", "full_stress"])
-def test_oscillation_in_time(flow: Flow, omega: float) -> None:
-    coarse, fine = (_differences(_oscillated(flow, omega, steps)) for steps in (50, 100))
+def test_oscillation_in_time(flow: Flow) -> None:
+    coarse, fine = (_differences(_oscillated(flow, 1.0, steps)) for steps in (50, 100))
     for of_coarse, of_fine in zip(coarse, fine, strict=True):
         # backward differences of second order: (omega dt)^2/3 = 1.3e-3 of the rate at 100 steps a cycle, and some times
         # that of the film compliance, which is a difference; curvature over an amplitude of 1e-3 is 1e-6
