@@ -70,6 +70,15 @@ PLACES = (0.25, 0.75)
 
 _WARM_STEPS = 128
 
+FINEST = {
+    "slices": "the most slices",
+    "cut-off": "the highest cut-off",
+    "step": "the shortest step",
+    "cage angles": "the most cage angles",
+    "all settings of the scene": "the shortest step and the most slices",
+}
+"""What the numbers of a group are held against, by the name of the group; models are held against that of the trade."""
+
 
 @dataclass(frozen=True)
 class TradeoffSettings:
@@ -158,7 +167,9 @@ def tradeoff(
         cost="s",
         reference=f"{base.law.label} with memory of its films; of numbers the finest of each group",
         judged=JUDGED if ramp is not None else JUDGED[:4],
-        choices=tuple(choices),
+        choices=tuple(
+            dataclasses.replace(choice, reference=FINEST.get(choice.group.partition(": ")[2], "")) for choice in choices
+        ),
         frame=tuple(lines),
     )
 
