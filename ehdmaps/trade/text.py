@@ -65,8 +65,9 @@ def _table(
         heads = "".join(f"{name:>{wide}s}" for name, wide in zip(names, widths, strict=True))
         yield f"{'':{width}s}{trade.cost:>12s}{'solved':>12s}{heads}"
         rows = [(choice, [cell(choice, one) for one in columns]) for choice in trade.choices if wanted(choice)]
-        # the first table has all of them, further ones those with something to say
-        shown = [row for row in rows if first == 0 or set(row[1]) != {_NOTHING}]
+        # what has nothing to say in any table stands in the first one
+        silent = [first == 0 and all(cell(choice, one) == _NOTHING for one in trade.judged) for choice, _ in rows]
+        shown = [row for row, mute in zip(rows, silent, strict=True) if mute or set(row[1]) != {_NOTHING}]
         for (group, reference), chosen in groupby(shown, key=lambda row: (row[0].group, row[0].reference)):
             yield f"{group}, against {reference}" if reference else group
             for choice, texts in chosen:
