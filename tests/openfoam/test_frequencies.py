@@ -40,7 +40,7 @@ def test_one_krylov_space_gives_what_each_frequency_gives_alone() -> None:
 
 
 def test_response_over_frequency_against_the_reynolds_equation() -> None:
-    frequencies = _frequencies(np.array([0.01, 0.3, 1.0, 2.5, 5.0]))
+    frequencies = _frequencies(np.array([0.01, 1.0, 5.0]))
     point = OperatingPoint(PLACE.load, PLACE.speed, PLACE.celsius + 273.15)
     film = OpenFoamSolver(starter=reynolds_start).film_spectrum(PLACE.contact, OIL, point, frequencies)
     cfd = contact_spectrum(film, PLACE.contact, point)

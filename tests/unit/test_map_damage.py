@@ -316,13 +316,17 @@ DAMAGES = {
 
 
 DRAWN_ALIKE = (
+    "derived variable deleted",
+    "settings",
+    "build without version",
+    "group: contact no JSON",
     "group: film negative",
     "group: not needed",
     "group: two failed",
     "response: NaN",
     "response: infinite",
 )
-"""Maps that open and whose law is refused as for "group: film NaN": the picture of the grid is the same."""
+"""Maps that open; their picture is that of "mathematics in a title", or without a law that of "group: film NaN"."""
 
 
 def used(path):
