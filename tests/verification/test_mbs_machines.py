@@ -53,7 +53,7 @@ def films(emap):
     speeds = np.linspace(FROM, TO, 11)
     return {
         clearance: sweep(assemble(read_scene("gearbox"), "map", emap, clearance).system, speeds)
-        for clearance in (0.0, 20e-6, 30e-6, 40e-6)
+        for clearance in (0.0, 20e-6, 40e-6)
     }
 
 
@@ -84,7 +84,7 @@ class TestGearbox:
         moved = result.damped.frequency[-1] / result.damped.frequency[0] - 1.0
         assert np.max(np.abs(moved[shown])) < 1e-3
 
-    @pytest.mark.parametrize("clearance", [20e-6, 30e-6, 40e-6])
+    @pytest.mark.parametrize("clearance", [20e-6, 40e-6])
     def test_modes_move_as_the_energy_in_the_bearings_says(self, films, clearance):
         result = films[clearance].undamped
         moved = np.abs(result.shift[-1]) > 2e-3
@@ -93,13 +93,12 @@ class TestGearbox:
         np.testing.assert_allclose(result.summed_shift[-1][moved], result.shift[-1][moved], rtol=0.05)
 
     def test_modes_along_the_load_fall_with_films_and_clearance(self, films):
-        for clearance in (30e-6, 40e-6):
-            bearings = films[clearance].bearings
-            assert np.all(np.diff(bearings.stiffness, axis=0) < 0.0)
-            assert np.all(np.diff(bearings.damping, axis=0) < 0.0)
-            found = films[clearance].undamped
-            shaft = (found.frequency[0] > 2000.0) & (found.bearing_share[0] > 0.3) & (found.shift[-1] < 0.0)
-            assert np.min(found.shift[-1][shaft]) < -0.015
+        loose = films[40e-6]
+        assert np.all(np.diff(loose.bearings.stiffness, axis=0) < 0.0)
+        assert np.all(np.diff(loose.bearings.damping, axis=0) < 0.0)
+        found = loose.undamped
+        shaft = (found.frequency[0] > 2000.0) & (found.bearing_share[0] > 0.3) & (found.shift[-1] < 0.0)
+        assert np.min(found.shift[-1][shaft]) < -0.015
         # Without clearance the film preloads the bearings, and all of these modes rise.
         tight = films[0.0]
         assert np.all(np.diff(tight.bearings.stiffness, axis=0) > 0.0)
