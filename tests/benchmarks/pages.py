@@ -38,6 +38,7 @@ ROOT = Path(__file__).parents[2]
 PAGES = (
     "README.md",
     "FILMS.md",
+    "TRADE.md",
     "docs/accuracy.md",
     "docs/python.md",
     "ehdmaps/GLOSSARY.md",
