@@ -232,7 +232,7 @@ def test_a_group_is_written_with_the_map(with_backbone):
     assert "response over frequency: none; films in time lock by a closed formula" in told
 
 
-def test_extrapolated_viscosity_is_said_everywhere(with_backbone, tmp_path, monkeypatch):
+def test_extrapolated_viscosity_is_said_everywhere(with_backbone, page, tmp_path, monkeypatch):
     """FVA 3 was fitted up to 0.6 GPa, which the formulas' Hertz pressure passes between 31 and 100 N/mm."""
     generated, path = with_backbone
     emap = open_map(path)
@@ -245,7 +245,7 @@ def test_extrapolated_viscosity_is_said_everywhere(with_backbone, tmp_path, monk
     for text in (describe(emap, "a.nc"), summary(generated, path)):
         assert share in text
         assert "inner and outer, 100 to 1000 N/mm, 0.5 to 2 m/s, 20 to 40 degC" in text
-    assert "viscosity extrapolated at some speed: above 0.6 GPa" in drawn(emap, tmp_path, monkeypatch)
+    assert "viscosity extrapolated at some speed: above 0.6 GPa" in page
     light = EHDMap(made(job_of(SMALL.replace("1000 N/mm", "10 N/mm"))))
     assert "extrapolated" not in describe(light, "a.nc") + drawn(light, tmp_path, monkeypatch)
 
@@ -272,8 +272,15 @@ def drawn(emap, folder, monkeypatch):
     return (folder / "page.svg").read_text()
 
 
-def test_the_page_explains_only_what_it_shows(with_backbone, tmp_path, monkeypatch):
-    text = drawn(open_map(with_backbone[1]), tmp_path, monkeypatch)
+@pytest.fixture(scope="module")
+def page(with_backbone, tmp_path_factory):
+    """Texts of the page of the whole map."""
+    with pytest.MonkeyPatch.context() as patch:
+        return drawn(open_map(with_backbone[1]), tmp_path_factory.mktemp("page"), patch)
+
+
+def test_the_page_explains_only_what_it_shows(page, tmp_path, monkeypatch):
+    text = page
     for part in ("approach, µm", "between the points (dots): films of the contact laws", "dry (structural law alone)"):
         assert part in text
     for part in ("asymptote", "zero or negative", "no solution", "filled"):
@@ -519,15 +526,19 @@ def test_compare_refuses_maps_without_a_common_contact_or_range():
         compare(first, other, ("a", "b"))
 
 
+ONE_TEMPERATURE = SMALL.replace('"20 degC", "40 degC"', '"20 degC"')
+"""Half the panels of the page."""
+
+
 @pytest.mark.parametrize(
     ("text", "solver"),
     [
         (SMALL, None),
         (LINE, None),
-        (SMALL.replace("points = 7", "points = 2"), None),
-        (SMALL.replace(spaced("1 N/mm", "1000 N/mm", 7), '["50 N/mm"]'), None),
+        (ONE_TEMPERATURE.replace("points = 7", "points = 2"), None),
+        (ONE_TEMPERATURE.replace(spaced("1 N/mm", "1000 N/mm", 7), '["50 N/mm"]'), None),
         (LINE, HertzSolver()),
-        (SMALL, Holey((1e3, 1e4, 31622.776601683792), version="1")),
+        (ONE_TEMPERATURE, Holey((1e3, 1e4, 31622.776601683792), version="1")),
     ],
     ids=["bearing", "one contact", "two loads", "one load", "dry", "holes"],
 )
