@@ -14,7 +14,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid, GridShape, Layout, Spike, lay_out, thick_film_exit, zone_width
 from ehdmaps.ehl.linearisation import GridShift, Linearisation, Neighbour, linearised
-from ehdmaps.ehl.newton import CONVERGED, DIVERGED, hertz_start, newton
+from ehdmaps.ehl.newton import CONVERGED, DIVERGED, STAGNATED, hertz_start, newton
 from ehdmaps.ehl.profile import Profile, films_of, front, front_cell, front_node, moved, refined, starved_start
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.physics.films import moes_central
@@ -473,6 +473,8 @@ def assembled(
         Newton steps that they took.
     """
     linear, rough_linear = linearised_profile(fine, resolution), linearised_profile(coarse, resolution)
+    if linear.singular or rough_linear.singular:
+        return GroupSolution(outcome=STAGNATED, profile=None, steps=steps)
     response, rough = linear.slow_response(), rough_linear.slow_response()
     starved = fine.layout.starved
     # the pressure rises from a meniscus with a kink, where sums are of second order

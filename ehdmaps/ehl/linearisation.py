@@ -11,13 +11,14 @@ response does not depend on how the grid moves.
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from scipy.linalg import lu_factor
+from scipy.linalg import LinAlgWarning, lu_factor
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.ehl.elastic import log_kernel
@@ -179,12 +180,19 @@ class Linearisation:
         unit[self.height] = 1.0
         return unit
 
+    @property
+    def singular(self) -> bool:
+        """Whether the film has no linear response: a pivot of its matrix is zero to the rounding of the numbers."""
+        return not np.all(np.diagonal(self.arrays.factors))
+
     @cached_property
     def arrays(self) -> Arrays:
         """The same for compiled code, the matrix factorised."""
         grid, n = self.grid, self.unknowns.size - 2
         scale = 1.0 / np.max(np.abs(self.matrix), axis=1)
-        factors, swaps = lu_factor(self.matrix * scale[:, None], overwrite_a=True, check_finite=False)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", LinAlgWarning)  # `singular` says it
+            factors, swaps = lu_factor(self.matrix * scale[:, None], overwrite_a=True, check_finite=False)
         order = np.arange(self.size)
         carried = stored_mass(self.problem, grid.x, grid.step, self.kernel, self.unknowns)[1]
         if self.inlet is not None:  # the length grows as the exit moves away from the held meniscus

@@ -169,7 +169,7 @@ class Store:
         if row is None:
             return None
         checksum, content = row
-        if content is None or hashlib.sha256(content).hexdigest().encode() != checksum:
+        if content is None or _checksum(key, content).encode() != checksum:
             self.damaged += 1
             return None
         return unpack(content)
@@ -194,7 +194,7 @@ class Store:
         content = pack(arrays)
         self._write(
             "INSERT OR REPLACE INTO results VALUES (?, ?, ?)",
-            (key, hashlib.sha256(content).hexdigest(), content),
+            (key, _checksum(key, content), content),
         )
         if at_once:
             self.commit()
@@ -314,6 +314,11 @@ def _code(error: Exception) -> int:
     """Return SQLite's primary result code; a file of another kind counts as not a database."""
     code = getattr(error, "sqlite_errorcode", None)
     return sqlite3.SQLITE_NOTADB if code is None else int(code) & 0xFF
+
+
+def _checksum(key: str, content: bytes) -> str:
+    """Return the checksum of an entry: of its key too, so that damage gives no key the arrays of another."""
+    return hashlib.sha256(key.encode() + b"\0" + content).hexdigest()
 
 
 def pack(arrays: Mapping[str, npt.NDArray[Any]]) -> bytes:

@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 from scipy import sparse
 
+from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError, MapError, StoreError
 from ehdmaps.jobs.commands.status import run as run_status
 from ehdmaps.jobs.reader import parse_job, read_job
+from ehdmaps.jobs.stability_points import wild_point
 from ehdmaps.jobs.store import Store
 from ehdmaps.maps.emap import open_map
 from ehdmaps.netcdf_structure import structure_problem
@@ -147,6 +149,28 @@ def test_a_store_with_a_damaged_entry_keeps_the_others(tmp_path) -> None:
     with Store(path) as store:
         assert [store.get(key) is None for key in ("first", "second", "third", "fourth")] == [True, True, False, False]
         assert store.damaged == 2
+
+
+def test_an_entry_under_another_key_counts_as_damaged(tmp_path) -> None:
+    """A flipped bit may turn a key into another; its entry is not that of the other."""
+    path = tmp_path / "a.store"
+    with Store(path) as store:
+        store.put("key 2", {"film": np.arange(3.0)})
+    with sqlite3.connect(path) as database:
+        database.execute("UPDATE results SET key = 'key 1'")
+    database.close()
+    with Store(path) as store:
+        assert store.get("key 1") is None
+        assert store.damaged == 1
+
+
+def test_a_film_without_a_linear_response_is_refused() -> None:
+    """Its matrix has a pivot of zero; the first seen was 882000 times as thick as the radius of its contact."""
+    wild = wild_point(read_job("nu308"), 5, 13977)
+    contact, load, speed, temperature = wild.point
+    (film,) = ReynoldsSolver().solve_line(contact, wild.oil, (load,), speed, temperature)
+    assert not film.status.usable
+    assert film.reason
 
 
 def test_a_store_whose_schema_is_no_text(tmp_path) -> None:
