@@ -14,6 +14,7 @@ import warnings
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -121,28 +122,17 @@ def value_check(name: str, solver: ContactSolver, judge: Judge, drawn: Iterable[
         Points, or why one was refused when it was drawn.
     """
     tally = Tally(f"contact: {name}, value or status", RULES[name])
-    for wild in drawn:
-        if isinstance(wild, str):
-            tally.refused(wild)
-            continue
+
+    def judged(wild: WildPoint) -> _Verdict:
         began = time.process_time()
-        try:
-            film, whole = _solved(solver, wild)
-            wrong, share = ("", 0.0) if whole is None else judge(wild, film, whole)
-        except EhdmapsError as error:
-            tally.refused(_words(error))
-            continue
-        except Exception as error:
-            tally.failed(wild.label, f"{type(error).__name__}: {error!s:.200}")
-            continue
+        film, whole = _solved(solver, wild)
+        wrong, share = ("", 0.0) if whole is None else judge(wild, film, whole)
         seconds = time.process_time() - began
         wrong = wrong or status_problem(film) or (f"took {seconds:.3g} s" if seconds > MOST_SECONDS else "")
-        if wrong:
-            tally.failed(wild.label, wrong)
-        elif not film.status.usable:
-            tally.refused(f"{film.status.word}: {_alike(film.reason)}")
-        else:
-            tally.right(f"{100.0 * share:.3g} % of the bound at {wild.label}", share)
+        return _Verdict(wrong, share, "" if film.status.usable else f"{film.status.word}: {_alike(film.reason)}")
+
+    for wild in drawn:
+        _count(tally, wild, judged)
     return tally.check()
 
 
@@ -168,24 +158,13 @@ def line_check(name: str, solver: ContactSolver, job: Job, lines: int, seed: int
         f"zero; where the status changes between usable ones, loads {HAIR:g} apart differ as points a hair apart may",
     )
     loads = tuple(float(w) for w in np.geomspace(LOAD_AXIS.low / DECADE, LOAD_AXIS.high * DECADE, LOADS_OF_A_LINE))
+
+    def judged(wild: WildPoint) -> _Verdict:
+        wrong, share, usable = _line_problem(solver, wild, loads)
+        return _Verdict(wrong, share, "" if usable >= 2 else "fewer than two loads with a solution")
+
     for number in range(lines):
-        wild = _drawn(job, seed + 1, number)
-        if isinstance(wild, str):
-            tally.refused(wild)
-            continue
-        try:
-            wrong, share, usable = _line_problem(solver, wild, loads)
-        except EhdmapsError as error:
-            tally.refused(_words(error))
-            continue
-        except Exception as error:
-            wrong, share, usable = f"{type(error).__name__}: {error!s:.200}", 0.0, 0
-        if wrong:
-            tally.failed(f"line of {wild.label}", wrong)
-        elif usable < 2:
-            tally.refused("fewer than two loads with a solution")
-        else:
-            tally.right(f"{100.0 * share:.3g} % of the bound on the line of {wild.label}", share)
+        _count(tally, _drawn(job, seed + 1, number), judged, "the line of ")
     return tally.check()
 
 
@@ -206,33 +185,22 @@ def pair_check(name: str, solver: ContactSolver, job: Job, pairs: int, seed: int
         f"load, speed and temperature each {HAIR:g} (0.001 K) apart change film, stiffness and damping by {JUMP:g} and "
         "twice the stated error at most",
     )
-    for number in range(pairs):
-        wild = _drawn(job, seed + 2, number)
-        if isinstance(wild, str):
-            tally.refused(wild)
-            continue
+
+    def judged(wild: WildPoint) -> _Verdict:
         contact, load, speed, temperature = wild.point
         beside = (load * (1.0 + HAIR), speed, temperature), (load, speed * (1.0 + HAIR), temperature)
-        try:
-            first, whole = _solved(solver, wild)
-            wrong, share, compared = "", 0.0, 0
-            for place in (*beside, (load, speed, temperature + 1e-3)):
-                other, its = _solved(solver, wild._replace(point=SamplePoint(contact, *place)))
-                if whole is None or its is None:
-                    continue
-                changed, by = jump(wild, first, whole, other, its)
-                wrong, share, compared = wrong or changed, max(share, by), compared + 1
-        except EhdmapsError as error:
-            tally.refused(_words(error))
-            continue
-        except Exception as error:
-            wrong, share, compared = f"{type(error).__name__}: {error!s:.200}", 0.0, 1
-        if wrong:
-            tally.failed(wild.label, wrong)
-        elif not compared:
-            tally.refused(f"{first.status.word}: {_alike(first.reason)}")
-        else:
-            tally.right(f"{100.0 * share:.3g} % of the bound at {wild.label}", share)
+        first, whole = _solved(solver, wild)
+        wrong, share, compared = "", 0.0, 0
+        for place in (*beside, (load, speed, temperature + 1e-3)):
+            other, its = _solved(solver, wild._replace(point=SamplePoint(contact, *place)))
+            if whole is None or its is None:
+                continue
+            changed, by = jump(wild, first, whole, other, its)
+            wrong, share, compared = wrong or changed, max(share, by), compared + 1
+        return _Verdict(wrong, share, "" if compared else f"{first.status.word}: {_alike(first.reason)}")
+
+    for number in range(pairs):
+        _count(tally, _drawn(job, seed + 2, number), judged)
     return tally.check()
 
 
@@ -372,6 +340,36 @@ def openfoam_check(job: Job, points: int, seed: int, tell: Callable[[str], None]
             tally.right(f"{100.0 * share:.3g} % of the bound at {wild.label}", share)
         tell(f"openfoam: {number + 1} of {points}")
     return tally.check()
+
+
+class _Verdict(NamedTuple):
+    """What is wrong about a case, its part of the bound, and why it has no value; empty texts where nothing is."""
+
+    wrong: str
+    share: float
+    refusal: str
+
+
+def _count(tally: Tally, wild: WildPoint | str, judged: Callable[[WildPoint], _Verdict], place: str = "") -> None:
+    """Judge a point and count it; a point that could not be drawn, and an error of our own type, are refusals."""
+    if isinstance(wild, str):
+        tally.refused(wild)
+        return
+    where = f"{place}{wild.label}"
+    try:
+        found = judged(wild)
+    except EhdmapsError as error:
+        tally.refused(_words(error))
+        return
+    except Exception as error:
+        tally.failed(where, f"{type(error).__name__}: {error!s:.200}")
+        return
+    if found.wrong:
+        tally.failed(where, found.wrong)
+    elif found.refusal:
+        tally.refused(found.refusal)
+    else:
+        tally.right(f"{100.0 * found.share:.3g} % of the bound at {where}", found.share)
 
 
 def _drawn(job: Job, seed: int, number: int) -> WildPoint | str:

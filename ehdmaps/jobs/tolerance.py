@@ -204,7 +204,7 @@ _ALLOWED = (
 
 
 def check_tolerance(job: Job, solver: ContactSolver, tolerance: float) -> ReynoldsSolver:
-    """Refuse a tolerance that is none, and jobs whose laws are not made from refinement lines.
+    """Refuse what is no tolerance between the limits, and jobs whose laws are not made from refinement lines.
 
     Parameters
     ----------
