@@ -33,7 +33,16 @@ SPECTRUM_FIELDS = ("response_real", "response_imaginary", "response_error")
 """Complex film compliance over load and natural frequency [m2/N], and its error, relative to its magnitude."""
 
 FILM_FIELDS = tuple(field.name for field in fields(FilmSolution))
-LATER_FIELDS = ("rolling_force", "mass_flow", "rolling_force_error", "mass_flow_error")
+LATER_FIELDS = (
+    "rolling_force",
+    "mass_flow",
+    "rolling_force_error",
+    "mass_flow_error",
+    "traction",
+    "wall_stress",
+    "film_temperature",
+    "surface_temperature",
+)
 """Fields that came after maps had been made: results that lack them, and took days, are taken over without them."""
 
 

@@ -22,6 +22,7 @@ films               published film formulas: rigid, Dowson-Higginson, Pan-Hamroc
 unilateral          how damping acts in a contact that cannot pull; what kernels compile
 damping             published damping formulas: rolling film, squeeze film, Dietl
 rolling             rolling force: its integral, the rigid film, Matsuyama's fit
+rheology            laws of shear: stress over rate, and rate over stress
 traction            traction over the slide-to-roll ratio by laws of shear stress
 peak                what the largest of sampled pressures lacks to the peak
 oil_supply          `OilSupply`: flooded, or an oil layer before the contact
@@ -29,6 +30,7 @@ starved             the starved contact between rigid surfaces: film, damping, r
 roughness           `Surface`: roughness of both surfaces, and their asperities
 film_limits         how thick and how thin a film may be
 wall_stress         shear stress at the walls over pressure: where no oil is Newtonian
+heat                data that heat in a contact needs besides the laws of oil and solids
 thermal             reduction of the film by inlet shear heating
 structure           film and solids together: approach, stiffness, damping
 solution            `FilmSolution`, `ContactSolution`, `Status`, the Protocol `ContactSolver` and its defaults

@@ -72,6 +72,13 @@ class FilmSolution:
         none.
     central_film_error, minimum_film_error, max_pressure_error, rolling_force_error, mass_flow_error : float
         The same without a sign.
+    traction : float
+        Force between the surfaces from sliding, the mean of both walls, of the sign of the slide-to-roll ratio [N/m];
+        zero in pure rolling, NaN where the solver does not find it.
+    wall_stress : float
+        Largest shear stress at a wall [Pa]; NaN where the solver does not find it.
+    film_temperature, surface_temperature : float
+        Highest temperature in the film and of its surfaces [K]; NaN of an isothermal film.
     iterations : int
         Newton steps (or the solver's own count), all grids together.
     solve_seconds : float
@@ -98,6 +105,10 @@ class FilmSolution:
     max_pressure_error: float = math.nan
     rolling_force_error: float = math.nan
     mass_flow_error: float = math.nan
+    traction: float = math.nan
+    wall_stress: float = math.nan
+    film_temperature: float = math.nan
+    surface_temperature: float = math.nan
     iterations: int = 0
     solve_seconds: float = 0.0
     viscosity_extrapolated: bool = False

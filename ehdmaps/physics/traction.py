@@ -24,12 +24,6 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.lubricant import LubricantState
 
-EYRING_STRESS = 6e6
-"""Eyring stress where none is given [Pa]: assumed. Mineral oils are measured with 4 to 10 MPa, and few of them are."""
-
-LIMITING_RATIO = 0.05
-"""Limiting stress over pressure where none is given: assumed. Measured ones are 0.03 to 0.1."""
-
 _LARGEST = 300.0
 
 StressLaw = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]

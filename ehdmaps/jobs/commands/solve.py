@@ -38,9 +38,9 @@ from ehdmaps.outputs import FIGURE, Output, check_outputs
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES, OperatingPoint
+from ehdmaps.physics.rheology import EYRING_STRESS, LIMITING_RATIO
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, Status, contact_solution
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES, contact_spectrum
-from ehdmaps.physics.traction import EYRING_STRESS, LIMITING_RATIO
 from ehdmaps.program import tell
 from ehdmaps.units import LENGTH, LOAD, RPM, SPEED, TEMPERATURE, Display, quantity, short
 

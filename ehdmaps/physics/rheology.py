@@ -1,0 +1,165 @@
+"""How an oil answers to shear: stress over rate of shear, the only place of the formulas.
+
+`ShearLaw` is the law as plain numbers; `thinning` evaluates it by the stress, `yielding` by the rate of shear. They call
+nothing but `math`, so that the same lines work as they stand and compiled for a solver by numba; `ehlFoam` has the same
+formulas under the same names. `eta` is the viscosity at low shear, at the pressure and temperature of the place.
+
+=========  ============================================================  =======================================
+newtonian  eta rate = tau
+eyring     eta rate = tau0 sinh(tau/tau0)                                Eyring 1936
+carreau    eta rate = tau (1 + (tau/tau0)^2)^((1/n - 1)/2)               Carreau's law in stresses, Bair 2007
+limiting   eta rate = tau/sqrt(1 - (tau/tau_L)^2), tau_L = tau0 + L p    circular law, Lee and Hamrock 1990
+=========  ============================================================  =======================================
+
+The circular law has a bound that no stress reaches. Above `NEAR` of it the law goes on as the power law that touches it
+there: stress hardly rises any more, but its slope by the rate is never zero, and trial stresses beyond the bound are
+defined. A stress beyond the bound by more than a few per cent means that the film has no solution with that law.
+
+References
+----------
+H. Eyring, Journal of Chemical Physics 4, 1936, 283-291. S. Bair, High-Pressure Rheology for Quantitative
+Elastohydrodynamics, Elsevier, 2007. R.-T. Lee, B. J. Hamrock, A circular non-Newtonian fluid model: part I - used in
+elastohydrodynamic lubrication, Journal of Tribology 112, 1990, 486-496.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+NEWTONIAN, EYRING, CARREAU, LIMITING = range(4)
+"""Forms of `ShearLaw`."""
+
+SHEARS: Mapping[str, int] = {"newtonian": NEWTONIAN, "eyring": EYRING, "carreau": CARREAU, "limiting": LIMITING}
+"""Words for them, in jobs, on command lines and in cases of ehlFoam."""
+
+EYRING_STRESS = 6e6
+"""tau0 of the laws of Eyring and Carreau where none is given [Pa]: assumed. Mineral oils are measured with 4 to 10 MPa,
+and few of them are."""
+
+LIMITING_STRESS_AT_REST = 2e6
+"""tau0 of the limiting law, its bound without pressure, where none is given [Pa]: assumed."""
+
+LIMITING_RATIO = 0.05
+"""Rise of the limiting stress with pressure where none is given: assumed. Measured ones are 0.03 to 0.1."""
+
+CARREAU_EXPONENT = 0.5
+"""n of Carreau's law where none is given: assumed. Measured ones are 0.3 to 0.8."""
+
+NEAR = 0.999
+"""Part of the limiting stress up to which the circular law holds as written."""
+
+_GROWTH = 1.0 / (1.0 - NEAR * NEAR)
+"""d ln(rate)/d ln(tau) of the circular law there: exponent of the power law beyond."""
+
+_MOST = 300.0
+"""Largest argument of exp, sinh and powers: what is beyond is a trial far from any solution, and goes on as a line."""
+
+
+class ShearLaw(NamedTuple):
+    """One law of shear in plain numbers, with stresses and pressures in units of the caller's choice.
+
+    Attributes
+    ----------
+    form : int
+        NEWTONIAN, EYRING, CARREAU or LIMITING.
+    stress : float
+        tau0 of the form [unit of stress]; without meaning for NEWTONIAN.
+    ratio : float
+        Rise L of the limiting stress with pressure [unit of stress per unit of pressure].
+    exponent : float
+        n of Carreau's law, 0 < n <= 1.
+    """
+
+    form: int = NEWTONIAN
+    stress: float = 1.0
+    ratio: float = 0.0
+    exponent: float = 1.0
+
+    def scaled(self, stress_unit: float, pressure_unit: float) -> ShearLaw:
+        """The same law for stresses and pressures in units that are as many times as large."""
+        return self._replace(stress=self.stress / stress_unit, ratio=self.ratio * pressure_unit / stress_unit)
+
+
+def thinning(law: ShearLaw, tau: float, p: float) -> tuple[float, float]:
+    """eta rate/tau, at least 1, and d(eta rate)/d(tau), at a stress; both even in it.
+
+    Parameters
+    ----------
+    law : ShearLaw
+        The law.
+    tau, p : float
+        Stress, of either sign, and pressure in the units of the law; a negative pressure acts as zero.
+    """
+    if law.form == NEWTONIAN:
+        return 1.0, 1.0
+    if law.form == LIMITING:
+        s = abs(tau) / (law.stress + law.ratio * max(p, 0.0))
+        if s <= NEAR:
+            left = 1.0 - s * s
+            factor = 1.0 / math.sqrt(left)
+            return factor, factor / left
+        factor = 1.0 / math.sqrt(1.0 - NEAR * NEAR)
+        growth = (_GROWTH - 1.0) * math.log(s / NEAR)
+        if growth <= _MOST:
+            factor *= math.exp(growth)
+            return factor, factor * _GROWTH
+        last = NEAR * math.exp(_MOST / (_GROWTH - 1.0))  # its tangent
+        factor *= math.exp(_MOST)
+        return factor * (last / s + _GROWTH * (1.0 - last / s)), factor * _GROWTH
+    s = abs(tau) / law.stress
+    if law.form == EYRING:
+        if s < 1e-4:
+            return 1.0 + s * s / 6.0, 1.0 + 0.5 * s * s
+        if s < _MOST:
+            return math.sinh(s) / s, math.cosh(s)
+        slope = math.cosh(_MOST)  # its tangent
+        return math.sinh(_MOST) / s + slope * (1.0 - _MOST / s), slope
+    power = 0.5 * (1.0 / law.exponent - 1.0)
+    factor = math.exp(min(power * math.log1p(s * s), _MOST))
+    return factor, factor * (1.0 + 2.0 * power * s * s / (1.0 + s * s))
+
+
+def yielding(law: ShearLaw, newton: float, p: float) -> tuple[float, float]:
+    """tau/(eta rate), at most 1, and d(tau)/d(eta rate), at a rate of shear; the inverse of `thinning`.
+
+    Parameters
+    ----------
+    law : ShearLaw
+        The law.
+    newton, p : float
+        eta rate, the stress of a Newtonian oil, of either sign [unit of stress], and pressure; a negative pressure acts
+        as zero.
+    """
+    if law.form == NEWTONIAN:
+        return 1.0, 1.0
+    bound = law.stress
+    if law.form == LIMITING:
+        bound += law.ratio * max(p, 0.0)
+    y = abs(newton) / bound
+    if y < 1e-6:
+        return 1.0, 1.0
+    if law.form == EYRING:
+        return math.asinh(y) / y, 1.0 / math.sqrt(1.0 + y * y)
+    if law.form == LIMITING:
+        near = NEAR / math.sqrt(1.0 - NEAR * NEAR)
+        if y <= near:
+            factor = 1.0 / math.sqrt(1.0 + y * y)
+            return factor, factor**3
+        s = NEAR * math.exp(math.log(y / near) / _GROWTH)
+        return s / y, s / (y * _GROWTH)
+    # Carreau: Newton in ln s, where ln y = ln s + power ln(1 + s^2) rises with a slope of 1 to 1/n
+    power = 0.5 * (1.0 / law.exponent - 1.0)
+    wanted = math.log(y)
+    log_s = min(wanted, law.exponent * wanted) if wanted > 0.0 else wanted
+    for _ in range(50):
+        s = math.exp(log_s)
+        share = s * s / (1.0 + s * s)
+        move = (wanted - log_s - power * math.log1p(s * s)) / (1.0 + 2.0 * power * share)
+        log_s += move
+        if abs(move) < 1e-14:
+            break
+    s = math.exp(log_s)
+    share = s * s / (1.0 + s * s)
+    return s / y, s / (y * (1.0 + 2.0 * power * share))
