@@ -1,8 +1,8 @@
 """How an oil answers to shear: stress over rate of shear, the only place of the formulas.
 
-`ShearLaw` is the law as plain numbers; `thinning` evaluates it by the stress, `yielding` by the rate of shear. They call
-nothing but `math`, so that the same lines work as they stand and compiled for a solver by numba; `ehlFoam` has the same
-formulas under the same names. `eta` is the viscosity at low shear, at the pressure and temperature of the place.
+`ShearLaw` is the law as plain numbers; `thinning` evaluates it by the stress, `yielding` by the rate of shear. They
+call nothing but `math`, so that the same lines work as they stand and compiled for a solver by numba; `ehlFoam` has the
+same formulas under the same names. `eta` is the viscosity at low shear, at the pressure and temperature of the place.
 
 =========  ============================================================  =======================================
 newtonian  eta rate = tau
@@ -57,6 +57,10 @@ _MOST = 300.0
 """Largest argument of exp, sinh and powers: what is beyond is a trial far from any solution, and goes on as a line."""
 
 
+_FARTHEST = 1e150
+"""Largest stress over tau0, whose square is a number still."""
+
+
 class ShearLaw(NamedTuple):
     """One law of shear in plain numbers, with stresses and pressures in units of the caller's choice.
 
@@ -108,7 +112,7 @@ def thinning(law: ShearLaw, tau: float, p: float) -> tuple[float, float]:
         last = NEAR * math.exp(_MOST / (_GROWTH - 1.0))  # its tangent
         factor *= math.exp(_MOST)
         return factor * (last / s + _GROWTH * (1.0 - last / s)), factor * _GROWTH
-    s = abs(tau) / law.stress
+    s = min(abs(tau) / law.stress, _FARTHEST)
     if law.form == EYRING:
         if s < 1e-4:
             return 1.0 + s * s / 6.0, 1.0 + 0.5 * s * s
