@@ -64,7 +64,7 @@ def run_deck(text: str, folder: Path, job: str, purpose: str, coarser: str = "ta
     text : str
         The deck.
     folder : Path
-        Where the deck and the files of CalculiX are written.
+        Folder of the deck and of the files of CalculiX.
     job : str
         Name of the files without ending.
     purpose : str
