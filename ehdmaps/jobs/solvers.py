@@ -11,6 +11,7 @@ from typing import Any
 from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
+from ehdmaps.physics.rheology import SHEAR_LIMITS, SHEARS
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.units import short
 
@@ -147,8 +148,10 @@ SOLVERS: Mapping[str, SolverEntry] = {
             Word("flow", ("thin_film", "full_stress"), "stress of thin films, or all of it"),
             Whole("columns", 40, 4000, "cells along the film"),
             Whole("rows", 4, 64, "cells across the film"),
-            Word("shear", ("newtonian", "eyring", "limiting"), "law of the shear stress"),
-            Number("shear_stress", 1e3, 1e10, "Eyring stress or limiting stress [Pa]"),
+            Word("shear", tuple(SHEARS), "law of the shear stress"),
+            Number("shear_stress", *SHEAR_LIMITS["shear_stress"], "stress of that law [Pa]"),
+            Number("limiting_ratio", *SHEAR_LIMITS["limiting_ratio"], "rise of the limiting stress with pressure"),
+            Number("carreau_exponent", *SHEAR_LIMITS["carreau_exponent"], "n of Carreau's law"),
             Switch("inertia", "whether the momentum equation has its inertia"),
             Number("slide_to_roll", -2.0, 2.0, "difference of the surface speeds over the entrainment speed"),
             Word("start", ("reynolds", "hertz"), "what a point starts from"),
