@@ -133,11 +133,11 @@ Foam::scalarField Foam::filmFlow::columnFlux(const surfaceScalarField& massFlux)
 
 Foam::scalar Foam::filmFlow::velocityStep
 (
-    const scalar viscosity,
+    const scalar v,
     const label column,
     const label row
 ) const
 {
     const scalar rate = contact_.entrainment()/(film_.film(column)*film_.share(row));
-    return min(scalar(1e-6), 1e-3*oil_.shearStress()/(viscosity*rate));
+    return min(scalar(1e-6), 1e-3*oil_.shearStress(oil_.pressure(v))/(oil_.viscosity(v)*rate));
 }

@@ -124,14 +124,14 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
     surfaceScalarField muFace(linear<scalar>(mesh).interpolate(mu_));
     forAll(muFace, f)
     {
-        muFace[f] = oil_.sheared(muFace[f], shearRate[f]);
+        muFace[f] = oil_.sheared(muFace[f], shearRate[f], p_[mesh.owner()[f]]);
     }
     for (const label patch : {film_.lower(), film_.upper()})
     {
         scalarField& muWall = muFace.boundaryFieldRef()[patch];
         forAll(muWall, f)
         {
-            muWall[f] = oil_.sheared(muWall[f], shearRate.boundaryField()[patch][f]);
+            muWall[f] = oil_.sheared(muWall[f], shearRate.boundaryField()[patch][f], p_.boundaryField()[patch][f]);
         }
     }
     const volScalarField gradient(fvc::grad(p_)().component(vector::X));
@@ -148,7 +148,7 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
         for (label j = 0; j < film_.rows(); ++j)
         {
             const label c = film_.cell(i, j);
-            mu_[c] = oil_.sheared(mu_[c], cellShearRate(i, j));
+            mu_[c] = oil_.sheared(mu_[c], cellShearRate(i, j), p_[c]);
         }
     }
     mu_.correctBoundaryConditions();
@@ -218,8 +218,8 @@ Foam::scalar Foam::thinFilm::stressByPressure() const
         for (label j = 0; j < film_.rows(); ++j)
         {
             const scalar rate = cellShearRate(i, j);
-            const scalar rise = oil_.sheared(oil_.viscosity(v + step), rate)
-              - oil_.sheared(oil_.viscosity(v), rate);
+            const scalar rise = oil_.sheared(oil_.viscosity(v + step), rate, oil_.pressure(v + step))
+              - oil_.sheared(oil_.viscosity(v), rate, oil_.pressure(v));
             most = max(most, mag(rate*rise)/(step*oil_.pressureSlope(v)));
         }
     }

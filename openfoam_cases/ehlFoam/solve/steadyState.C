@@ -66,7 +66,10 @@ Foam::solvedFilm Foam::steadyState
         for (scalar factor = 64; factor >= 1; factor /= 4)
         {
             dictionary eased(shear);
-            eased.set("stress", factor*positive(shear, "stress"));
+            for (const word bound : {"stress", "ratio"})
+            {
+                if (shear.found(bound)) eased.set(bound, factor*shear.get<scalar>(bound));
+            }
             if (!solve("thinFilm", eased)) return found;
         }
     }
