@@ -43,7 +43,7 @@ from ehdmaps.physics.wall_stress import wall_stress_note
 CAVITATION_RANGE = 1e-6
 """Pressure over which liquid turns into the cavitated mixture, over the largest of the film (about)."""
 
-PARAMETER_VERSION = 3
+PARAMETER_VERSION = 4
 """Raised when a change of this package changes numbers: results of another version are not taken over."""
 
 StartWord = Literal["reynolds", "hertz"]
@@ -131,7 +131,7 @@ class OpenFoamSolver(ContactSolverDefaults):
 
     flow: Flow = "thin_film"
     columns: int = 400
-    rows: int = 16
+    rows: int = 6
     shear: Shear = "newtonian"
     shear_stress: float | None = None
     inertia: bool = False
