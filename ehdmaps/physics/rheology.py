@@ -28,6 +28,8 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from ehdmaps.errors import InputError
+
 NEWTONIAN, EYRING, CARREAU, LIMITING = range(4)
 """Forms of `ShearLaw`."""
 
@@ -84,6 +86,63 @@ class ShearLaw(NamedTuple):
     def scaled(self, stress_unit: float, pressure_unit: float) -> ShearLaw:
         """The same law for stresses and pressures in units that are as many times as large."""
         return self._replace(stress=self.stress / stress_unit, ratio=self.ratio * pressure_unit / stress_unit)
+
+
+def shear_law(
+    shear: str, stress: float | None = None, ratio: float | None = None, exponent: float | None = None
+) -> ShearLaw:
+    """The law of a word in SI, with the defaults above for what is not given.
+
+    Parameters
+    ----------
+    shear : str
+        One of `SHEARS`.
+    stress : float, optional
+        tau0 of the law [Pa], > 0.
+    ratio : float, optional
+        Rise of the limiting stress with pressure, >= 0; of the limiting law only.
+    exponent : float, optional
+        n of Carreau's law, 0.1 to 1; of that law only.
+
+    Raises
+    ------
+    InputError
+        With an unknown word, every number out of its limits, and every number that the law has not.
+
+    Examples
+    --------
+    >>> shear_law("limiting", ratio=0.04)
+    ShearLaw(form=3, stress=2000000.0, ratio=0.04, exponent=1.0)
+    """
+    if shear not in SHEARS:
+        raise InputError(f"shear: got {shear!r}; allowed: {', '.join(SHEARS)}")
+    form = SHEARS[shear]
+    problems = [
+        f"{name}: got {value!r} with shear = {shear!r}, which has none; leave it out"
+        for name, value, of in (
+            ("shear_stress", stress, (EYRING, CARREAU, LIMITING)),
+            ("limiting_ratio", ratio, (LIMITING,)),
+            ("carreau_exponent", exponent, (CARREAU,)),
+        )
+        if value is not None and form not in of
+    ]
+    if stress is not None and not 0.0 < stress < math.inf:
+        problems.append(f"shear_stress: got {stress!r} Pa; allowed: finite and > 0 Pa; oils have 2 to 10 MPa")
+    if ratio is not None and not 0.0 <= ratio <= 1.0:
+        problems.append(f"limiting_ratio: got {ratio!r}; allowed: 0 to 1; oils have 0.03 to 0.1")
+    if exponent is not None and not 0.1 <= exponent <= 1.0:
+        problems.append(f"carreau_exponent: got {exponent!r}; allowed: 0.1 to 1; oils have 0.3 to 0.8")
+    if problems:
+        raise InputError(problems)
+    if form == NEWTONIAN:
+        return ShearLaw()
+    usual = LIMITING_STRESS_AT_REST if form == LIMITING else EYRING_STRESS
+    return ShearLaw(
+        form=form,
+        stress=usual if stress is None else stress,
+        ratio=(LIMITING_RATIO if ratio is None else ratio) if form == LIMITING else 0.0,
+        exponent=(CARREAU_EXPONENT if exponent is None else exponent) if form == CARREAU else 1.0,
+    )
 
 
 def thinning(law: ShearLaw, tau: float, p: float) -> tuple[float, float]:
