@@ -13,6 +13,7 @@ from ehdmaps.openfoam.installation import Installation
 from ehdmaps.openfoam.parameters import Parameters, Start
 from ehdmaps.openfoam.results import THIN_FILM, FilmTable, Results, read_film, read_results
 from ehdmaps.openfoam.run import KilledError, RunError, log_tail, run
+from ehdmaps.physics.rheology import NEWTONIAN
 from ehdmaps.physics.solution import Status
 from ehdmaps.physics.wall_stress import wall_stress_note
 
@@ -175,7 +176,7 @@ class GridSolver:
 
 def _cause(parameters: Parameters, results: Results, case: Path) -> tuple[Status, str]:
     """Status and reason of a run without a solution: whether all stresses of a Newtonian oil can have one there."""
-    if results.status is Status.STAGNATED and parameters.flow == "full_stress" and parameters.shear == "newtonian":
+    if results.status is Status.STAGNATED and parameters.flow == "full_stress" and parameters.shear.form == NEWTONIAN:
         thin = read_film(case, parameters.columns, THIN_FILM) if (case / THIN_FILM).exists() else None
         note = wall_stress_note(thin.x, thin.pressure, thin.film) if thin else ""
         if note:
