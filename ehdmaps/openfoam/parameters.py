@@ -128,7 +128,7 @@ class Parameters:
     frequencies : tuple of float
         Frequencies of the linear response [Hz]; 0 is the low-frequency limit.
     oscillation : Oscillation, optional
-        Oscillation in time, the independent check of the response.
+        Oscillation in time, a check of the linear response by the same equations.
     max_iterations : int
         Number of iterations after which a run counts as stagnated.
     tolerance : float

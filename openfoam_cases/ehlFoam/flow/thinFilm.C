@@ -317,26 +317,6 @@ Foam::scalar Foam::thinFilm::cellShearRate(const label column, const label row) 
 }
 
 
-Foam::scalar Foam::thinFilm::stressByPressure() const
-{
-    const scalar step = 1e-6;
-    scalar most = 0;
-    for (label i = 0; i < film_.columns(); ++i)
-    {
-        const scalar v = oil_.unknown(p_[film_.cell(i, 0)]);
-        if (v <= 0) continue;
-        for (label j = 0; j < film_.rows(); ++j)
-        {
-            const scalar rate = cellShearRate(i, j);
-            const scalar rise = oil_.sheared(oil_.viscosity(v + step), rate, oil_.pressure(v + step))
-              - oil_.sheared(oil_.viscosity(v), rate, oil_.pressure(v));
-            most = max(most, mag(rate*rise)/(step*oil_.pressureSlope(v)));
-        }
-    }
-    return most;
-}
-
-
 void Foam::thinFilm::write()
 {
     const fvMesh& mesh = film_.mesh();
