@@ -31,7 +31,6 @@ from ehdmaps.ehl.warm_column import (
     POINTS,
     SLOPE,
     Columns,
-    empty_columns,
     fill_column,
 )
 
@@ -482,4 +481,3 @@ def warm_temperatures(
         part = min(1.0, LARGEST_RISE / max(last, 1e-300))
         rises += part * move
         count += 1
-

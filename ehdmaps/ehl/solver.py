@@ -24,9 +24,10 @@ from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.warm_oil import heat_groups
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.heat import ISOTHERMAL, THERMAL, heat_data
 from ehdmaps.physics.film_limits import THICKEST_FILM, THIN_FILM_LIMIT, too_thick
+from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, PHYSICS, THERMAL, heat_data
 from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
+from ehdmaps.physics.inlet_heat import heated, heated_spectrum, inlet_heat
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.oil_supply import OilSupply
@@ -56,8 +57,6 @@ LARGEST_OIL_NUMBER = 150.0
 
 NEWTONIAN_LAW = ShearLaw()
 
-SOLVED_PHYSICS = (ISOTHERMAL, THERMAL)
-"""What `ReynoldsSolver` solves for itself."""
 
 THINNEST_LAYER = 1e-6
 """Oil layer [b^2/R] below which the place of the meniscus, and the film, are below round-off of the deflection."""
@@ -95,8 +94,8 @@ class SuppliedFilm:
 class ReynoldsSolver(ContactSolverDefaults):
     """Finite-difference solver of the steady line contact and of its linear response.
 
-    Isothermal unless `physics` says otherwise, piezoviscous, compressible, with Reynolds' cavitation condition at the exit, Newtonian unless another
-    law of shear is chosen; fully flooded, but for `supplied_film`, which takes an oil layer before the contact.
+    Piezoviscous, compressible, with Reynolds' cavitation condition at the exit; isothermal and Newtonian unless chosen
+    otherwise; fully flooded, but for `supplied_film`, which takes an oil layer before the contact.
 
     Attributes
     ----------
@@ -108,14 +107,15 @@ class ReynoldsSolver(ContactSolverDefaults):
         Newton tolerance on the last (quadratic) step.
     thickest_film : float
         Largest h/R that is no refusal; infinite for lines that stand for their groups only.
+    physics : {"isothermal", "inlet-heat", "thermal"}
+        What films know of heat: nothing, that of the inlet by the rule of `ehdmaps.physics.inlet_heat`, or temperatures
+        of film and surfaces, solved for besides.
     shear : str
         Law of shear, one of `ehdmaps.physics.rheology.SHEARS`.
     shear_stress, limiting_ratio, carreau_exponent : float, optional
         Numbers of the law, see `ehdmaps.physics.rheology.shear_law`.
     slide_to_roll : float
         (u_upper - u_lower)/u, -2 to 2.
-    physics : str
-        "isothermal", or "thermal": temperatures of film and surfaces are solved for besides.
 
     Raises
     ------
@@ -127,12 +127,12 @@ class ReynoldsSolver(ContactSolverDefaults):
     inlet_length: float = 300.0
     tolerance: float = 1e-6
     thickest_film: float = THICKEST_FILM
+    physics: str = ISOTHERMAL
     shear: str = "newtonian"
     shear_stress: float | None = None
     limiting_ratio: float | None = None
     carreau_exponent: float | None = None
     slide_to_roll: float = 0.0
-    physics: str = ISOTHERMAL
 
     def __post_init__(self) -> None:
         problems = [
@@ -141,13 +141,12 @@ class ReynoldsSolver(ContactSolverDefaults):
             for name, (low, high) in SETTING_LIMITS.items()
             if not low <= getattr(self, name) <= high
         ]
+        if self.physics not in PHYSICS:
+            problems.append(f"reynolds solver, physics: got {self.physics!r:.60}; allowed: {', '.join(PHYSICS)}")
         try:
             shear_law(self.shear, self.shear_stress, self.limiting_ratio, self.carreau_exponent)
         except InputError as error:
             problems += [f"reynolds solver, {problem}" for problem in error.problems]
-        if self.physics not in SOLVED_PHYSICS:
-            allowed = ", ".join(SOLVED_PHYSICS)
-            problems.append(f"reynolds solver, physics: got {self.physics!r}; allowed: {allowed}")
         if problems:
             raise InputError(problems)
 
@@ -172,7 +171,7 @@ class ReynoldsSolver(ContactSolverDefaults):
 
         They cost a sixth of a map's time. None for films with temperatures, whose response is that of slow motion only.
         """
-        return (0.5, 1.0, 2.0, 4.0, 8.0) if self.physics == ISOTHERMAL else ()
+        return (0.5, 1.0, 2.0, 4.0, 8.0) if self.physics != THERMAL else ()
 
     @property
     def resolution(self) -> Resolution:
@@ -188,6 +187,7 @@ class ReynoldsSolver(ContactSolverDefaults):
             "tolerance": self.tolerance,
             "grid_shape": f"{shape}",
             **({} if self.thickest_film == THICKEST_FILM else {"thickest_film": self.thickest_film}),
+            **({} if self.physics == ISOTHERMAL else {"physics": self.physics}),
             **self._flow_settings,
         }
 
@@ -196,8 +196,6 @@ class ReynoldsSolver(ContactSolverDefaults):
         """Settings of shear and heat where they change anything."""
         law = self.shear_law
         settings: dict[str, float | str] = {} if self.slide_to_roll == 0.0 else {"slide_to_roll": self.slide_to_roll}
-        if self.physics != ISOTHERMAL:
-            settings["physics"] = self.physics
         if law.form == NEWTONIAN:
             return settings
         settings |= {"shear": self.shear, "shear_stress": law.stress}
@@ -213,7 +211,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         """Groups of one operating point, see `line_problem`."""
         state, load, speed = lubricant.at(point.temperature), point.load, point.entrainment_speed
         problem, M, L = line_problem(contact, state, load, speed, self.shear_law, self.slide_to_roll)
-        if self.physics == ISOTHERMAL:
+        if self.physics != THERMAL:
             return problem, M, L
         half = float(half_width(load, contact.radius, contact.reduced_modulus))
         peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
@@ -232,7 +230,13 @@ class ReynoldsSolver(ContactSolverDefaults):
     ) -> tuple[FilmSolution, ...]:
         """Films at each load, each from the one before it; arguments as of `ContactSolver.solve_line`."""
         solved = self._solve_line(contact, lubricant, loads, entrainment_speed, temperature)
-        return tuple(film for film, _ in solved)
+        films = (film for film, _ in solved)
+        if self.physics != INLET_HEAT:
+            return tuple(films)
+        points = (OperatingPoint(load, entrainment_speed, temperature) for load in loads)
+        return tuple(
+            heated(film, inlet_heat(contact, lubricant, point)) for film, point in zip(films, points, strict=True)
+        )
 
     def line_spectra(
         self,
@@ -244,13 +248,14 @@ class ReynoldsSolver(ContactSolverDefaults):
     ) -> tuple[FilmSpectrum, ...]:
         """The same films, each over frequency from its one solution; arguments as of `ContactSolver.line_spectra`."""
         solved = self._solve_line(contact, lubricant, loads, entrainment_speed, temperature)
-        if self.physics != ISOTHERMAL:
+        if self.physics == THERMAL:
             return tuple(slow_spectrum(film, np.empty(0)) for film, _ in solved)
         spectra = []
         for load, (film, groups) in zip(loads, solved, strict=True):
             point = OperatingPoint(load, entrainment_speed, temperature)
             frequencies = natural_to_hertz(self.natural_frequencies, film, contact, point)
-            spectra.append(self._spectrum(contact, lubricant, point, film, groups, frequencies))
+            spectrum = self._spectrum(contact, lubricant, point, film, groups, frequencies)
+            spectra.append(self._with_inlet_heat(spectrum, contact, lubricant, point))
         return tuple(spectra)
 
     def _solve_line(
@@ -273,13 +278,22 @@ class ReynoldsSolver(ContactSolverDefaults):
         self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: FloatArray
     ) -> FilmSpectrum:
         """Film of one point over frequency, from one solution; arguments as of `ContactSolver.film_spectrum`."""
-        if self.physics != ISOTHERMAL:
+        if self.physics == THERMAL:
             raise InputError(
                 f"reynolds solver, frequency: physics = {self.physics!r} has films of slow motion only; "
-                "leave the frequencies out, or choose isothermal"
+                f"leave the frequencies out, or choose {ISOTHERMAL}"
             )
         film, groups = self._solve(contact, lubricant, point, None)
-        return self._spectrum(contact, lubricant, point, film, groups, frequencies)
+        spectrum = self._spectrum(contact, lubricant, point, film, groups, frequencies)
+        return self._with_inlet_heat(spectrum, contact, lubricant, point)
+
+    def _with_inlet_heat(
+        self, spectrum: FilmSpectrum, contact: LineContact, lubricant: Lubricant, point: OperatingPoint
+    ) -> FilmSpectrum:
+        """An isothermal film over frequency, with heat in its inlet where that is asked for."""
+        if self.physics != INLET_HEAT:
+            return spectrum
+        return heated_spectrum(spectrum, inlet_heat(contact, lubricant, point))
 
     def _spectrum(
         self,
@@ -316,6 +330,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         point : OperatingPoint
             Load, speed and temperature.
         """
+        self._without_a_rule("profile of a film")
         film, groups = self._solve(contact, lubricant, point, None)
         return film, _profile_in_si(film, groups, contact, point.load)
 
@@ -338,6 +353,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         supply : OilSupply
             Oil layer before the contact.
         """
+        self._without_a_rule("film behind an oil layer")
         state = lubricant.at(point.temperature)
         film, flooded = self._solve(contact, lubricant, point, None)
         # a flooded film that is refused for its thickness still says how much oil it takes
@@ -353,7 +369,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         if layer < THINNEST_LAYER:
             reason = f"{supply.label}: {layer:.3g} b^2/R, below {THINNEST_LAYER:g} it is lost in round-off"
             return SuppliedFilm(FilmSolution(Status.OUTSIDE_VALIDITY, reason), ratio)
-        if self.physics != ISOTHERMAL:
+        if self.physics == THERMAL:
             reason = f"{supply.label}, {ratio:.3g} of the flooded flow: starved films are isothermal ones only"
             return SuppliedFilm(FilmSolution(Status.OUTSIDE_VALIDITY, reason), ratio)
         _, M, L = self._problem(contact, lubricant, point)
@@ -373,6 +389,14 @@ class ReynoldsSolver(ContactSolverDefaults):
             supplied_compliance=starved.supplied_compliance * half / (peak * contact.radius),
             profile=_profile_in_si(film, groups, contact, point.load),
         )
+
+    def _without_a_rule(self, what: str) -> None:
+        """Refuse what the rule of heat in the inlet says nothing of."""
+        if self.physics == INLET_HEAT:
+            raise InputError(
+                f"reynolds solver, physics: got {INLET_HEAT!r} for the {what}, of which its rule says nothing; "
+                f"allowed: {ISOTHERMAL}"
+            )
 
     def _solve(
         self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, previous: Profile | None
@@ -394,7 +418,7 @@ class ReynoldsSolver(ContactSolverDefaults):
             word = "diverged" if groups.outcome == DIVERGED else "stagnated"
             status = Status.DIVERGED if groups.outcome == DIVERGED else Status.STAGNATED
             reason = f"Newton {word} at M = {M:.4g}, L = {L:.4g} on every grid tried"
-            if self.physics != ISOTHERMAL and self.shear_law.form == NEWTONIAN:
+            if self.physics == THERMAL and self.shear_law.form == NEWTONIAN:
                 reason += "; films with temperatures are found more often with shear = 'eyring' or 'limiting'"
             return FilmSolution(status, reason, iterations=groups.steps, solve_seconds=seconds), groups
         half = float(half_width(load, contact.radius, contact.reduced_modulus))

@@ -116,9 +116,7 @@ def warm_newton(
         )
         if not left <= close:
             return WarmResult(unknowns, rises, first, DIVERGED, count, last)
-        by_unknowns, mobility, carriage = followed(
-            equations, columns, x, face_step, kernel, unknowns, first, SWEPT
-        )
+        by_unknowns, mobility, carriage = followed(equations, columns, x, face_step, kernel, unknowns, first, SWEPT)
         factors = warm_factors(columns, unknowns, mobility, carriage)
         lowest = residual_with(problem, factors, x, step, face_step, kernel, unknowns, load, out, jacobian)
         if not np.all(np.isfinite(out)):

@@ -56,7 +56,9 @@ class _State:
     mass: FloatArray
 
 
-def _state(problem: LineProblem, grid: Grid, unknowns: FloatArray, rises: FloatArray, first: int, load: float) -> _State:
+def _state(
+    problem: LineProblem, grid: Grid, unknowns: FloatArray, rises: FloatArray, first: int, load: float
+) -> _State:
     """Temperatures, residual and mass of a film on a grid."""
     kernel, n = log_kernel(grid.x, grid.step), grid.face.size
     columns, rises = empty_columns(n), rises.copy()

@@ -14,7 +14,9 @@ import numpy as np
 from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.heat import ISOTHERMAL
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.solids import Material
 from ehdmaps.physics.solution import ContactSolver, FilmSolution, FilmSpectrum, Status, no_spectrum
 
 LONGEST_LINE = 32
@@ -33,16 +35,10 @@ SPECTRUM_FIELDS = ("response_real", "response_imaginary", "response_error")
 """Complex film compliance over load and natural frequency [m2/N], and its error, relative to its magnitude."""
 
 FILM_FIELDS = tuple(field.name for field in fields(FilmSolution))
-LATER_FIELDS = (
-    "rolling_force",
-    "mass_flow",
-    "rolling_force_error",
-    "mass_flow_error",
-    "traction",
-    "wall_stress",
-    "film_temperature",
-    "surface_temperature",
-)
+FOUND_BY_SOME = ("traction", "wall_stress", "film_temperature", "surface_temperature")
+"""Fields that only films with sliding, shear laws or heat have: a map without any value of one is made without it."""
+
+LATER_FIELDS = ("rolling_force", "mass_flow", "rolling_force_error", "mass_flow_error", *FOUND_BY_SOME)
 """Fields that came after maps had been made: results that lack them, and took days, are taken over without them."""
 
 
@@ -88,6 +84,7 @@ class LineTask:
             "radius": self.contact.radius,
             "youngs_modulus": self.contact.material.youngs_modulus,
             "poisson_ratio": self.contact.material.poisson_ratio,
+            **_solid_heat(self.contact.material, self.solver),
             "lubricant": {key: value for key, value in self.lubricant.record().items() if key not in _SHOWN},
             "loads": self.loads,
             "entrainment_speed": self.entrainment_speed,
@@ -127,6 +124,13 @@ class LineTask:
     def is_final(self, arrays: Arrays) -> bool:
         """Whether no point failed: a crash, a kill or an end of time may not happen again."""
         return not (arrays["status"] == int(Status.FAILED)).any()
+
+
+def _solid_heat(material: Material, solver: ContactSolver) -> dict[str, dict[str, float]]:
+    """What heat takes of the solids, for the key of a task; nothing of an isothermal solver."""
+    if solver.settings().get("physics", ISOTHERMAL) == ISOTHERMAL:
+        return {}
+    return {"solids": {name: getattr(material, name) for name in ("conductivity", "heat_capacity", "density")}}
 
 
 def film_arrays(films: Sequence[FilmSolution]) -> Arrays:

@@ -49,6 +49,16 @@ LIMITING_RATIO = 0.05
 CARREAU_EXPONENT = 0.5
 """n of Carreau's law where none is given: assumed. Measured ones are 0.3 to 0.8."""
 
+STRESSES: Mapping[int, float] = {EYRING: EYRING_STRESS, CARREAU: EYRING_STRESS, LIMITING: LIMITING_STRESS_AT_REST}
+"""tau0 of the forms that have one, where none is given [Pa]."""
+
+SHEAR_LIMITS: Mapping[str, tuple[float, float]] = {
+    "shear_stress": (1e3, 1e10),
+    "limiting_ratio": (1e-3, 1.0),
+    "carreau_exponent": (0.05, 1.0),
+}
+"""What `shear_law` takes: tau0 [Pa], Lambda and n."""
+
 NEAR = 0.999
 """Part of the limiting stress up to which the circular law holds as written."""
 
@@ -89,59 +99,58 @@ class ShearLaw(NamedTuple):
 
 
 def shear_law(
-    shear: str, stress: float | None = None, ratio: float | None = None, exponent: float | None = None
+    shear: str = "newtonian",
+    shear_stress: float | None = None,
+    limiting_ratio: float | None = None,
+    carreau_exponent: float | None = None,
 ) -> ShearLaw:
-    """The law of a word in SI, with the defaults above for what is not given.
+    """Law by its word, in Pa, with the default of each number that is left out.
 
     Parameters
     ----------
     shear : str
-        One of `SHEARS`.
-    stress : float, optional
-        tau0 of the law [Pa], > 0.
-    ratio : float, optional
-        Rise of the limiting stress with pressure, >= 0; of the limiting law only.
-    exponent : float, optional
-        n of Carreau's law, 0.1 to 1; of that law only.
+        A word of `SHEARS`.
+    shear_stress : float, optional
+        tau0 [Pa] of any law but the Newtonian.
+    limiting_ratio : float, optional
+        Lambda of the limiting law.
+    carreau_exponent : float, optional
+        n of Carreau's law.
 
     Raises
     ------
     InputError
-        With an unknown word, every number out of its limits, and every number that the law has not.
+        For an unknown word, a number outside `SHEAR_LIMITS`, and one that the law does not have.
 
     Examples
     --------
-    >>> shear_law("limiting", ratio=0.04)
-    ShearLaw(form=3, stress=2000000.0, ratio=0.04, exponent=1.0)
+    >>> shear_law("limiting")
+    ShearLaw(form=3, stress=2000000.0, ratio=0.05, exponent=1.0)
     """
-    if shear not in SHEARS:
-        raise InputError(f"shear: got {shear!r}; allowed: {', '.join(SHEARS)}")
+    if not isinstance(shear, str) or shear not in SHEARS:
+        raise InputError(f"shear: got {shear!r:.60}; allowed: {', '.join(SHEARS)}")
     form = SHEARS[shear]
-    problems = [
-        f"{name}: got {value!r} with shear = {shear!r}, which has none; leave it out"
-        for name, value, of in (
-            ("shear_stress", stress, (EYRING, CARREAU, LIMITING)),
-            ("limiting_ratio", ratio, (LIMITING,)),
-            ("carreau_exponent", exponent, (CARREAU,)),
-        )
-        if value is not None and form not in of
-    ]
-    if stress is not None and not 0.0 < stress < math.inf:
-        problems.append(f"shear_stress: got {stress!r} Pa; allowed: finite and > 0 Pa; oils have 2 to 10 MPa")
-    if ratio is not None and not 0.0 <= ratio <= 1.0:
-        problems.append(f"limiting_ratio: got {ratio!r}; allowed: 0 to 1; oils have 0.03 to 0.1")
-    if exponent is not None and not 0.1 <= exponent <= 1.0:
-        problems.append(f"carreau_exponent: got {exponent!r}; allowed: 0.1 to 1; oils have 0.3 to 0.8")
+    problems = []
+    keys = {
+        "shear_stress": (shear_stress, form != NEWTONIAN),
+        "limiting_ratio": (limiting_ratio, form == LIMITING),
+        "carreau_exponent": (carreau_exponent, form == CARREAU),
+    }
+    for key, (value, belongs) in keys.items():
+        low, high = SHEAR_LIMITS[key]
+        if value is None:
+            continue
+        if not belongs:
+            problems.append(f"{key}: got {value!r} with shear {shear}, which has none; leave it out")
+        elif not low <= value <= high:
+            problems.append(f"{key}: got {value!r}; allowed: {low:g} to {high:g}; leave it out for the default")
     if problems:
         raise InputError(problems)
-    if form == NEWTONIAN:
-        return ShearLaw()
-    usual = LIMITING_STRESS_AT_REST if form == LIMITING else EYRING_STRESS
     return ShearLaw(
-        form=form,
-        stress=usual if stress is None else stress,
-        ratio=(LIMITING_RATIO if ratio is None else ratio) if form == LIMITING else 0.0,
-        exponent=(CARREAU_EXPONENT if exponent is None else exponent) if form == CARREAU else 1.0,
+        form,
+        STRESSES.get(form, 1.0) if shear_stress is None else shear_stress,
+        (LIMITING_RATIO if limiting_ratio is None else limiting_ratio) if form == LIMITING else 0.0,
+        (CARREAU_EXPONENT if carreau_exponent is None else carreau_exponent) if form == CARREAU else 1.0,
     )
 
 

@@ -11,6 +11,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.openfoam.parameters import Mesh, Oscillation, Parameters, Start
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.rheology import ShearLaw, shear_law
 
 OIL = Lubricant.named("FVA3").at(313.15)
 GOOD = Parameters(
@@ -23,7 +24,7 @@ GOOD = Parameters(
     cavitation_range=500.0,
     mesh=Mesh(film=0.2, spike_position=0.8, spike_width=0.05),
     columns=400,
-    rows=16,
+    rows=6,
     start=Start(np.array([-1e-4, 0.0, 1e-4]), np.array([0.0, 5e8, 0.0]), 1e-7),
 )
 
@@ -37,7 +38,7 @@ def entries(parameters, tmp_path):
 def test_the_file_says_what_the_parameters_say(tmp_path):
     found = entries(GOOD, tmp_path)
     assert (found["reducedRadius"], found["load"], found["upperSpeed"]) == (5.5e-3, 1e4, 1.5)
-    assert (found["flow"], found["inertia"], found["columns"], found["rows"]) == ("thinFilm", False, 400, 16)
+    assert (found["flow"], found["inertia"], found["columns"], found["rows"]) == ("thinFilm", False, 400, 6)
     assert found["viscosity"]["type"] == "FVA3"
     assert found["viscosity"]["viscosity"] == OIL.viscosity
     assert found["viscosity"]["pressureScale"] == OIL.pressure_viscosity.pressure_scale
@@ -83,10 +84,16 @@ def test_the_laws_of_the_oil(oil, words):
     assert re.search(words, replace(GOOD, oil=oil.at(313.15)).text())
 
 
-@pytest.mark.parametrize("shear", ["eyring", "limiting"])
-def test_a_shear_law_has_its_stress(tmp_path, shear):
-    found = entries(replace(GOOD, shear=shear, shear_stress=5e6), tmp_path)
-    assert dict(found["shear"]) == {"type": {"eyring": "Eyring", "limiting": "limiting"}[shear], "stress": 5e6}
+@pytest.mark.parametrize(
+    ("law", "numbers"),
+    [
+        (shear_law("eyring", 5e6), {"type": "Eyring", "stress": 5e6}),
+        (shear_law("carreau", 5e6, None, 0.4), {"type": "Carreau", "stress": 5e6, "exponent": 0.4}),
+        (shear_law("limiting", 3e6, 0.07), {"type": "limiting", "stress": 3e6, "ratio": 0.07}),
+    ],
+)
+def test_a_shear_law_has_its_numbers(tmp_path, law, numbers):
+    assert dict(entries(replace(GOOD, shear=law), tmp_path)["shear"]) == numbers
 
 
 HOSTILE = [
@@ -137,8 +144,12 @@ def test_only_booleans_switch(value):
 def test_only_known_words_get_in(value):
     with pytest.raises(InputError, match=r"flow: got .*; allowed: thin_film, full_stress"):
         replace(GOOD, flow=value).text()
-    with pytest.raises(InputError, match=r"shear: got .*; allowed: newtonian, eyring, limiting"):
-        replace(GOOD, shear=value).text()
+
+
+@pytest.mark.parametrize("value", ["Eyring; #calc", None, ["Eyring"], 4], ids=repr)
+def test_only_known_laws_of_shear_get_in(value):
+    with pytest.raises(InputError, match=r"shear: got .*; allowed: 0, 1, 2, 3"):
+        replace(GOOD, shear=ShearLaw(value)).text()
 
 
 @pytest.mark.parametrize(

@@ -54,7 +54,7 @@ def test_tangents_of_a_column(law: ShearLaw, pressure: float, rise: float, slidi
 
 def test_strong_oil_is_newtonian() -> None:
     """An Eyring stress of 1 TPa changes nothing: the same equations, up to the rounding of sums."""
-    strong = film(5e4, 2.0, 60.0, ReynoldsSolver(shear="eyring", shear_stress=1e12, slide_to_roll=0.1))
+    strong = film(5e4, 2.0, 60.0, ReynoldsSolver(shear="eyring", shear_stress=1e10, slide_to_roll=0.1))
     plain = film(5e4, 2.0, 60.0, ReynoldsSolver())
     for name in ("film_offset", "central_film", "film_compliance", "loss_compliance", "max_pressure"):
         assert getattr(strong, name) == pytest.approx(getattr(plain, name), rel=1e-6)
@@ -116,5 +116,5 @@ def test_settings_name_what_changes_the_numbers() -> None:
     assert chosen == {"shear": "limiting", "shear_stress": 2e6, "limiting_ratio": 0.04, "slide_to_roll": 0.1}
     with pytest.raises(InputError, match="allowed: newtonian, eyring, carreau, limiting"):
         ReynoldsSolver(shear="bingham")
-    with pytest.raises(InputError, match=r"limiting_ratio: got 0\.1 with shear = 'eyring'"):
+    with pytest.raises(InputError, match=r"limiting_ratio: got 0\.1 with shear eyring"):
         ReynoldsSolver(shear="eyring", limiting_ratio=0.1)
