@@ -90,9 +90,7 @@ def series_of(half_widths: FloatArray, compliance: FloatArray, radius: float, re
     return PlaneSeries(half_widths, load, approach, smooth - half_widths / (4.0 * radius) * width_slope)
 
 
-def fitted(
-    series: PlaneSeries, compliance: FloatArray, radius: float, reduced_modulus: float
-) -> LawFit:
+def fitted(series: PlaneSeries, compliance: FloatArray, radius: float, reduced_modulus: float) -> LawFit:
     """Fit the law to a series: delta_0 is the mean of what each of its loads gives.
 
     Parameters

@@ -89,9 +89,7 @@ def roller_mesh(radius: float, bore_radius: float, smallest: float, grading: flo
     return _meshed(draw, radius, bore_radius, radius - bore_radius, smallest, grading)
 
 
-def ring_mesh(
-    surface: float, far: float, smallest: float, grading: float, interface: float | None = None
-) -> PlaneMesh:
+def ring_mesh(surface: float, far: float, smallest: float, grading: float, interface: float | None = None) -> PlaneMesh:
     """Half of a ring, with shaft or housing.
 
     Parameters
