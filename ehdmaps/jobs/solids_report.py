@@ -42,6 +42,7 @@ def _lines(record: Mapping[str, Any], bearing: BearingGeometry) -> Iterator[str]
     yield _row("  share of the roller", [f"{c['roller_share']:.1%}" for c in contacts.values()])
     yield _row("  by plane stress, a bound", [FILM.text(c["plane_stress_approach"], 5) for c in contacts.values()])
     yield _row("  yields at the next roller", [f"{c['neighbour_share']:.2%}" for c in contacts.values()])
+    yield _row("curvature of the gap", [f"{c['gap_curvature']:+.1g}" for c in contacts.values()])
     low, high = (next(iter(contacts.values()))["loads"][place] for place in (0, -1))
     yield _row("law against its series, delta", [f"{c['approach_error']:.2g}" for c in contacts.values()])
     yield _row("  of the stiffness", [f"{c['compliance_error']:.2g}" for c in contacts.values()])
