@@ -64,11 +64,7 @@ int main(int argc, char* argv[])
     const scalarField x(contact.halfWidth*columnLayout(meshDict).faces(columns));
     const scalarField frequencies(askedFrequencies(dict));
     const scalar filmScale = positive(meshDict, "film")*contact.filmUnit();
-    fvMesh mesh
-    (
-        IOobject(fvMesh::defaultRegion, runTime.timeName(), runTime, IOobject::MUST_READ)
-    );
-    filmMesh film(mesh, columns, rows, dict.lookupOrDefault<scalar>("lowerShare", 0.5));
+    filmMesh film(runTime, columns, rows, dict.lookupOrDefault<scalar>("lowerShare", 0.5));
     Info<< "b " << contact.halfWidth << " m, p_H " << contact.pressure << " Pa, film expected "
         << filmScale << " m, " << columns << " x " << rows << " cells" << nl << endl;
 
@@ -85,8 +81,7 @@ int main(int argc, char* argv[])
     if (dict.lookupOrDefault<bool>("writeFields", true))
     {
         runTime.setTime(1, 1);
-        mesh.setInstance(runTime.timeName());
-        mesh.write();
+        film.write();
         s.flow().write();
     }
 
