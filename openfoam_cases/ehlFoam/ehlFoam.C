@@ -11,11 +11,15 @@
     constant/ehlProperties says what is solved; the answer goes to `results`
     (an OpenFOAM dictionary), film.dat (a table over the columns) and, if asked,
     to the fields p, U, mu, rho, liquidFraction of the time folder 1.
+
+    ehlFoam -laws FILE solves nothing and writes the oil as a table, laws.dat.
 */
 
 #include "report.H"
 #include "steadyState.H"
 #include "oscillation.H"
+#include "caseFiles.H"
+#include "lawTable.H"
 #include "columnLayout.H"
 #include "positive.H"
 #include "argList.H"
@@ -44,10 +48,24 @@ scalarField askedFrequencies(const dictionary& dict)
 }
 
 
+//- A number of cells of at least so many
+label numberOf(const dictionary& dict, const word& cells, const label least)
+{
+    const label number = dict.get<label>(cells);
+    if (number < least)
+    {
+        FatalIOErrorInFunction(dict)
+            << cells << ": got " << number << ", allowed are " << least << " and more" << exit(FatalIOError);
+    }
+    return number;
+}
+
+
 int main(int argc, char* argv[])
 {
     argList::addNote("Elastohydrodynamic line contact, film-resolved");
     argList::noParallel();
+    argList::addOption("laws", "file", "write the oil at the pressures and rates of a file to laws.dat, solve nothing");
     const argList args(argc, argv);
     Time runTime(Time::controlDictName, args);
     const clockTime clock;
@@ -57,14 +75,20 @@ int main(int argc, char* argv[])
     (
         IOobject("ehlProperties", runTime.constant(), runTime, IOobject::MUST_READ, IOobject::NO_WRITE)
     );
+    if (args.found("laws"))
+    {
+        writeLaws(dict, args["laws"], runTime.path()/"laws.dat");
+        return 0;
+    }
     const lineContact contact(dict);
-    const label columns = dict.get<label>("columns"), rows = dict.get<label>("rows");
+    const label columns = numberOf(dict, "columns", 10), rows = numberOf(dict, "rows", 2);
     const newtonControls controls{positive(dict, "tolerance"), dict.get<label>("maxIterations")};
     const dictionary& meshDict = dict.subDict("mesh");
     const scalarField x(contact.halfWidth*columnLayout(meshDict).faces(columns));
     const scalarField frequencies(askedFrequencies(dict));
     const scalar filmScale = positive(meshDict, "film")*contact.filmUnit();
     filmMesh film(runTime, columns, rows, dict.lookupOrDefault<scalar>("lowerShare", 0.5));
+    refuseUnread(runTime, film.mesh());
     Info<< "b " << contact.halfWidth << " m, p_H " << contact.pressure << " Pa, film expected "
         << filmScale << " m, " << columns << " x " << rows << " cells" << nl << endl;
 

@@ -1,7 +1,9 @@
 """The solver `openfoam` with a stand-in for ehlFoam: statuses, errors, what is missing, what is left behind."""
 
+import hashlib
 import os
 import re
+import subprocess
 import sys
 import tempfile
 import time
@@ -18,6 +20,7 @@ from ehdmaps.jobs.film_plot import places
 from ehdmaps.jobs.reader import parse_job, read_job
 from ehdmaps.jobs.tasks import line_tasks
 from ehdmaps.openfoam import installation as installed
+from ehdmaps.openfoam.leftovers import CLAIM, PREFIX, claimed, remove_leftovers
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.openfoam.run import RunError, run
 from ehdmaps.openfoam.solver import OpenFoamSolver
@@ -317,6 +320,34 @@ def test_a_case_that_cannot_be_made(fake):
     assert re.match(r"coarse grid: a case cannot be made in .*file/kept \(Not a directory\); allowed: ", film.reason)
 
 
+def test_a_case_that_cannot_be_made_leaves_nothing(fake, monkeypatch):
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("ehdmaps.openfoam.case.shutil.copytree", full)
+    assert "(No space left on device); allowed: " in solved(OpenFoamSolver()).reason
+    assert left(fake, "temporary") == []
+
+
+def test_only_what_a_killed_run_of_our_own_left_is_removed(tmp_path):
+    def folder(name):
+        (tmp_path / name).mkdir()
+        return tmp_path / name
+
+    user = os.getuid()
+    working = folder(f"{PREFIX}{user}-1-0")
+    abandoned, failed = folder(f"{PREFIX}{user}-1-1"), folder(f"{PREFIX}{user}-1-2")
+    foreign, other = folder(f"{PREFIX}{user + 1}-1-3"), folder("somebody-else")
+    (tmp_path / f"{PREFIX}{user}-1-4").symlink_to(other)
+    for left_behind in (abandoned, foreign, other):
+        (left_behind / CLAIM).touch()
+    with claimed(working):
+        remove_leftovers.__wrapped__(tmp_path)
+        assert not abandoned.exists()
+        assert all(each.exists() for each in (working, failed, foreign, other, tmp_path / f"{PREFIX}{user}-1-4"))
+    assert list(working.iterdir()) == []  # from now on it is one that is kept
+
+
 def test_the_time_of_a_point_is_that_of_both_grids(fake):
     openfoam_fake.set_mode(fake, "patient 0.7")
     film = solved(OpenFoamSolver(timeout=1.2))
@@ -375,7 +406,7 @@ def test_settings_and_build_are_in_the_key_of_a_task_but_the_timeout_is_not(fake
     (fake / "lineContact" / "system" / "controlDict").write_text("another scheme")
     second = key()
     assert second != first
-    (fake / "bin" / "ehlFoam.build").write_text("OpenFOAM v2012\n")
+    openfoam_fake.record(fake, sources="4567")
     assert key() not in (first, second)
 
 
@@ -383,7 +414,7 @@ def test_provenance(fake):
     solver = OpenFoamSolver()
     assert solver.provenance == {
         "openfoam_version": "v1912",
-        "openfoam_build": "OpenFOAM v1912 compiler g++ 12.2.0 sources 0123abcd",
+        "openfoam_build": openfoam_fake.record(fake),
     }
     assert solver.slow
     unknown = replace(solver.installed, build="built by hand")
@@ -393,7 +424,6 @@ def test_provenance(fake):
 MISSING = {
     "ehlFoam": r"there is no program .*bin/ehlFoam; build it with `openfoam_cases/build`",
     "ehlFoam.build": r"there is no record .*ehlFoam.build of its build; build it again with `openfoam_cases/build`",
-    "blockMesh": "blockMesh is not in PATH; .*install the package openfoam, or source etc/bashrc",
 }
 
 
@@ -406,12 +436,43 @@ def test_what_is_missing_is_named_with_what_to_do(fake, monkeypatch, name):
     setpriv.chmod(0o755)
     (problem,) = installed.missing()
     assert re.search(MISSING[name], problem)
-    with pytest.raises(InputError, match="solver 'openfoam': " + ("OpenFOAM" if name == "blockMesh" else "ehlFoam")):
+    with pytest.raises(InputError, match="solver 'openfoam': ehlFoam"):
         solvers.build("openfoam", {})
     with pytest.raises(InputError, match=r"\[solver\] name: got 'openfoam', which needs more than is here: "):
         read_job("nu308_openfoam", to_run=True)
     assert read_job("nu308_openfoam").solver == "openfoam"
     assert read_job("nu308_openfoam", "reynolds", to_run=True).solver == "reynolds"
+
+
+def test_a_build_for_another_openfoam_is_refused(fake, monkeypatch):
+    openfoam_fake.record(fake, version="1912.200626-1")  # the distribution's words for the same
+    assert installed.missing() == ()
+    monkeypatch.setenv("WM_PROJECT_VERSION", "v2312")
+    (problem,) = installed.missing()
+    assert re.search(r"is built for OpenFOAM 1912.200626-1, found is OpenFOAM v2312; source etc/bashrc of", problem)
+    assert "or build it again with `openfoam_cases/build`" in problem
+    (fake / "bin" / "ehlFoam.build").write_text(f"processor {installed.processor()}\n")
+    assert "without the version of OpenFOAM in its record, found is OpenFOAM v2312" in installed.missing()[0]
+
+
+def test_a_build_on_another_processor_is_refused(fake, tmp_path):
+    openfoam_fake.record(fake, machine="0123456789abcdef")
+    (problem,) = installed.missing()
+    assert f"of another processor (record 0123456789abcdef, here {installed.processor()})" in problem
+    assert "build it again with `openfoam_cases/build`, or set EHDMAPS_OPENFOAM to a folder" in problem
+    (fake / "bin" / "ehlFoam.build").write_text("openfoam v1912\n")
+    assert "(record none, here " in installed.missing()[0]
+    flags = tmp_path / "cpuinfo"
+    flags.write_text("model name : one\nflags : fpu avx\nmodel name : two\nflags : fpu avx\n")
+    assert installed.processor(flags) == hashlib.sha256(b"flags : fpu avx\n").hexdigest()[:16]
+    assert installed.processor(tmp_path / "none") == hashlib.sha256(b"").hexdigest()[:16]
+
+
+def test_the_processor_is_the_one_that_the_build_command_records():
+    script = (Path(__file__).parents[2] / "openfoam_cases" / "build").read_text()
+    function = re.search(r"(?ms)^processor\(\).*?^}$", script)[0]
+    told = subprocess.run(["bash", "-c", f"{function}\nprocessor"], capture_output=True, text=True, check=True)
+    assert told.stdout.strip() == installed.processor()
 
 
 def test_everything_that_is_missing_is_named_at_once(tmp_path, monkeypatch):
@@ -424,14 +485,13 @@ def test_everything_that_is_missing_is_named_at_once(tmp_path, monkeypatch):
     found = "\n".join(raised.value.problems)
     for part in (
         "the solver 'openfoam': the package PyFoam cannot be loaded",
-        "OpenFOAM: blockMesh is not in PATH",
         "setpriv is not in PATH; install the package util-linux",
         "ehlFoam: there is no program",
         "case lineContact: is in none of",
         "the folder for temporary files: got '/tmp/with space'; OpenFOAM takes no spaces",
     ):
         assert part in found
-    assert len(raised.value.problems) == 6
+    assert len(raised.value.problems) == 5
 
 
 def test_openfoam_without_its_environment(fake, tmp_path, monkeypatch):
@@ -439,7 +499,9 @@ def test_openfoam_without_its_environment(fake, tmp_path, monkeypatch):
     monkeypatch.setattr(installed, "DEBIAN", tmp_path)
     assert dict(installed.installation(known).environment) == installed.DEBIAN_ENVIRONMENT
     monkeypatch.setattr(installed, "DEBIAN", tmp_path / "none")
-    with pytest.raises(InputError, match=r"WM_PROJECT_DIR is not set .*; source etc/bashrc of the installation"):
+    with pytest.raises(
+        InputError, match=r"WM_PROJECT_DIR is not set .*; install the package openfoam, or source etc/bashrc"
+    ):
         installed.installation(known)
 
 

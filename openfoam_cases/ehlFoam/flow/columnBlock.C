@@ -90,13 +90,15 @@ Foam::autoPtr<Foam::fvMesh> Foam::columnBlock(const Time& runTime, const label c
     (
         new fvMesh
         (
-            IOobject(fvMesh::defaultRegion, runTime.constant(), runTime, IOobject::NO_READ),
+            IOobject(fvMesh::defaultRegion, runTime.constant(), runTime, IOobject::NO_READ, IOobject::AUTO_WRITE),
             std::move(points), std::move(faceField), std::move(owners), std::move(neighbours)
         )
     );
-    // a mesh from memory does not look for its schemes by itself
+    // a mesh from memory does not look for its schemes and its solution by itself
     mesh->fvSchemes::readOpt() = IOobject::MUST_READ;
     mesh->fvSchemes::read();
+    mesh->fvSolution::readOpt() = IOobject::MUST_READ;
+    mesh->fvSolution::read();
     List<polyPatch*> patches(names.size());
     forAll(names, p)
     {

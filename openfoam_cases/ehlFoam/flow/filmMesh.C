@@ -13,17 +13,6 @@
 namespace Foam
 {
 
-//- Number of rows, checked before a mesh is made of it
-static label checkedRows(const label rows)
-{
-    if (rows < 2)
-    {
-        FatalErrorInFunction << "rows: got " << rows << ", allowed are 2 and more" << exit(FatalError);
-    }
-    return rows;
-}
-
-
 //- What is stored of a mesh may be changed: its points move in closed form
 template<class Type>
 static Type& stored(const Type& value)
@@ -42,7 +31,7 @@ Foam::filmMesh::filmMesh
     const scalar lowerShare
 )
 :
-    block_(columnBlock(runTime, columns, checkedRows(rows))),
+    block_(columnBlock(runTime, columns, rows)),
     mesh_(*block_),
     columns_(columns),
     rows_(rows),
