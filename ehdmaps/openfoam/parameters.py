@@ -69,7 +69,7 @@ class Mesh:
     """
 
     film: float
-    inlet_length: float = 100.0
+    inlet_length: float = 20.0
     outlet_length: float = 3.0
     spike_position: float = 0.0
     spike_width: float = 0.0

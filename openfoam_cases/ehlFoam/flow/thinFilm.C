@@ -219,6 +219,7 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
             if (rate) densityRate[c] = slope*rate->column[i];
         }
     }
+    p_.boundaryFieldRef()[film_.inlet()] == inletPressure(state);
     p_.correctBoundaryConditions();
     mu_.correctBoundaryConditions();
     rho_.correctBoundaryConditions();
