@@ -161,16 +161,10 @@ class GridSolver:
                         f"{case / 'results'}: got responses at {results.frequencies} Hz; allowed: as asked"
                     )
                 if results.status is Status.CONVERGED:
-<<<<<<< HEAD
-                    return GridSolution(
-                        results, read_film(case, parameters.columns), read_fields(case) if with_fields else None
-                    )
-                status, reason = _cause(parameters, results, case)
-=======
                     film = read_film(case, parameters.columns)
                     fields = read_fields(case) if with_fields else None
                     return GridSolution(results, film, fields, parameters.cavitation_range)
->>>>>>> foamnum
+                status, reason = _cause(parameters, results, case)
             except SolverError as error:
                 raise RunError(f"{error}; {log_tail(log)}") from error
             raise RunError(f"ehlFoam {status.word}: {reason}; {log_tail(log)}", status, results.iterations)
