@@ -11,9 +11,10 @@ from typing import Any
 from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
+from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL
 from ehdmaps.physics.rheology import SHEAR_LIMITS, SHEARS
 from ehdmaps.physics.solution import ContactSolver
-from ehdmaps.units import short
+from ehdmaps.units import Display, short
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,51 @@ class Switch:
         return table.switch(self.key)
 
 
+@dataclass(frozen=True)
+class Quantity:
+    """A key that takes a number with its unit, or a bare one in SI, within [low, high]."""
+
+    key: str
+    unit: str
+    low: float
+    high: float
+    display: Display
+    meaning: str
+
+    def read(self, table: Table) -> Any:
+        """Return the value in SI, or None if absent or wrong."""
+        if isinstance(table.get(self.key), str):
+            return table.quantity(self.key, self.unit, self.low, self.high, self.display)
+        return table.number(self.key, self.low, self.high)
+
+
+SHEAR_OPTIONS = (
+    Word("shear", tuple(SHEARS), "law of the shear stress, see ehdmaps.physics.rheology"),
+    Quantity(
+        "shear_stress",
+        "Pa",
+        *SHEAR_LIMITS["shear_stress"],
+        Display("MPa", 1e-6),
+        "stress of that law, or its bound without pressure",
+    ),
+    Number("limiting_ratio", *SHEAR_LIMITS["limiting_ratio"], "rise of the limiting stress with pressure"),
+    Number("carreau_exponent", *SHEAR_LIMITS["carreau_exponent"], "n of Carreau's law"),
+    Number("slide_to_roll", -2.0, 2.0, "difference of the surface speeds over the entrainment speed"),
+)
+"""Keys of the solvers that know laws of shear: the same words, limits and meanings for each."""
+
+
+def physics_option(*words: str) -> Word:
+    """The key that says what a solver knows of heat.
+
+    Parameters
+    ----------
+    *words : str
+        What it may know, of `ehdmaps.physics.heat.PHYSICS`.
+    """
+    return Word("physics", words, "what the films know of heat")
+
+
 def _nothing() -> tuple[str, ...]:
     """Nothing is missing."""
     return ()
@@ -91,7 +137,7 @@ class SolverEntry:
         Whether it works in case folders, which it can keep, and has fields of the film.
     """
 
-    options: tuple[Number | Whole | Word | Switch, ...]
+    options: tuple[Number | Quantity | Whole | Word | Switch, ...]
     build: Callable[..., ContactSolver]
     missing: Callable[[], tuple[str, ...]] = _nothing
     keeps_cases: bool = False
@@ -140,6 +186,7 @@ SOLVERS: Mapping[str, SolverEntry] = {
             ),
             Number("inlet_length", *SETTING_LIMITS["inlet_length"], "length of the inlet over sqrt(2 h R)"),
             Number("tolerance", *SETTING_LIMITS["tolerance"], "Newton tolerance on the last step"),
+            physics_option(ISOTHERMAL, INLET_HEAT),
         ),
         _reynolds,
     ),
@@ -148,12 +195,8 @@ SOLVERS: Mapping[str, SolverEntry] = {
             Word("flow", ("thin_film", "full_stress"), "stress of thin films, or all of it"),
             Whole("columns", 40, 4000, "cells along the film"),
             Whole("rows", 4, 64, "cells across the film"),
-            Word("shear", tuple(SHEARS), "law of the shear stress"),
-            Number("shear_stress", *SHEAR_LIMITS["shear_stress"], "stress of that law [Pa]"),
-            Number("limiting_ratio", *SHEAR_LIMITS["limiting_ratio"], "rise of the limiting stress with pressure"),
-            Number("carreau_exponent", *SHEAR_LIMITS["carreau_exponent"], "n of Carreau's law"),
+            *SHEAR_OPTIONS,
             Switch("inertia", "whether the momentum equation has its inertia"),
-            Number("slide_to_roll", -2.0, 2.0, "difference of the surface speeds over the entrainment speed"),
             Word("start", ("reynolds", "hertz"), "what a point starts from"),
             Number("timeout", 1.0, 1e6, "seconds after which a point is stopped"),
         ),

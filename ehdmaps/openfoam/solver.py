@@ -132,7 +132,7 @@ class OpenFoamSolver(ContactSolverDefaults):
 
     flow: Flow = "thin_film"
     columns: int = 400
-    rows: int = 16
+    rows: int = 6
     shear: str = "newtonian"
     shear_stress: float | None = None
     limiting_ratio: float | None = None

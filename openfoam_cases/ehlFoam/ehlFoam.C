@@ -11,11 +11,15 @@
     constant/ehlProperties says what is solved; the answer goes to `results`
     (an OpenFOAM dictionary), film.dat (a table over the columns) and, if asked,
     to the fields p, U, mu, rho, liquidFraction of the time folder 1.
+
+    ehlFoam -laws FILE solves nothing and writes the oil as a table, laws.dat.
 */
 
 #include "report.H"
 #include "steadyState.H"
 #include "oscillation.H"
+#include "caseFiles.H"
+#include "lawTable.H"
 #include "columnLayout.H"
 #include "positive.H"
 #include "argList.H"
@@ -48,6 +52,7 @@ int main(int argc, char* argv[])
 {
     argList::addNote("Elastohydrodynamic line contact, film-resolved");
     argList::noParallel();
+    argList::addOption("laws", "file", "write the oil at the pressures and rates of a file to laws.dat, solve nothing");
     const argList args(argc, argv);
     Time runTime(Time::controlDictName, args);
     const clockTime clock;
@@ -57,6 +62,11 @@ int main(int argc, char* argv[])
     (
         IOobject("ehlProperties", runTime.constant(), runTime, IOobject::MUST_READ, IOobject::NO_WRITE)
     );
+    if (args.found("laws"))
+    {
+        writeLaws(dict, args["laws"], runTime.path()/"laws.dat");
+        return 0;
+    }
     const lineContact contact(dict);
     const label columns = dict.get<label>("columns"), rows = dict.get<label>("rows");
     const newtonControls controls{positive(dict, "tolerance"), dict.get<label>("maxIterations")};
@@ -68,6 +78,7 @@ int main(int argc, char* argv[])
     (
         IOobject(fvMesh::defaultRegion, runTime.timeName(), runTime, IOobject::MUST_READ)
     );
+    refuseUnread(runTime, mesh);
     filmMesh film(mesh, columns, rows, dict.lookupOrDefault<scalar>("lowerShare", 0.5));
     Info<< "b " << contact.halfWidth << " m, p_H " << contact.pressure << " Pa, film expected "
         << filmScale << " m, " << columns << " x " << rows << " cells" << nl << endl;

@@ -65,10 +65,10 @@ def results(M: float, L: float, columns: int = 100, rows: int = 8, flow: Flow = 
     return run(parameters(M, L, columns, rows, flow=flow, **changes)).results
 
 
-def program(installed: Installation, name: str | Path, case: Path) -> subprocess.CompletedProcess[str]:
+def program(installed: Installation, name: str | Path, case: Path, *options: str) -> subprocess.CompletedProcess[str]:
     """Run a program of OpenFOAM in a folder, come what may."""
     return subprocess.run(
-        [str(name), "-case", str(case)],
+        [str(name), "-case", str(case), *options],
         cwd=case,
         env={**installed.full_environment(), "PWD": str(case)},
         stdin=subprocess.DEVNULL,
