@@ -252,6 +252,13 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
       - gradient.primitiveField()
     );
 
+    for (const label side : {0, 1})
+    {
+        const label patch = side ? film_.upper() : film_.lower();
+        wallStress_[side] = muFace.boundaryField()[patch]*shearRate.boundaryField()[patch]
+           *fraction_.boundaryField()[patch];
+    }
+
     // viscosity of a cell under shear
     const scalarField oilViscosity(mu_.primitiveField());
     for (label i = 0; i < film_.columns(); ++i)
