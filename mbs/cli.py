@@ -262,6 +262,9 @@ def _bearing(commands: Any) -> None:
     command.add_argument("--profile", metavar="PROFILE", default="iso", help="iso | straight, of the rollers (iso)")
     command.add_argument("--slices", metavar="N", default="41", help="of a roller (41)")
     command.add_argument(
+        "--coupled", action="store_true", help="slices know of their neighbours: the elasticity of three dimensions"
+    )
+    command.add_argument(
         "--roughness",
         metavar="LENGTH",
         help='combined rms roughness, such as "0.2 um": film and asperities share the load; default: [surface] of the '

@@ -26,7 +26,6 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.heat import ISOTHERMAL, heat_data
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.solids import Material
 from ehdmaps.units import KELVIN, closest
 
 LONGEST_FILE = 1_000_000
@@ -152,7 +151,7 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool, f
     oil_section = top.table("lubricant", "[lubricant]", required="a table with the name of an oil, or its data")
     oil = read_lubricant(oil_section) if oil_section else None
     if oil is not None and contacts:
-        _check_heat(top, oil, contacts[0].material, options, rest["corrected_by"] if rest else None)
+        _check_heat(top, oil, contacts, options, rest.get("corrected_by"))
     supply = top.optional("supply", "[supply]", read_supply)
     surface = top.optional("surface", "[surface]", read_surface)
 
@@ -272,14 +271,25 @@ def _grid(grid: Table, contacts: int, bearing: BearingGeometry | None) -> list[t
 
 
 def _check_heat(
-    top: Table, oil: Lubricant, material: Material, options: Mapping[str, object], by: CorrectedBy | None
+    top: Table,
+    oil: Lubricant,
+    contacts: tuple[LineContact, ...],
+    options: Mapping[str, object],
+    by: CorrectedBy | None,
 ) -> None:
     """Note what heat needs and nobody stated, where a solver of the job knows heat."""
-    known = (options.get("physics"), by.options.get("physics") if by else None)
-    if all(physics in (None, ISOTHERMAL) for physics in known):
+    own = options.get("physics", ISOTHERMAL)
+    dearer = by.options.get("physics", ISOTHERMAL) if by else own
+    if own == dearer == ISOTHERMAL:
         return
+    if own != dearer and len(contacts) > 1:
+        top.note(
+            "[correction] physics",
+            f"got {dearer!r} for films that are {own}; contacts of a bearing share what they are corrected by, and "
+            "heat is not theirs in common; allowed: the same physics in [solver], or a bare [contact]",
+        )
     try:
-        heat_data(oil, material)
+        heat_data(oil, contacts[0].material)
     except InputError as error:
         for problem in error.problems:
             top.note("[lubricant]", problem)
