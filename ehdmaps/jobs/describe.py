@@ -27,6 +27,7 @@ from ehdmaps.jobs.surface import surface_words
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR
 from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.own_lines import has_own_lines
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.maps.rough_films import BOUNDARY, FILM_PARAMETER, FILM_SHARE, MIXED, rough_variables
 from ehdmaps.physics.bearing import BearingGeometry
@@ -189,9 +190,14 @@ def _backbone_lines(backbone: xr.Dataset) -> Iterator[str]:
     """Yield the size of the group of refinement lines."""
     sizes = [backbone.sizes[name] for name in schema.BACKBONE_DIMS]
     yield "refinement lines of the contact law (group backbone)"
-    status = backbone["status"].values
+    held = [name for name in ("status", f"{schema.OWN}status") if name in backbone]
+    status = np.stack([backbone[name].values for name in held])
     solved = int((status != schema.NOT_NEEDED).sum())
-    yield f"  {solved} points: {sizes[0]} loads about the damping valley, {sizes[1]} speeds, {sizes[2]} temperatures"
+    whose = ", of each contact its own" if has_own_lines(backbone) else ""
+    yield (
+        f"  {solved} points: {sizes[0]} loads about the damping valley, {sizes[1]} speeds, {sizes[2]} temperatures"
+        f"{whose}"
+    )
     bridged = solved - int(np.isin(status, [int(known) for known in Status if known.usable]).sum())
     if bridged:
         yield f"  {bridged} of them without a solution: single ones are bridged along their lines"

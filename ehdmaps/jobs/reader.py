@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 from importlib import resources
 from os import PathLike, fspath
 from pathlib import Path
@@ -21,6 +22,8 @@ from ehdmaps.maps.backbone_plan import STEP_LIMITS, STEPS, Steps
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.heat import ISOTHERMAL, heat_data
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import KELVIN, closest
 
@@ -122,6 +125,8 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
     bearing, contacts = read_contacts(top, law)
     oil_section = top.table("lubricant", "[lubricant]", required="a table with the name of an oil, or its data")
     oil = read_lubricant(oil_section) if oil_section else None
+    if oil is not None and contacts:
+        _check_heat(top, oil, contacts, options, rest.get("corrected_by"))
     supply = top.optional("supply", "[supply]", read_supply)
     surface = top.optional("surface", "[surface]", read_surface)
 
@@ -224,6 +229,31 @@ def _grid(grid: Table, contacts: int, bearing: BearingGeometry | None) -> list[t
             f"got {lengths} = {points} points; allowed: at most {MOST_POINTS}; use fewer points on the axes",
         )
     return axes
+
+
+def _check_heat(
+    top: Table,
+    oil: Lubricant,
+    contacts: tuple[LineContact, ...],
+    options: Mapping[str, object],
+    by: CorrectedBy | None,
+) -> None:
+    """Note what heat needs and nobody stated, where a solver of the job knows heat."""
+    own = options.get("physics", ISOTHERMAL)
+    dearer = by.options.get("physics", ISOTHERMAL) if by else own
+    if own == dearer == ISOTHERMAL:
+        return
+    if own != dearer and len(contacts) > 1:
+        top.note(
+            "[correction] physics",
+            f"got {dearer!r} for films that are {own}; contacts of a bearing share what they are corrected by, and "
+            "heat is not theirs in common; allowed: the same physics in [solver], or a bare [contact]",
+        )
+    try:
+        heat_data(oil, contacts[0].material)
+    except InputError as error:
+        for problem in error.problems:
+            top.note("[lubricant]", problem)
 
 
 def _check_temperatures(oil: Lubricant, temperatures: tuple[float, ...], grid: Table) -> None:

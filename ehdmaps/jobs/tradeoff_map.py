@@ -244,7 +244,7 @@ def _lines(job: Job, solver: ReynoldsSolver, steps: Steps) -> _Lines:
     assert refined is not None  # a speed above zero, and backbone = "law"
     results, seconds = _solved(refined.tasks)
     group = backbone_group(refined, results)
-    plan = refined.plan
+    plan = refined.plans[0]
     sizes = len(plan.zeta), len(plan.speeds), len(plan.temperatures)
     return _Lines(job, refined.points, sizes, seconds, lambda contact: line_field(job, group, contact))
 

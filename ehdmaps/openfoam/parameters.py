@@ -17,15 +17,18 @@ from numpy.typing import ArrayLike
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.lubricant import LubricantState
+from ehdmaps.physics.rheology import CARREAU, EYRING, LIMITING, NEWTONIAN, ShearLaw
 
 Flow = Literal["thin_film", "full_stress"]
-Shear = Literal["newtonian", "eyring", "limiting"]
 
 FLOWS: Mapping[Flow, str] = {"thin_film": "thinFilm", "full_stress": "fullStress"}
 """Words of a job file and those of the dictionary."""
 
-SHEARS: Mapping[Shear, str] = {"newtonian": "Newtonian", "eyring": "Eyring", "limiting": "limiting"}
-"""Words of a job file and those of the dictionary."""
+SHEAR_FORMS: Mapping[int, str] = {NEWTONIAN: "Newtonian", EYRING: "Eyring", CARREAU: "Carreau", LIMITING: "limiting"}
+"""Forms of the laws of shear and their words in the dictionary."""
+
+NEWTON = ShearLaw()
+"""The law of an oil that does not care about shear."""
 
 HEADER = "FoamFile { version 2.0; format ascii; class dictionary; object ehlProperties; }"
 
@@ -116,10 +119,8 @@ class Parameters:
         Cells along and across the film.
     flow : {"thin_film", "full_stress"}
         Stress of thin films, or all of it with the pressure across the film.
-    shear : {"newtonian", "eyring", "limiting"}
-        Law of the shear stress.
-    shear_stress : float
-        Eyring stress, or limiting stress [Pa]; the Newtonian law has none.
+    shear : ShearLaw
+        Law of the shear stress, in Pa.
     inertia : bool
         Whether the momentum equation has its inertia.
     start : Start, optional
@@ -127,7 +128,7 @@ class Parameters:
     frequencies : tuple of float
         Frequencies of the linear response [Hz]; 0 is the low-frequency limit.
     oscillation : Oscillation, optional
-        Oscillation in time, the independent check of the response.
+        Oscillation in time, a check of the linear response by the same equations.
     max_iterations : int
         Number of iterations after which a run counts as stagnated.
     tolerance : float
@@ -147,8 +148,7 @@ class Parameters:
     columns: int
     rows: int
     flow: Flow = "thin_film"
-    shear: Shear = "newtonian"
-    shear_stress: float = 0.0
+    shear: ShearLaw = NEWTON
     inertia: bool = False
     start: Start | None = None
     frequencies: tuple[float, ...] = (0.0,)
@@ -176,10 +176,7 @@ class Parameters:
         yield from _block("viscosity", _viscosity(self.oil))
         density = "DowsonHigginson" if self.oil.compressible else "incompressible"
         yield from _block("density", [f"type {density};", _entry("density", self.oil.density)])
-        shear = [f"type {_word('shear', self.shear, SHEARS)};"]
-        if self.shear != "newtonian":
-            shear.append(_entry("stress", self.shear_stress))
-        yield from _block("shear", shear)
+        yield from _block("shear", _shear(self.shear))
         yield from _block("cavitation", [_entry("pressureRange", self.cavitation_range)])
         yield f"flow {_word('flow', self.flow, FLOWS)};"
         yield _switch("inertia", self.inertia)
@@ -225,6 +222,18 @@ def _viscosity(oil: LubricantState) -> list[str]:
     return [f"type {law.case_name};", _entry("viscosity", oil.viscosity), *entries]
 
 
+def _shear(law: ShearLaw) -> list[str]:
+    """The law of shear under its name, with the numbers that it has."""
+    entries = [f"type {_word('shear', law.form, SHEAR_FORMS)};"]
+    if law.form != NEWTONIAN:
+        entries.append(_entry("stress", law.stress))
+    if law.form == LIMITING:
+        entries.append(_entry("ratio", law.ratio))
+    if law.form == CARREAU:
+        entries.append(_entry("exponent", law.exponent))
+    return entries
+
+
 def _camel(name: str) -> str:
     """A name in the dictionary's spelling: pressure_scale is pressureScale."""
     first, *others = name.split("_")
@@ -268,6 +277,6 @@ def _list(key: str, values: ArrayLike) -> str:
 
 def _word(key: str, value: object, table: Mapping[Any, str]) -> str:
     """The dictionary's word for a word of the job file."""
-    if not isinstance(value, str) or value not in table:
-        raise InputError(f"ehlProperties, {key}: got {value!r:.60}; allowed: {', '.join(table)}")
+    if not isinstance(value, str | int) or isinstance(value, bool) or value not in table:
+        raise InputError(f"ehlProperties, {key}: got {value!r:.60}; allowed: {', '.join(map(str, table))}")
     return table[value]

@@ -110,7 +110,7 @@ int main(int argc, char* argv[])
     // what it is
     resultsFile results(runTime);
     reportFilm(results, s, solved);
-    writeTable(runTime, s, s.film(solved.state));
+    writeTable(runTime.path()/"film.dat", s, s.film(solved.state));
     if (dict.lookupOrDefault<bool>("writeFields", true))
     {
         runTime.setTime(1, 1);

@@ -11,6 +11,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.openfoam.parameters import Mesh, Oscillation, Parameters, Start
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.rheology import ShearLaw, shear_law
 
 OIL = Lubricant.named("FVA3").at(313.15)
 GOOD = Parameters(
@@ -83,10 +84,16 @@ def test_the_laws_of_the_oil(oil, words):
     assert re.search(words, replace(GOOD, oil=oil.at(313.15)).text())
 
 
-@pytest.mark.parametrize("shear", ["eyring", "limiting"])
-def test_a_shear_law_has_its_stress(tmp_path, shear):
-    found = entries(replace(GOOD, shear=shear, shear_stress=5e6), tmp_path)
-    assert dict(found["shear"]) == {"type": {"eyring": "Eyring", "limiting": "limiting"}[shear], "stress": 5e6}
+@pytest.mark.parametrize(
+    ("law", "numbers"),
+    [
+        (shear_law("eyring", 5e6), {"type": "Eyring", "stress": 5e6}),
+        (shear_law("carreau", 5e6, None, 0.4), {"type": "Carreau", "stress": 5e6, "exponent": 0.4}),
+        (shear_law("limiting", 3e6, 0.07), {"type": "limiting", "stress": 3e6, "ratio": 0.07}),
+    ],
+)
+def test_a_shear_law_has_its_numbers(tmp_path, law, numbers):
+    assert dict(entries(replace(GOOD, shear=law), tmp_path)["shear"]) == numbers
 
 
 HOSTILE = [
@@ -137,8 +144,12 @@ def test_only_booleans_switch(value):
 def test_only_known_words_get_in(value):
     with pytest.raises(InputError, match=r"flow: got .*; allowed: thin_film, full_stress"):
         replace(GOOD, flow=value).text()
-    with pytest.raises(InputError, match=r"shear: got .*; allowed: newtonian, eyring, limiting"):
-        replace(GOOD, shear=value).text()
+
+
+@pytest.mark.parametrize("value", ["Eyring; #calc", None, ["Eyring"], 4], ids=repr)
+def test_only_known_laws_of_shear_get_in(value):
+    with pytest.raises(InputError, match=r"shear: got .*; allowed: 0, 1, 2, 3"):
+        replace(GOOD, shear=ShearLaw(value)).text()
 
 
 @pytest.mark.parametrize(

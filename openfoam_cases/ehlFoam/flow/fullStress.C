@@ -171,7 +171,7 @@ Foam::List<Foam::scalarField> Foam::fullStress::residual
     const volTensorField gradU(fvc::grad(U_));
     forAll(mu_, c)
     {
-        mu_[c] = oil_.sheared(mu_[c], Foam::sqrt(2.0)*mag(dev(symm(gradU[c]))));
+        mu_[c] = oil_.sheared(mu_[c], Foam::sqrt(2.0)*mag(dev(symm(gradU[c]))), p_[c]);
     }
     mu_.correctBoundaryConditions();
 

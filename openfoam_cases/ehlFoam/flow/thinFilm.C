@@ -80,6 +80,116 @@ Foam::scalarField Foam::thinFilm::start
 }
 
 
+Foam::scalar Foam::thinFilm::cellStep
+(
+    const filmState& state,
+    const label,
+    const label column,
+    const label row
+) const
+{
+    const scalar slide = (contact_.upperSpeed - contact_.lowerSpeed)/contact_.entrainment();
+    auto velocity = [&](const label j)
+    {
+        return state.local[place(column, j, 0)] + slide*film_.middle(j);
+    };
+    const scalar here = velocity(row);
+    return velocityStep
+    (
+        state.column[column],
+        0.5*(state.h[column] + state.h[column + 1])*film_.share(row),
+        row > 0 ? velocity(row - 1) : -here,
+        here,
+        row + 1 < film_.rows() ? velocity(row + 1) : 2*slide - here
+    );
+}
+
+
+Foam::scalarField Foam::thinFilm::addedVelocity(const filmState& state, const label column) const
+{
+    scalarField velocity(film_.rows());
+    forAll(velocity, j) velocity[j] = contact_.entrainment()*state.local[place(column, j, 0)];
+    return velocity;
+}
+
+
+Foam::shearedColumn Foam::thinFilm::sheared(const filmState& state, const label column) const
+{
+    const scalar v = state.column[column];
+    return shearedColumn
+    (
+        oil_.shear(),
+        0.5*(state.h[column] + state.h[column + 1]),
+        max(oil_.pressure(v), scalar(0)),
+        contact_.upperSpeed - contact_.lowerSpeed,
+        scalarField(film_.rows() + 1, oil_.viscosity(v))
+    );
+}
+
+
+void Foam::thinFilm::balance(filmState& state) const
+{
+    label top = 0;
+    forAll(state.column, i)
+    {
+        if (state.column[i] > state.column[top]) top = i;
+    }
+    auto mass = [&](const label i)
+    {
+        return oil_.density(state.column[i])*0.5*(state.h[i] + state.h[i + 1]);
+    };
+    forAll(state.column, i)
+    {
+        for (label j = 0; j < film_.rows(); ++j)
+        {
+            state.local[place(i, j, 0)] = mass(top)/mass(i) - 1;
+        }
+    }
+}
+
+
+void Foam::thinFilm::settle(const filmState& before, filmState& after)
+{
+    if (oil_.shear().stress(0) >= GREAT) return;
+    film_.move(after.x, after.h);
+    for (label i = 0; i < film_.columns(); ++i)
+    {
+        for (label j = 0; j < film_.rows(); ++j) p_[film_.cell(i, j)] = oil_.pressure(after.column[i]);
+    }
+    p_.correctBoundaryConditions();
+    const scalarField gradient(fvc::grad(p_)().primitiveField().component(vector::X));
+    const scalar speed = contact_.entrainment(), slide = contact_.upperSpeed - contact_.lowerSpeed;
+    for (label i = 0; i < film_.columns(); ++i)
+    {
+        // where the column was: its flux, and the gradient of its stress
+        const scalarField was(addedVelocity(before, i));
+        const scalar h = 0.5*(before.h[i] + before.h[i + 1]);
+        const scalarField rate(shearedColumn::rates(was, h, slide));
+        const scalar pressure = max(oil_.pressure(before.column[i]), scalar(0));
+        const scalar viscosity = oil_.viscosity(before.column[i]);
+        auto stress = [&](const label k)
+        {
+            return viscosity*rate[k]*oil_.shear().yielding(viscosity*rate[k], pressure).factor;
+        };
+        const scalar wasGradient = (stress(film_.rows()) - stress(0))/h;
+
+        shearedColumn byGradient(sheared(after, i)), byFlow(byGradient);
+        byGradient.meetGradient(gradient[film_.cell(i, 0)]);
+        byFlow.meetFlow(average(addedVelocity(after, i)), wasGradient);
+        const scalar unit = oil_.shear().stress(pressure)/h;
+        auto moved = [&](const shearedColumn& column)
+        {
+            return mag(column.gradient() - wasGradient)/unit + mag(column.flow() - average(was))/speed;
+        };
+        const scalarField velocity
+        (
+            (moved(byGradient) < moved(byFlow) ? byGradient : byFlow).velocity()/speed
+        );
+        forAll(velocity, j) after.local[place(i, j, 0)] = velocity[j];
+    }
+}
+
+
 Foam::List<Foam::scalarField> Foam::thinFilm::residual
 (
     const filmState& state,
@@ -125,14 +235,14 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
     surfaceScalarField muFace(linear<scalar>(mesh).interpolate(mu_));
     forAll(muFace, f)
     {
-        muFace[f] = oil_.sheared(muFace[f], shearRate[f]);
+        muFace[f] = oil_.sheared(muFace[f], shearRate[f], p_[mesh.owner()[f]]);
     }
     for (const label patch : {film_.lower(), film_.upper()})
     {
         scalarField& muWall = muFace.boundaryFieldRef()[patch];
         forAll(muWall, f)
         {
-            muWall[f] = oil_.sheared(muWall[f], shearRate.boundaryField()[patch][f]);
+            muWall[f] = oil_.sheared(muWall[f], shearRate.boundaryField()[patch][f], p_.boundaryField()[patch][f]);
         }
     }
     const volScalarField gradient(fvc::grad(p_)().component(vector::X));
@@ -149,7 +259,7 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
         for (label j = 0; j < film_.rows(); ++j)
         {
             const label c = film_.cell(i, j);
-            mu_[c] = oil_.sheared(mu_[c], cellShearRate(i, j));
+            mu_[c] = oil_.sheared(mu_[c], cellShearRate(i, j), p_[c]);
         }
     }
     mu_.correctBoundaryConditions();
@@ -205,26 +315,6 @@ Foam::scalar Foam::thinFilm::cellShearRate(const label column, const label row) 
     const scalar dy = (last ? 1 : film_.middle(row + 1)) - (first ? 0 : film_.middle(row - 1));
     const scalar du = (last ? 0 : u_[c + 1]) - (first ? 0 : u_[c - 1]);
     return (du/dy + contact_.upperSpeed - contact_.lowerSpeed)/film_.film(column);
-}
-
-
-Foam::scalar Foam::thinFilm::stressByPressure() const
-{
-    const scalar step = 1e-6;
-    scalar most = 0;
-    for (label i = 0; i < film_.columns(); ++i)
-    {
-        const scalar v = oil_.unknown(p_[film_.cell(i, 0)]);
-        if (v <= 0) continue;
-        for (label j = 0; j < film_.rows(); ++j)
-        {
-            const scalar rate = cellShearRate(i, j);
-            const scalar rise = oil_.sheared(oil_.viscosity(v + step), rate)
-              - oil_.sheared(oil_.viscosity(v), rate);
-            most = max(most, mag(rate*rise)/(step*oil_.pressureSlope(v)));
-        }
-    }
-    return most;
 }
 
 
