@@ -23,7 +23,9 @@ _LAW = (
     "damping over stiffness of a dry contact ('hertz:1.25e-5 s'; usual: 0.25e-5 to 2.5e-5 s), DAMPING a constant one "
     "('hertz:100 N s/m' of each contact of a roller), NAME a table [laws.NAME]"
 )
-_STRUCTURE = "law of the solids in the contacts of a map: iso16281 | palmgren | half_space; default: that of its job"
+_STRUCTURE = (
+    "law of the solids in the contacts of a map: iso16281 | palmgren | half_space | fe; default: that of its job"
+)
 
 
 def parser() -> argparse.ArgumentParser:
