@@ -19,7 +19,7 @@ def length_figure(reference: LengthReference, cases: list[LengthComparison]) -> 
     reference : LengthReference
         The finite elements.
     cases : list of LengthComparison
-        Its cases beside the other solutions.
+        Cases of the reference beside the other solutions.
     """
     figure = Figure(figsize=(13.0, 8.4), layout="constrained")
     profiles = list(dict.fromkeys(entry.case.profile for entry in cases))

@@ -19,7 +19,7 @@ def length_text(reference: LengthReference, cases: list[LengthComparison]) -> li
     reference : LengthReference
         The finite elements.
     cases : list of LengthComparison
-        Its cases beside the other solutions.
+        Cases of the reference beside the other solutions.
     """
     check = reference.check
     by_calculix = f"; CalculiX finds {check['load_by_calculix'] / check['load']:.2%} of a load" if check else ""

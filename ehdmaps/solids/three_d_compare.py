@@ -58,7 +58,7 @@ class LengthComparison:
     inside : array of bool (n,)
         Places at least a half-width of the contact away from the end faces.
     coupled, alone : SliceLoads
-        By `SLICES` slices that know of their neighbours, and by as many that do not, with the same plane law.
+        Solution by `SLICES` slices that know of their neighbours, and by as many that do not, with the same plane law.
     """
 
     case: LengthCase

@@ -16,8 +16,6 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.profiles import iso_profile
 from ehdmaps.physics.solids import STEEL, Material
-from ehdmaps.solids.slices import slice_coupling
-from ehdmaps.solids.three_d import FiniteLine
 
 Profile = str | Callable[[FloatArray], npt.ArrayLike] | tuple[float, ...] | FloatArray
 
@@ -149,6 +147,10 @@ class Bearing:
         end faces of the roller, raceways that go on beyond them, and bodies of the rings as deep as the roller is
         thick.
         """
+        # scipy is loaded for those who want it only: scenes are read without
+        from ehdmaps.solids.slices import slice_coupling
+        from ehdmaps.solids.three_d import FiniteLine
+
         geometry = self.geometry
         diameter = geometry.roller_diameter
         total = np.zeros((self.slices, self.slices))
