@@ -46,6 +46,7 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
+from ehdmaps.physics.bearing import with_law
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.oil_supply import FLOODED
 from ehdmaps.physics.roughness import SMOOTH
@@ -330,7 +331,7 @@ def _structure_rows(measurement: _Measurement, grid_seconds: float, usual: _Line
     for name in STRUCTURAL_LAWS:
         seconds = grid_seconds + usual.seconds
         try:
-            contacts = {contact.name: replace(contact, structural_law=name) for contact in job.contacts}
+            contacts = {contact.name: with_law(contact, name, job.bearing) for contact in job.contacts}
             tasks = tuple(replace(task, contact=contacts[task.contact.name]) for task in points.tasks)
             exact = _with_contacts(points, tasks)
         except InputError as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property, partial
 from os import PathLike, fspath
@@ -35,7 +36,7 @@ from ehdmaps.maps.structure import completed, restructured
 from ehdmaps.maps.usable import check_backbone, check_grid, check_loads
 from ehdmaps.maps.validation import check_tables, validate
 from ehdmaps.physics.approach import StructuralLaw
-from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.bearing import BearingGeometry, with_law
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
@@ -73,7 +74,11 @@ class EHDMap:
         self.backbone = backbone
 
     def with_structure(
-        self, structural_law: StructuralLaw, reference_depth: float | None = None, roller_length: float | None = None
+        self,
+        structural_law: StructuralLaw,
+        reference_depth: float | None = None,
+        roller_length: float | None = None,
+        fe_approaches: Mapping[str, float] | None = None,
     ) -> EHDMap:
         """The same films between solids of another structural law.
 
@@ -83,27 +88,32 @@ class EHDMap:
 
         Parameters
         ----------
-        structural_law : {"iso16281", "palmgren", "half_space"}
+        structural_law : {"iso16281", "palmgren", "half_space", "fe"}
             Law of the elastic part of the approach, see `ehdmaps.physics.approach`.
         reference_depth : float, optional
             d* of half_space [m]; that of the map's contacts if left out. Those of a bearing have D/e.
         roller_length : float, optional
             Length of the whole roller, for iso16281 and palmgren [m]; that of the map's contacts if left out.
+        fe_approaches : mapping of str to float, optional
+            Approaches by finite elements of the contacts by their names, for fe [m]; those of the map's contacts if
+            left out, or those that come with the package for the map's bearing.
 
         Raises
         ------
         InputError
             If there is no such law, if it lacks a length, or if it does not hold for the loads of the map.
         """
-        contacts = tuple(
+        known = fe_approaches or {}
+        given = (
             replace(
                 contact,
-                structural_law=structural_law,
                 reference_depth=contact.reference_depth if reference_depth is None else reference_depth,
                 roller_length=contact.roller_length if roller_length is None else roller_length,
+                fe_approach=known.get(contact.name, contact.fe_approach),
             )
             for contact in self.contacts
         )
+        contacts = tuple(with_law(contact, structural_law, self.bearing) for contact in given)
         if contacts == self.contacts:
             return self
         dataset = restructured(self.dataset, contacts)
@@ -316,7 +326,7 @@ def open_map(path: str | PathLike[str], structural_law: StructuralLaw | None = N
     ----------
     path : str or path
         The file.
-    structural_law : {"iso16281", "palmgren", "half_space"}, optional
+    structural_law : {"iso16281", "palmgren", "half_space", "fe"}, optional
         Law by which approach, stiffness and damping are derived from the films; that of the map's job if left out. A
         map of a bare contact has the length of one law only: see `EHDMap.with_structure`.
 

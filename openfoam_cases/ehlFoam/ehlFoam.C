@@ -10,7 +10,7 @@
 
     constant/ehlProperties says what is solved; the answer goes to `results`
     (an OpenFOAM dictionary), film.dat (a table over the columns) and, if asked,
-    to the fields p, U, mu, rho, liquidFraction of the time folder 1.
+    to the fields p, U, mu, rho, liquidFraction, wallShear of the time folder 1.
 
     ehlFoam -laws FILE solves nothing and writes the oil as a table, laws.dat.
 */
@@ -119,6 +119,7 @@ int main(int argc, char* argv[])
         runTime.setTime(1, 1);
         film.write();
         s.flow().write();
+        s.flow().writeWallStress();
     }
 
     // how it moves: linear response, and the check in time
