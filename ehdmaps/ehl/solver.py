@@ -10,6 +10,8 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.frequency import group_spectrum
 from ehdmaps.ehl.grid import GridShape
@@ -19,16 +21,18 @@ from ehdmaps.ehl.meniscus import starved_groups
 from ehdmaps.ehl.newton import CONVERGED, DIVERGED
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import LineProblem
+from ehdmaps.ehl.warm_oil import heat_groups
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.film_limits import THICKEST_FILM, THIN_FILM_LIMIT, too_thick
-from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL
+from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, PHYSICS, THERMAL, heat_data
 from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.inlet_heat import heated, heated_spectrum, inlet_heat
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.rheology import CARREAU, LIMITING, NEWTONIAN, ShearLaw, shear_law
 from ehdmaps.physics.solution import (
     ContactSolverDefaults,
     FilmSolution,
@@ -44,15 +48,14 @@ from ehdmaps.physics.wall_stress import wall_stress_note
 HEAVIEST_LOAD_NUMBER = 2e6
 """Moes' M above which the film is too thin for double precision to see it beside the elastic deflection."""
 
-PHYSICS = (ISOTHERMAL, INLET_HEAT)
-"""What this solver may know of heat."""
-
 LIGHTEST_LOAD_NUMBER = 1e-12
 """Moes' M below which double precision does not see the elastic deflection, of size b^2/R, beside the film, H ~ 1/M:
 the linear response, made of both, loses digits, and its equations are singular from 1e-16 on."""
 
 LARGEST_OIL_NUMBER = 150.0
 """Moes' L above which no solve is tried."""
+
+NEWTONIAN_LAW = ShearLaw()
 
 
 THINNEST_LAYER = 1e-6
@@ -91,8 +94,8 @@ class SuppliedFilm:
 class ReynoldsSolver(ContactSolverDefaults):
     """Finite-difference solver of the steady line contact and of its linear response.
 
-    Isothermal, Newtonian, piezoviscous, compressible, with Reynolds' cavitation condition at the exit; fully flooded,
-    but for `supplied_film`, which takes an oil layer before the contact.
+    Piezoviscous, compressible, with Reynolds' cavitation condition at the exit; isothermal and Newtonian unless chosen
+    otherwise; fully flooded, but for `supplied_film`, which takes an oil layer before the contact.
 
     Attributes
     ----------
@@ -104,8 +107,15 @@ class ReynoldsSolver(ContactSolverDefaults):
         Newton tolerance on the last (quadratic) step.
     thickest_film : float
         Largest h/R that is no refusal; infinite for lines that stand for their groups only.
-    physics : {"isothermal", "inlet-heat"}
-        What films know of heat: nothing, or that of the inlet by the rule of `ehdmaps.physics.inlet_heat`.
+    physics : {"isothermal", "inlet-heat", "thermal"}
+        What films know of heat: nothing, that of the inlet by the rule of `ehdmaps.physics.inlet_heat`, or temperatures
+        of film and surfaces, solved for besides.
+    shear : str
+        Law of shear, one of `ehdmaps.physics.rheology.SHEARS`.
+    shear_stress, limiting_ratio, carreau_exponent : float, optional
+        Numbers of the law, see `ehdmaps.physics.rheology.shear_law`.
+    slide_to_roll : float
+        (u_upper - u_lower)/u, -2 to 2.
 
     Raises
     ------
@@ -118,6 +128,11 @@ class ReynoldsSolver(ContactSolverDefaults):
     tolerance: float = 1e-6
     thickest_film: float = THICKEST_FILM
     physics: str = ISOTHERMAL
+    shear: str = "newtonian"
+    shear_stress: float | None = None
+    limiting_ratio: float | None = None
+    carreau_exponent: float | None = None
+    slide_to_roll: float = 0.0
 
     def __post_init__(self) -> None:
         problems = [
@@ -128,6 +143,10 @@ class ReynoldsSolver(ContactSolverDefaults):
         ]
         if self.physics not in PHYSICS:
             problems.append(f"reynolds solver, physics: got {self.physics!r:.60}; allowed: {', '.join(PHYSICS)}")
+        try:
+            shear_law(self.shear, self.shear_stress, self.limiting_ratio, self.carreau_exponent)
+        except InputError as error:
+            problems += [f"reynolds solver, {problem}" for problem in error.problems]
         if problems:
             raise InputError(problems)
 
@@ -135,6 +154,11 @@ class ReynoldsSolver(ContactSolverDefaults):
     def name(self) -> str:
         """Name of the solver."""
         return "reynolds"
+
+    @property
+    def shear_law(self) -> ShearLaw:
+        """Law of shear in SI."""
+        return shear_law(self.shear, self.shear_stress, self.limiting_ratio, self.carreau_exponent)
 
     @property
     def wants_backbone(self) -> bool:
@@ -145,9 +169,9 @@ class ReynoldsSolver(ContactSolverDefaults):
     def natural_frequencies(self) -> tuple[float, ...]:
         """Octaves over which the complex stiffness of a contact goes from that of slow motion to that of a locked film.
 
-        They cost a sixth of a map's time.
+        They cost a sixth of a map's time. None for films with temperatures, whose response is that of slow motion only.
         """
-        return (0.5, 1.0, 2.0, 4.0, 8.0)
+        return (0.5, 1.0, 2.0, 4.0, 8.0) if self.physics != THERMAL else ()
 
     @property
     def resolution(self) -> Resolution:
@@ -164,7 +188,37 @@ class ReynoldsSolver(ContactSolverDefaults):
             "grid_shape": f"{shape}",
             **({} if self.thickest_film == THICKEST_FILM else {"thickest_film": self.thickest_film}),
             **({} if self.physics == ISOTHERMAL else {"physics": self.physics}),
+            **self._flow_settings,
         }
+
+    @property
+    def _flow_settings(self) -> dict[str, float | str]:
+        """Settings of shear and heat where they change anything."""
+        law = self.shear_law
+        settings: dict[str, float | str] = {} if self.slide_to_roll == 0.0 else {"slide_to_roll": self.slide_to_roll}
+        if law.form == NEWTONIAN:
+            return settings
+        settings |= {"shear": self.shear, "shear_stress": law.stress}
+        if law.form == LIMITING:
+            settings["limiting_ratio"] = law.ratio
+        if law.form == CARREAU:
+            settings["carreau_exponent"] = law.exponent
+        return settings
+
+    def _problem(
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint
+    ) -> tuple[LineProblem, float, float]:
+        """Groups of one operating point, see `line_problem`."""
+        state, load, speed = lubricant.at(point.temperature), point.load, point.entrainment_speed
+        problem, M, L = line_problem(contact, state, load, speed, self.shear_law, self.slide_to_roll)
+        if self.physics != THERMAL:
+            return problem, M, L
+        half = float(half_width(load, contact.radius, contact.reduced_modulus))
+        peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
+        walls = speed * np.array([1.0 - 0.5 * self.slide_to_roll, 1.0 + 0.5 * self.slide_to_roll])
+        data = heat_data(lubricant, contact.material)
+        heat = heat_groups(lubricant, data, point.temperature, half, contact.radius, peak, walls)
+        return problem._replace(heat=heat), M, L
 
     def solve_line(
         self,
@@ -194,12 +248,13 @@ class ReynoldsSolver(ContactSolverDefaults):
     ) -> tuple[FilmSpectrum, ...]:
         """The same films, each over frequency from its one solution; arguments as of `ContactSolver.line_spectra`."""
         solved = self._solve_line(contact, lubricant, loads, entrainment_speed, temperature)
-        state = lubricant.at(temperature)
+        if self.physics == THERMAL:
+            return tuple(slow_spectrum(film, np.empty(0)) for film, _ in solved)
         spectra = []
         for load, (film, groups) in zip(loads, solved, strict=True):
             point = OperatingPoint(load, entrainment_speed, temperature)
             frequencies = natural_to_hertz(self.natural_frequencies, film, contact, point)
-            spectrum = self._spectrum(contact, state, point, film, groups, frequencies)
+            spectrum = self._spectrum(contact, lubricant, point, film, groups, frequencies)
             spectra.append(self._with_inlet_heat(spectrum, contact, lubricant, point))
         return tuple(spectra)
 
@@ -212,10 +267,10 @@ class ReynoldsSolver(ContactSolverDefaults):
         temperature: float,
     ) -> Iterator[tuple[FilmSolution, GroupSolution | None]]:
         """Films at each load, each from the one before it, with their solutions in groups."""
-        state = lubricant.at(temperature)
         previous: Profile | None = None
         for load in loads:
-            film, groups = self._solve(contact, state, OperatingPoint(load, entrainment_speed, temperature), previous)
+            point = OperatingPoint(load, entrainment_speed, temperature)
+            film, groups = self._solve(contact, lubricant, point, previous)
             previous = previous if groups is None else groups.profile
             yield film, groups
 
@@ -223,9 +278,13 @@ class ReynoldsSolver(ContactSolverDefaults):
         self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: FloatArray
     ) -> FilmSpectrum:
         """Film of one point over frequency, from one solution; arguments as of `ContactSolver.film_spectrum`."""
-        state = lubricant.at(point.temperature)
-        film, groups = self._solve(contact, state, point, None)
-        spectrum = self._spectrum(contact, state, point, film, groups, frequencies)
+        if self.physics == THERMAL:
+            raise InputError(
+                f"reynolds solver, frequency: physics = {self.physics!r} has films of slow motion only; "
+                f"leave the frequencies out, or choose {ISOTHERMAL}"
+            )
+        film, groups = self._solve(contact, lubricant, point, None)
+        spectrum = self._spectrum(contact, lubricant, point, film, groups, frequencies)
         return self._with_inlet_heat(spectrum, contact, lubricant, point)
 
     def _with_inlet_heat(
@@ -239,7 +298,7 @@ class ReynoldsSolver(ContactSolverDefaults):
     def _spectrum(
         self,
         contact: LineContact,
-        state: LubricantState,
+        lubricant: Lubricant,
         point: OperatingPoint,
         film: FilmSolution,
         groups: GroupSolution | None,
@@ -251,7 +310,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         if groups is None:
             return slow_spectrum(film, frequencies)
         load, speed = point.load, point.entrainment_speed
-        _, M, L = line_problem(contact, state, load, speed)
+        _, M, L = self._problem(contact, lubricant, point)
         half = float(half_width(load, contact.radius, contact.reduced_modulus))
         found = group_spectrum(M, L, groups, 2.0 * math.pi * frequencies * half / speed)
         unit = 4.0 / contact.reduced_modulus  # b/(p_H R)
@@ -272,7 +331,7 @@ class ReynoldsSolver(ContactSolverDefaults):
             Load, speed and temperature.
         """
         self._without_a_rule("profile of a film")
-        film, groups = self._solve(contact, lubricant.at(point.temperature), point, None)
+        film, groups = self._solve(contact, lubricant, point, None)
         return film, _profile_in_si(film, groups, contact, point.load)
 
     def supplied_film(
@@ -296,7 +355,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         """
         self._without_a_rule("film behind an oil layer")
         state = lubricant.at(point.temperature)
-        film, flooded = self._solve(contact, state, point, None)
+        film, flooded = self._solve(contact, lubricant, point, None)
         # a flooded film that is refused for its thickness still says how much oil it takes
         if flooded is None or flooded.outcome != CONVERGED:
             return SuppliedFilm(film)
@@ -310,7 +369,10 @@ class ReynoldsSolver(ContactSolverDefaults):
         if layer < THINNEST_LAYER:
             reason = f"{supply.label}: {layer:.3g} b^2/R, below {THINNEST_LAYER:g} it is lost in round-off"
             return SuppliedFilm(FilmSolution(Status.OUTSIDE_VALIDITY, reason), ratio)
-        _, M, L = line_problem(contact, state, point.load, point.entrainment_speed)
+        if self.physics == THERMAL:
+            reason = f"{supply.label}, {ratio:.3g} of the flooded flow: starved films are isothermal ones only"
+            return SuppliedFilm(FilmSolution(Status.OUTSIDE_VALIDITY, reason), ratio)
+        _, M, L = self._problem(contact, lubricant, point)
         started = time.perf_counter()
         starved = starved_groups(M, L, self.resolution, layer, flooded)
         seconds = film.solve_seconds + time.perf_counter() - started
@@ -337,14 +399,15 @@ class ReynoldsSolver(ContactSolverDefaults):
             )
 
     def _solve(
-        self, contact: LineContact, state: LubricantState, point: OperatingPoint, previous: Profile | None
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, previous: Profile | None
     ) -> tuple[FilmSolution, GroupSolution | None]:
         """One point, and its solution in groups where it was solved."""
         load, speed = point.load, point.entrainment_speed
         peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
         if speed == 0.0:
             return dry_film(peak, "no entrainment: dry contact"), None
-        problem, M, L = line_problem(contact, state, load, speed)
+        state = lubricant.at(point.temperature)
+        problem, M, L = self._problem(contact, lubricant, point)
         beyond = _beyond_reach(peak, M, L)
         if beyond:
             return FilmSolution(Status.OUTSIDE_VALIDITY, beyond), None
@@ -355,6 +418,8 @@ class ReynoldsSolver(ContactSolverDefaults):
             word = "diverged" if groups.outcome == DIVERGED else "stagnated"
             status = Status.DIVERGED if groups.outcome == DIVERGED else Status.STAGNATED
             reason = f"Newton {word} at M = {M:.4g}, L = {L:.4g} on every grid tried"
+            if self.physics == THERMAL and self.shear_law.form == NEWTONIAN:
+                reason += "; films with temperatures are found more often with shear = 'eyring' or 'limiting'"
             return FilmSolution(status, reason, iterations=groups.steps, solve_seconds=seconds), groups
         half = float(half_width(load, contact.radius, contact.reduced_modulus))
         film = _in_si(groups, contact, state, half, peak, speed, seconds)
@@ -367,7 +432,12 @@ class ReynoldsSolver(ContactSolverDefaults):
 
 
 def line_problem(
-    contact: LineContact, state: LubricantState, load: float, speed: float
+    contact: LineContact,
+    state: LubricantState,
+    load: float,
+    speed: float,
+    shear: ShearLaw = NEWTONIAN_LAW,
+    slide_to_roll: float = 0.0,
 ) -> tuple[LineProblem, float, float]:
     """Groups of one operating point: those of the equations, and Moes' M and L.
 
@@ -381,11 +451,18 @@ def line_problem(
         w [N/m].
     speed : float
         u [m/s].
+    shear : ShearLaw
+        Law of shear in SI.
+    slide_to_roll : float
+        (u_upper - u_lower)/u.
     """
     alpha = state.pressure_viscosity.pressure_viscosity
     peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
     M, L = moes_groups(load, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
-    return LineProblem(3.0 * math.pi**2 / (8.0 * M * M), state.isotherm(peak)), float(M), L
+    half = float(half_width(load, contact.radius, contact.reduced_modulus))
+    stress = state.viscosity * speed * contact.radius / half**2
+    wedge = 3.0 * math.pi**2 / (8.0 * M * M)
+    return LineProblem(wedge, state.isotherm(peak), shear.scaled(stress, peak), slide_to_roll), float(M), L
 
 
 def dry_film(peak: float, reason: str) -> FilmSolution:
@@ -409,6 +486,8 @@ def dry_film(peak: float, reason: str) -> FilmSolution:
         max_pressure_error=0.0,
         rolling_force_error=0.0,
         mass_flow_error=0.0,
+        traction=0.0,
+        wall_stress=0.0,
     )
 
 
@@ -449,6 +528,10 @@ def _in_si(
     seconds: float,
 ) -> FilmSolution:
     """Scale films by b^2/R, the compliance by b/(p_H R), the loss by b^2/(p_H R u), the rolling force by p_H b^2/R."""
+    profile = groups.profile
+    assert profile is not None
+    newtonian = profile.problem.shear.form == NEWTONIAN
+    heat = profile.problem.heat
     film = half * half / contact.radius
     compliance = half / (peak * contact.radius)
     status, notes = Status.CONVERGED, []
@@ -457,10 +540,11 @@ def _in_si(
         status = Status.ASYMPTOTE
         notes.append("film thicker than 1 % of the radius: limit of thin-film theory, Reynolds with a parabolic gap")
     elif groups.loss < 0.0:
-        notes.append("negative damping at the valley of an isothermal, Newtonian film; a contact law takes zero")
-    profile = groups.profile
-    assert profile is not None
-    notes.append(wall_stress_note(profile.position * half, profile.pressure * peak, profile.film * film))
+        kind = " of an isothermal, Newtonian film" if newtonian and profile.warmth is None else ""
+        notes.append(f"negative damping at the valley{kind}; a contact law takes zero")
+    stress = state.viscosity * speed / film
+    if newtonian:
+        notes.append(wall_stress_note(profile.position * half, profile.pressure * peak, profile.film * film))
     return FilmSolution(
         status=status,
         reason="; ".join(filter(None, notes)),
@@ -480,6 +564,10 @@ def _in_si(
         max_pressure_error=groups.max_pressure_error,
         rolling_force_error=groups.rolling_force_error,
         mass_flow_error=groups.mass_flow_error,
+        film_temperature=heat.temperature + groups.film_rise,
+        surface_temperature=heat.temperature + groups.surface_rise,
+        traction=profile.traction * stress * half,
+        wall_stress=profile.wall_stress * stress,
         iterations=groups.steps,
         solve_seconds=seconds,
         viscosity_extrapolated=groups.max_pressure * peak * (1.0 + groups.max_pressure_error) > state.fitted_pressure,

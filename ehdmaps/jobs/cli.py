@@ -12,7 +12,7 @@ from ehdmaps.program import Parser, run
 _KEEP = "openfoam: keep the case folders of all runs; default folder: ehdmaps-cases"
 _SOLVER = "hertz | formula | reynolds | openfoam; instead of the job's, with its default settings"
 
-_STRUCTURE = "law of the solids in approach, k and c: iso16281 | palmgren | half_space; default: that of the job"
+_STRUCTURE = "law of the solids in approach, k and c: iso16281 | palmgren | half_space | fe; default: that of the job"
 
 _ROUGHNESS = 'combined rms roughness, "0.2 um", or smooth; default: that of the job'
 
@@ -85,13 +85,25 @@ def parser() -> argparse.ArgumentParser:
         help='response at many frequencies, spaced logarithmically: "10 Hz" "20 kHz" 60; with --plot as a picture',
     )
     solve.add_argument(
-        "--slide-to-roll",
-        nargs=3,
-        metavar=("FROM", "TO", "POINTS"),
-        help="reynolds: traction over the slide-to-roll ratio, spaced logarithmically: 0.001 1 7",
+        "--physics", metavar="NAME", help="isothermal | inlet-heat | thermal: what the film knows of heat; the job's"
     )
-    solve.add_argument("--eyring-stress", metavar="STRESS", help='for --slide-to-roll; default: "6 MPa"')
-    solve.add_argument("--limiting-ratio", metavar="RATIO", help="limiting stress over pressure; default: 0.05")
+    solve.add_argument(
+        "--shear", metavar="LAW", help="newtonian | eyring | carreau | limiting: law of the shear stress; the job's"
+    )
+    solve.add_argument("--shear-stress", metavar="STRESS", help='of --shear, such as "6 MPa"; default: of that law')
+    solve.add_argument(
+        "--slide-to-roll",
+        nargs="+",
+        metavar="RATIO",
+        help="one value: the film is solved with this sliding, (u2 - u1)/u from -2 to 2; FROM TO POINTS: reynolds, "
+        "traction on the film of pure rolling over the ratio, spaced logarithmically: 0.001 1 7",
+    )
+    solve.add_argument("--eyring-stress", metavar="STRESS", help='for --slide-to-roll FROM TO POINTS; default: "6 MPa"')
+    solve.add_argument(
+        "--limiting-ratio",
+        metavar="RATIO",
+        help="limiting stress over pressure, of --shear limiting or --slide-to-roll FROM TO POINTS; default: 0.05",
+    )
     solve.add_argument(
         "--supply",
         metavar="SUPPLY",
@@ -122,10 +134,27 @@ def parser() -> argparse.ArgumentParser:
     export.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
     export.add_argument("--roughness", metavar="LENGTH", help=_ROUGHNESS)
 
+    _add_solids(commands)
     _add_compare(commands)
     _add_tradeoff(commands)
     _add_stability(commands)
     return top
+
+
+def _add_solids(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Add the arguments of `ehdmaps solids`."""
+    solids = commands.add_parser("solids", help="the structural law of a bearing by finite elements, once per bearing")
+    solids.add_argument("job", metavar="JOB")
+    solids.add_argument("-o", "--output", metavar="FILE.json", help="all that was found; default: none")
+    solids.add_argument("--mesh-convergence", action="store_true", help="three meshes, and other seats of the rings")
+    solids.add_argument("--contact", action="store_true", help="CalculiX solves the contact too; some minutes")
+    solids.add_argument(
+        "--compare",
+        action="store_true",
+        help="k by all structural laws; solves only where the law fe is unknown",
+    )
+    solids.add_argument("--plot", metavar="FIG.png", help="meshes, and the laws over load; also .pdf, .svg")
+    solids.add_argument("--json", action="store_true", help="the numbers as one object, SI")
 
 
 def _add_compare(commands: argparse._SubParsersAction[Parser]) -> None:

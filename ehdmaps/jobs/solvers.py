@@ -137,7 +137,7 @@ class SolverEntry:
         Whether it works in case folders, which it can keep, and has fields of the film.
     """
 
-    options: tuple[Number | Quantity | Whole | Word | Switch, ...]
+    options: tuple[Number | Whole | Word | Switch | Quantity, ...]
     build: Callable[..., ContactSolver]
     missing: Callable[[], tuple[str, ...]] = _nothing
     keeps_cases: bool = False
@@ -257,6 +257,66 @@ def complete(solver: ContactSolver) -> ContactSolver:
             ]
         )
     return solver
+
+
+PHYSICAL = ("physics", *(option.key for option in SHEAR_OPTIONS))
+"""Keys that say what a film is, and not how it is solved."""
+
+
+def solver_words(options: Mapping[str, Any]) -> str:
+    """What is said of a solver's own keys behind its name: physics, law of shear, sliding; nothing of the defaults.
+
+    Parameters
+    ----------
+    options : mapping
+        Keys of the solver.
+    """
+    words = [str(options[key]) for key in ("physics", "shear") if key in options]
+    told = [word for word in words if word not in (ISOTHERMAL, "newtonian")]
+    slip = options.get("slide_to_roll", 0.0)
+    return "".join(f", {word}" for word in (*told, *([f"slide to roll {slip:g}"] if slip else [])))
+
+
+def stated(name: str, texts: Mapping[str, str], problems: list[str]) -> dict[str, Any]:
+    """Read keys of a solver from a command line.
+
+    Parameters
+    ----------
+    name : str
+        Name of the solver.
+    texts : mapping
+        What was typed, by the key of [solver]; the options of the command line are called as these, with hyphens.
+    problems : list of str
+        Problems, appended to.
+
+    Returns
+    -------
+    dict
+        Values by key; what is wrong is left out.
+    """
+    known = {option.key: option for option in SOLVERS[name].options}
+    values: dict[str, Any] = {}
+    for key, text in texts.items():
+        where, option = f"--{key.replace('_', '-')}", known.get(key)
+        if option is None:
+            having = [other for other, entry in SOLVERS.items() if key in [option.key for option in entry.options]]
+            instead = f"with --solver {' or '.join(having)}" if having else "no solver takes it yet"
+            problems.append(f"{where}: the solver {name!r} knows none; allowed: {instead}")
+            continue
+        found: list[str] = []
+        value = option.read(Table({key: _typed(text)}, where, found))
+        problems += [problem.replace(f"{where} {key}:", f"{where}:", 1) for problem in found]
+        if value is not None:
+            values[key] = value
+    return values
+
+
+def _typed(text: str) -> str | float:
+    """A bare number where the text is one."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def case_options(name: str, keep_cases: str | None) -> dict[str, Any]:

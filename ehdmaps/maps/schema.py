@@ -22,7 +22,9 @@ Version 2 added film compliance, loss compliance and its error to the grid; vers
 damping in their place. Version 3 added rolling force and mass flow, with their errors, and the film compliance at
 natural frequencies to the backbone, where the solver has it: complex, in units of the film alone, over
 omega sqrt(b^2 + 2 h R)/u with b and the film offset h of each point. Version 4 added the model errors of stiffness and
-damping, of a map whose films are corrected by a dearer solver.
+damping, of a map whose films are corrected by a dearer solver. Version 5 added traction, wall stress and temperatures
+of films, where the solver finds them, and to the backbone the films of the outer contact, where heat makes them its
+own.
 
 To add a variable, write one row in `TABLE` with ``since=`` the new version, and raise `SCHEMA_VERSION`. With
 ``required=False`` a map may lack it. It is then written, where `dataset` or `backbone` is given values for it, read,
@@ -41,7 +43,7 @@ import xarray as xr
 
 from ehdmaps.physics.solution import Status
 
-SCHEMA_VERSION = 4
+SCHEMA_VERSION = 5
 """Version of the table; files of this and of all lower versions are read."""
 
 DIMS = ("contact", "load", "entrainment_speed", "temperature")
@@ -64,6 +66,13 @@ NATURAL = "natural_frequency"
 
 RESPONSE_DIMS = (*BACKBONE_DIMS, NATURAL)
 """Order of the dims of how these films answer."""
+
+OWN = "outer_"
+"""How the films of the outer contact begin where it has lines of its own, on the axes of those of the inner one.
+
+Films with heat are no functions of M and L alone: contacts do not share their lines. The reference contact is then the
+inner one, and the outer one is its own.
+"""
 
 NOT_NEEDED = -1
 """Status of a place of the backbone that no contact of the map comes to."""
@@ -175,6 +184,11 @@ def _model_error(name: str, of: str) -> Variable:
     return Variable(name, "1", words, required=False, since=4)
 
 
+def _of_films(name: str, units: str, long_name: str) -> Variable:
+    """Row of what only some solvers find of a film."""
+    return Variable(name, units, long_name, required=False, since=5)
+
+
 def _of_backbone(name: str, units: str, long_name: str, required: bool = True, since: int = 1) -> Variable:
     """Row of a film of the reference contact."""
     long_name = f"{long_name}, reference contact"
@@ -187,62 +201,22 @@ def _of_response(name: str, units: str, long_name: str) -> Variable:
     return Variable(name, units, words, required=False, dims=RESPONSE_DIMS, group=BACKBONE, since=3)
 
 
+def _own(entry: Variable) -> Variable:
+    """Row of a film of the outer contact, like that of the reference contact; see `OWN`."""
+    words = entry.long_name.replace("reference contact", "outer contact")
+    return replace(entry, name=f"{OWN}{entry.name}", long_name=words, required=False, since=5)
+
+
 _KELVINS = (1.0, 1e4)
 
-TABLE = (
-    Variable("contact", "1", "contact of the roller with this raceway", "str", dims=("contact",)),
-    _axis("load", "N m-1", "load per unit length", (1e-6, 1e12)),
-    _axis("entrainment_speed", "m s-1", "mean of the two surface speeds", (0.0, 1e6)),
-    _axis("temperature", "K", "temperature of the raceways, the surfaces of the contact", _KELVINS),
-    _derived("approach", "m", "mutual approach of the bodies, positive together"),
-    Variable("film_offset", "m", "dry minus lubricated approach at equal load"),
-    Variable("film_compliance", "m2 N-1", "minus the derivative of the film offset by load", since=2),
-    Variable("loss_compliance", "m2 s N-1", "damping over squared stiffness, low-frequency limit", since=2),
-    _derived("stiffness", "N m-2", "stiffness per unit length, derivative of load by approach"),
-    _derived("damping", "N s m-2", "damping per unit length, low-frequency limit"),
-    Variable("central_film", "m", "film thickness at the contact centre"),
-    Variable("minimum_film", "m", "smallest film thickness"),
-    Variable("max_pressure", "Pa", "largest pressure"),
-    Variable(
-        "rolling_force",
-        "N m-1",
-        "force of both walls together against pure rolling, integral of film by pressure gradient",
-        required=False,
-        since=3,
-    ),
-    Variable("mass_flow", "kg m-1 s-1", "mass flow of oil per unit length", required=False, since=3),
-    Variable("status", "1", "how the point ended", "int8", flags=_STATUS),
-    Variable("reason", "1", "cause of the status, in words", "str"),
-    _error("film_offset_error", "film_offset"),
-    _error("film_compliance_error", "film_compliance"),
-    Variable(
-        "loss_compliance_error",
-        "1",
-        "estimated relative numerical error of loss_compliance, positive where that of film_compliance has its sign",
-        since=2,
-    ),
-    replace(_error("stiffness_error", "stiffness"), derived_since=2),
-    replace(_error("damping_error", "damping"), derived_since=2),
-    _error("central_film_error", "central_film", required=False),
-    _error("minimum_film_error", "minimum_film", required=False),
-    _error("max_pressure_error", "max_pressure", required=False),
-    _error("rolling_force_error", "rolling_force", required=False, since=3),
-    _error("mass_flow_error", "mass_flow", required=False, since=3),
-    _model_error("stiffness_model_error", "stiffness"),
-    _model_error("damping_model_error", "damping"),
-    Variable("iterations", "1", "iterations of the solver, all grids together", "int32"),
-    Variable("solve_seconds", "s", "time to solve the point"),
-    Variable(
-        "viscosity_extrapolated",
-        "1",
-        "pressure beyond the fitted range of the viscosity",
-        "int8",
-        flags=_NO_YES,
-    ),
-    Variable("filled", "1", "values interpolated from neighbours; status keeps the cause", "int8", flags=_NO_YES),
+_LINE_AXES = (
     _axis("zeta", "1", "ln(M/M_valley(L))", (-100.0, 100.0), BACKBONE),
     _axis("reference_speed", "m s-1", "entrainment speed of the reference contact", (1e-12, 1e6), BACKBONE),
     _axis("temperature", "K", "temperature of the raceways, the surfaces of the contact", _KELVINS, BACKBONE),
+)
+"""Axes of the refinement lines."""
+
+_LINES = (
     _of_backbone("film_offset", "m", "dry minus lubricated approach at equal load"),
     _of_backbone("film_compliance", "m2 N-1", "minus the derivative of the film offset by load"),
     _of_backbone("loss_compliance", "m2 s N-1", "damping over squared stiffness, low-frequency limit"),
@@ -272,6 +246,67 @@ TABLE = (
     _of_response("film_compliance_real", "m2 N-1", "real part of the complex film compliance S"),
     _of_response("film_compliance_imaginary", "m2 N-1", "imaginary part of S, minus omega times the loss compliance,"),
     _of_response("film_compliance_error", "1", "estimated numerical error of S, relative to its magnitude,"),
+)
+"""Films of the refinement lines: of the reference contact, which stands for all contacts where films know no heat."""
+
+TABLE = (
+    Variable("contact", "1", "contact of the roller with this raceway", "str", dims=("contact",)),
+    _axis("load", "N m-1", "load per unit length", (1e-6, 1e12)),
+    _axis("entrainment_speed", "m s-1", "mean of the two surface speeds", (0.0, 1e6)),
+    _axis("temperature", "K", "temperature of the raceways, the surfaces of the contact", _KELVINS),
+    _derived("approach", "m", "mutual approach of the bodies, positive together"),
+    Variable("film_offset", "m", "dry minus lubricated approach at equal load"),
+    Variable("film_compliance", "m2 N-1", "minus the derivative of the film offset by load", since=2),
+    Variable("loss_compliance", "m2 s N-1", "damping over squared stiffness, low-frequency limit", since=2),
+    _derived("stiffness", "N m-2", "stiffness per unit length, derivative of load by approach"),
+    _derived("damping", "N s m-2", "damping per unit length, low-frequency limit"),
+    Variable("central_film", "m", "film thickness at the contact centre"),
+    Variable("minimum_film", "m", "smallest film thickness"),
+    Variable("max_pressure", "Pa", "largest pressure"),
+    Variable(
+        "rolling_force",
+        "N m-1",
+        "force of both walls together against pure rolling, integral of film by pressure gradient",
+        required=False,
+        since=3,
+    ),
+    Variable("mass_flow", "kg m-1 s-1", "mass flow of oil per unit length", required=False, since=3),
+    _of_films("traction", "N m-1", "force between the surfaces from sliding, mean of both walls"),
+    _of_films("wall_stress", "Pa", "largest shear stress at a wall"),
+    _of_films("film_temperature", "K", "highest temperature in the film"),
+    _of_films("surface_temperature", "K", "highest temperature of the surfaces of the film"),
+    Variable("status", "1", "how the point ended", "int8", flags=_STATUS),
+    Variable("reason", "1", "cause of the status, in words", "str"),
+    _error("film_offset_error", "film_offset"),
+    _error("film_compliance_error", "film_compliance"),
+    Variable(
+        "loss_compliance_error",
+        "1",
+        "estimated relative numerical error of loss_compliance, positive where that of film_compliance has its sign",
+        since=2,
+    ),
+    replace(_error("stiffness_error", "stiffness"), derived_since=2),
+    replace(_error("damping_error", "damping"), derived_since=2),
+    _error("central_film_error", "central_film", required=False),
+    _error("minimum_film_error", "minimum_film", required=False),
+    _error("max_pressure_error", "max_pressure", required=False),
+    _error("rolling_force_error", "rolling_force", required=False, since=3),
+    _error("mass_flow_error", "mass_flow", required=False, since=3),
+    _model_error("stiffness_model_error", "stiffness"),
+    _model_error("damping_model_error", "damping"),
+    Variable("iterations", "1", "iterations of the solver, all grids together", "int32"),
+    Variable("solve_seconds", "s", "time to solve the point"),
+    Variable(
+        "viscosity_extrapolated",
+        "1",
+        "pressure beyond the fitted range of the viscosity",
+        "int8",
+        flags=_NO_YES,
+    ),
+    Variable("filled", "1", "values interpolated from neighbours; status keeps the cause", "int8", flags=_NO_YES),
+    *_LINE_AXES,
+    *_LINES,
+    *(_own(entry) for entry in _LINES if not entry.axis),
 )
 """All rows, in the order in which they are written."""
 
@@ -337,7 +372,9 @@ def table(group: str = GRID, version: int | None = None) -> tuple[Variable, ...]
 
 def response_rows(version: int) -> tuple[Variable, ...]:
     """Return the rows of the backbone that say how its films answer: a file of that version has all of them or none."""
-    return tuple(entry for entry in table(BACKBONE, version) if NATURAL in entry.dims)
+    return tuple(
+        entry for entry in table(BACKBONE, version) if NATURAL in entry.dims and not entry.name.startswith(OWN)
+    )
 
 
 def version_of(dataset: xr.Dataset) -> int:
