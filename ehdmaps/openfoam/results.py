@@ -1,4 +1,4 @@
-"""What a run of `ehlFoam` wrote: the dictionary `results` and the table `film.dat`."""
+"""What a run of `ehlFoam` wrote: the dictionary `results` and the tables `film.dat` and `thinFilm.dat`."""
 
 from __future__ import annotations
 
@@ -20,12 +20,14 @@ STATUSES: Mapping[str, Status] = {
     "converged": Status.CONVERGED,
     "stagnated": Status.STAGNATED,
     "diverged": Status.DIVERGED,
-    "outsideValidity": Status.OUTSIDE_VALIDITY,
 }
 """Words of `ehlFoam` for how a run ended."""
 
+FILM, THIN_FILM = "film.dat", "thinFilm.dat"
+"""Tables of the film as it is, and, of a run with all stresses, of the thin film from which it starts."""
+
 COLUMNS = ("x", "pressure", "film", "flux", "density", "liquid_fraction")
-"""Columns of `film.dat`."""
+"""Columns of both."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,11 @@ class Results:
         [m].
     max_pressure : float
         [Pa].
+    wall_stress : float
+        Largest shear stress at a wall [Pa].
+    traction, rolling_force : float
+        Integrals of the shear stress along the cells: of the mean of both walls, of the sign of the slide-to-roll
+        ratio, and of their difference [N/m].
     frequencies : tuple of float
         Frequencies of the responses that follow [Hz].
     film_compliance : tuple of float
@@ -65,6 +72,9 @@ class Results:
     minimum_film: float = math.nan
     max_pressure: float = math.nan
     film_offset: float = math.nan
+    wall_stress: float = math.nan
+    traction: float = math.nan
+    rolling_force: float = math.nan
     frequencies: tuple[float, ...] = ()
     film_compliance: tuple[float, ...] = ()
     loss_compliance: tuple[float, ...] = ()
@@ -86,7 +96,7 @@ class Results:
 
 @dataclass(frozen=True)
 class FilmTable:
-    """The film over the columns of cells, each of shape (columns,).
+    """A film over the columns of cells, each of shape (columns,).
 
     Attributes
     ----------
@@ -140,6 +150,9 @@ def read_results(case: Path) -> Results:
         minimum_film=_number(path, entries, "minimumFilm"),
         max_pressure=_number(path, entries, "maximumPressure"),
         film_offset=_number(path, entries, "filmOffset"),
+        wall_stress=_number(path, entries, "wallStress"),
+        traction=_number(path, entries, "traction"),
+        rolling_force=_number(path, entries, "rollingForce"),
         frequencies=frequencies,
         film_compliance=_numbers(path, entries, "filmCompliance", len(frequencies)),
         loss_compliance=_numbers(path, entries, "lossCompliance", len(frequencies)),
@@ -154,15 +167,24 @@ def read_results(case: Path) -> Results:
     )
 
 
-def read_film(case: Path, columns: int) -> FilmTable:
-    """Read the table `film.dat` of a case with so many columns of cells.
+def read_film(case: Path, columns: int, name: str = FILM) -> FilmTable:
+    """Read a table of the film.
+
+    Parameters
+    ----------
+    case : Path
+        The case folder.
+    columns : int
+        Columns of cells that it has.
+    name : str
+        FILM or THIN_FILM.
 
     Raises
     ------
     SolverError
         If it is not there or is not a table of finite numbers with the columns of `COLUMNS`.
     """
-    path = case / "film.dat"
+    path = case / name
     try:
         with path.open(encoding="ascii") as file:
             header = file.readline().lstrip("#").split()

@@ -139,7 +139,7 @@ class OpenFoamSolver(ContactSolverDefaults):
     carreau_exponent: float | None = None
     inertia: bool = False
     slide_to_roll: float = 0.0
-    inlet_length: float = 100.0
+    inlet_length: float = 20.0
     tolerance: float = 1e-9
     max_iterations: int = 40
     starter: Starter | None = None
@@ -451,6 +451,8 @@ def _film(
         max_pressure=found.max_pressure,
         rolling_force=rolling,
         mass_flow=flow,
+        traction=found.traction,
+        wall_stress=found.wall_stress,
         film_offset_error=error(found.film_offset, rough.film_offset),
         film_compliance_error=error(found.film_compliance[0], rough.film_compliance[0]),
         loss_compliance_error=error(found.loss_compliance[0], rough.loss_compliance[0]),

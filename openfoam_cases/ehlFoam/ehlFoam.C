@@ -10,7 +10,7 @@
 
     constant/ehlProperties says what is solved; the answer goes to `results`
     (an OpenFOAM dictionary), film.dat (a table over the columns) and, if asked,
-    to the fields p, U, mu, rho, liquidFraction of the time folder 1.
+    to the fields p, U, mu, rho, liquidFraction, wallShear of the time folder 1.
 
     ehlFoam -laws FILE solves nothing and writes the oil as a table, laws.dat.
 */
@@ -29,6 +29,10 @@
 using namespace Foam;
 
 
+//- Longest inlet with all stresses [reduced radii]
+static constexpr scalar longestInlet = 0.5;
+
+
 //- Frequencies [Hz] of the linear response that is asked for
 scalarField askedFrequencies(const dictionary& dict)
 {
@@ -45,6 +49,19 @@ scalarField askedFrequencies(const dictionary& dict)
         }
     }
     return frequencies;
+}
+
+
+//- A number of cells of at least so many
+label numberOf(const dictionary& dict, const word& cells, const label least)
+{
+    const label number = dict.get<label>(cells);
+    if (number < least)
+    {
+        FatalIOErrorInFunction(dict)
+            << cells << ": got " << number << ", allowed are " << least << " and more" << exit(FatalIOError);
+    }
+    return number;
 }
 
 
@@ -68,18 +85,19 @@ int main(int argc, char* argv[])
         return 0;
     }
     const lineContact contact(dict);
-    const label columns = dict.get<label>("columns"), rows = dict.get<label>("rows");
+    const label columns = numberOf(dict, "columns", 10), rows = numberOf(dict, "rows", 2);
     const newtonControls controls{positive(dict, "tolerance"), dict.get<label>("maxIterations")};
-    const dictionary& meshDict = dict.subDict("mesh");
+    dictionary meshDict(dict.subDict("mesh"));
+    if (dict.get<word>("flow") == "fullStress")
+    {
+        // a parabola farther out is no gap between rollers, and its slopes are no matter of a film
+        meshDict.set("longestInlet", longestInlet*contact.radius/contact.halfWidth);
+    }
     const scalarField x(contact.halfWidth*columnLayout(meshDict).faces(columns));
     const scalarField frequencies(askedFrequencies(dict));
     const scalar filmScale = positive(meshDict, "film")*contact.filmUnit();
-    fvMesh mesh
-    (
-        IOobject(fvMesh::defaultRegion, runTime.timeName(), runTime, IOobject::MUST_READ)
-    );
-    refuseUnread(runTime, mesh);
-    filmMesh film(mesh, columns, rows, dict.lookupOrDefault<scalar>("lowerShare", 0.5));
+    filmMesh film(runTime, columns, rows, dict.lookupOrDefault<scalar>("lowerShare", 0.5));
+    refuseUnread(runTime, film.mesh());
     Info<< "b " << contact.halfWidth << " m, p_H " << contact.pressure << " Pa, film expected "
         << filmScale << " m, " << columns << " x " << rows << " cells" << nl << endl;
 
@@ -92,13 +110,13 @@ int main(int argc, char* argv[])
     // what it is
     resultsFile results(runTime);
     reportFilm(results, s, solved);
-    writeTable(runTime, s, s.film(solved.state));
+    writeTable(runTime.path()/"film.dat", s, s.film(solved.state));
     if (dict.lookupOrDefault<bool>("writeFields", true))
     {
         runTime.setTime(1, 1);
-        mesh.setInstance(runTime.timeName());
-        mesh.write();
+        film.write();
         s.flow().write();
+        s.flow().writeWallStress();
     }
 
     // how it moves: linear response, and the check in time

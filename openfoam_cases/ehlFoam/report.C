@@ -12,8 +12,7 @@
 Foam::word Foam::wordOf(const outcome end)
 {
     return end == outcome::converged ? "converged"
-         : end == outcome::stagnated ? "stagnated"
-         : end == outcome::diverged ? "diverged" : "outsideValidity";
+         : end == outcome::stagnated ? "stagnated" : "diverged";
 }
 
 
@@ -32,6 +31,19 @@ void Foam::reportFilm(resultsFile& results, slice& s, newtonResult& solved)
     results.write("maximumPressure", greatest);
     results.write("filmOffset", solved.state.offset*s.filmScale() - s.solid().dry().offset);
     results.write("outletDefect", mag(flux.last()/flux[0] - 1));
+
+    scalar largest = 0, traction = 0, rolling = 0;
+    for (label i = 0; i < s.columns(); ++i)
+    {
+        const scalar lower = s.flow().wallStress(0)[i], upper = s.flow().wallStress(1)[i];
+        const scalar length = state.x[i + 1] - state.x[i];
+        largest = max(largest, max(mag(lower), mag(upper)));
+        traction += 0.5*(lower + upper)*length;
+        rolling += (upper - lower)*length;
+    }
+    results.write("wallStress", largest);
+    results.write("traction", traction);
+    results.write("rollingForce", rolling);
 
     struct { word key; const char* name; scalar defect, most; } const balances[] =
     {
@@ -54,11 +66,11 @@ void Foam::reportFilm(resultsFile& results, slice& s, newtonResult& solved)
 }
 
 
-void Foam::writeTable(const Time& runTime, const slice& s, const filmState& state)
+void Foam::writeTable(const fileName& path, const slice& s, const filmState& state)
 {
     const scalarField flux(s.flow().columnFlux()), fraction(s.flow().columnFraction());
     const scalarField density(s.flow().columnDensity());
-    OFstream table(runTime.path()/"film.dat");
+    OFstream table(path);
     table.precision(12);
     table << "# x pressure film flux density liquid_fraction" << nl;
     forAll(state.column, i)

@@ -31,6 +31,22 @@ application simpleFoam; startFrom startTime; startTime 0; stopAt endTime; endTim
 writeControl timeStep; writeInterval 3000; writeFormat ascii; writePrecision 14; timePrecision 8;
 """
 
+BLOCK = f"""
+scale 1;
+vertices ((0 0 0) (0 1 0) (0 1 1) (0 0 1) (1 0 0) (1 1 0) (1 1 1) (1 0 1));
+blocks (hex (0 1 2 3 4 5 6 7) ({ROWS} 1 COLUMNS) simpleGrading (1 1 1));
+edges (); mergePatchPairs ();
+boundary
+(
+    inlet {{ type patch; faces ((0 1 2 3)); }}
+    outlet {{ type patch; faces ((4 5 6 7)); }}
+    lower {{ type wall; faces ((0 4 7 3)); }}
+    upper {{ type wall; faces ((1 5 6 2)); }}
+    frontAndBack {{ type empty; faces ((0 1 5 4) (3 2 6 7)); }}
+);
+"""
+"""A block that ehlFoam's own is numbered like."""
+
 SCHEMES = """
 ddtSchemes { default steadyState; }
 gradSchemes { default Gauss linear; }
@@ -72,11 +88,18 @@ def _vectors(values: FloatArray) -> str:
 def _mesh(case: Path, solved: Path, columns: int, installed: Installation) -> FloatArray:
     """The first columns of a solved mesh; returns its points, shape (columns + 1, 2, rows + 1, 3)."""
     shutil.copytree(installed.template / "system", case / "system")
-    _write(case, "constant/ehlProperties", "dictionary", f"columns {columns}; rows {ROWS};")
-    assert openfoam_runs.program(installed, installed.block_mesh, case).returncode == 0
-    points = _numbers(solved / "1" / "polyMesh" / "points", 3).reshape(-1, 2, ROWS + 1, 3)[: columns + 1]
+    _write(case, "system/blockMeshDict", "dictionary", BLOCK.replace("COLUMNS", str(columns)))
+    assert openfoam_runs.program(installed, "blockMesh", case).returncode == 0
+    points = _numbers(solved / "constant" / "polyMesh" / "points", 3).reshape(-1, 2, ROWS + 1, 3)[: columns + 1]
     _write(case, "constant/polyMesh/points", "vectorField", f"{points.size // 3}\n{_vectors(points.reshape(-1, 3))}")
     return points
+
+
+def _inlet_pressure(solved: Path) -> float:
+    """Pressure that ehlFoam gives the inlet, of the film before it [Pa]."""
+    found = re.search(r"inlet\s*\{[^}]*value\s+uniform\s+(\S+);", (solved / "1" / "p").read_text())
+    assert found is not None
+    return float(found[1])
 
 
 def _wall_speeds(points: FloatArray, case: Path, patch: str, speed: float) -> str:
@@ -113,6 +136,7 @@ def _differences(folder: Path, columns: int) -> tuple[float, float, float]:
     weight = (points[-1, 0, 0, 0] - before) / (behind - before)
     at_cut = (1.0 - weight) * pressure[cut - 1] + weight * pressure[cut]
 
+    at_inlet = _inlet_pressure(solved)
     density, viscosity = settings.oil.density, settings.oil.viscosity
     walls = " ".join(
         _wall_speeds(points, case, patch, speed)
@@ -131,7 +155,7 @@ def _differences(folder: Path, columns: int) -> tuple[float, float, float]:
         "0/p",
         "volScalarField",
         "dimensions [0 2 -2 0 0]; internalField uniform 0;\n"
-        "boundaryField { inlet { type fixedValue; value uniform 0; }"
+        f"boundaryField {{ inlet {{ type fixedValue; value uniform {at_inlet / density:.15g}; }}"
         f" outlet {{ type fixedValue; value uniform {at_cut / density:.15g}; }}"
         " lower { type zeroGradient; } upper { type zeroGradient; } frontAndBack { type empty; } }",
     )

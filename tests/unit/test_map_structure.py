@@ -18,6 +18,7 @@ from ehdmaps.maps.checksum import content_sha256
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.structure import DERIVED, SAME
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
+from ehdmaps.physics.bearing import BearingGeometry, with_law
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.solution import FilmSolution, Status
 from tests.cases.jobs import map_job, spaced
@@ -125,6 +126,20 @@ def test_structural_laws_that_do_not_suit_are_refused(paths):
     with pytest.raises(InputError, match="roller_length: got none; the palmgren law needs it; give the length"):
         bare.with_structure("palmgren")
     assert bare.with_structure("palmgren", roller_length=15e-3).contacts[0].structural_law == "palmgren"
+    with pytest.raises(InputError, match="fe_approach: got none; the fe law needs it; give the approach"):
+        bare.with_structure("fe")
+    assert bare.with_structure("fe", fe_approaches={"line": 3e-6}).contacts[0].fe_approach == 3e-6
+
+
+def test_finite_elements_of_other_rings(paths):
+    """Approaches that are given stay with the map, those that come with the package go with their law."""
+    emap = open_map(paths["iso16281"])
+    own = emap.with_structure("fe", fe_approaches={"inner": 3e-6, "outer": 2.8e-6})
+    assert [contact.fe_approach for contact in own.with_structure("iso16281").with_structure("fe").contacts] == [
+        3e-6,
+        2.8e-6,
+    ]
+    assert emap.with_structure("fe").with_structure("iso16281").contacts == emap.contacts
 
 
 @pytest.mark.parametrize("name", DERIVED)
@@ -221,7 +236,7 @@ def test_the_end_of_a_backbone_line_counts_as_far_as_the_map_goes(tmp_path, load
 def test_contacts_of_a_bearing_have_the_lengths_of_every_law():
     for contact in CONTACTS:
         for law in STRUCTURAL_LAWS:
-            assert dataclasses.replace(contact, structural_law=law).structural_approach(1e5) > 0.0
+            assert with_law(contact, law, BearingGeometry.named("NU308")).structural_approach(1e5) > 0.0
 
 
 def test_show_by_another_structural_law(paths, capsys):

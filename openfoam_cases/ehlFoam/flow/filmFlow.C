@@ -5,6 +5,7 @@
 \*---------------------------------------------------------------------------*/
 
 #include "filmFlow.H"
+#include "upstream.H"
 #include "linear.H"
 #include "fvcSurfaceIntegrate.H"
 
@@ -40,11 +41,8 @@ Foam::filmFlow::filmFlow(const dictionary& dict, filmMesh& film, const lineConta
     film_(film),
     contact_(contact),
     oil_(dict, contact.pressure),
-    massUnit_
-    (
-        oil_.density(0)*contact.entrainment()*film.depth
-       *contact.filmUnit()*dict.subDict("mesh").get<scalar>("film")
-    )
+    expectedFilm_(contact.filmUnit()*dict.subDict("mesh").get<scalar>("film")),
+    massUnit_(oil_.density(0)*contact.entrainment()*film.depth*expectedFilm_)
 {}
 
 
@@ -106,6 +104,15 @@ Foam::tmp<Foam::scalarField> Foam::filmFlow::gathered
 }
 
 
+Foam::scalar Foam::filmFlow::inletPressure(const filmState& state) const
+{
+    return upstreamFilm
+    (
+        oil_.viscosity(0)*contact_.entrainment(), contact_.radius, -state.x[0], state.h[0], expectedFilm_
+    ).pressure;
+}
+
+
 Foam::scalarField Foam::filmFlow::filmOfCells() const
 {
     scalarField h(film_.mesh().nCells());
@@ -128,6 +135,22 @@ Foam::scalarField Foam::filmFlow::columnFlux(const surfaceScalarField& massFlux)
     flux.first() = -sum(massFlux.boundaryField()[film_.inlet()])/film_.depth;
     flux.last() = sum(massFlux.boundaryField()[film_.outlet()])/film_.depth;
     return flux;
+}
+
+
+void Foam::filmFlow::writeWallStress() const
+{
+    volScalarField stress
+    (
+        IOobject("wallShear", film_.mesh().time().timeName(), film_.mesh()),
+        film_.mesh(),
+        dimensionedScalar("wallShear", dimPressure, 0)
+    );
+    for (const label side : {0, 1})
+    {
+        stress.boundaryFieldRef()[side ? film_.upper() : film_.lower()] == wallStress_[side];
+    }
+    stress.write();
 }
 
 

@@ -129,6 +129,7 @@ Foam::shearedColumn Foam::thinFilm::sheared(const filmState& state, const label 
 
 void Foam::thinFilm::balance(filmState& state) const
 {
+    if (newtonian()) return;
     label top = 0;
     forAll(state.column, i)
     {
@@ -150,7 +151,7 @@ void Foam::thinFilm::balance(filmState& state) const
 
 void Foam::thinFilm::settle(const filmState& before, filmState& after)
 {
-    if (oil_.shear().stress(0) >= GREAT) return;
+    if (newtonian()) return;
     film_.move(after.x, after.h);
     for (label i = 0; i < film_.columns(); ++i)
     {
@@ -219,6 +220,7 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
             if (rate) densityRate[c] = slope*rate->column[i];
         }
     }
+    p_.boundaryFieldRef()[film_.inlet()] == inletPressure(state);
     p_.correctBoundaryConditions();
     mu_.correctBoundaryConditions();
     rho_.correctBoundaryConditions();
@@ -250,6 +252,13 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
         fvc::surfaceIntegrate(muFace*shearRate*film_.flatArea())().primitiveField()
       - gradient.primitiveField()
     );
+
+    for (const label side : {0, 1})
+    {
+        const label patch = side ? film_.upper() : film_.lower();
+        wallStress_[side] = muFace.boundaryField()[patch]*shearRate.boundaryField()[patch]
+           *fraction_.boundaryField()[patch];
+    }
 
     // viscosity of a cell under shear
     const scalarField oilViscosity(mu_.primitiveField());
@@ -314,26 +323,6 @@ Foam::scalar Foam::thinFilm::cellShearRate(const label column, const label row) 
     const scalar dy = (last ? 1 : film_.middle(row + 1)) - (first ? 0 : film_.middle(row - 1));
     const scalar du = (last ? 0 : u_[c + 1]) - (first ? 0 : u_[c - 1]);
     return (du/dy + contact_.upperSpeed - contact_.lowerSpeed)/film_.film(column);
-}
-
-
-Foam::scalar Foam::thinFilm::stressByPressure() const
-{
-    const scalar step = 1e-6;
-    scalar most = 0;
-    for (label i = 0; i < film_.columns(); ++i)
-    {
-        const scalar v = oil_.unknown(p_[film_.cell(i, 0)]);
-        if (v <= 0) continue;
-        for (label j = 0; j < film_.rows(); ++j)
-        {
-            const scalar rate = cellShearRate(i, j);
-            const scalar rise = oil_.sheared(oil_.viscosity(v + step), rate, oil_.pressure(v + step))
-              - oil_.sheared(oil_.viscosity(v), rate, oil_.pressure(v));
-            most = max(most, mag(rate*rise)/(step*oil_.pressureSlope(v)));
-        }
-    }
-    return most;
 }
 
 
