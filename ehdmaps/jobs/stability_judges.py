@@ -191,6 +191,19 @@ def warm_film_problem(wild: WildPoint, film: FilmSolution, whole: ContactSolutio
     return _gross_problem(film, groups_of(wild), isinstance(wild.oil.pressure_viscosity, Barus))
 
 
+def hot_film_problem(wild: WildPoint, film: FilmSolution, whole: ContactSolution) -> tuple[str, float]:
+    """A film with temperatures: numbers that fit together.
+
+    Parameters
+    ----------
+    wild : WildPoint
+        The point.
+    film, whole
+        Film and contact of the point.
+    """
+    return _whole_problem(film, whole), 0.0
+
+
 def _speed_root(groups: Groups, wild: WildPoint) -> float:
     """(eta us/(E'R))^(1/4), from the unit of the film number."""
     return math.sqrt(groups.unit / wild.point.contact.radius)
@@ -280,6 +293,7 @@ RULES: Mapping[str, str] = {
     "said to be so",
     "reynolds, limiting": "the same as of reynolds: in pure rolling a bound of the stress takes nothing of a film",
     "reynolds, inlet-heat": "film within a factor of 3 of what the asymptotes of Moes allow, with pressure or without",
+    "reynolds, thermal": "a status with its reason, or numbers that fit together; no bound of the film is known",
 }
 """When a value counts as right, by what the solver is called."""
 
@@ -291,5 +305,6 @@ JUDGES: Mapping[str, Judge] = {
     "reynolds": film_problem,
     "reynolds, limiting": film_problem,
     "reynolds, inlet-heat": warm_film_problem,
+    "reynolds, thermal": hot_film_problem,
 }
 """What judges a value, by the same names."""
