@@ -465,7 +465,6 @@ def followed(
     return found, mobility, carriage
 
 
-@njit(cache=True)
 def warm_temperatures(
     problem: LineProblem,
     x: FloatArray,

@@ -1,4 +1,7 @@
-"""Full Newton for a film with its temperatures, which follow the film's unknowns by their own equations."""
+"""Full Newton for a film with its temperatures, which follow the film's unknowns by their own equations.
+
+Nothing here is compiled: numba compiles what a function calls once more with it, and these call all that is large.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.energy import LARGEST_RISE, first_column, followed, wall_weights, warm_temperatures
@@ -53,7 +55,6 @@ class WarmResult(NamedTuple):
     last_step: float
 
 
-@njit(cache=True)
 def warm_factors(
     columns: Columns, unknowns: FloatArray, mobility_rows: FloatArray, carriage_rows: FloatArray
 ) -> Factors:
@@ -74,7 +75,6 @@ def warm_factors(
     return Factors(mobility, np.zeros(drop.size), drop, carriage, none, none, mobility_rows, carriage_rows)
 
 
-@njit(cache=True)
 def warm_newton(
     problem: LineProblem,
     x: FloatArray,
