@@ -65,7 +65,7 @@ def warm_factors(
     columns : Columns
         Columns of the film.
     unknowns : ndarray, shape (n + 2,)
-        Its unknowns.
+        Unknowns of the film.
     mobility_rows, carriage_rows : ndarray, shape (n, n + 2)
         Derivatives by all unknowns; of no length for the residual alone.
     """
@@ -96,10 +96,12 @@ def warm_newton(
         Dimensionless groups, those of heat among them.
     x, step, face, face_step : ndarray
         The grid, see `Grid`.
-    kernel, start, load, tolerance, most_steps
+    kernel, start
         The arguments of `newton`.
     warm_start : ndarray, shape (n, k)
         Temperatures to start from [K above T_0].
+    load, tolerance, most_steps
+        The other arguments of `newton`.
     """
     size = start.size
     n = size - 2

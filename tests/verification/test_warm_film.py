@@ -46,7 +46,7 @@ def test_strip_of_heat_on_a_moving_solid() -> None:
 
 @pytest.mark.parametrize("nahme", [0.1, 1.0, 10.0])
 def test_nahme_couette(nahme: float) -> None:
-    """An oil that thins by exp(-theta) sheared between cold walls is warmest by ln(1 + Na/8): the matrices across the film.
+    """An oil that thins by exp(-theta) between cold walls is warmest by ln(1 + Na/8): the matrices across the film.
 
     theta'' + Na tau^2 exp(theta) = 0 with a stress tau that the difference of the walls' speeds gives, by Picard steps.
     """
