@@ -85,7 +85,7 @@ def wall_weights(x: FloatArray, first: int) -> tuple[FloatArray, FloatArray]:
     Parameters
     ----------
     x : ndarray, shape (n,)
-        Places.
+        Places along the wall [b].
     first : int
         Place before which nothing flows.
     """
@@ -465,7 +465,6 @@ def followed(
     return found, mobility, carriage
 
 
-@njit(cache=True)
 def warm_temperatures(
     problem: LineProblem,
     x: FloatArray,
@@ -492,7 +491,7 @@ def warm_temperatures(
     rises : ndarray, shape (n, k)
         Temperatures [K above T_0].
     columns : Columns
-        Columns; on return those at the temperatures.
+        Columns of the film, on return those at its temperatures.
     tolerance : float
         Largest last step [K].
     most_steps : int

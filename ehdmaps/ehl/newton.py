@@ -134,7 +134,13 @@ def step_length(
 
 @njit(cache=True)
 def lifted(x: FloatArray, kernel: FloatArray, start: FloatArray) -> FloatArray:
-    """A start, clear of contact: one that is interpolated from another grid can touch."""
+    """A start, clear of contact: one that is interpolated from another grid can touch.
+
+    Parameters
+    ----------
+    x, kernel, start
+        The arguments of `newton`.
+    """
     unknowns = start.copy()
     n = start.size - 2
     clearance = np.min(film(x, kernel, unknowns)) - LEAST_LEFT * unknowns[n - 1]

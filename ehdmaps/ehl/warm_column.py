@@ -126,7 +126,7 @@ def lower_stress(law: ShearLaw, pressure: float, rise: float, rate: float, fluid
     law : ShearLaw
         The law.
     pressure : float
-        P.
+        Pressure P of the column.
     rise : float
         Stress at the upper wall less that at the lower one.
     rate : float

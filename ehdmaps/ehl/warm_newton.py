@@ -1,4 +1,7 @@
-"""Full Newton for a film with its temperatures, which follow the film's unknowns by their own equations."""
+"""Full Newton for a film with its temperatures, which follow the film's unknowns by their own equations.
+
+Nothing here is compiled: numba compiles what a function calls once more with it, and these call all that is large.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.energy import LARGEST_RISE, first_column, followed, wall_weights, warm_temperatures
@@ -53,7 +55,6 @@ class WarmResult(NamedTuple):
     last_step: float
 
 
-@njit(cache=True)
 def warm_factors(
     columns: Columns, unknowns: FloatArray, mobility_rows: FloatArray, carriage_rows: FloatArray
 ) -> Factors:
@@ -64,7 +65,7 @@ def warm_factors(
     columns : Columns
         Columns of the film.
     unknowns : ndarray, shape (n + 2,)
-        Its unknowns.
+        Unknowns of the film.
     mobility_rows, carriage_rows : ndarray, shape (n, n + 2)
         Derivatives by all unknowns; of no length for the residual alone.
     """
@@ -74,7 +75,6 @@ def warm_factors(
     return Factors(mobility, np.zeros(drop.size), drop, carriage, none, none, mobility_rows, carriage_rows)
 
 
-@njit(cache=True)
 def warm_newton(
     problem: LineProblem,
     x: FloatArray,
@@ -96,10 +96,12 @@ def warm_newton(
         Dimensionless groups, those of heat among them.
     x, step, face, face_step : ndarray
         The grid, see `Grid`.
-    kernel, start, load, tolerance, most_steps
+    kernel, start
         The arguments of `newton`.
     warm_start : ndarray, shape (n, k)
         Temperatures to start from [K above T_0].
+    load, tolerance, most_steps
+        The other arguments of `newton`.
     """
     size = start.size
     n = size - 2
