@@ -147,6 +147,7 @@ SOLVERS: Mapping[str, SolverEntry] = {
             Word("flow", ("thin_film", "full_stress"), "stress of thin films, or all of it"),
             Whole("columns", 40, 4000, "cells along the film"),
             Whole("rows", 4, 64, "cells across the film"),
+            Word("physics", ("isothermal", "thermal"), "whether the energy of the film is solved too"),
             Word("shear", ("newtonian", "eyring", "limiting"), "law of the shear stress"),
             Number("shear_stress", 1e3, 1e10, "Eyring stress or limiting stress [Pa]"),
             Switch("inertia", "whether the momentum equation has its inertia"),

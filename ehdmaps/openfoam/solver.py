@@ -16,13 +16,15 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
 from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
-from ehdmaps.openfoam.parameters import FLOWS, SHEARS, Flow, Mesh, Parameters, Shear, Start
+from ehdmaps.openfoam.isotherms import isotherms
+from ehdmaps.openfoam.parameters import FLOWS, SHEARS, Flow, Heat, Mesh, Parameters, Shear, Start
 from ehdmaps.openfoam.results import FilmTable
 from ehdmaps.openfoam.run import RunError
 from ehdmaps.physics.closed_form import HertzSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.film_limits import THIN_FILM_LIMIT, too_thick
 from ehdmaps.physics.films import moes_central
+from ehdmaps.physics.heat import HeatData
 from ehdmaps.physics.hertz import DRY_COMPLIANCE, LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import film_from_moes, moes_groups
@@ -45,6 +47,10 @@ CAVITATION_RANGE = 1e-6
 
 PARAMETER_VERSION = 3
 """Raised when a change of this package changes numbers: results of another version are not taken over."""
+
+Physics = Literal["isothermal", "thermal"]
+PHYSICS: tuple[Physics, ...] = ("isothermal", "thermal")
+"""What is solved besides the flow: nothing, or the energy of the film too."""
 
 StartWord = Literal["reynolds", "hertz"]
 
@@ -100,6 +106,9 @@ class OpenFoamSolver(ContactSolverDefaults):
         Stress of thin films, or all of it with the pressure across the film.
     columns, rows : int
         Cells along and across the film.
+    physics : {"isothermal", "thermal"}
+        Whether the film has the temperature of the surfaces, or the energy of the film is solved with the flow; the
+        latter with the flow thin_film.
     shear : {"newtonian", "eyring", "limiting"}
         Law of the shear stress.
     shear_stress : float
@@ -132,6 +141,7 @@ class OpenFoamSolver(ContactSolverDefaults):
     flow: Flow = "thin_film"
     columns: int = 400
     rows: int = 16
+    physics: Physics = "isothermal"
     shear: Shear = "newtonian"
     shear_stress: float | None = None
     inertia: bool = False
@@ -169,9 +179,18 @@ class OpenFoamSolver(ContactSolverDefaults):
         ]
         problems += [
             f"openfoam solver, {name}: got {getattr(self, name)!r:.60}; allowed: {', '.join(words)}"
-            for name, words in (("flow", FLOWS), ("shear", SHEARS))
+            for name, words in (("flow", FLOWS), ("shear", SHEARS), ("physics", PHYSICS))
             if getattr(self, name) not in words
         ]
+        if self.physics == "thermal" and self.flow != "thin_film":
+            problems.append(
+                f"openfoam solver, physics: got thermal with flow {self.flow!r:.60}; allowed: with flow thin_film"
+            )
+        if self.physics == "thermal" and not abs(self.slide_to_roll) < 2.0:
+            problems.append(
+                f"openfoam solver, slide_to_roll: got {self.slide_to_roll!r} with physics thermal; allowed: between -2 "
+                "and 2 without both, since a surface that stands has no steady temperature"
+            )
         if self.shear == "newtonian" and self.shear_stress is not None:
             problems.append(
                 f"openfoam solver, shear_stress: got {self.shear_stress!r} Pa with shear newtonian, which has none; "
@@ -211,6 +230,7 @@ class OpenFoamSolver(ContactSolverDefaults):
             "flow": self.flow,
             "columns": self.columns,
             "rows": self.rows,
+            **({} if self.physics == "isothermal" else {"physics": self.physics}),
             "shear": self.shear,
             "shear_stress": self.shear_stress or 0.0,
             "inertia": int(self.inertia),
@@ -379,11 +399,18 @@ class OpenFoamSolver(ContactSolverDefaults):
             shear=self.shear,
             shear_stress=self.shear_stress or 0.0,
             inertia=self.inertia,
+            heat=self._heat(lubricant, point.temperature),
             start=start,
             frequencies=(0.0, *frequencies),
             max_iterations=self.max_iterations,
             tolerance=self.tolerance,
         )
+
+    def _heat(self, lubricant: Lubricant, temperature: float) -> Heat | None:
+        """What the energy of the film is solved with; None where it is not."""
+        if self.physics == "isothermal":
+            return None
+        return Heat(temperature, HeatData(), isotherms(lubricant, temperature))
 
     def surface_speeds(self, entrainment_speed: float) -> tuple[float, float]:
         """Speeds of the lower and the upper surface [m/s]."""
@@ -459,6 +486,8 @@ def _film(
         max_pressure_error=largest_error,
         rolling_force_error=abs(error(rolling, rough_rolling)),
         mass_flow_error=abs(error(flow, rough_flow)),
+        film_temperature=found.film_temperature,
+        surface_temperature=found.surface_temperature,
         iterations=rough.iterations + found.iterations,
         solve_seconds=seconds,
         viscosity_extrapolated=found.max_pressure * (1.0 + largest_error) > state.fitted_pressure,

@@ -10,7 +10,7 @@
 
     constant/ehlProperties says what is solved; the answer goes to `results`
     (an OpenFOAM dictionary), film.dat (a table over the columns) and, if asked,
-    to the fields p, U, mu, rho, liquidFraction of the time folder 1.
+    to the fields p, U, mu, rho, liquidFraction (and T with heat) of the time folder 1.
 */
 
 #include "report.H"
@@ -81,6 +81,7 @@ int main(int argc, char* argv[])
     // what it is
     resultsFile results(runTime);
     reportFilm(results, s, solved);
+    reportHeat(runTime, results, s, solved);
     writeTable(runTime, s, s.film(solved.state));
     if (dict.lookupOrDefault<bool>("writeFields", true))
     {

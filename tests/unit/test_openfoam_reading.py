@@ -175,7 +175,8 @@ def test_fields(case):
 
 
 def test_a_velocity_profile(case):
-    height, velocity = read_fields(case).velocity_profile(0.0, ROWS)
+    fields = read_fields(case)
+    height, velocity = fields.profile(fields.U[:, 0], 0.0, ROWS)
     np.testing.assert_allclose(height, [0.125, 0.375, 0.625, 0.875])
     np.testing.assert_allclose(velocity, 0.5 + height)
 

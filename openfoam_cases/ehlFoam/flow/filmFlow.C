@@ -40,6 +40,7 @@ Foam::filmFlow::filmFlow(const dictionary& dict, filmMesh& film, const lineConta
     film_(film),
     contact_(contact),
     oil_(dict, contact.pressure),
+    heat_(dict.found("heat") ? new filmHeat(dict.subDict("heat"), film, contact) : nullptr),
     massUnit_
     (
         oil_.density(0)*contact.entrainment()*film.depth

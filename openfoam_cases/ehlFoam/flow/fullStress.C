@@ -32,12 +32,24 @@ static tmp<volVectorField> velocity(const filmMesh& film)
     );
 }
 
+
+//- The same case, which may not ask for heat
+static const dictionary& isothermal(const dictionary& dict)
+{
+    if (dict.found("heat"))
+    {
+        FatalIOErrorInFunction(dict)
+            << "heat: got it with the flow fullStress, allowed with thinFilm only" << exit(FatalIOError);
+    }
+    return dict;
+}
+
 } // End namespace Foam
 
 
 Foam::fullStress::fullStress(const dictionary& dict, filmMesh& film, const lineContact& contact)
 :
-    filmFlow(dict, film, contact),
+    filmFlow(isothermal(dict), film, contact),
     p_(film.field("p", dimPressure, true)),
     mu_(film.field("mu", dimDynamicViscosity)),
     rho_(film.field("rho", dimDensity)),

@@ -17,6 +17,10 @@ namespace Foam
     addToRunTimeSelectionTable(filmFlow, thinFilm, dictionary);
 
 
+//- Change of a temperature [T_b] over which the equations are linear
+static constexpr scalar warmthStep = 1e-7;
+
+
 //- A cell field whose values on the two surfaces are fixed
 static tmp<volScalarField> fixedOnSurfaces
 (
@@ -57,6 +61,7 @@ Foam::thinFilm::thinFilm(const dictionary& dict, filmMesh& film, const lineConta
     )
 {
     flux_.setOriented();
+    if (heat_.valid()) T_.reset(fixedOnSurfaces(film, "T", dimTemperature).ptr());
     couette_.boundaryFieldRef()[film.lower()] == contact.lowerSpeed;
     couette_.boundaryFieldRef()[film.upper()] == contact.upperSpeed;
     forAll(couette_, c)
@@ -65,6 +70,20 @@ Foam::thinFilm::thinFilm(const dictionary& dict, filmMesh& film, const lineConta
         couette_[c] = (1 - level)*contact.lowerSpeed + level*contact.upperSpeed;
     }
     couette_.correctBoundaryConditions();
+}
+
+
+Foam::scalar Foam::thinFilm::cellStep
+(
+    const filmState& state,
+    const label kind,
+    const label column,
+    const label row
+) const
+{
+    if (kind == across) return heat_->acrossStep(massUnit_, column);
+    if (kind == warmth) return warmthStep;
+    return velocityStep(oil_.viscosity(state.column[column]), column, row);
 }
 
 
@@ -104,10 +123,34 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
             mu_[c] = mu;
             rho_[c] = rho;
             fraction_[c] = fraction;
-            u_[c] = speed*state.local[i*blockSize() + j];
+            u_[c] = speed*state.local[place(i, j, velocity)];
             shape[c] = 0.5*sqr(film_.film(i))*film_.middle(j)*(1 - film_.middle(j));
             if (rate) densityRate[c] = slope*rate->column[i];
+            if (heat_.valid())
+            {
+                const scalar T = heat_->temperature(state.local[place(i, j, warmth)]);
+                (*T_)[c] = T;
+                mu_[c] = heat_->oil().viscosity(p, T);
+                rho_[c] = heat_->oil().density(p, T);
+                if (rate)
+                {
+                    densityRate[c] = (densityRate[c]/rho - heat_->oil().expansion(p, T)*fraction
+                       *heat_->bulk()*rate->local[place(i, j, warmth)])*rho_[c];
+                }
+            }
         }
+    }
+    if (heat_.valid())
+    {
+        for (const label patch : {film_.lower(), film_.upper()})
+        {
+            const labelUList& cells = mesh.boundary()[patch].faceCells();
+            scalarField wall(cells.size());
+            const label first = patch == film_.upper() ? film_.columns() : 0;
+            forAll(wall, f) wall[f] = heat_->temperature(state.wall[first + cells[f]/film_.rows()]);
+            T_->boundaryFieldRef()[patch] == wall;
+        }
+        T_->correctBoundaryConditions();
     }
     p_.correctBoundaryConditions();
     mu_.correctBoundaryConditions();
@@ -122,6 +165,7 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
         film_.acrossGradient(u_) + film_.acrossGradient(couette_)
     );
     surfaceScalarField muFace(linear<scalar>(mesh).interpolate(mu_));
+    if (heat_.valid()) warmFaces(muFace);
     forAll(muFace, f)
     {
         muFace[f] = oil_.sheared(muFace[f], shearRate[f]);
@@ -168,10 +212,71 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
        *film_.carriedSmooth(rho_, oil_.density(0))*film_.carriedSharp(fraction_, 1);
     rho_ *= fraction_;
 
-    List<scalarField> result(2);
+    List<scalarField> result(heat_.valid() ? 5 : 2);
     result[0] = force*sqr(filmOfCells())/(oilViscosity*speed);
-    result[1] = gathered(flux_, rho_, densityRate, rate)/massUnit_;
+    result[cellSize()] = gathered(flux_, rho_, densityRate, rate)/massUnit_;
+    if (heat_.valid())
+    {
+        addHeat(result, muFace*shearRate, shearRate, gradient.primitiveField(), state, rate);
+    }
     return result;
+}
+
+
+void Foam::thinFilm::warmFaces(surfaceScalarField& muFace) const
+{
+    const fvMesh& mesh = film_.mesh();
+    forAll(muFace, f)
+    {
+        if (film_.columnFace(f) >= 0) continue;
+        const label below = mesh.owner()[f], above = mesh.neighbour()[f];
+        muFace[f] = heat_->oil().viscosity(p_[below], 0.5*(T_()[below] + T_()[above]));
+    }
+    for (const label patch : {film_.lower(), film_.upper()})
+    {
+        const labelUList& cells = mesh.boundary()[patch].faceCells();
+        scalarField& muWall = muFace.boundaryFieldRef()[patch];
+        forAll(cells, f) muWall[f] = heat_->oil().viscosity(p_[cells[f]], T_().boundaryField()[patch][f]);
+    }
+}
+
+
+void Foam::thinFilm::addHeat
+(
+    List<scalarField>& residuals,
+    const surfaceScalarField& stress,
+    const surfaceScalarField& shearRate,
+    const scalarField& gradient,
+    const filmState& state,
+    const filmState* rate
+)
+{
+    const scalarField& lack = residuals[cellSize()];
+    scalarField& continuity = residuals[across];
+    continuity = lack;
+    scalarField flux(lack.size()), compression(lack.size()), temperatureRate(lack.size(), Zero);
+    for (label i = 0; i < film_.columns(); ++i)
+    {
+        // pressure as the oil that passes has it change, on a mesh that moves
+        const scalar pressureRate = rate ? oil_.pressureSlope(state.column[i])*rate->column[i] : 0;
+        const scalar meshSpeed = rate ? 0.5*(rate->x[i] + rate->x[i + 1]) : 0;
+        for (label j = 0; j < film_.rows(); ++j)
+        {
+            const label c = film_.cell(i, j);
+            const scalar leaves = state.local[place(i, j, across)];
+            flux[c] = massUnit_*leaves;
+            continuity[c] += leaves - (j > 0 ? state.local[place(i, j - 1, across)] : 0);
+            compression[c] = heat_->oil().expansion(p_[c], T_()[c])*T_()[c]
+               *((couette_[c] + u_[c] - meshSpeed)*gradient[c] + pressureRate);
+            if (rate) temperatureRate[c] = heat_->bulk()*rate->local[place(i, j, warmth)];
+        }
+    }
+    residuals[warmth] = heat_->residual
+    (
+        T_(),
+        {flux_, flux, rho_, fraction_, heat_->shearHeat(stress, shearRate), compression, temperatureRate}
+    );
+    residuals[cellSize() + 1] = heat_->wallFlux(T_(), fraction_);
 }
 
 
@@ -256,4 +361,5 @@ void Foam::thinFilm::write()
     mu_.write();
     rho_.write();
     fraction_.write();
+    if (heat_.valid()) T_->write();
 }

@@ -24,6 +24,7 @@ Foam::slice::unknowns Foam::slice::unknowns::plus(const scalar factor, const unk
     unknowns sum(*this);
     sum.local += factor*other.local;
     sum.column += factor*other.column;
+    if (other.wall.size()) sum.wall += factor*other.wall;
     sum.offset += factor*other.offset;
     sum.shift += factor*other.shift;
     return sum;
@@ -44,8 +45,65 @@ Foam::slice::slice
     x_(x),
     filmScale_(filmScale),
     faceShift_(x.size(), Zero),
-    shiftStep_(0)
-{}
+    shiftStep_(0),
+    wallUnit_(flow.heat() ? flow.heat()->fluxUnit()/flow.heat()->bulk() : 0)
+{
+    if (flow.heat()) wall_ = walls(x);
+}
+
+
+Foam::FixedList<Foam::movingWall, 2> Foam::slice::walls(const scalarField& faces) const
+{
+    const scalar effusivity = flow_.heat()->effusivity();
+    return FixedList<movingWall, 2>
+    ({
+        movingWall(faces, contact_.lowerSpeed, effusivity),
+        movingWall(faces, contact_.upperSpeed, effusivity)
+    });
+}
+
+
+Eigen::VectorXd Foam::slice::wallFlux(const Eigen::VectorXd& local, const label side) const
+{
+    Eigen::VectorXd flux(columns());
+    for (label i = 0; i < columns(); ++i) flux[i] = local[flow_.fluxPlace(i, side)];
+    return flux;
+}
+
+
+Eigen::MatrixXd Foam::slice::wallByFlux(const label side) const
+{
+    return wallUnit_*wall_[side].perFlux();
+}
+
+
+Eigen::VectorXd Foam::slice::wallByShift(const unknowns& u, const label side) const
+{
+    return wallUnit_/shiftStep_
+       *((shiftedWall_[side].perFlux() - wall_[side].perFlux())*wallFlux(u.local, side));
+}
+
+
+Eigen::VectorXd Foam::slice::wallDefect(const unknowns& u, const unknowns* rate) const
+{
+    const label n = columns();
+    Eigen::VectorXd defect(wallSize());
+    for (label side = 0; side < 2 && flow_.heat(); ++side)
+    {
+        const Eigen::VectorXd flux = wallFlux(u.local, side);
+        defect.segment(side*n, n) = u.wall.segment(side*n, n) - wallUnit_*(wall_[side].perFlux()*flux);
+        if (!rate) continue;
+        // rate of the flux at a place that stands, on a mesh that moves
+        Eigen::VectorXd fluxRate = wallFlux(rate->local, side);
+        for (label i = 1; i + 1 < n; ++i)
+        {
+            const scalar meshSpeed = 0.5*rate->shift*(faceShift_[i] + faceShift_[i + 1]);
+            fluxRate[i] -= meshSpeed*2*(flux[i + 1] - flux[i - 1])/(x_[i + 2] + x_[i + 1] - x_[i] - x_[i - 1]);
+        }
+        defect.segment(side*n, n) += wallUnit_*(wall_[side].perRate()*fluxRate);
+    }
+    return defect;
+}
 
 
 void Foam::slice::follow(const scalarField& shiftedFaces, const scalar shiftStep)
@@ -53,6 +111,7 @@ void Foam::slice::follow(const scalarField& shiftedFaces, const scalar shiftStep
     shiftStep_ = shiftStep;
     faceShift_ = (shiftedFaces - x_)/shiftStep;
     shifted_.reset(new halfSpace(contact_, shiftedFaces));
+    if (flow_.heat()) shiftedWall_ = walls(shiftedFaces);
 }
 
 
@@ -85,6 +144,7 @@ Foam::slice::unknowns Foam::slice::start
     );
     u.local.resize(local.size());
     forAll(local, i) u.local[i] = local[i];
+    u.wall = Eigen::VectorXd::Zero(wallSize());
     return u;
 }
 
@@ -142,7 +202,8 @@ Foam::filmState Foam::slice::film(const unknowns& u) const
         x_,
         toField(solid_.film(pressure(u), u.offset*filmScale_)),
         toField(u.column),
-        toField(u.local)
+        toField(u.local),
+        toField(u.wall)
     };
 }
 
@@ -154,7 +215,8 @@ Foam::filmState Foam::slice::shiftedFilm(const unknowns& u) const
         x_ + shiftStep_*faceShift_,
         toField(shifted_->film(pressure(u), u.offset*filmScale_)),
         toField(u.column),
-        toField(u.local)
+        toField(u.local),
+        toField(u.wall)
     };
 }
 
@@ -174,7 +236,7 @@ Foam::filmState Foam::slice::filmRate(const unknowns& u, const unknowns& rate) c
         hRate += rate.shift/shiftStep_
            *(shifted_->film(p, u.offset*filmScale_) - solid_.film(p, u.offset*filmScale_));
     }
-    return {rate.shift*faceShift_, toField(hRate), toField(rate.column), toField(rate.local)};
+    return {rate.shift*faceShift_, toField(hRate), toField(rate.column), toField(rate.local), toField(rate.wall)};
 }
 
 
@@ -197,6 +259,11 @@ Eigen::VectorXd Foam::slice::assembled(const List<scalarField>& raw, const unkno
             column += raw[size][c];
         }
         result[flow_.sourcePlace(i)] = column;
+        for (label side = 0; side < 2 && flow_.heat(); ++side)
+        {
+            const label place = flow_.fluxPlace(i, side);
+            result[place] = u.local[place] - raw[size + 1][side*columns() + i];
+        }
     }
     return result;
 }

@@ -34,15 +34,18 @@ Foam::solvedFilm Foam::steadyState
     label iterations = 0;
     solvedFilm found;
 
-    auto solve = [&](const word& type, const dictionary& shearLaw)
+    auto solve = [&](const word& type, const dictionary& shearLaw, const scalar heated = 0)
     {
         dictionary stage(dict);
         stage.set("shear", shearLaw);
+        if (heated > 0) stage.subDict("heat").set("share", heated);
+        else stage.remove("heat");
         found.contact.reset();
         found.flow = filmFlow::New(type, stage, film, contact);
         found.contact.reset(new slice(*found.flow, contact, x, filmScale));
         Info<< type << ", " << shearLaw.get<word>("type");
         if (shearLaw.found("stress")) Info<< " " << shearLaw.get<scalar>("stress") << " Pa";
+        if (heated > 0) Info<< ", " << heated << " of the heat";
         Info<< endl;
         std::unique_ptr<linearisation> none;
         found.result = newton
@@ -68,6 +71,14 @@ Foam::solvedFilm Foam::steadyState
             dictionary eased(shear);
             eased.set("stress", factor*positive(shear, "stress"));
             if (!solve("thinFilm", eased)) return found;
+        }
+    }
+    if (dict.found("heat") && !solve(flow, shear, 1))
+    {
+        // a little heat first: it thins the oil where most of it is made
+        for (scalar share = 1.0/64; share <= 1; share *= 4)
+        {
+            if (!solve(flow, shear, share)) return found;
         }
     }
     if (flow == "thinFilm") return found;
