@@ -22,7 +22,9 @@ from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.film_limits import THICKEST_FILM, THIN_FILM_LIMIT, too_thick
+from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL
 from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
+from ehdmaps.physics.inlet_heat import heated, heated_spectrum, inlet_heat
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.oil_supply import OilSupply
@@ -41,6 +43,9 @@ from ehdmaps.physics.wall_stress import wall_stress_note
 
 HEAVIEST_LOAD_NUMBER = 2e6
 """Moes' M above which the film is too thin for double precision to see it beside the elastic deflection."""
+
+PHYSICS = (ISOTHERMAL, INLET_HEAT)
+"""What this solver may know of heat."""
 
 LIGHTEST_LOAD_NUMBER = 1e-12
 """Moes' M below which double precision does not see the elastic deflection, of size b^2/R, beside the film, H ~ 1/M:
@@ -99,6 +104,8 @@ class ReynoldsSolver(ContactSolverDefaults):
         Newton tolerance on the last (quadratic) step.
     thickest_film : float
         Largest h/R that is no refusal; infinite for lines that stand for their groups only.
+    physics : {"isothermal", "inlet-heat"}
+        What films know of heat: nothing, or that of the inlet by the rule of `ehdmaps.physics.inlet_heat`.
 
     Raises
     ------
@@ -110,6 +117,7 @@ class ReynoldsSolver(ContactSolverDefaults):
     inlet_length: float = 300.0
     tolerance: float = 1e-6
     thickest_film: float = THICKEST_FILM
+    physics: str = ISOTHERMAL
 
     def __post_init__(self) -> None:
         problems = [
@@ -118,6 +126,8 @@ class ReynoldsSolver(ContactSolverDefaults):
             for name, (low, high) in SETTING_LIMITS.items()
             if not low <= getattr(self, name) <= high
         ]
+        if self.physics not in PHYSICS:
+            problems.append(f"reynolds solver, physics: got {self.physics!r:.60}; allowed: {', '.join(PHYSICS)}")
         if problems:
             raise InputError(problems)
 
@@ -153,6 +163,7 @@ class ReynoldsSolver(ContactSolverDefaults):
             "tolerance": self.tolerance,
             "grid_shape": f"{shape}",
             **({} if self.thickest_film == THICKEST_FILM else {"thickest_film": self.thickest_film}),
+            **({} if self.physics == ISOTHERMAL else {"physics": self.physics}),
         }
 
     def solve_line(
@@ -165,7 +176,13 @@ class ReynoldsSolver(ContactSolverDefaults):
     ) -> tuple[FilmSolution, ...]:
         """Films at each load, each from the one before it; arguments as of `ContactSolver.solve_line`."""
         solved = self._solve_line(contact, lubricant, loads, entrainment_speed, temperature)
-        return tuple(film for film, _ in solved)
+        films = (film for film, _ in solved)
+        if self.physics != INLET_HEAT:
+            return tuple(films)
+        points = (OperatingPoint(load, entrainment_speed, temperature) for load in loads)
+        return tuple(
+            heated(film, inlet_heat(contact, lubricant, point)) for film, point in zip(films, points, strict=True)
+        )
 
     def line_spectra(
         self,
@@ -182,7 +199,8 @@ class ReynoldsSolver(ContactSolverDefaults):
         for load, (film, groups) in zip(loads, solved, strict=True):
             point = OperatingPoint(load, entrainment_speed, temperature)
             frequencies = natural_to_hertz(self.natural_frequencies, film, contact, point)
-            spectra.append(self._spectrum(contact, state, point, film, groups, frequencies))
+            spectrum = self._spectrum(contact, state, point, film, groups, frequencies)
+            spectra.append(self._with_inlet_heat(spectrum, contact, lubricant, point))
         return tuple(spectra)
 
     def _solve_line(
@@ -207,7 +225,16 @@ class ReynoldsSolver(ContactSolverDefaults):
         """Film of one point over frequency, from one solution; arguments as of `ContactSolver.film_spectrum`."""
         state = lubricant.at(point.temperature)
         film, groups = self._solve(contact, state, point, None)
-        return self._spectrum(contact, state, point, film, groups, frequencies)
+        spectrum = self._spectrum(contact, state, point, film, groups, frequencies)
+        return self._with_inlet_heat(spectrum, contact, lubricant, point)
+
+    def _with_inlet_heat(
+        self, spectrum: FilmSpectrum, contact: LineContact, lubricant: Lubricant, point: OperatingPoint
+    ) -> FilmSpectrum:
+        """An isothermal film over frequency, with heat in its inlet where that is asked for."""
+        if self.physics != INLET_HEAT:
+            return spectrum
+        return heated_spectrum(spectrum, inlet_heat(contact, lubricant, point))
 
     def _spectrum(
         self,
@@ -244,6 +271,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         point : OperatingPoint
             Load, speed and temperature.
         """
+        self._without_a_rule("profile of a film")
         film, groups = self._solve(contact, lubricant.at(point.temperature), point, None)
         return film, _profile_in_si(film, groups, contact, point.load)
 
@@ -266,6 +294,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         supply : OilSupply
             Oil layer before the contact.
         """
+        self._without_a_rule("film behind an oil layer")
         state = lubricant.at(point.temperature)
         film, flooded = self._solve(contact, state, point, None)
         # a flooded film that is refused for its thickness still says how much oil it takes
@@ -298,6 +327,14 @@ class ReynoldsSolver(ContactSolverDefaults):
             supplied_compliance=starved.supplied_compliance * half / (peak * contact.radius),
             profile=_profile_in_si(film, groups, contact, point.load),
         )
+
+    def _without_a_rule(self, what: str) -> None:
+        """Refuse what the rule of heat in the inlet says nothing of."""
+        if self.physics == INLET_HEAT:
+            raise InputError(
+                f"reynolds solver, physics: got {INLET_HEAT!r} for the {what}, of which its rule says nothing; "
+                f"allowed: {ISOTHERMAL}"
+            )
 
     def _solve(
         self, contact: LineContact, state: LubricantState, point: OperatingPoint, previous: Profile | None

@@ -184,9 +184,9 @@ def _openfoam_responses(job: Job, moving: Group) -> tuple[Entry, ...]:
 def _openfoam(job: Job, flow: str, factor: float = 1.0) -> ContactSolver:
     """The solver `openfoam` with more or less than the cells of the job."""
     own = _own(job, "openfoam")
-    cells = {"columns": own.get("columns", 400), "rows": own.get("rows", 16)}
-    # each has to be even, and so has its half, the coarse grid
-    used = {name: 4 * max(round(count * factor / 4), 1) for name, count in cells.items()}
+    cells = {"columns": own.get("columns", 400), "rows": own.get("rows", 6)}
+    # each has to be even: half of them are the coarse grid
+    used = {name: 2 * max(round(count * factor / 2), 2) for name, count in cells.items()}
     return solvers.build("openfoam", {"timeout": OPENFOAM_TIMEOUT, **own, **used, "flow": flow})
 
 

@@ -167,6 +167,9 @@ def _oil_lines(oil: Lubricant) -> Iterator[str]:
     yield f"  {'pressure-viscosity':20s} {coefficient} (law {over_pressure}{limit})"
     slope = f", {oil.density_slope:+g} kg/m3 a K" if oil.density_slope else ""
     yield f"  {'density':20s} {oil.density_15:.5g} kg/m3 at 15 degC{slope} (over pressure: {oil.density_law})"
+    if oil.thermal_conductivity is not None:
+        words = f"{oil.thermal_conductivity:.4g} W/(m K), heat capacity {oil.heat_capacity:.4g} J/(kg K)"
+        yield f"  {'conductivity':20s} {words}"
 
 
 def _at_temperatures(oil: Lubricant, name: str, display: Display) -> str:

@@ -75,7 +75,7 @@ def plot_films(rows: Sequence[FilmRow], heading: str, output: Path) -> None:
         for row, axes in zip(rows, panels, strict=True):
             _row(row, *axes[:3])
             if warm:
-                _temperatures(row, axes[3])
+                _temperatures(row, axes[3], figure)
         write_figure(figure, output, RESOLUTION)
 
 
@@ -128,7 +128,7 @@ def _window(table: FilmTable, x: FloatArray) -> BoolArray:
     return np.asarray((x >= loaded[0] - margin) & (x <= loaded[-1] + margin))
 
 
-def _temperatures(row: FilmRow, axes: Axes) -> None:
+def _temperatures(row: FilmRow, axes: Axes, figure: Figure) -> None:
     """Draw the temperature in the film of a contact."""
     table, fields = row.grid.film, row.grid.fields
     if fields is None or fields.T is None:
@@ -139,6 +139,6 @@ def _temperatures(row: FilmRow, axes: Axes) -> None:
     shown = TEMPERATURE.factor * fields.T.reshape(x.size, -1)[window].T + TEMPERATURE.offset
     heights = (np.arange(shown.shape[0]) + 0.5) / shown.shape[0]
     image = axes.pcolormesh(x[window], heights, shown, shading="nearest", cmap="inferno", rasterized=True)
-    axes.get_figure().colorbar(image, ax=axes, label=f"temperature, {TEMPERATURE.unit}")
+    figure.colorbar(image, ax=axes, label=f"temperature, {TEMPERATURE.unit}")
     axes.set_xlabel("x/b, from the contact centre")
     axes.set_ylabel("y/h, from the lower surface")

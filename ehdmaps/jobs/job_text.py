@@ -19,7 +19,7 @@ from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.pressure_viscosity import PRESSURE_LAWS
 from ehdmaps.physics.roughness import Surface
-from ehdmaps.physics.solids import Material
+from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import quantity
 
 Entry = str | int | float | bool
@@ -39,6 +39,7 @@ _OIL_UNITS = {
     "density_slope": "kg/(m^3 K)",
     "fitted_pressure": "Pa",
 }
+_OIL_HEAT_UNITS = {"thermal_conductivity": "W/(m K)", "heat_capacity": "J/(kg K)"}
 
 
 def job_text(
@@ -88,6 +89,7 @@ def job_text(
             "youngs_modulus": _quantity(material.youngs_modulus, "Pa"),
             "poisson_ratio": material.poisson_ratio,
             "density": _quantity(material.density, "kg/m^3"),
+            **_solid_heat(material),
         },
         "lubricant": lubricant_keys(lubricant),
         **({} if supply is None else {"supply": supply_keys(supply)}),
@@ -248,10 +250,15 @@ def lubricant_keys(oil: Lubricant) -> dict[str, Entry]:
 def _lubricant(oil: Lubricant) -> Iterator[tuple[str, Entry]]:
     """Yield the keys of [lubricant]: the name of a known oil, or the data of an own one."""
     yield from _label(oil.label)
-    if oil.name in LUBRICANTS and oil == Lubricant.named(oil.name):
-        yield "name", oil.name
-        return
     record = oil.record()
+    if oil.name in LUBRICANTS:
+        named = Lubricant.named(oil.name)
+        heat = {key: getattr(oil, key) for key in _OIL_HEAT_UNITS if getattr(oil, key) != getattr(named, key)}
+        if replace(named, **heat) == oil and None not in heat.values():
+            yield "name", oil.name
+            for key, value in heat.items():
+                yield key, _quantity(value, _OIL_HEAT_UNITS[key])
+            return
     yield "viscosity_law", str(record["viscosity_law"])
     yield "density", _quantity(oil.density_15, "kg/m^3")
     yield "density_law", oil.density_law
@@ -264,6 +271,16 @@ def _lubricant(oil: Lubricant) -> Iterator[tuple[str, Entry]]:
     for key, unit in _OIL_UNITS.items():
         if key in record and not (oil.correlation and key.startswith("pressure_viscosity")):
             yield from _oil_quantity(key, float(record[key]), unit)
+    for key, unit in _OIL_HEAT_UNITS.items():
+        if key in record:
+            yield key, _quantity(float(record[key]), unit)
+
+
+def _solid_heat(material: Material) -> dict[str, Entry]:
+    """Return what [material] says of heat: what is not that of steel."""
+    units = {"conductivity": "W/(m K)", "heat_capacity": "J/(kg K)"}
+    values = {key: getattr(material, key) for key in units}
+    return {key: _quantity(value, units[key]) for key, value in values.items() if value != getattr(STEEL, key)}
 
 
 def _oil_quantity(key: str, value: float, unit: str) -> Iterator[tuple[str, Entry]]:

@@ -32,6 +32,14 @@ _KINEMATIC = Display("mm^2/s", 1e6)
 _COEFFICIENT = Display("1/GPa", 1e9)
 _GPA = Display("GPa", 1e-9)
 _DENSITY = Display("kg/m^3")
+_CONDUCTIVITY = Display("W/(m K)")
+_HEAT_CAPACITY = Display("J/(kg K)")
+
+_OIL_HEAT: dict[str, tuple[str, float, float, Display]] = {
+    "thermal_conductivity": ("W/(m K)", 1e-2, 10.0, _CONDUCTIVITY),
+    "heat_capacity": ("J/(kg K)", 100.0, 1e4, _HEAT_CAPACITY),
+}
+"""Keys that may stand beside the name of an oil: nobody knows them of every named one."""
 
 _OIL_QUANTITIES: dict[str, tuple[str, float, float, Display]] = {
     "viscosity": ("Pa s", 1e-5, 1e3, _VISCOSITY),
@@ -85,6 +93,8 @@ def _material(section: Table) -> Material | None:
     modulus = section.quantity("youngs_modulus", "Pa", 1e8, 2e12, _GPA)
     ratio = section.number("poisson_ratio", 0.0, 0.499)
     density = section.quantity("density", "kg/m^3", 500.0, 25000.0, _DENSITY)
+    conductivity = section.quantity("conductivity", "W/(m K)", 0.1, 1e4, _CONDUCTIVITY)
+    capacity = section.quantity("heat_capacity", "J/(kg K)", 10.0, 1e4, _HEAT_CAPACITY)
     section.close()
     return _built(
         section,
@@ -92,6 +102,8 @@ def _material(section: Table) -> Material | None:
             STEEL.youngs_modulus if modulus is None else modulus,
             STEEL.poisson_ratio if ratio is None else ratio,
             STEEL.density if density is None else density,
+            STEEL.conductivity if conductivity is None else conductivity,
+            STEEL.heat_capacity if capacity is None else capacity,
         ),
     )
 
@@ -220,6 +232,8 @@ def read_lubricant(section: Table) -> Lubricant | None:
         None where a problem was noted.
     """
     label = _label(section)
+    stated_heat = {key: section.quantity(key, *rule) for key, rule in _OIL_HEAT.items()}
+    heat: dict[str, Any] = {key: value for key, value in stated_heat.items() if value is not None}
     if "name" in section:
         name = section.choice("name", LUBRICANTS)
         for key in _OIL_KEYS:
@@ -227,7 +241,7 @@ def read_lubricant(section: Table) -> Lubricant | None:
                 section.get(key)
                 section.note(key, "stands beside name; allowed: a name, or data without a name; delete one")
         section.close(others=_OIL_KEYS)
-        return replace(Lubricant.named(name), label=label) if name is not None else None
+        return replace(Lubricant.named(name), label=label, **heat) if name is not None else None
     law = section.choice("viscosity_law", tuple(PRESSURE_LAWS), required=True)
     values: dict[str, Any] = {
         key: section.quantity(key, *rule, required=key == "density") for key, rule in _OIL_QUANTITIES.items()
@@ -238,13 +252,13 @@ def read_lubricant(section: Table) -> Lubricant | None:
     if density_law is not None:
         values["density_law"] = density_law
     section.close(others=("name",))
-    read = values | numbers
+    read = values | numbers | stated_heat
     wrong = [key for key in read if key in section and read[key] is None]
     if law is None or wrong or values["density"] is None:
         return None
     given = {key: value for key, value in values.items() if value is not None}
     stated = {_LAW_PARAMETERS[key].field: value for key, value in numbers.items() if value is not None}
-    return _built(section, lambda: replace(Lubricant.own(law, stated, **given), label=label))
+    return _built(section, lambda: replace(Lubricant.own(law, stated, **given, **heat), label=label))
 
 
 def _law_parameter(section: Table, parameter: Parameter, law: str | None) -> float | None:

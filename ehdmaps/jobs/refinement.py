@@ -16,7 +16,7 @@ from ehdmaps.jobs.tasks import SPECTRUM_FIELDS, LineTask, with_later_fields
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, FILMS, IMAGINARY, REAL, BackboneField
 from ehdmaps.maps.backbone_plan import BackbonePlan, Steps, plan_backbone
-from ehdmaps.maps.records import contacts_from_json
+from ehdmaps.maps.records import contact_record, contacts_from_json
 from ehdmaps.maps.rolling_film import NAMES as ROLLING
 from ehdmaps.maps.usable import check_backbone
 from ehdmaps.physics.contact import LineContact
@@ -101,7 +101,7 @@ def backbone_group(refined: Refinement, results: Mapping[str, Arrays]) -> xr.Dat
         {**values, "status": status},
         {
             "title": "films of a reference contact, from which the contact laws of the map are made",
-            schema.REFERENCE_CONTACT: record_json(plan.contact),
+            schema.REFERENCE_CONTACT: record_json(contact_record(plan.contact)),
         },
     )
 

@@ -11,8 +11,10 @@ from typing import Any
 from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
+from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, THERMAL
+from ehdmaps.physics.rheology import SHEARS
 from ehdmaps.physics.solution import ContactSolver
-from ehdmaps.units import short
+from ehdmaps.units import Display, short
 
 
 @dataclass(frozen=True)
@@ -66,6 +68,47 @@ class Switch:
     def read(self, table: Table) -> Any:
         """Return the switch, or None if absent or wrong."""
         return table.switch(self.key)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A key that takes a number with its unit, or a bare one in SI, within [low, high]."""
+
+    key: str
+    unit: str
+    low: float
+    high: float
+    display: Display
+    meaning: str
+
+    def read(self, table: Table) -> Any:
+        """Return the value in SI, or None if absent or wrong."""
+        if isinstance(table.get(self.key), str):
+            return table.quantity(self.key, self.unit, self.low, self.high, self.display)
+        return table.number(self.key, self.low, self.high)
+
+
+SHEAR_OPTIONS = (
+    Word("shear", tuple(SHEARS), "law of the shear stress, see ehdmaps.physics.rheology"),
+    Quantity(
+        "shear_stress", "Pa", 1e3, 1e10, Display("MPa", 1e-6), "stress of that law, or its bound without pressure"
+    ),
+    Number("limiting_ratio", 1e-3, 1.0, "rise of the limiting stress with pressure"),
+    Number("carreau_exponent", 0.05, 1.0, "n of Carreau's law"),
+    Number("slide_to_roll", -2.0, 2.0, "difference of the surface speeds over the entrainment speed"),
+)
+"""Keys of the solvers that know laws of shear: the same words, limits and meanings for each."""
+
+
+def physics_option(*words: str) -> Word:
+    """The key that says what a solver knows of heat.
+
+    Parameters
+    ----------
+    *words : str
+        What it may know, of `ehdmaps.physics.heat.PHYSICS`.
+    """
+    return Word("physics", words, "what the films know of heat")
 
 
 def _nothing() -> tuple[str, ...]:
@@ -139,6 +182,7 @@ SOLVERS: Mapping[str, SolverEntry] = {
             ),
             Number("inlet_length", *SETTING_LIMITS["inlet_length"], "length of the inlet over sqrt(2 h R)"),
             Number("tolerance", *SETTING_LIMITS["tolerance"], "Newton tolerance on the last step"),
+            physics_option(ISOTHERMAL, INLET_HEAT),
         ),
         _reynolds,
     ),
@@ -147,7 +191,7 @@ SOLVERS: Mapping[str, SolverEntry] = {
             Word("flow", ("thin_film", "full_stress"), "stress of thin films, or all of it"),
             Whole("columns", 40, 4000, "cells along the film"),
             Whole("rows", 4, 64, "cells across the film"),
-            Word("physics", ("isothermal", "thermal"), "whether the energy of the film is solved too"),
+            physics_option(ISOTHERMAL, THERMAL),
             Word("shear", ("newtonian", "eyring", "limiting"), "law of the shear stress"),
             Number("shear_stress", 1e3, 1e10, "Eyring stress or limiting stress [Pa]"),
             Switch("inertia", "whether the momentum equation has its inertia"),

@@ -14,7 +14,9 @@ import numpy as np
 from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.heat import ISOTHERMAL
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.solids import Material
 from ehdmaps.physics.solution import ContactSolver, FilmSolution, FilmSpectrum, Status, no_spectrum
 
 LONGEST_LINE = 32
@@ -88,6 +90,7 @@ class LineTask:
             "radius": self.contact.radius,
             "youngs_modulus": self.contact.material.youngs_modulus,
             "poisson_ratio": self.contact.material.poisson_ratio,
+            **_solid_heat(self.contact.material, self.solver),
             "lubricant": {key: value for key, value in self.lubricant.record().items() if key not in _SHOWN},
             "loads": self.loads,
             "entrainment_speed": self.entrainment_speed,
@@ -127,6 +130,13 @@ class LineTask:
     def is_final(self, arrays: Arrays) -> bool:
         """Whether no point failed: a crash, a kill or an end of time may not happen again."""
         return not (arrays["status"] == int(Status.FAILED)).any()
+
+
+def _solid_heat(material: Material, solver: ContactSolver) -> dict[str, dict[str, float]]:
+    """What heat takes of the solids, for the key of a task; nothing of an isothermal solver."""
+    if solver.settings().get("physics", ISOTHERMAL) == ISOTHERMAL:
+        return {}
+    return {"solids": {name: getattr(material, name) for name in ("conductivity", "heat_capacity", "density")}}
 
 
 def film_arrays(films: Sequence[FilmSolution]) -> Arrays:

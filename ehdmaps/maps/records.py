@@ -14,11 +14,11 @@ import xarray as xr
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.lubricant import HEAT_CAPACITY, Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.pressure_viscosity import law_from_record
 from ehdmaps.physics.roughness import Surface
-from ehdmaps.physics.solids import Material
+from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw, VogelViscosity
 
 _UNREADABLE = (ValueError, KeyError, TypeError, AttributeError, ArithmeticError, RecursionError, InputError)
@@ -79,9 +79,23 @@ def contacts_from_json(text: str) -> tuple[LineContact, ...]:
         raise _broken("contacts", error) from error
 
 
+def contact_record(contact: LineContact) -> dict[str, Any]:
+    """One contact as a record, see `contacts_from_json`.
+
+    What heat needs of the material is left out where it is that of steel: records that were made before there was any
+    are those of today.
+    """
+    record = asdict(contact)
+    for name in ("conductivity", "heat_capacity"):
+        if record["material"][name] == getattr(STEEL, name):
+            del record["material"][name]
+    return record
+
+
 def contacts_json(contacts: Sequence[LineContact]) -> str:
     """The attribute `contacts` of a map, see `contacts_from_json`."""
-    return json.dumps([asdict(contact) for contact in contacts], sort_keys=True, allow_nan=False, ensure_ascii=False)
+    records = [contact_record(contact) for contact in contacts]
+    return json.dumps(records, sort_keys=True, allow_nan=False, ensure_ascii=False)
 
 
 def contacts_of(dataset: xr.Dataset) -> tuple[LineContact, ...]:
@@ -146,6 +160,7 @@ def lubricant_from_json(text: str) -> Lubricant:
             density_law=record["density_law"],
             fitted_pressure=record["fitted_pressure"],
             thermal_conductivity=record.get("thermal_conductivity"),
+            heat_capacity=record.get("heat_capacity", HEAT_CAPACITY),
             correlation=record.get("correlation"),
             label=record.get("label"),
         )

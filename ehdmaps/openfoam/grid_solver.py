@@ -18,6 +18,9 @@ from ehdmaps.physics.solution import Status
 MOVED_COLUMNS = 1.1
 """Columns of a second try, over those asked for."""
 
+LEAST_ROWS = 2
+"""Rows from which the solver takes the gradient at a wall."""
+
 BETWEEN = 0.75
 """Cells each way of a grid between the coarse one and the fine one, over those of the fine one."""
 
@@ -167,9 +170,7 @@ class GridSolver:
 
 
 def _resized(parameters: Parameters, columns: float, rows: float) -> Parameters:
-    """The same on so many times the cells, even numbers of them."""
+    """The same on so many times the cells."""
     return replace(
-        parameters,
-        columns=2 * round(columns * parameters.columns / 2),
-        rows=max(2 * round(rows * parameters.rows / 2), 2),
+        parameters, columns=round(columns * parameters.columns), rows=max(round(rows * parameters.rows), LEAST_ROWS)
     )

@@ -6,10 +6,13 @@ import hashlib
 import os
 import re
 import shutil
+import subprocess
 import sysconfig
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from ehdmaps.errors import InputError
@@ -34,6 +37,8 @@ _CLONE = Path(__file__).parents[2] / "openfoam_cases"
 _SHARED = Path(sysconfig.get_path("data")) / "share" / "ehdmaps"
 _CASE = "lineContact"
 _VERSION = re.compile(r"OpenFOAM\W+(?:version\W+)?(v?\d[\w.+-]*)", re.IGNORECASE)
+_PROCESSOR = re.compile(r"\bprocessor (\w+)")
+_RELEASE = re.compile(r"v?(\d+)")
 
 
 @dataclass(frozen=True)
@@ -47,7 +52,7 @@ class Installation:
     template : Path
         The case that is copied.
     build : str
-        Record of the build: OpenFOAM version, compiler, hash of the sources.
+        Record of the build: OpenFOAM version, compiler, processor, hash of the sources.
     template_hash : str
         Hash of the template's files.
     environment : tuple of (str, str)
@@ -96,6 +101,7 @@ def installation(environment: Mapping[str, str] | None = None) -> Installation:
     block_mesh = shutil.which("blockMesh", path=known.get("PATH"))
     template = next((cases / _CASE for cases in (folder, _CLONE, _SHARED) if (cases / _CASE / "system").is_dir()), None)
     extra = () if "WM_PROJECT_DIR" in known else tuple(DEBIAN_ENVIRONMENT.items())
+    build = ""
     problems = list(lacking("openfoam", "PyFoam", "the solver 'openfoam'"))
     if block_mesh is None:
         problems.append(
@@ -115,6 +121,9 @@ def installation(environment: Mapping[str, str] | None = None) -> Installation:
         )
     elif not record.is_file():
         problems.append(f"ehlFoam: there is no record {record} of its build; build it again with `{BUILD_COMMAND}`")
+    else:
+        build = " ".join(record.read_text(encoding="utf-8", errors="replace").split())[:500]
+        problems += _other_machine(solver, build, known)
     if template is None:
         problems.append(
             f"case {_CASE}: is in none of {folder}, {_CLONE}, {_SHARED}; install ehdmaps again, or copy "
@@ -131,7 +140,7 @@ def installation(environment: Mapping[str, str] | None = None) -> Installation:
         solver=solver,
         block_mesh=Path(block_mesh),
         template=template,
-        build=" ".join(record.read_text(encoding="utf-8", errors="replace").split())[:500],
+        build=build,
         template_hash=_hash(template),
         environment=extra,
     )
@@ -149,6 +158,56 @@ def missing() -> tuple[str, ...]:
 def build_folder(environment: Mapping[str, str]) -> Path:
     """Return the folder of the build, as the build command has it."""
     return cache_folder("openfoam", FOLDER_VARIABLE, environment)
+
+
+def _other_machine(solver: Path, build: str, environment: Mapping[str, str]) -> Iterator[str]:
+    """Say where the record of a build has another OpenFOAM or another processor than this machine has."""
+    made_for, here = _VERSION.search(build), openfoam_here(environment)
+    if made_for is None or (here and _release(here) != _release(made_for[1])):
+        has = f"built for OpenFOAM {made_for[1]}" if made_for else "without the version of OpenFOAM in its record"
+        yield (
+            f"ehlFoam: {solver} is {has}, found is OpenFOAM {here or 'of no known version'}; source etc/bashrc of the "
+            f"OpenFOAM that it is built for, or build it again with `{BUILD_COMMAND}`"
+        )
+    made_on = _PROCESSOR.search(build)
+    if made_on is None or made_on[1] != processor():
+        yield (
+            f"ehlFoam: {solver} is built for the instructions of another processor (record "
+            f"{made_on[1] if made_on else 'none'}, here {processor()}) and may crash on this one; build it again with "
+            f"`{BUILD_COMMAND}`, or set {FOLDER_VARIABLE} to a folder for builds of this machine"
+        )
+
+
+def openfoam_here(environment: Mapping[str, str]) -> str:
+    """Version of the OpenFOAM that programs find: of the environment, or else of the distribution; empty if unknown."""
+    if "WM_PROJECT_DIR" in environment and Path(environment["WM_PROJECT_DIR"]) != DEBIAN:
+        return environment.get("WM_PROJECT_VERSION", "")
+    return _debian_version()
+
+
+@cache
+def _debian_version() -> str:
+    """Version of the package openfoam; empty where there is none, or no such command."""
+    command = ["dpkg-query", "-W", "-f", "${source:Version}", "openfoam"]
+    try:
+        return subprocess.run(command, capture_output=True, text=True, check=False, timeout=30.0).stdout.strip()
+    except (OSError, subprocess.TimeoutExpired):
+        return ""
+
+
+@cache
+def processor(cpu_information: Path = Path("/proc/cpuinfo")) -> str:
+    """What tells the instructions of one processor from those of the next, as the build command records it."""
+    flags = b""
+    with suppress(OSError), cpu_information.open("rb") as file:
+        flags = next((line for line in file if line.startswith((b"flags", b"Features"))), b"")
+    return hashlib.sha256(flags).hexdigest()[:16]
+
+
+def _release(version: str) -> str:
+    """Number of a release: 1912 of v1912 and of 1912.200626-1."""
+    found = _RELEASE.match(version)
+    return found[1] if found else version
 
 
 def _hash(template: Path) -> str:

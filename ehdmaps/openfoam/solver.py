@@ -24,7 +24,7 @@ from ehdmaps.physics.closed_form import HertzSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.film_limits import THIN_FILM_LIMIT, too_thick
 from ehdmaps.physics.films import moes_central
-from ehdmaps.physics.heat import HeatData
+from ehdmaps.physics.heat import ISOTHERMAL, THERMAL, heat_data
 from ehdmaps.physics.hertz import DRY_COMPLIANCE, LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import film_from_moes, moes_groups
@@ -45,12 +45,11 @@ from ehdmaps.physics.wall_stress import wall_stress_note
 CAVITATION_RANGE = 1e-6
 """Pressure over which liquid turns into the cavitated mixture, over the largest of the film (about)."""
 
-PARAMETER_VERSION = 3
+PARAMETER_VERSION = 4
 """Raised when a change of this package changes numbers: results of another version are not taken over."""
 
-Physics = Literal["isothermal", "thermal"]
-PHYSICS: tuple[Physics, ...] = ("isothermal", "thermal")
-"""What is solved besides the flow: nothing, or the energy of the film too."""
+PHYSICS = (ISOTHERMAL, THERMAL)
+"""What the solver may know of heat."""
 
 StartWord = Literal["reynolds", "hertz"]
 
@@ -140,8 +139,8 @@ class OpenFoamSolver(ContactSolverDefaults):
 
     flow: Flow = "thin_film"
     columns: int = 400
-    rows: int = 16
-    physics: Physics = "isothermal"
+    rows: int = 6
+    physics: str = ISOTHERMAL
     shear: Shear = "newtonian"
     shear_stress: float | None = None
     inertia: bool = False
@@ -182,11 +181,11 @@ class OpenFoamSolver(ContactSolverDefaults):
             for name, words in (("flow", FLOWS), ("shear", SHEARS), ("physics", PHYSICS))
             if getattr(self, name) not in words
         ]
-        if self.physics == "thermal" and self.flow != "thin_film":
+        if self.physics == THERMAL and self.flow != "thin_film":
             problems.append(
                 f"openfoam solver, physics: got thermal with flow {self.flow!r:.60}; allowed: with flow thin_film"
             )
-        if self.physics == "thermal" and not abs(self.slide_to_roll) < 2.0:
+        if self.physics == THERMAL and not abs(self.slide_to_roll) < 2.0:
             problems.append(
                 f"openfoam solver, slide_to_roll: got {self.slide_to_roll!r} with physics thermal; allowed: between -2 "
                 "and 2 without both, since a surface that stands has no steady temperature"
@@ -230,7 +229,7 @@ class OpenFoamSolver(ContactSolverDefaults):
             "flow": self.flow,
             "columns": self.columns,
             "rows": self.rows,
-            **({} if self.physics == "isothermal" else {"physics": self.physics}),
+            **({} if self.physics == ISOTHERMAL else {"physics": self.physics}),
             "shear": self.shear,
             "shear_stress": self.shear_stress or 0.0,
             "inertia": int(self.inertia),
@@ -399,18 +398,18 @@ class OpenFoamSolver(ContactSolverDefaults):
             shear=self.shear,
             shear_stress=self.shear_stress or 0.0,
             inertia=self.inertia,
-            heat=self._heat(lubricant, point.temperature),
+            heat=self._heat(contact, lubricant, point.temperature),
             start=start,
             frequencies=(0.0, *frequencies),
             max_iterations=self.max_iterations,
             tolerance=self.tolerance,
         )
 
-    def _heat(self, lubricant: Lubricant, temperature: float) -> Heat | None:
+    def _heat(self, contact: LineContact, lubricant: Lubricant, temperature: float) -> Heat | None:
         """What the energy of the film is solved with; None where it is not."""
-        if self.physics == "isothermal":
+        if self.physics == ISOTHERMAL:
             return None
-        return Heat(temperature, HeatData(), isotherms(lubricant, temperature))
+        return Heat(temperature, heat_data(lubricant, contact.material), isotherms(lubricant, temperature))
 
     def surface_speeds(self, entrainment_speed: float) -> tuple[float, float]:
         """Speeds of the lower and the upper surface [m/s]."""

@@ -31,7 +31,8 @@ roughness           `Surface`: roughness of both surfaces, and their asperities
 film_limits         how thick and how thin a film may be
 wall_stress         shear stress at the walls over pressure: where no oil is Newtonian
 heat                data that heat in a contact needs besides the laws of oil and solids
-thermal             reduction of the film by inlet shear heating
+thermal             thermal loading, and a published reduction of the film by inlet shear heating
+inlet_heat          heat in the inlet as a layer over isothermal films
 structure           film and solids together: approach, stiffness, damping
 solution            `FilmSolution`, `ContactSolution`, `Status`, the Protocol `ContactSolver` and its defaults
 spectrum            film compliance and dynamic stiffness over frequency

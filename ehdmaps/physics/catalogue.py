@@ -207,6 +207,23 @@ def designations() -> tuple[str, ...]:
     return tuple(f"NU{series}{code}" for series, code in _entries())
 
 
+def boundary(designation: str) -> Catalogue | None:
+    """Boundary dimensions of a bearing by its designation; None where it is not in the table.
+
+    Parameters
+    ----------
+    designation : str
+        Such as "NU308" or "N1014".
+
+    Examples
+    --------
+    >>> boundary("N1014").bore
+    0.07
+    """
+    match = _DESIGNATION.fullmatch(designation)
+    return _entries().get((match.group(2), match.group(3))) if match else None
+
+
 def _entries() -> dict[tuple[str, str], Catalogue]:
     """The table by dimension series and bore code."""
     found = {}
@@ -221,8 +238,7 @@ def _entries() -> dict[tuple[str, str], Catalogue]:
 
 def _looked_up(designation: str) -> Catalogue:
     """The entry of a designation."""
-    match = _DESIGNATION.fullmatch(designation)
-    entry = _entries().get((match.group(2), match.group(3))) if match else None
+    entry = boundary(designation)
     if entry is None:
         raise InputError(
             f"bearing estimate: got {designation!r:.60}; allowed: N, NU, NJ or "

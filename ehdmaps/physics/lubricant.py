@@ -38,6 +38,10 @@ FITTED_PRESSURE = 0.6e9
 """Pressure [Pa] above which viscosity counts as extrapolated where nobody stated a range; our assumption."""
 
 
+HEAT_CAPACITY = 2000.0
+"""c_p of oils where none is stated [J/(kg K)]: assumed. Mineral oils have 1700 to 2400 from 20 to 150 degC."""
+
+
 class OilData(TypedDict, total=False):
     """What is stated of an own oil, whatever its law over pressure; explained at `Lubricant.own`."""
 
@@ -51,6 +55,8 @@ class OilData(TypedDict, total=False):
     density_slope: float
     density_law: DensityLaw
     fitted_pressure: float
+    thermal_conductivity: float | None
+    heat_capacity: float
     name: str
 
 
@@ -126,7 +132,9 @@ class Lubricant:
         Highest pressure [Pa] at which the viscosity law was fitted; it is extrapolated above; `FITTED_PRESSURE` unless
         stated.
     thermal_conductivity : float or None
-        [W/(m K)].
+        k_f [W/(m K)].
+    heat_capacity : float
+        c_p [J/(kg K)]; `HEAT_CAPACITY` unless stated.
     correlation : str or None
         One of `CORRELATIONS`, which then gives alpha at each temperature; the coefficients of `pressure_viscosity` are
         its values at 40 and 100 degC.
@@ -154,6 +162,7 @@ class Lubricant:
     density_law: DensityLaw = "dowson-higginson"
     fitted_pressure: float = FITTED_PRESSURE
     thermal_conductivity: float | None = None
+    heat_capacity: float = HEAT_CAPACITY
     correlation: str | None = None
     label: str | None = field(default=None, compare=False)
 
@@ -173,6 +182,8 @@ class Lubricant:
         conductivity = self.thermal_conductivity
         if conductivity is not None and not (math.isfinite(conductivity) and conductivity > 0):
             problems.append(f"{where}, thermal_conductivity: got {conductivity!r} W/(m K); allowed: finite and > 0")
+        if not (math.isfinite(self.heat_capacity) and self.heat_capacity > 0):
+            problems.append(f"{where}, heat_capacity: got {self.heat_capacity!r} J/(kg K); allowed: finite and > 0")
         if self.correlation is not None and self.correlation not in CORRELATIONS:
             problems.append(f"{where}, correlation: got {self.correlation!r}; allowed: {', '.join(CORRELATIONS)}")
         if self.correlation is not None and self.pressure_viscosity.coefficient == "none":
@@ -287,6 +298,8 @@ class Lubricant:
         density_slope: float = 0.0,
         density_law: DensityLaw = "dowson-higginson",
         fitted_pressure: float = FITTED_PRESSURE,
+        thermal_conductivity: float | None = None,
+        heat_capacity: float = HEAT_CAPACITY,
         name: str = "own oil",
     ) -> Lubricant:
         """An oil with any law over pressure; its user vouches for it, but not for an estimate.
@@ -314,6 +327,10 @@ class Lubricant:
             Density over pressure.
         fitted_pressure : float
             Reach of the viscosity data [Pa]; inf flags nothing.
+        thermal_conductivity : float, optional
+            k_f [W/(m K)]; films with heat need it.
+        heat_capacity : float
+            c_p [J/(kg K)].
         name : str
             Name for provenance and messages.
 
@@ -343,6 +360,8 @@ class Lubricant:
             density_slope=density_slope,
             density_law=density_law,
             fitted_pressure=fitted_pressure,
+            thermal_conductivity=thermal_conductivity,
+            heat_capacity=heat_capacity,
             correlation=laws.correlation,
         )
 
@@ -386,7 +405,10 @@ class Lubricant:
         return replace(self.pressure_viscosity, **coefficients)
 
     def record(self) -> dict[str, float | str | bool]:
-        """Everything that defines the oil, flat, for provenance; SI units; values not given are left out."""
+        """Everything that defines the oil, flat, for provenance; SI units; values not given are left out.
+
+        So is the heat capacity that is assumed: records that were made before there was one are those of today.
+        """
         record: dict[str, float | str | bool] = {}
         for entry in fields(self):
             value = getattr(self, entry.name)
@@ -395,7 +417,7 @@ class Lubricant:
                 record.update(_given(value, rename=_VOGEL_WORDS))
             elif entry.name == "pressure_viscosity":
                 record.update(law_record(value))
-            elif value is not None:
+            elif value is not None and not (entry.name == "heat_capacity" and value == HEAT_CAPACITY):
                 record[entry.name] = value
         if self.estimated:
             record["estimated"] = self.estimated

@@ -1,4 +1,4 @@
-"""Solids of the contact: elastic constants and the reduced modulus."""
+"""Solids of the contact: elastic constants and the reduced modulus, density and what heat needs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,11 @@ class Material:
     poisson_ratio : float
         nu, -1 < nu < 0.5.
     density : float
-        [kg/m3], > 0. It gives rollers their mass; the contact does not use it.
+        [kg/m3], > 0. It gives rollers their mass; a contact uses it for heat only.
+    conductivity : float
+        Thermal conductivity [W/(m K)], > 0; bearing steel has 30 to 50. Isothermal films do not use it.
+    heat_capacity : float
+        [J/(kg K)], > 0. Isothermal films do not use it.
 
     Raises
     ------
@@ -30,6 +34,8 @@ class Material:
     youngs_modulus: float
     poisson_ratio: float
     density: float = 7850.0
+    conductivity: float = 46.0
+    heat_capacity: float = 460.0
 
     def __post_init__(self) -> None:
         problems = []
@@ -41,6 +47,14 @@ class Material:
             problems.append(f"poisson_ratio: got {self.poisson_ratio!r}; allowed: -1 < nu < 0.5; steel has 0.3")
         if not (math.isfinite(self.density) and self.density > 0):
             problems.append(f"density: got {self.density!r} kg/m3; allowed: finite and > 0; steel has 7850 kg/m3")
+        if not (math.isfinite(self.conductivity) and self.conductivity > 0):
+            problems.append(
+                f"conductivity: got {self.conductivity!r} W/(m K); allowed: finite and > 0; steel has 46 W/(m K)"
+            )
+        if not (math.isfinite(self.heat_capacity) and self.heat_capacity > 0):
+            problems.append(
+                f"heat_capacity: got {self.heat_capacity!r} J/(kg K); allowed: finite and > 0; steel has 460 J/(kg K)"
+            )
         if problems:
             raise InputError(problems)
 

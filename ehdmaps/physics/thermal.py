@@ -1,6 +1,7 @@
-"""Reduction of the film by inlet shear heating.
+"""Reduction of the film by inlet shear heating: the thermal loading, and a published factor.
 
-Multiply an isothermal film by the factor. The solvers of this project are isothermal and do not apply it.
+Multiply an isothermal film by the factor. No solver applies it: `ehdmaps.physics.inlet_heat` has a factor that holds at
+light loads too.
 """
 
 from __future__ import annotations
@@ -8,6 +9,29 @@ from __future__ import annotations
 import math
 
 from ehdmaps.errors import InputError
+from ehdmaps.physics.lubricant import Lubricant
+
+_KELVIN = 0.01
+"""Step of the difference quotient by temperature."""
+
+
+def viscosity_slope(lubricant: Lubricant, temperature: float) -> float:
+    """d eta0/dT [Pa s/K], <= 0, of an oil at a temperature [K].
+
+    Parameters
+    ----------
+    lubricant : Lubricant
+        The oil.
+    temperature : float
+        T [K].
+
+    Examples
+    --------
+    >>> round(1e3 * viscosity_slope(Lubricant.named("FVA3"), 313.15), 2)
+    -4.31
+    """
+    at, above = (lubricant.at(temperature + more).viscosity for more in (0.0, _KELVIN))
+    return min((above - at) / _KELVIN, 0.0)
 
 
 def thermal_loading(viscosity_slope: float, speed: float, conductivity: float) -> float:

@@ -6,16 +6,14 @@ here: the tolerances of its geometry kernel are absolute and fit them.
 
 from __future__ import annotations
 
-import importlib
 import math
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from types import ModuleType
 
 import numpy as np
 
-from ehdmaps.errors import AnalysisError, DependencyError, InputError
-from ehdmaps.extras import needs
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.solids.mesh import gmsh_session
 from ehdmaps.units import LENGTH
 from examples.housings.designs import GearboxShape, Housing, PedestalShape, Place
 from examples.housings.mesh import Mesh
@@ -26,8 +24,8 @@ SMALLEST, LARGEST = 5e-3, 40e-3
 ELEMENTS_AROUND = 20
 """Least number of elements around a circle: fewer turn elements inside out where they curve."""
 
-DEBIAN_PACKAGES = ("libgl1", "libglu1-mesa", "libgomp1", "libxcursor1", "libxft2", "libxinerama1")
-"""What the gmsh of PyPI needs of Debian 12 besides what every machine has."""
+PURPOSE = "drawing a housing"
+"""What needs gmsh, for messages."""
 
 _MM = 1e3
 _ON_FACE = 1e-4
@@ -92,7 +90,7 @@ def tetrahedra(
         If gmsh finds no mesh.
     """
     check_size(size)
-    with _session() as gmsh:
+    with gmsh_session(PURPOSE) as gmsh:
         try:
             solid = draw(gmsh)
             gmsh.model.occ.synchronize()
@@ -125,38 +123,6 @@ def check_size(size: float) -> None:
         raise InputError(
             f"size of the elements: got {LENGTH.text(size)}; allowed: {LENGTH.text(SMALLEST)} to {LENGTH.text(LARGEST)}"
         )
-
-
-def load_gmsh() -> ModuleType:
-    """Return gmsh.
-
-    Raises
-    ------
-    DependencyError
-        If it is not installed, or a library of the system that it needs is not.
-    """
-    try:
-        with needs("housings", "gmsh", "drawing a housing"):
-            return importlib.import_module("gmsh")
-    except DependencyError as error:
-        raise DependencyError(f"{error}; on Debian also apt-get install {' '.join(DEBIAN_PACKAGES)}") from error
-
-
-@contextmanager
-def _session() -> Iterator[ModuleType]:
-    """gmsh with an empty model, quiet, one thread; all is gone after."""
-    gmsh = load_gmsh()
-    if gmsh.isInitialized():
-        raise InputError("gmsh is already in use in this process; allowed: gmsh.finalize() before a housing is drawn")
-    # No configuration files of the user, and Ctrl-C stays Python's.
-    gmsh.initialize(readConfigFiles=False, interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.option.setNumber("General.NumThreads", 1)
-        gmsh.model.add("housing")
-        yield gmsh
-    finally:
-        gmsh.finalize()
 
 
 def _arrays(gmsh: ModuleType) -> Mesh:

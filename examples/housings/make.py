@@ -13,11 +13,13 @@ from scipy.linalg import eigh
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.solids import calculix
+from ehdmaps.solids.mesh import load_gmsh
 from ehdmaps.units import LENGTH
 from ehdmaps.version import version
 from examples.housings import solve
 from examples.housings.designs import Housing, Seat
-from examples.housings.geometry import load_gmsh, mesh_housing
+from examples.housings.geometry import PURPOSE, mesh_housing
 from examples.housings.mesh import Mesh
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.reduced_body import ReducedBody
@@ -98,7 +100,7 @@ def make(housing: Housing, size: float, cutoff: float, keep: Path | None = None)
         If meshing or solving fails.
     """
     check_cutoff(cutoff)
-    solve.program()
+    calculix.program(solve.PURPOSE)
     mesh = mesh_housing(housing, size)
     if mesh.positions.size > MOST_COORDINATES:
         raise InputError(
@@ -165,7 +167,8 @@ def _attributes(
     return {
         "title": housing.title,
         "command": f'{COMMAND} {housing.name} --size "{LENGTH.text(size)}" --cutoff "{cutoff:.6g} Hz"',
-        "versions": f"ehdmaps {version()}, gmsh {load_gmsh().__version__}, CalculiX {solve.version()}",
+        "versions": f"ehdmaps {version()}, gmsh {load_gmsh(PURPOSE).__version__}, "
+        f"CalculiX {calculix.version(solve.PURPOSE)}",
         "dimensions": f"assumed; m: {housing.shape}",
         "material": f"E {material.youngs_modulus / 1e9:.6g} GPa, nu {material.poisson_ratio:.6g}, density "
         f"{material.density:.6g} kg/m3",

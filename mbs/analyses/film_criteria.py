@@ -31,7 +31,7 @@ from ehdmaps.physics.hertz import half_width, max_pressure, natural_time
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
 from ehdmaps.physics.starved import CORNER, compliance_ratio, damping_ratio, film_ratio, passing
-from ehdmaps.physics.thermal import inlet_shear_heating_factor, thermal_loading
+from ehdmaps.physics.thermal import inlet_shear_heating_factor, thermal_loading, viscosity_slope
 
 TOUCHING = 3.0
 """Lambda below which asperities touch, as of the usual charts of rolling bearings."""
@@ -41,8 +41,6 @@ _SPEED_EXPONENT = 0.7
 
 _LONGEST = 1.4
 """Longest relaxation time in natural times, as in `ehdmaps.maps.locked_film`: a film that hardly gives way."""
-
-_KELVIN = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,8 +192,7 @@ def heat_effect(state: ClosedContact, lubricant: Lubricant) -> FloatArray:
     conductivity = lubricant.thermal_conductivity
     if conductivity is None:
         return np.full(state.load.shape, np.nan)
-    at, above = (lubricant.at(state.temperature + more).viscosity for more in (0.0, _KELVIN))
-    loading = thermal_loading(min((above - at) / _KELVIN, 0.0), state.speed, conductivity)
+    loading = thermal_loading(viscosity_slope(lubricant, state.temperature), state.speed, conductivity)
     modulus = state.contact.reduced_modulus
     pressures = np.asarray(max_pressure(state.load, state.contact.radius, modulus))
     return np.array([1.0 - _heated(pressure, modulus, loading) ** 2 for pressure in pressures.ravel().tolist()])

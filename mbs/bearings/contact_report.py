@@ -11,7 +11,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.thermal import inlet_shear_heating_factor, thermal_loading
+from ehdmaps.physics.thermal import inlet_shear_heating_factor, thermal_loading, viscosity_slope
 from ehdmaps.units import LOAD, PRESSURE, SPEED, TEMPERATURE
 from mbs.bearings.films import SIDES, ContactState, FilmSource
 from mbs.bearings.laws import Law
@@ -207,9 +207,8 @@ def heated(
     conductivity = None if oil is None else oil.thermal_conductivity
     if oil is None or conductivity is None or not math.isfinite(_smallest(contacts.central_film)):
         return ""
-    slope = (oil.at(temperature + _KELVIN).viscosity - oil.at(temperature).viscosity) / _KELVIN
     try:
-        loading = thermal_loading(min(slope, 0.0), entrainment_speed, conductivity)
+        loading = thermal_loading(viscosity_slope(oil, temperature), entrainment_speed, conductivity)
         pressure = float(np.max(contacts.hertz_pressure))
         factor = inlet_shear_heating_factor(pressure, modulus, loading)
     except InputError:
@@ -222,7 +221,6 @@ def heated(
     )
 
 
-_KELVIN = 0.01
 _NOTICEABLE = 0.95
 
 

@@ -11,11 +11,17 @@
     constant/ehlProperties says what is solved; the answer goes to `results`
     (an OpenFOAM dictionary), film.dat (a table over the columns) and, if asked,
     to the fields p, U, mu, rho, liquidFraction (and T with heat) of the time folder 1.
+
+    ehlFoam -laws FILE solves nothing and writes the oil as a table, laws.dat;
+    ehlFoam -walls FILE the surfaces under sources of heat, walls.dat.
 */
 
 #include "report.H"
 #include "steadyState.H"
 #include "oscillation.H"
+#include "caseFiles.H"
+#include "lawTable.H"
+#include "wallTable.H"
 #include "columnLayout.H"
 #include "positive.H"
 #include "argList.H"
@@ -48,6 +54,8 @@ int main(int argc, char* argv[])
 {
     argList::addNote("Elastohydrodynamic line contact, film-resolved");
     argList::noParallel();
+    argList::addOption("laws", "file", "write the oil at the pressures and rates of a file to laws.dat, solve nothing");
+    argList::addOption("walls", "file", "write surface temperatures under the heat of a file to walls.dat, solve nothing");
     const argList args(argc, argv);
     Time runTime(Time::controlDictName, args);
     const clockTime clock;
@@ -57,7 +65,17 @@ int main(int argc, char* argv[])
     (
         IOobject("ehlProperties", runTime.constant(), runTime, IOobject::MUST_READ, IOobject::NO_WRITE)
     );
+    if (args.found("laws"))
+    {
+        writeLaws(dict, args["laws"], runTime.path()/"laws.dat");
+        return 0;
+    }
     const lineContact contact(dict);
+    if (args.found("walls"))
+    {
+        writeWalls(dict, contact, args["walls"], runTime.path()/"walls.dat");
+        return 0;
+    }
     const label columns = dict.get<label>("columns"), rows = dict.get<label>("rows");
     const newtonControls controls{positive(dict, "tolerance"), dict.get<label>("maxIterations")};
     const dictionary& meshDict = dict.subDict("mesh");
@@ -68,6 +86,7 @@ int main(int argc, char* argv[])
     (
         IOobject(fvMesh::defaultRegion, runTime.timeName(), runTime, IOobject::MUST_READ)
     );
+    refuseUnread(runTime, mesh);
     filmMesh film(mesh, columns, rows, dict.lookupOrDefault<scalar>("lowerShare", 0.5));
     Info<< "b " << contact.halfWidth << " m, p_H " << contact.pressure << " Pa, film expected "
         << filmScale << " m, " << columns << " x " << rows << " cells" << nl << endl;

@@ -35,7 +35,7 @@ def main() -> None:
     """Print the table and the costs."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--columns", type=int, default=400)
-    parser.add_argument("--rows", type=int, default=16)
+    parser.add_argument("--rows", type=int, default=6)
     options = parser.parse_args()
     print(f"{options.columns} x {options.rows} cells, and half as many each way for the estimates")
     print(HEADING)

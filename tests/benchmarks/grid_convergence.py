@@ -13,7 +13,7 @@ def main() -> None:
     print(f"{'cells':<11}{HEADING}")
     for place in (SPIKED[1], THICK[1], PLACES[6]):
         print(f"h/R {thickness(place):.5f}")
-        for columns, rows in ((200, 16), (400, 16), (800, 16), (400, 32)):
+        for columns, rows in ((200, 6), (400, 6), (800, 6), (400, 12)):
             print(f"{columns:>4} x {rows:<4}{compare(place, 'thin_film', columns, rows).row()}", flush=True)
 
 

@@ -8,6 +8,8 @@ import stat
 import sys
 from pathlib import Path
 
+from ehdmaps.openfoam.installation import processor
+
 PROGRAM = """
 import json, math, os, re, signal, sys, time
 from pathlib import Path
@@ -144,7 +146,7 @@ def build(folder: Path, mode: str = "good") -> dict[str, str]:
         path = programs / name
         path.write_text(f"#!{sys.executable} -ES\n{text}")
         path.chmod(path.stat().st_mode | stat.S_IXUSR)
-    (programs / "ehlFoam.build").write_text("OpenFOAM v1912\ncompiler g++ 12.2.0\nsources 0123abcd\n")
+    record(folder)
     case = folder / "lineContact"
     for part in ("system", "0", "constant"):
         (case / part).mkdir(parents=True, exist_ok=True)
@@ -155,8 +157,16 @@ def build(folder: Path, mode: str = "good") -> dict[str, str]:
         "EHDMAPS_OPENFOAM": str(folder),
         "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}",
         "WM_PROJECT_DIR": str(folder),
+        "WM_PROJECT_VERSION": "v1912",
         "TMPDIR": str(folder.parent),
     }
+
+
+def record(folder: Path, version: str = "v1912", machine: str = "", sources: str = "0123abcd") -> str:
+    """Write the record of a build, of this machine's processor unless told otherwise; what a map says of it."""
+    lines = [f"openfoam {version}", "compiler g++ 12.2.0", f"processor {machine or processor()}", f"sources {sources}"]
+    (folder / "bin" / "ehlFoam.build").write_text("".join(f"{line}\n" for line in lines))
+    return " ".join(lines)
 
 
 def set_mode(folder: Path, mode: str) -> None:

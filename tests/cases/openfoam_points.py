@@ -95,6 +95,10 @@ THICK = (Place("N1014", 0, 5e2, 10.0, 40.0), Place("N1014", 1, 1e2, 10.0, 20.0))
 """Light and fast: films so thick that their slopes are not small."""
 
 
+FILM_BARS: dict[Flow, float] = {"thin_film": 1e-3, "full_stress": 2e-3}
+"""Most that films may differ from the Reynolds equation."""
+
+
 @dataclass(frozen=True)
 class Comparison:
     """Relative differences of the CFD from the Reynolds equation, and the CFD's own estimates of its errors."""
@@ -159,7 +163,7 @@ def reynolds_film(place: Place) -> FilmSolution:
 
 
 @cache
-def compare(place: Place, flow: Flow, columns: int = 400, rows: int = 16) -> Comparison:
+def compare(place: Place, flow: Flow, columns: int = 400, rows: int = 6) -> Comparison:
     """Solve a point both ways."""
     solver = OpenFoamSolver(flow=flow, columns=columns, rows=rows, starter=reynolds_start, timeout=300.0)
     (film,) = solver.solve_line(place.contact, OIL, (place.load,), place.speed, place.celsius + 273.15)
@@ -172,10 +176,10 @@ def thickness(place: Place) -> float:
 
 
 def agrees(found: Comparison) -> list[str]:
-    """What does not agree as well as it should: films 1 %, film compliance 5 % or 0.2 % of all, c 3 %."""
+    """What does not agree as well as it should: film compliance 5 % or 0.2 % of all, c 3 %, films `FILM_BARS`."""
     wrong = []
-    for name, most in (("central_film", 0.01), ("minimum_film", 0.01)):
-        if not abs(found.difference(name)) <= most:
+    for name in ("central_film", "minimum_film"):
+        if not abs(found.difference(name)) <= FILM_BARS[found.flow]:
             wrong.append(f"{name} {100 * found.difference(name):+.2f} %")
     if not (abs(found.difference("film_compliance")) <= 0.05 or abs(found.compliance_share) <= 0.002):
         wrong.append(f"film compliance {100 * found.difference('film_compliance'):+.2f} %")

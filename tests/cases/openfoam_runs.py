@@ -9,6 +9,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.start import reynolds_start
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
 from ehdmaps.openfoam.installation import Installation, installation
@@ -62,10 +65,10 @@ def results(M: float, L: float, columns: int = 100, rows: int = 8, flow: Flow = 
     return run(parameters(M, L, columns, rows, flow=flow, **changes)).results
 
 
-def program(installed: Installation, name: str | Path, case: Path) -> subprocess.CompletedProcess[str]:
+def program(installed: Installation, name: str | Path, case: Path, *options: str) -> subprocess.CompletedProcess[str]:
     """Run a program of OpenFOAM in a folder, come what may."""
     return subprocess.run(
-        [str(name), "-case", str(case)],
+        [str(name), "-case", str(case), *options],
         cwd=case,
         env={**installed.full_environment(), "PWD": str(case)},
         stdin=subprocess.DEVNULL,
@@ -75,3 +78,17 @@ def program(installed: Installation, name: str | Path, case: Path) -> subprocess
         timeout=120.0,
         check=False,
     )
+
+
+def table(settings: Parameters, case: Path, option: str, **lists: FloatArray) -> FloatArray:
+    """Table that ehlFoam writes of lists with -laws or -walls, in a new folder."""
+    installed = installation()
+    (case / "system").mkdir(parents=True)
+    (case / "constant").mkdir()
+    (case / "system" / "controlDict").write_text((installed.template / "system" / "controlDict").read_text())
+    (case / "constant" / "ehlProperties").write_text(settings.text())
+    text = "".join(f"{name} ({' '.join(map(repr, values.tolist()))});\n" for name, values in lists.items())
+    (case / "points").write_text(text)
+    ended = program(installed, installed.solver, case, f"-{option}", str(case / "points"))
+    assert ended.returncode == 0, ended.stdout
+    return np.loadtxt(case / f"{option}.dat", ndmin=2)

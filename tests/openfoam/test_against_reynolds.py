@@ -1,9 +1,9 @@
 """The CFD of the film against the Reynolds equation: two discretisations of one contact, each its own.
 
-Bars, on 400 x 16 cells: films 1 %, film compliance 5 % or 0.2 % of the whole contact's, c 3 %. They bound the grid
-error of the CFD: 2/rows^2 of what pressure drives is 0.8 %, hence 0.6 to 0.9 % of the film; the film compliance is a
-small difference where the load is high, and c inherits twice its error. The thin-film flow and the Reynolds equation
-are the same equation, so nothing else is left; with all stresses, what is neglected is below 0.1 % at these points.
+Bars, on 400 x 6 cells: films 0.1 % (0.2 % with all stresses), film compliance 5 % or 0.2 % of the whole contact's, c 3 %. They bound the grid
+error of the CFD along the film; the film compliance is a small difference where the load is high, and c inherits twice
+its error. The thin-film flow and the Reynolds equation are the same equation, so nothing else is left; with all
+stresses, what is neglected is below 0.2 % at these points.
 """
 
 import pytest
@@ -42,13 +42,13 @@ def test_full_stress(place: Place) -> None:
 
 
 @pytest.mark.slow
-def test_error_estimate_explains_the_film() -> None:
-    """What the CFD says of its own grid is what it differs by: a sixth of it at most is left unexplained."""
-    left = [
-        abs(found.difference("film_offset") - found.cfd.film_offset_error) / abs(found.difference("film_offset"))
-        for found in (compare(place, "thin_film") for place in THIN)
-    ]
-    assert max(left) < 1 / 6
+def test_error_estimates_explain_the_film() -> None:
+    """What both programs say of their own grids is what they differ by, but for the inlet's length."""
+    for place in THIN:
+        found = compare(place, "thin_film")
+        stated = abs(found.cfd.film_offset_error) + abs(found.reynolds.film_offset_error)
+        # a film of constant viscosity whose inlet is n lengths sqrt(2 h R) long is 2.4/n^2 too thin
+        assert abs(found.difference("film_offset")) < stated + 2.4 / 100**2, found.row()
 
 
 def test_steep_spike_has_no_newtonian_slow_flow() -> None:

@@ -98,6 +98,35 @@ def test_bad_entry(name: str, installed: Installation, meshed: Path, good: str) 
     assert re.search(rf"file: {place} (at line \d+|from line \d+ to line \d+)", said)
 
 
+# what a case may have for other programs of OpenFOAM, where it is added, and what the message says
+UNREAD = {
+    "fields with boundary conditions": ("0/p", "", "fields of the start: got .*/0/p\", allowed are none"),
+    "function objects": ("system/controlDict", "functions { }", "functions: ehlFoam has no loop over time"),
+    "interpolation": (
+        "system/fvSchemes", "interpolationSchemes { default cubic; }",
+        'interpolationSchemes, default: got "cubic", allowed is default linear',
+    ),
+    "a scheme of one term": (
+        "system/fvSchemes", "divSchemes { div(phi,U) Gauss upwind; }",
+        r'divSchemes, div\(phi,U\): got "Gauss upwind", allowed is default none',
+    ),
+    "a linear solver": ("system/fvSolution", "solvers { p { solver PCG; } }", "solvers: ehlFoam solves all equations"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", UNREAD)
+def test_what_would_not_be_read_is_refused(name: str, installed: Installation, meshed: Path, good: str) -> None:
+    where, added, message = UNREAD[name]
+    path = meshed / where
+    before = path.read_text() if path.exists() else None
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(f"{before or ''}\n{added}\n")
+    try:
+        assert re.search(message, _fatal(installed, meshed, good))
+    finally:
+        path.unlink() if before is None else path.write_text(before)
+
+
 @pytest.mark.parametrize(("pattern", "by"), [("rows 6;", "rows 7;"), ("columns 60;", "columns 61;")])
 def test_mesh_of_other_numbers(pattern: str, by: str, installed: Installation, meshed: Path, good: str) -> None:
     said = _fatal(installed, meshed, _replaced(good, pattern, by))
@@ -119,7 +148,7 @@ def test_case_by_hand(installed: Installation, tmp_path: Path) -> None:
     assert {path.name for path in (case / "1").iterdir()} >= {"p", "U", "mu", "rho", "liquidFraction"}
 
     fields = read_fields(case)
-    assert fields.p.size == 400 * 16
+    assert fields.p.size == 400 * 6
     assert fields.p.max() == pytest.approx(results.max_pressure, rel=1e-6)  # digits in the files
     write_fields(fields, tmp_path / "film.vtu")
     assert (tmp_path / "film.vtu").stat().st_size > 0

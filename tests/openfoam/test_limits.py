@@ -59,9 +59,9 @@ def test_independent_solver(point: dict[str, float], flow: Flow) -> None:
     settings = openfoam_runs.parameters(M, L, inlet_length=inlet, flow=flow)
     coarse, fine = (
         _in_groups(openfoam_runs.results(M, L, columns, rows, flow, inlet_length=inlet), settings)
-        for columns, rows in ((200, 8), (400, 16))
+        for columns, rows in ((200, 4), (400, 4))
     )
-    # films: what is left after second order, of 2/rows^2 squared; response: the place of rupture among the columns,
+    # films: what is left after second order; response: the place of rupture among the columns,
     # some 1e-3 of the compliance where the film has little of it, more where the film is all of it (M = 0.1)
     light = M < 1.0
     tolerances = {
@@ -73,8 +73,8 @@ def test_independent_solver(point: dict[str, float], flow: Flow) -> None:
     for name, tolerance in tolerances.items():
         if name in point:
             assert _extrapolated(coarse[name], fine[name]) == pytest.approx(point[name], rel=tolerance), name
-            # on the grid itself: 4/rows^2 = 1.6 %, and the place of rupture as above
-            assert fine[name] == pytest.approx(point[name], rel=0.016 + tolerance), name
+            # on the grid itself: 0.1 % of its 400 columns, and the place of rupture as above
+            assert fine[name] == pytest.approx(point[name], rel=1e-3 + tolerance), name
 
 
 @cache
@@ -99,10 +99,10 @@ def _martin(columns: int, rows: int, flow: Flow) -> dict[str, float]:
 
 def test_martin_limit() -> None:
     """w = 4.895 eta u R/h, k = w/h, c = 6.548 eta (R/h)^1.5."""
-    coarse, fine = (_martin(columns, rows, "thin_film") for columns, rows in ((200, 16), (400, 32)))
-    # pressure drives 1 + 2/rows^2 of the exact flux, which takes as much from the film, and some more along x
-    assert coarse["film"] == pytest.approx(1.0, abs=4.0 / 16**2)
-    assert fine["film"] == pytest.approx(1.0, abs=4.0 / 32**2)
+    coarse, fine = (_martin(columns, 4, "thin_film") for columns in (200, 400))
+    # along x: second order, of a number of order 1 on 200 columns
+    assert coarse["film"] == pytest.approx(1.0, abs=5e-3)
+    assert fine["film"] == pytest.approx(1.0, abs=1.25e-3)
     # inlet of finite length 2.4/300^2 = 2.7e-5, deflection and range of cavitation 1e-5 each; the rest of both grids
     assert _extrapolated(coarse["film"], fine["film"]) == pytest.approx(1.0, abs=2e-4)
     assert fine["offset"] == pytest.approx(1.0, abs=1e-4)  # inlet and deflection
@@ -112,7 +112,7 @@ def test_martin_limit() -> None:
 
 
 def test_martin_limit_with_all_stresses() -> None:
-    thin, full = (_martin(200, 16, flow) for flow in ("thin_film", "full_stress"))
+    thin, full = (_martin(200, 4, flow) for flow in ("thin_film", "full_stress"))
     # h/R is 4e-5; the rest is how the two take the end of the film, in its last column
     for name in ("film", "offset", "stiffness", "damping"):
         assert full[name] == pytest.approx(thin[name], abs=2e-3), name

@@ -168,12 +168,12 @@ def test_extras_that_messages_name_exist():
 @pytest.mark.parametrize("error", [ImportError("none"), OSError("libGLU.so.1: cannot open")])
 def test_a_package_that_cannot_be_loaded(error):
     told = r'^a mesh: the package gmsh .*\((none|libGLU.*)\); install it: pip install "'
-    with pytest.raises(DependencyError, match=told), needs("housings", "gmsh", "a mesh"):
+    with pytest.raises(DependencyError, match=told), needs("solids", "gmsh", "a mesh"):
         raise error
 
 
 def test_other_errors_pass():
-    with pytest.raises(ZeroDivisionError), needs("housings", "gmsh", "a mesh"):
+    with pytest.raises(ZeroDivisionError), needs("solids", "gmsh", "a mesh"):
         raise ZeroDivisionError
 
 

@@ -47,10 +47,17 @@ OILS = [
     Lubricant.roelands(viscosity=0.04, roelands_z=0.6, pressure_viscosity=1.7e-8, density=870.0),
     Lubricant.roelands(viscosity=0.04, roelands_z=0.6, density=870.0, fitted_pressure=1.1e9),
     Lubricant.fva3(viscosity=0.05, pressure_viscosity=2e-8, density=880.0),
+    Lubricant.barus(viscosity=0.1, pressure_viscosity=2e-8, density=880.0, thermal_conductivity=0.14),
+    dataclasses.replace(Lubricant.named("Spirax MA 80W"), thermal_conductivity=0.14, heat_capacity=1900.0),
     dataclasses.replace(
         Lubricant.fva3(viscosity=0.05, pressure_viscosity=2e-8, density=880.0), label='"quoted" \\ oil'
     ),
 ]
+
+OTHERWISE = dataclasses.replace(
+    OILS[5], pressure_viscosity=dataclasses.replace(OILS[5].pressure_viscosity, pressure_viscosity_40=1e-8)
+)
+"""An oil whose record says one thing and whose correlation another."""
 
 
 @pytest.mark.parametrize("oil", OILS, ids=lambda oil: oil.label or oil.name)
@@ -96,6 +103,11 @@ def test_a_bare_contact_brings_material_and_law():
     assert built(bearing=None, contact=by_length).contacts == (by_length,)
 
 
+def test_heat_of_the_solids_is_kept():
+    material = dataclasses.replace(STEEL, conductivity=30.0, heat_capacity=800.0)
+    assert built(material=material).contacts[0].material == material
+
+
 def test_solver_keys_and_the_rest_are_kept():
     job = built(solver="reynolds", solver_options={"density": 4.5}, fill="none", backbone="none", law_check=3, name="a")
     assert job.solver_options == {"density": 4.5}
@@ -114,8 +126,8 @@ def test_solver_keys_and_the_rest_are_kept():
             "estimated from more than its designation, or dimensions, and its static rating; allowed: a",
         ),
         (
-            {"lubricant": dataclasses.replace(OILS[2], thermal_conductivity=0.14)},
-            "Job.build, lubricant: thermal_conductivity of 'own oil' cannot be said in a job file",
+            {"lubricant": OTHERWISE},
+            "Job.build, lubricant: pressure_viscosity_40 of 'own oil' cannot be said in a job file",
         ),
     ],
 )

@@ -15,12 +15,13 @@ import ehdmaps
 from ehdmaps.errors import InputError, MapError, OutsideMapError
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.film_field import LOSS_FLOOR
-from ehdmaps.maps.records import bearing_from_json, contacts_from_json, lubricant_from_json
+from ehdmaps.maps.records import bearing_from_json, contacts_from_json, contacts_json, lubricant_from_json
 from ehdmaps.maps.structure import DERIVED
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import Status
 from tests.cases.laws import CONTACTS, LINE, NU308, OIL, dataset_of, dry_dataset
 
@@ -214,6 +215,13 @@ def test_unknown_laws_of_an_oil_are_refused(key):
     record = OIL.record() | {key: "own"}
     with pytest.raises(MapError, match=r"attribute lubricant: does not read .*own"):
         lubricant_from_json(json.dumps(record))
+
+
+def test_the_heat_of_steel_stays_out_of_records():
+    warm = dataclasses.replace(CONTACTS[0], material=dataclasses.replace(STEEL, conductivity=30.0))
+    assert "conductivity" not in contacts_json(CONTACTS)
+    assert json.loads(contacts_json([warm]))[0]["material"]["conductivity"] == 30.0
+    assert contacts_from_json(contacts_json([warm])) == (warm,)
 
 
 def test_contacts_and_bearing_come_back_from_their_records(emap):

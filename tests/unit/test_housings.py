@@ -15,6 +15,8 @@ import pytest
 
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.solids import STEEL
+from ehdmaps.solids import calculix
+from ehdmaps.solids.mesh import load_gmsh
 from examples.housings import __main__ as command_line
 from examples.housings import geometry, make, solve
 from examples.housings.deck import deck
@@ -198,8 +200,8 @@ def test_without_gmsh(monkeypatch, tmp_path, error):
     else:
         (tmp_path / "gmsh.py").write_text("raise OSError('libGLU.so.1: cannot open shared object file')")
         monkeypatch.syspath_prepend(tmp_path)
-    with pytest.raises(InputError, match=r'gmsh cannot be loaded .*pip install "ehdmaps\[housings\]".*libglu1-mesa'):
-        geometry.load_gmsh()
+    with pytest.raises(InputError, match=r'gmsh cannot be loaded .*pip install "ehdmaps\[solids\]".*libglu1-mesa'):
+        load_gmsh("drawing a housing")
 
 
 def fake(folder: Path, monkeypatch, script: str) -> None:
@@ -225,7 +227,7 @@ def test_calculix_that_crashes(monkeypatch, tmp_path):
 
 def test_calculix_that_hangs(monkeypatch, tmp_path):
     fake(tmp_path, monkeypatch, "exec sleep 60")
-    monkeypatch.setattr(solve, "LONGEST_RUN", 0.2)
+    monkeypatch.setattr(calculix, "LONGEST_RUN", 0.2)
     with pytest.raises(AnalysisError, match="not done after"):
         solve.own_frequencies(one_element(), STEEL, NONE, 1, tmp_path)
 
@@ -260,7 +262,7 @@ def test_frequencies_are_read_in_cycles(monkeypatch, tmp_path):
 
 def test_version_of_calculix(monkeypatch, tmp_path):
     fake(tmp_path, monkeypatch, "echo; echo 'This is Version 2.20'")
-    assert solve.version() == "2.20"
+    assert calculix.version("a test") == "2.20"
 
 
 def test_every_problem_of_the_arguments_at_once(capsys, tmp_path, monkeypatch):

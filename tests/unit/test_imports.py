@@ -1,6 +1,6 @@
-"""Imports run one way: errors <- physics <- (ehl | openfoam | maps) <- jobs; maps, physics <- mbs; jobs <- scenes.
+"""Imports run one way: errors <- physics <- (ehl | openfoam | maps | solids) <- jobs; maps, physics <- mbs.
 
-Nothing imports the examples.
+Scenes call jobs. Nothing imports the examples.
 """
 
 from __future__ import annotations
@@ -48,6 +48,7 @@ ALLOWED = {
         "ehdmaps.units",
         "ehdmaps.physics",
     },
+    "ehdmaps.solids": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.extras", "ehdmaps.physics"},
     "ehdmaps.trade": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.figures", "ehdmaps.outputs", "ehdmaps.units"},
     "ehdmaps.stability": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.inputs", "ehdmaps.outputs", "ehdmaps.units"},
     "ehdmaps.jobs": {
@@ -67,6 +68,7 @@ ALLOWED = {
         "ehdmaps.ehl",
         "ehdmaps.openfoam",
         "ehdmaps.maps",
+        "ehdmaps.solids",
         "ehdmaps.stability",
         "ehdmaps.trade",
     },
@@ -116,6 +118,7 @@ ALLOWED = {
         "ehdmaps.units",
         "ehdmaps.version",
         "ehdmaps.physics",
+        "ehdmaps.solids",
         "mbs",
         "mbs.scene.scene",
     },

@@ -130,6 +130,17 @@ def test_the_key_holds_what_changes_the_numbers_and_nothing_else():
     assert len({task.key, *(other.key for other in others)}) == 10
 
 
+def test_the_key_holds_the_heat_of_the_solids_where_films_know_heat():
+    class Warm(Holey):
+        def settings(self):
+            return {**super().settings(), "physics": "thermal"}
+
+    task = line_tasks(job_of(), Holey())[0]
+    other = replace(task.contact, material=replace(STEEL, conductivity=30.0))
+    assert replace(task, contact=other).key == task.key
+    assert replace(task, contact=other, solver=Warm()).key != replace(task, solver=Warm()).key
+
+
 def test_keys_of_a_solver_with_a_version_of_its_own_stay_what_they_are():
     """What took days is taken over by the next version of ehdmaps: the key is that of the maps of schema 1."""
     solver = Holey(slow=True, version="7")

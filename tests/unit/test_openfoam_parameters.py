@@ -23,7 +23,7 @@ GOOD = Parameters(
     cavitation_range=500.0,
     mesh=Mesh(film=0.2, spike_position=0.8, spike_width=0.05),
     columns=400,
-    rows=16,
+    rows=6,
     start=Start(np.array([-1e-4, 0.0, 1e-4]), np.array([0.0, 5e8, 0.0]), 1e-7),
 )
 
@@ -37,7 +37,7 @@ def entries(parameters, tmp_path):
 def test_the_file_says_what_the_parameters_say(tmp_path):
     found = entries(GOOD, tmp_path)
     assert (found["reducedRadius"], found["load"], found["upperSpeed"]) == (5.5e-3, 1e4, 1.5)
-    assert (found["flow"], found["inertia"], found["columns"], found["rows"]) == ("thinFilm", False, 400, 16)
+    assert (found["flow"], found["inertia"], found["columns"], found["rows"]) == ("thinFilm", False, 400, 6)
     assert found["viscosity"]["type"] == "FVA3"
     assert found["viscosity"]["viscosity"] == OIL.viscosity
     assert found["viscosity"]["pressureScale"] == OIL.pressure_viscosity.pressure_scale

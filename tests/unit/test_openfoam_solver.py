@@ -1,7 +1,9 @@
 """The solver `openfoam` with a stand-in for ehlFoam: statuses, errors, what is missing, what is left behind."""
 
+import hashlib
 import os
 import re
+import subprocess
 import sys
 import tempfile
 import time
@@ -18,6 +20,7 @@ from ehdmaps.jobs.film_plot import places
 from ehdmaps.jobs.reader import parse_job, read_job
 from ehdmaps.jobs.tasks import line_tasks
 from ehdmaps.openfoam import installation as installed
+from ehdmaps.openfoam.leftovers import CLAIM, PREFIX, claimed, remove_leftovers
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.openfoam.run import RunError, run
 from ehdmaps.openfoam.solver import OpenFoamSolver
@@ -29,6 +32,8 @@ from tests.cases import openfoam_fake
 JOB = read_job("nu308_openfoam")
 CONTACT, OIL = JOB.contacts[0], JOB.lubricant
 POINT = OperatingPoint(2e4, 1.0, 313.15)
+OF_GRID = 4 / 400**2 + 1 / 6**2
+"""What the fake of ehlFoam adds to its numbers on the fine grid, relative."""
 
 
 @pytest.fixture
@@ -58,10 +63,10 @@ def test_a_point_on_two_grids(fake, capfd):
     film = solved(OpenFoamSolver())
     assert (film.status, film.reason, film.iterations) == (Status.CONVERGED, "", 14)
     # the fake is of second order: a third of the difference is the error, and its sign says that values are too large
-    assert film.film_offset_error == pytest.approx(4 / 400**2 + 1 / 16**2, rel=0.01)
+    assert film.film_offset_error == pytest.approx(OF_GRID / (1.0 + OF_GRID))
     assert film.film_compliance_error > 0.0
     assert film.loss_compliance_error > 0.0
-    assert film.central_film_error == pytest.approx(4 / 400**2 + 1 / 16**2, rel=0.01)
+    assert film.central_film_error == pytest.approx(OF_GRID / (1.0 + OF_GRID))
     # the fake's smallest film and largest pressure do not depend on the grid: what is left stands between the columns
     assert film.minimum_film_error == 0.0
     assert 0.0 < film.max_pressure_error < 1e-3
@@ -90,7 +95,7 @@ def test_many_frequencies_from_one_run_a_grid(fake):
     assert found.errors.shape == (3, 5)
     assert not found.errors[:, 3:].any()
     share = found.errors[:, 0].real / found.compliance.real
-    assert share == pytest.approx(np.full(3, 4 / 400**2 + 1 / 16**2), rel=0.01)
+    assert share == pytest.approx(np.full(3, OF_GRID / (1.0 + OF_GRID)))
 
 
 def test_what_the_krylov_space_leaves_is_an_error(fake):
@@ -162,19 +167,19 @@ def test_a_fine_grid_that_fails(fake):
     assert len(left(fake, "temporary")) == 1  # the coarse case was good
 
 
-FINE = ["400x16<200", "300x12<200", "400x16<300", "400x16", "440x16"]
+FINE = ["400x6<200", "300x4<200", "400x6<300", "400x6", "440x6"]
 """Runs on the fine grid that may follow each other: from the coarse one, over one between, on its own, elsewhere."""
 
 
 @pytest.mark.parametrize(
     ("stagnates", "tried"),
     [
-        ([], ["200x8", "400x16<200"]),
-        (["200x8"], ["200x8", "220x8", "400x16<220"]),
-        (["400x16<200"], ["200x8", *FINE[:3]]),
-        (["400x16<200", "300x12<200"], ["200x8", *FINE[:2], *FINE[3:4]]),
-        (["400x16<200", "400x16<300"], ["200x8", *FINE[:4]]),
-        (["400x16<200", "400x16<300", "400x16"], ["200x8", *FINE]),
+        ([], ["200x3", "400x6<200"]),
+        (["200x3"], ["200x3", "220x3", "400x6<220"]),
+        (["400x6<200"], ["200x3", *FINE[:3]]),
+        (["400x6<200", "300x4<200"], ["200x3", *FINE[:2], *FINE[3:4]]),
+        (["400x6<200", "400x6<300"], ["200x3", *FINE[:4]]),
+        (["400x6<200", "400x6<300", "400x6"], ["200x3", *FINE]),
     ],
 )
 def test_a_grid_that_stagnates_is_tried_otherwise_and_leaves_nothing(fake, stagnates, tried):
@@ -188,10 +193,10 @@ def test_a_grid_that_stagnates_is_tried_otherwise_and_leaves_nothing(fake, stagn
 
 
 def test_only_the_last_case_of_a_point_that_failed_stays(fake):
-    openfoam_fake.set_mode(fake, " ".join(["stagnates_on", "400x16<200", "400x16<300", "400x16", "440x16"]))
+    openfoam_fake.set_mode(fake, " ".join(["stagnates_on", "400x6<200", "400x6<300", "400x6", "440x6"]))
     film = solved(OpenFoamSolver())
     assert film.status is Status.STAGNATED
-    assert openfoam_fake.grids(fake) == ["200x8", *FINE]
+    assert openfoam_fake.grids(fake) == ["200x3", *FINE]
     (folder,) = left(fake, "temporary")
     assert f"/{folder}/log.ehlFoam.logfile" in film.reason
     openfoam_fake.set_mode(fake, "killed")
@@ -200,10 +205,10 @@ def test_only_the_last_case_of_a_point_that_failed_stays(fake):
 
 
 def test_kept_cases_are_those_of_all_tries(fake, tmp_path):
-    openfoam_fake.set_mode(fake, "stagnates_on 400x16<200 200x8")
+    openfoam_fake.set_mode(fake, "stagnates_on 400x6<200 200x3")
     assert solved(OpenFoamSolver(keep_cases=tmp_path / "kept")).status is Status.CONVERGED
     grids = [name.rpartition("_")[2] for name in left(fake, "kept")]
-    assert grids == sorted(["200x8", "220x8", "400x16"])
+    assert grids == sorted(["200x3", "220x3", "400x6"])
 
 
 def test_a_process_that_is_killed_by_somebody_is_tried_again(fake):
@@ -260,14 +265,14 @@ def test_a_point_starts_from_the_reynolds_solution(fake, tmp_path):
     solved(solver)
     coarse, fine = (
         parse(tmp_path / "kept" / f"inner_w20000_u1_T313.15_{grid}" / "constant" / "ehlProperties")
-        for grid in ("200x8", "400x16")
+        for grid in ("200x3", "400x6")
     )
     start = reynolds_start(CONTACT, OIL, POINT.load, POINT.entrainment_speed, POINT.temperature)
     np.testing.assert_array_equal(coarse["start"]["pressure"], start.pressure)
     assert coarse["start"]["centralFilm"] == start.central_film
     assert coarse["mesh"] == fine["mesh"]
     assert coarse["mesh"]["spikeWidth"] == start.spike_width > 0.0
-    assert (coarse["columns"], coarse["rows"], fine["columns"], fine["rows"]) == (200, 8, 400, 16)
+    assert (coarse["columns"], coarse["rows"], fine["columns"], fine["rows"]) == (200, 3, 400, 6)
     assert (coarse["lowerSpeed"], coarse["upperSpeed"]) == (0.75, 1.25)
     # the fine grid starts from what the coarse one found
     assert len(list(fine["start"]["x"])) == 200
@@ -303,9 +308,9 @@ def test_kept_cases_of_a_second_run_stand_beside_the_first(fake, tmp_path):
     solved(solver)
     solved(solver)
     assert left(fake, "kept") == [
-        f"inner_w20000_u1_T313.15_{grid}{number}" for grid in ("200x8", "400x16") for number in ("", "-1")
+        f"inner_w20000_u1_T313.15_{grid}{number}" for grid in ("200x3", "400x6") for number in ("", "-1")
     ]
-    assert (tmp_path / "kept" / "inner_w20000_u1_T313.15_200x8" / "1" / "p").is_file()
+    assert (tmp_path / "kept" / "inner_w20000_u1_T313.15_200x3" / "1" / "p").is_file()
 
 
 def test_a_case_that_cannot_be_made(fake):
@@ -313,6 +318,34 @@ def test_a_case_that_cannot_be_made(fake):
     film = solved(OpenFoamSolver(keep_cases=fake / "file" / "kept"))
     assert film.status is Status.FAILED
     assert re.match(r"coarse grid: a case cannot be made in .*file/kept \(Not a directory\); allowed: ", film.reason)
+
+
+def test_a_case_that_cannot_be_made_leaves_nothing(fake, monkeypatch):
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("ehdmaps.openfoam.case.shutil.copytree", full)
+    assert "(No space left on device); allowed: " in solved(OpenFoamSolver()).reason
+    assert left(fake, "temporary") == []
+
+
+def test_only_what_a_killed_run_of_our_own_left_is_removed(tmp_path):
+    def folder(name):
+        (tmp_path / name).mkdir()
+        return tmp_path / name
+
+    user = os.getuid()
+    working = folder(f"{PREFIX}{user}-1-0")
+    abandoned, failed = folder(f"{PREFIX}{user}-1-1"), folder(f"{PREFIX}{user}-1-2")
+    foreign, other = folder(f"{PREFIX}{user + 1}-1-3"), folder("somebody-else")
+    (tmp_path / f"{PREFIX}{user}-1-4").symlink_to(other)
+    for left_behind in (abandoned, foreign, other):
+        (left_behind / CLAIM).touch()
+    with claimed(working):
+        remove_leftovers.__wrapped__(tmp_path)
+        assert not abandoned.exists()
+        assert all(each.exists() for each in (working, failed, foreign, other, tmp_path / f"{PREFIX}{user}-1-4"))
+    assert list(working.iterdir()) == []  # from now on it is one that is kept
 
 
 def test_the_time_of_a_point_is_that_of_both_grids(fake):
@@ -373,7 +406,7 @@ def test_settings_and_build_are_in_the_key_of_a_task_but_the_timeout_is_not(fake
     (fake / "lineContact" / "system" / "controlDict").write_text("another scheme")
     second = key()
     assert second != first
-    (fake / "bin" / "ehlFoam.build").write_text("OpenFOAM v2012\n")
+    openfoam_fake.record(fake, sources="4567")
     assert key() not in (first, second)
 
 
@@ -381,7 +414,7 @@ def test_provenance(fake):
     solver = OpenFoamSolver()
     assert solver.provenance == {
         "openfoam_version": "v1912",
-        "openfoam_build": "OpenFOAM v1912 compiler g++ 12.2.0 sources 0123abcd",
+        "openfoam_build": openfoam_fake.record(fake),
     }
     assert solver.slow
     unknown = replace(solver.installed, build="built by hand")
@@ -410,6 +443,37 @@ def test_what_is_missing_is_named_with_what_to_do(fake, monkeypatch, name):
         read_job("nu308_openfoam", to_run=True)
     assert read_job("nu308_openfoam").solver == "openfoam"
     assert read_job("nu308_openfoam", "reynolds", to_run=True).solver == "reynolds"
+
+
+def test_a_build_for_another_openfoam_is_refused(fake, monkeypatch):
+    openfoam_fake.record(fake, version="1912.200626-1")  # the distribution's words for the same
+    assert installed.missing() == ()
+    monkeypatch.setenv("WM_PROJECT_VERSION", "v2312")
+    (problem,) = installed.missing()
+    assert re.search(r"is built for OpenFOAM 1912.200626-1, found is OpenFOAM v2312; source etc/bashrc of", problem)
+    assert "or build it again with `openfoam_cases/build`" in problem
+    (fake / "bin" / "ehlFoam.build").write_text(f"processor {installed.processor()}\n")
+    assert "without the version of OpenFOAM in its record, found is OpenFOAM v2312" in installed.missing()[0]
+
+
+def test_a_build_on_another_processor_is_refused(fake, tmp_path):
+    openfoam_fake.record(fake, machine="0123456789abcdef")
+    (problem,) = installed.missing()
+    assert f"of another processor (record 0123456789abcdef, here {installed.processor()})" in problem
+    assert "build it again with `openfoam_cases/build`, or set EHDMAPS_OPENFOAM to a folder" in problem
+    (fake / "bin" / "ehlFoam.build").write_text("openfoam v1912\n")
+    assert "(record none, here " in installed.missing()[0]
+    flags = tmp_path / "cpuinfo"
+    flags.write_text("model name : one\nflags : fpu avx\nmodel name : two\nflags : fpu avx\n")
+    assert installed.processor(flags) == hashlib.sha256(b"flags : fpu avx\n").hexdigest()[:16]
+    assert installed.processor(tmp_path / "none") == hashlib.sha256(b"").hexdigest()[:16]
+
+
+def test_the_processor_is_the_one_that_the_build_command_records():
+    script = (Path(__file__).parents[2] / "openfoam_cases" / "build").read_text()
+    function = re.search(r"(?ms)^processor\(\).*?^}$", script)[0]
+    told = subprocess.run(["bash", "-c", f"{function}\nprocessor"], capture_output=True, text=True, check=True)
+    assert told.stdout.strip() == installed.processor()
 
 
 def test_everything_that_is_missing_is_named_at_once(tmp_path, monkeypatch):

@@ -11,8 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ehdmaps.errors import InputError
+from ehdmaps.physics.heat import HeatData, heat_data
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant, LubricantState, OilData, PressureViscosity
 from ehdmaps.physics.pressure_viscosity import Barus, Fva3, Roelands
+from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, VogelViscosity
 
 ROUND_OFF = 1e-12
@@ -270,8 +272,20 @@ def test_problems_of_viscosity_and_coefficient_come_together():
     assert len(caught.value.problems) == 2
 
 
+def test_heat_of_a_contact_comes_from_oil_and_solids():
+    steel = dataclasses.replace(STEEL, conductivity=30.0, heat_capacity=500.0, density=7700.0)
+    oil = Lubricant.barus(
+        viscosity=0.1, pressure_viscosity=2e-8, density=880.0, thermal_conductivity=0.14, heat_capacity=1900.0
+    )
+    assert heat_data(oil, steel) == HeatData(0.14, 1900.0, 30.0, 500.0, 7700.0)
+    with pytest.raises(InputError, match=r"Spirax MA 80W', thermal_conductivity: got none; .* in \[lubricant\]"):
+        heat_data(Lubricant.named("Spirax MA 80W"), steel)
+
+
 def test_conductivity_is_checked():
     oil = Lubricant.named("FVA3")
+    with pytest.raises(InputError, match=r"heat_capacity: got nan J/\(kg K\); allowed: finite and > 0"):
+        dataclasses.replace(oil, heat_capacity=math.nan)
     with pytest.raises(InputError, match=r"thermal_conductivity: got 0.0 W/\(m K\); allowed: finite and > 0"):
         dataclasses.replace(oil, thermal_conductivity=0.0)
 

@@ -44,6 +44,8 @@ def test_reduced_modulus_against_a_rigid_body_is_doubled():
         ((210e9, -1.0), r"poisson_ratio: got -1.0"),
         ((210e9, math.nan), r"poisson_ratio: got nan"),
         ((210e9, 0.3, -1.0), r"density: got -1.0 kg/m3"),
+        ((210e9, 0.3, 7850.0, 0.0), r"conductivity: got 0.0 W/\(m K\); allowed: finite and > 0; steel has 46"),
+        ((210e9, 0.3, 7850.0, 46.0, math.inf), r"heat_capacity: got inf J/\(kg K\)"),
     ],
 )
 def test_impossible_materials_are_refused(values, text):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.generate import available_cores
@@ -26,12 +27,17 @@ _SECONDS_PER_POINT = 1e-4
 
 _SAMPLES = 4
 
+UNSOLVED = " of the job itself, but the point that was tried has no solution"
+
 OFF = 0.2
 """Relative error of the pressure-viscosity for which the change of the film is told."""
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Read the job (its problems are raised), then estimate points, time and memory."""
+    """Read the job (its problems are raised), then estimate points, time and memory.
+
+    The exit status is 1 where a point that a slow solver tries has no solution.
+    """
     import numpy as np
 
     job = read_job(arguments.job, arguments.solver, to_run=True)
@@ -47,8 +53,12 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     extra = (refined.points if refined else 0) + check_points(job.law_check)
     corrected = f", {by.points} for its correction" if by else ""
     cheap = job.points + extra + (by.points if by else 0)
+    estimates = [estimated_time(job, solver, cheap)]
+    if by is not None:
+        estimates.append(estimated_time(job, solvers.build(by.solver, by.options), by.points))
+    solved = all(estimate.solved for estimate in estimates)
     lines = [
-        f"{arguments.job}: no problems",
+        f"{arguments.job}: no problems{'' if solved else UNSOLVED}",
         f"  {job.title}, {job.lubricant.title}, solver {job.solver}, structural law {job.contacts[0].structural_law}",
         *([f"  bearing: {job.bearing.estimated}"] if job.bearing and job.bearing.estimated else []),
         *oil_lines(job),
@@ -57,17 +67,25 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"  {'contact':20s} {len(job.contacts):6d}  {names}",
         *axes,
         f"  points  {job.points} of the map, {extra} for its contact laws{corrected}",
-        f"  time    {estimated_time(job, solver, cheap)}",
-        *([] if by is None else _correction_lines(job, by)),
+        f"  time    {estimates[0].words}",
+        *([] if by is None else _correction_lines(by, estimates[1])),
         f"  memory  about {max(100.0 + cheap * _BYTES_PER_POINT / 1e6, 1.0):.0f} MB",
     ]
-    return "\n".join(lines), 0
+    return "\n".join(lines), 0 if solved else 1
 
 
-def _correction_lines(job: Job, by: CorrectedBy) -> Iterator[str]:
+@dataclass(frozen=True)
+class Estimate:
+    """The time of a run in words, and whether the point that was tried for it has a solution."""
+
+    words: str
+    solved: bool = True
+
+
+def _correction_lines(by: CorrectedBy, estimate: Estimate) -> Iterator[str]:
     """Say what the points of the correcting solver would cost."""
     yield f"  correction by {by.solver}: {by.points} points besides, chosen one after the other"
-    yield f"  time    {estimated_time(job, solvers.build(by.solver, by.options), by.points)}"
+    yield f"  time    {estimate.words}"
 
 
 def oil_lines(job: Job) -> Iterator[str]:
@@ -85,7 +103,7 @@ def oil_lines(job: Job) -> Iterator[str]:
     )
 
 
-def estimated_time(job: Job, solver: ContactSolver, points: int) -> str:
+def estimated_time(job: Job, solver: ContactSolver, points: int) -> Estimate:
     """Estimate the time of a run by solving a few lines of it.
 
     Parameters
@@ -108,10 +126,11 @@ def estimated_time(job: Job, solver: ContactSolver, points: int) -> str:
     per_point = (time.perf_counter() - begin) / sum(task.points for task in sample)
     cores = available_cores()
     seconds = points * (per_point / cores + _SECONDS_PER_POINT)
-    return f"about {seconds:.2g} s on {cores} cores ({per_point * 1e3:.2g} ms a point, from {len(sample)} lines)"
+    words = f"about {seconds:.2g} s on {cores} cores ({per_point * 1e3:.2g} ms a point, from {len(sample)} lines)"
+    return Estimate(words)
 
 
-def _time_of_slow(task: LineTask, points: int) -> str:
+def _time_of_slow(task: LineTask, points: int) -> Estimate:
     """Estimate the time from one point in the middle of the map, which shows that the solver runs, too."""
     begin = time.perf_counter()
     arrays = task.run()
@@ -119,6 +138,6 @@ def _time_of_slow(task: LineTask, points: int) -> str:
     status = Status(int(arrays["status"][0]))
     trial = f"{seconds:.2g} s for one point in the middle of the map: {status.word}"
     if not status.usable:
-        return f"not estimated; {trial}: {arrays['reason'][0]}"
+        return Estimate(f"not estimated; {trial}: {arrays['reason'][0]}", solved=False)
     cores = available_cores()
-    return f"about {points * seconds / cores:.2g} s on {cores} cores ({trial})"
+    return Estimate(f"about {points * seconds / cores:.2g} s on {cores} cores ({trial})")

@@ -34,6 +34,10 @@ Foam::filmMesh::filmMesh
         dimensionedScalar("one", dimless, 1)
     )
 {
+    if (rows < 2)
+    {
+        FatalErrorInFunction << "rows: got " << rows << ", allowed are 2 and more" << exit(FatalError);
+    }
     if (mesh.nCells() != columns*rows || mesh.nPoints() != 2*(columns + 1)*(rows + 1))
     {
         FatalErrorInFunction
@@ -265,9 +269,9 @@ Foam::tmp<Foam::surfaceScalarField> Foam::filmMesh::acrossGradient
         forAll(cells, f)
         {
             const label c = cells[f];
-            gradient.boundaryFieldRef()[patch][f] = patch == upper()
-              ? (wall[f] - field[c])/(film(c/rows_)*(1 - middle(rows_ - 1)))
-              : (field[c] - wall[f])/(film(c/rows_)*middle(0));
+            const bool above = patch == upper();
+            gradient.boundaryFieldRef()[patch][f] = (above ? 1 : -1)
+               *wallGradient(wall[f], field[c], field[second(c, above)])/(film(c/rows_)*share(c % rows_));
         }
     }
     return tgradient;

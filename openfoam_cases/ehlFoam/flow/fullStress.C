@@ -44,6 +44,23 @@ static const dictionary& isothermal(const dictionary& dict)
     return dict;
 }
 
+
+//- dU/dn on a surface [1/s], n out of the film
+static tmp<vectorField> wallGradient(const filmMesh& film, const volVectorField& U, const label patch)
+{
+    const fvPatchVectorField& wall = U.boundaryField()[patch];
+    const labelUList& cells = wall.patch().faceCells();
+    auto tgradient = tmp<vectorField>::New(cells.size());
+    forAll(cells, f)
+    {
+        // a row is twice the distance of a face from the middle of its cell
+        const label second = film.second(cells[f], patch == film.upper());
+        tgradient.ref()[f] =
+            filmMesh::wallGradient(wall[f], U[cells[f]], U[second])*(0.5*wall.patch().deltaCoeffs()[f]);
+    }
+    return tgradient;
+}
+
 } // End namespace Foam
 
 
@@ -124,7 +141,7 @@ Foam::List<Foam::scalarField> Foam::fullStress::residual
             mu_[c] = oil_.viscosity(v);
             rho_[c] = oil_.density(v);
             fraction_[c] = oil_.fraction(v);
-            shape[c] = 0.5*sqr(film_.film(i))*film_.middle(j)*(1 - film_.middle(j));
+            shape[c] = sqr(film_.film(i))*film_.parabola(j);
             shapeAcross[c] = 0.25*sqr(film_.film(i)*film_.share(j));
             if (rate)
             {
@@ -200,11 +217,16 @@ Foam::List<Foam::scalarField> Foam::fullStress::residual
 
     // momentum
     const surfaceScalarField muFace(linear<scalar>(mesh).interpolate(mu_));
+    surfaceVectorField normalGradient(fvc::snGrad(U_));
+    for (const label patch : {film_.lower(), film_.upper()})
+    {
+        normalGradient.boundaryFieldRef()[patch] = wallGradient(film_, U_, patch);
+    }
     volVectorField force
     (
         fvc::surfaceIntegrate
         (
-            muFace*fvc::snGrad(U_)*mesh.magSf()
+            muFace*normalGradient*mesh.magSf()
           + (mesh.Sf() & linear<tensor>(mesh).interpolate(mu_*dev2(T(gradU))))
         )
       - gradient
@@ -223,7 +245,7 @@ Foam::List<Foam::scalarField> Foam::fullStress::residual
         const labelUList& cells = mesh.boundary()[patch].faceCells();
         const scalarField stretch
         (
-            U_.boundaryField()[patch].snGrad() & mesh.boundary()[patch].nf()
+            normalGradient.boundaryField()[patch] & mesh.boundary()[patch].nf()
         );
         forAll(cells, f)
         {

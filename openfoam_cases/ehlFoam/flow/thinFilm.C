@@ -124,7 +124,7 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
             rho_[c] = rho;
             fraction_[c] = fraction;
             u_[c] = speed*state.local[place(i, j, velocity)];
-            shape[c] = 0.5*sqr(film_.film(i))*film_.middle(j)*(1 - film_.middle(j));
+            shape[c] = sqr(film_.film(i))*film_.parabola(j);
             if (rate) densityRate[c] = slope*rate->column[i];
             if (heat_.valid())
             {

@@ -31,13 +31,7 @@ Foam::filmHeat::filmHeat(const dictionary& dict, const filmMesh& film, const lin
     bulk_(positive(dict, "temperature")),
     conductivity_(positive(dict, "oilConductivity")),
     capacity_(positive(dict, "oilHeatCapacity")),
-    effusivity_
-    (
-        Foam::sqrt
-        (
-            positive(dict, "solidConductivity")*positive(dict, "solidHeatCapacity")*positive(dict, "solidDensity")
-        )
-    ),
+    effusivity_(effusivityOf(dict)),
     share_(dict.lookupOrDefault<scalar>("share", 1)),
     fluxUnit_(conductivity_*bulk_/contact.filmUnit()),
     oil_(dict.subDict("isotherms")),
@@ -69,6 +63,15 @@ Foam::filmHeat::filmHeat(const dictionary& dict, const filmMesh& film, const lin
     patch(film.outlet(), along_, [&](const label c) { return c + rows; });
     patch(film.lower(), across_, [&](const label c) { return c/rows*(rows + 1); });
     patch(film.upper(), across_, [&](const label c) { return c/rows*(rows + 1) + rows; });
+}
+
+
+Foam::scalar Foam::filmHeat::effusivityOf(const dictionary& dict)
+{
+    return Foam::sqrt
+    (
+        positive(dict, "solidConductivity")*positive(dict, "solidHeatCapacity")*positive(dict, "solidDensity")
+    );
 }
 
 

@@ -10,8 +10,7 @@
 
 Foam::movingWall::movingWall(const scalarField& face, const scalar speed, const scalar effusivity)
 :
-    perFlux_(Eigen::MatrixXd::Zero(face.size() - 1, face.size() - 1)),
-    perRate_(perFlux_)
+    perFlux_(Eigen::MatrixXd::Zero(face.size() - 1, face.size() - 1))
 {
     const scalar unit = 1/(effusivity*std::sqrt(constant::mathematical::pi*speed));
     for (Eigen::Index i = 0; i < perFlux_.rows(); ++i)
@@ -23,7 +22,6 @@ Foam::movingWall::movingWall(const scalarField& face, const scalar speed, const 
             const scalar length = min(face[j + 1], x) - face[j], root = std::sqrt(far) + std::sqrt(near);
             // differences of roots, without their cancellation far away
             perFlux_(i, j) = unit*2*length/root;
-            perRate_(i, j) = unit/speed*scalar(2)/3*length*(far + near + std::sqrt(far*near))/root;
         }
     }
 }

@@ -88,6 +88,7 @@ Foam::List<Foam::filmResponse> Foam::response
         rate.column /= halfWidthTime;
         rate.offset /= halfWidthTime;
         rate.shift /= halfWidthTime;
+        rate.wall /= halfWidthTime;
         return packed
         (
             linear.solve

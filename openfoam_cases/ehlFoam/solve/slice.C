@@ -93,14 +93,19 @@ Eigen::VectorXd Foam::slice::wallDefect(const unknowns& u, const unknowns* rate)
         const Eigen::VectorXd flux = wallFlux(u.local, side);
         defect.segment(side*n, n) = u.wall.segment(side*n, n) - wallUnit_*(wall_[side].perFlux()*flux);
         if (!rate) continue;
-        // rate of the flux at a place that stands, on a mesh that moves
-        Eigen::VectorXd fluxRate = wallFlux(rate->local, side);
-        for (label i = 1; i + 1 < n; ++i)
+        // what the wall remembers, of its temperature at places that stand, on a mesh that moves
+        const scalar speed = side ? contact_.upperSpeed : contact_.lowerSpeed;
+        auto wall = [&](const label i) { return u.wall[side*n + min(max(i, 0), n - 1)]; };
+        scalar remembered = 0;
+        for (label i = 0; i < n; ++i)
         {
+            const scalar length = x_[i + 1] - x_[i];
             const scalar meshSpeed = 0.5*rate->shift*(faceShift_[i] + faceShift_[i + 1]);
-            fluxRate[i] -= meshSpeed*2*(flux[i + 1] - flux[i - 1])/(x_[i + 2] + x_[i + 1] - x_[i] - x_[i - 1]);
+            const scalar apart = 0.5*(x_[min(i + 2, n)] + x_[i + 1] - x_[i] - x_[max(i - 1, 0)]);
+            const scalar wallRate = rate->wall[side*n + i] - meshSpeed*(wall(i + 1) - wall(i - 1))/apart;
+            defect[side*n + i] += (remembered + 0.5*length*wallRate)/(2*speed);
+            remembered += length*wallRate;
         }
-        defect.segment(side*n, n) += wallUnit_*(wall_[side].perRate()*fluxRate);
     }
     return defect;
 }

@@ -79,7 +79,7 @@ Foam::scalarField Foam::startPressure(const dictionary& dict, const lineContact&
         pressure = interpolateXY(middle, places, values);
         forAll(middle, i)
         {
-            if (middle[i] > places.last()) pressure[i] = 0;
+            if (middle[i] > places.last()) pressure[i] = min(values.last(), scalar(0));
         }
     }
     else
@@ -87,11 +87,12 @@ Foam::scalarField Foam::startPressure(const dictionary& dict, const lineContact&
         const scalar H = dict.subDict("mesh").get<scalar>("film");
         forAll(middle, i) pressure[i] = roundedHertz(middle[i]/contact.halfWidth, H);
     }
-    // upstream the film is full, and a column at rest would not know it
+    // upstream the film is full, and a column at rest would not know it; behind
+    // the exit a pressure below zero says how much of the film is oil
     const scalar least = trace*max(pressure);
     forAll(middle, i)
     {
-        pressure[i] = max(pressure[i], middle[i] < 0 ? least : scalar(0));
+        if (middle[i] < 0) pressure[i] = max(pressure[i], least);
     }
     return pressure*contact.load/sum(pressure*length);
 }

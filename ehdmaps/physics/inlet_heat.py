@@ -1,0 +1,222 @@
+"""Heat in the inlet as a layer over isothermal films: `physics = "inlet-heat"`.
+
+The oil that turns back in the inlet shears itself warm, and what enters the contact is thinner. Laid over an isothermal
+film that is a factor phi of the film, with three rules:
+
+- film offset, central and smallest film, flow and rolling force times phi,
+- film compliance as it is: a higher load heats its inlet more, so that dh/dw hardly falls with h,
+- loss compliance times phi^n, n = 1 + M^2/(1 + M^2): 1 below the damping valley and 2 above it.
+
+    phi = 1/(1 + 0.236 QL^0.72 M/(M + 0.25)),    QL = -(d eta0/dT) u^2/k_f
+
+with Moes' M of the isothermal contact. Factors from the literature are for loaded contacts: that of Wilson and Sheu,
+1/(1 + 0.241 QL^0.64), is this one at high M, and 5 to 12 % too low below M = 0.5. A solve with temperatures
+(`physics = "thermal"`) has none of these limits.
+
+References
+----------
+W. R. D. Wilson, S. Sheu, Effect of inlet shear heating due to sliding on elastohydrodynamic film thickness, Journal of
+Lubrication Technology 105, 1983, 187-188.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.heat import heat_data
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.moes import moes_groups, valley_load_number
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solution import FilmSolution, FilmSpectrum, Status, no_spectrum
+from ehdmaps.physics.thermal import thermal_loading, viscosity_slope
+
+LARGEST_LOADING = 3.0
+"""QL above which no factor is given."""
+
+LIGHT = 0.2
+"""M below which none is given for loadings above `LIGHT_LOADING`: the inlet turns back so much oil there that
+convection along the film counts."""
+
+LIGHT_LOADING = 0.5
+
+VALLEY = 0.35
+"""Distance from the bottom of the damping valley, in ln M, within which film compliance and loss pass through zero or
+nearly so, and no factor of theirs is right."""
+
+VALLEY_OIL_NUMBER = 14.0
+"""L above which the valley is that deep."""
+
+UNNOTICED = 0.99
+"""Factor above which nothing is refused: films change by less than what the rule is wrong by elsewhere."""
+
+
+@dataclass(frozen=True)
+class InletHeat:
+    """What heat in the inlet makes of one isothermal film.
+
+    Attributes
+    ----------
+    factor : float
+        Factor phi of the film; 1 without heat.
+    refused : str
+        Why the rule does not hold there; empty where it does.
+    exponent : float
+        n: the loss compliance goes with phi^n.
+    film_error, loss_error : float
+        How far film, and film compliance and loss compliance, may be from those of a film with temperatures, relative:
+        bounds of the rule itself, beside the numerical errors of the isothermal film.
+    """
+
+    factor: float
+    refused: str
+    exponent: float
+    film_error: float
+    loss_error: float
+
+    @property
+    def note(self) -> str:
+        """What is said of a film; nothing where heat changes it by less than a per cent."""
+        if self.factor > UNNOTICED:
+            return ""
+        return (
+            f"inlet heat by a formula: film x {self.factor:.3f} within {100.0 * self.film_error:.1f} %, loss x "
+            f"{self.factor**self.exponent:.3f} and film compliance x 1 within {100.0 * self.loss_error:.0f} %"
+        )
+
+
+def inlet_heat_factor(load_number: float, loading: float) -> float:
+    """Factor phi of the film.
+
+    Parameters
+    ----------
+    load_number : float
+        Moes' M of the isothermal contact, > 0.
+    loading : float
+        QL, see `ehdmaps.physics.thermal.thermal_loading`, >= 0.
+
+    Notes
+    -----
+    A fit to films with temperatures, FVA 3 between steel, nu308: see `ehdmaps/REFERENCE.md` for what it is worth on
+    contacts that it was not made for.
+
+    Examples
+    --------
+    >>> round(inlet_heat_factor(20.0, 0.5), 3)
+    0.876
+    """
+    heating: float = 0.236 * loading**0.72 * load_number / (load_number + 0.25)
+    return 1.0 / (1.0 + heating)
+
+
+def inlet_heat(contact: LineContact, lubricant: Lubricant, point: OperatingPoint) -> InletHeat:
+    """What heat in the inlet makes of the isothermal film of a point.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    lubricant : Lubricant
+        The oil; its conductivity has to be known.
+    point : OperatingPoint
+        Load, speed and temperature.
+
+    Raises
+    ------
+    InputError
+        Without the conductivity of the oil.
+    """
+    conductivity = heat_data(lubricant, contact.material).oil_conductivity
+    if point.entrainment_speed == 0.0:
+        return InletHeat(1.0, "", 1.0, 0.0, 0.0)
+    state = lubricant.at(point.temperature)
+    loading = thermal_loading(viscosity_slope(lubricant, point.temperature), point.entrainment_speed, conductivity)
+    alpha = state.pressure_viscosity.pressure_viscosity
+    M, L = moes_groups(
+        point.load, point.entrainment_speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus
+    )
+    M, factor = float(M), inlet_heat_factor(float(M), loading)
+    zeta = math.log(M / float(valley_load_number(L)))
+    square = M * M
+    share = 0.6 if abs(zeta) > 1.0 else 2.0
+    return InletHeat(
+        factor=factor,
+        refused=_refused(M, L, zeta, loading, factor),
+        exponent=1.0 + square / (1.0 + square),
+        film_error=0.4 * (1.0 - factor),
+        loss_error=share * (1.0 - factor),
+    )
+
+
+def _refused(M: float, L: float, zeta: float, loading: float, factor: float) -> str:
+    """Why the rule does not hold; empty where it does."""
+    instead = "solve with physics thermal"
+    if loading > LARGEST_LOADING:
+        return f"inlet heat: loading QL = {loading:.3g} above {LARGEST_LOADING:g}, where no factor is known; {instead}"
+    if factor > UNNOTICED:
+        return ""
+    if M < LIGHT and loading > LIGHT_LOADING:
+        return (
+            f"inlet heat: M = {M:.3g} below {LIGHT:g} at a loading QL = {loading:.3g} above {LIGHT_LOADING:g}, where "
+            f"no factor is known; {instead}"
+        )
+    if abs(zeta) < VALLEY and L > VALLEY_OIL_NUMBER:
+        return (
+            f"inlet heat: M = {M:.3g} is {abs(zeta):.2f} in ln M from the bottom of the damping valley, below "
+            f"{VALLEY:g} at L = {L:.3g} above {VALLEY_OIL_NUMBER:g}, where no factor holds; {instead}"
+        )
+    return ""
+
+
+def heated(film: FilmSolution, heat: InletHeat) -> FilmSolution:
+    """An isothermal film with heat in its inlet.
+
+    Parameters
+    ----------
+    film : FilmSolution
+        The isothermal film; one that is not usable stays what it is.
+    heat : InletHeat
+        The heat of the same point.
+    """
+    if not film.status.usable:
+        return film
+    if heat.refused:
+        return FilmSolution(
+            Status.OUTSIDE_VALIDITY, heat.refused, iterations=film.iterations, solve_seconds=film.solve_seconds
+        )
+    thinner = ("film_offset", "central_film", "minimum_film", "rolling_force", "mass_flow")
+    return replace(
+        film,
+        reason="; ".join(filter(None, (film.reason, heat.note))),
+        loss_compliance=film.loss_compliance * heat.factor**heat.exponent,
+        **{name: getattr(film, name) * heat.factor for name in thinner},
+    )
+
+
+def heated_spectrum(spectrum: FilmSpectrum, heat: InletHeat) -> FilmSpectrum:
+    """An isothermal film over frequency with heat in its inlet: the imaginary part goes as the loss compliance.
+
+    Parameters
+    ----------
+    spectrum : FilmSpectrum
+        The isothermal film over frequency.
+    heat : InletHeat
+        The heat of the same point.
+
+    Notes
+    -----
+    Known in the limit of slow motion only; at high frequencies an assumption.
+    """
+    film = heated(spectrum.film, heat)
+    if not film.status.usable:
+        return no_spectrum(film, spectrum.frequencies)
+    lost = heat.factor**heat.exponent
+    return replace(
+        spectrum,
+        film=film,
+        compliance=np.asarray(spectrum.compliance.real + 1j * lost * spectrum.compliance.imag),
+        errors=np.asarray(spectrum.errors.real + 1j * lost * spectrum.errors.imag),
+    )
