@@ -106,7 +106,7 @@ def test_a_couette_film_between_walls_that_stay_cold(nahme: float, tmp_path: Pat
     root = math.sqrt(nahme / 8.0)
     turn = math.asinh(root)
     expected = np.log((1.0 + nahme / 8.0) / np.cosh(turn * (2.0 * height - 1.0)) ** 2) / warming
-    # the even part of temperatures and the odd one of velocities: pressure has a gradient in the column, if a small one;
+    # the even part of temperatures and the odd one of velocities: the pressure has a small gradient in the column;
     # second order in the rows
     even = 0.5 * (temperature + temperature[::-1]) - cold.temperature
     np.testing.assert_allclose(even, expected, atol=2e-3 * expected.max())
