@@ -97,8 +97,7 @@ def read_fields(case: Path) -> FilmFields:
         If a file is missing, not ascii, or has other than the expected numbers.
     """
     mesh, last = case / "constant" / "polyMesh", case / TIME
-    moved = last / "polyMesh" / "points"
-    points = _list(moved if moved.exists() else mesh / "points", 3)
+    points = _list(mesh / "points", 3)
     owner = _list(mesh / "owner", 1).astype(np.int64)
     faces = _list(mesh / "faces", 5).astype(np.int64)
     cells = int(owner.max()) + 1

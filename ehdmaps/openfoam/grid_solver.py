@@ -6,6 +6,8 @@ import shutil
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from ehdmaps.errors import SolverError
 from ehdmaps.openfoam.case import working_case
 from ehdmaps.openfoam.fields import FilmFields, read_fields
@@ -32,12 +34,19 @@ class GridSolution:
     results: Results
     film: FilmTable
     fields: FilmFields | None
+    cavitation_range: float
     note: str = ""
 
     @property
     def start(self) -> Start:
-        """What another grid starts from."""
-        return Start(self.film.x, self.film.pressure, self.results.central_film)
+        """What another grid starts from.
+
+        The mixture behind the film's rupture is told by a pressure below zero. With all stresses what loads the
+        surfaces there is another one, of the oil that is drawn apart.
+        """
+        mixture = -self.cavitation_range * (1.0 - self.film.liquid_fraction)
+        pressure = np.where(self.film.liquid_fraction < 1.0, mixture, self.film.pressure)
+        return Start(self.film.x, pressure, self.results.central_film)
 
 
 @dataclass(frozen=True)
@@ -139,7 +148,6 @@ class GridSolver:
         folder = f"{name}_{parameters.columns}x{parameters.rows}"
         environment = self.installed.full_environment()
         with working_case(self.installed.template, text, folder, kept) as case:
-            run(self.installed.block_mesh, case, environment, end)
             log = run(self.installed.solver, case, environment, end)
             try:
                 results = read_results(case)
@@ -148,9 +156,9 @@ class GridSolver:
                         f"{case / 'results'}: got responses at {results.frequencies} Hz; allowed: as asked"
                     )
                 if results.status is Status.CONVERGED:
-                    return GridSolution(
-                        results, read_film(case, parameters.columns), read_fields(case) if with_fields else None
-                    )
+                    film = read_film(case, parameters.columns)
+                    fields = read_fields(case) if with_fields else None
+                    return GridSolution(results, film, fields, parameters.cavitation_range)
             except SolverError as error:
                 raise RunError(f"{error}; {log_tail(log)}") from error
             message = f"ehlFoam {results.status.word}: {results.reason}; {log_tail(log)}"

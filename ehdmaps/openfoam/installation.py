@@ -47,8 +47,8 @@ class Installation:
 
     Attributes
     ----------
-    solver, block_mesh : Path
-        The programs.
+    solver : Path
+        The program.
     template : Path
         The case that is copied.
     build : str
@@ -60,7 +60,6 @@ class Installation:
     """
 
     solver: Path
-    block_mesh: Path
     template: Path
     build: str
     template_hash: str
@@ -98,19 +97,14 @@ def installation(environment: Mapping[str, str] | None = None) -> Installation:
     known = os.environ if environment is None else environment
     folder = build_folder(known)
     solver, record = folder / "bin" / "ehlFoam", folder / "bin" / "ehlFoam.build"
-    block_mesh = shutil.which("blockMesh", path=known.get("PATH"))
     template = next((cases / _CASE for cases in (folder, _CLONE, _SHARED) if (cases / _CASE / "system").is_dir()), None)
     extra = () if "WM_PROJECT_DIR" in known else tuple(DEBIAN_ENVIRONMENT.items())
     build = ""
     problems = list(lacking("openfoam", "PyFoam", "the solver 'openfoam'"))
-    if block_mesh is None:
+    if extra and not DEBIAN.is_dir():
         problems.append(
-            "OpenFOAM: blockMesh is not in PATH; the solver 'openfoam' needs OpenFOAM v1912; "
-            "install the package openfoam, or source etc/bashrc of an installation"
-        )
-    elif extra and not DEBIAN.is_dir():
-        problems.append(
-            f"OpenFOAM: WM_PROJECT_DIR is not set and there is no {DEBIAN}; source etc/bashrc of the installation"
+            f"OpenFOAM: WM_PROJECT_DIR is not set and there is no {DEBIAN}; the solver 'openfoam' needs "
+            "OpenFOAM v1912; install the package openfoam, or source etc/bashrc of an installation"
         )
     if shutil.which("setpriv", path=known.get("PATH")) is None:
         problems.append("setpriv is not in PATH; install the package util-linux")
@@ -134,11 +128,10 @@ def installation(environment: Mapping[str, str] | None = None) -> Installation:
             f"the folder for temporary files: got {tempfile.gettempdir()!r}; OpenFOAM takes no spaces or quotes in it; "
             "set TMPDIR to another folder"
         )
-    if problems or block_mesh is None or template is None:
+    if problems or template is None:
         raise InputError(problems)
     return Installation(
         solver=solver,
-        block_mesh=Path(block_mesh),
         template=template,
         build=build,
         template_hash=_hash(template),

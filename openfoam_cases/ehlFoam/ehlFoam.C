@@ -50,6 +50,19 @@ scalarField askedFrequencies(const dictionary& dict)
 }
 
 
+//- A number of cells of at least so many
+label numberOf(const dictionary& dict, const word& cells, const label least)
+{
+    const label number = dict.get<label>(cells);
+    if (number < least)
+    {
+        FatalIOErrorInFunction(dict)
+            << cells << ": got " << number << ", allowed are " << least << " and more" << exit(FatalIOError);
+    }
+    return number;
+}
+
+
 int main(int argc, char* argv[])
 {
     argList::addNote("Elastohydrodynamic line contact, film-resolved");
@@ -76,18 +89,14 @@ int main(int argc, char* argv[])
         writeWalls(dict, contact, args["walls"], runTime.path()/"walls.dat");
         return 0;
     }
-    const label columns = dict.get<label>("columns"), rows = dict.get<label>("rows");
+    const label columns = numberOf(dict, "columns", 10), rows = numberOf(dict, "rows", 2);
     const newtonControls controls{positive(dict, "tolerance"), dict.get<label>("maxIterations")};
     const dictionary& meshDict = dict.subDict("mesh");
     const scalarField x(contact.halfWidth*columnLayout(meshDict).faces(columns));
     const scalarField frequencies(askedFrequencies(dict));
     const scalar filmScale = positive(meshDict, "film")*contact.filmUnit();
-    fvMesh mesh
-    (
-        IOobject(fvMesh::defaultRegion, runTime.timeName(), runTime, IOobject::MUST_READ)
-    );
-    refuseUnread(runTime, mesh);
-    filmMesh film(mesh, columns, rows, dict.lookupOrDefault<scalar>("lowerShare", 0.5));
+    filmMesh film(runTime, columns, rows, dict.lookupOrDefault<scalar>("lowerShare", 0.5));
+    refuseUnread(runTime, film.mesh());
     Info<< "b " << contact.halfWidth << " m, p_H " << contact.pressure << " Pa, film expected "
         << filmScale << " m, " << columns << " x " << rows << " cells" << nl << endl;
 
@@ -105,8 +114,7 @@ int main(int argc, char* argv[])
     if (dict.lookupOrDefault<bool>("writeFields", true))
     {
         runTime.setTime(1, 1);
-        mesh.setInstance(runTime.timeName());
-        mesh.write();
+        film.write();
         s.flow().write();
     }
 

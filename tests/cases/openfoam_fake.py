@@ -142,10 +142,9 @@ def build(folder: Path, mode: str = "good") -> dict[str, str]:
     """Make a fake build and a fake OpenFOAM in a folder; the environment that finds them."""
     programs = folder / "bin"
     programs.mkdir(parents=True, exist_ok=True)
-    for name, text in (("ehlFoam", PROGRAM), ("blockMesh", "print('fake blockMesh')\n")):
-        path = programs / name
-        path.write_text(f"#!{sys.executable} -ES\n{text}")
-        path.chmod(path.stat().st_mode | stat.S_IXUSR)
+    path = programs / "ehlFoam"
+    path.write_text(f"#!{sys.executable} -ES\n{PROGRAM}")
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
     record(folder)
     case = folder / "lineContact"
     for part in ("system", "0", "constant"):

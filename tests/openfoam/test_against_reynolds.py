@@ -1,9 +1,9 @@
 """The CFD of the film against the Reynolds equation: two discretisations of one contact, each its own.
 
-Bars, on 400 x 6 cells: films 0.1 % (0.2 % with all stresses), film compliance 5 % or 0.2 % of the whole contact's, c 3 %. They bound the grid
-error of the CFD along the film; the film compliance is a small difference where the load is high, and c inherits twice
-its error. The thin-film flow and the Reynolds equation are the same equation, so nothing else is left; with all
-stresses, what is neglected is below 0.2 % at these points.
+Bars, on 400 x 6 cells: films 0.1 % (0.2 % with all stresses), film compliance 5 % or 0.2 % of the whole contact's,
+c 3 %. They bound the grid error of the CFD along the film; the film compliance is a small difference where the load is
+high, and c inherits twice its error. The thin-film flow and the Reynolds equation are the same equation, so nothing
+else is left; with all stresses, what is neglected is below 0.2 % at these points.
 """
 
 import pytest

@@ -31,6 +31,22 @@ application simpleFoam; startFrom startTime; startTime 0; stopAt endTime; endTim
 writeControl timeStep; writeInterval 3000; writeFormat ascii; writePrecision 14; timePrecision 8;
 """
 
+BLOCK = f"""
+scale 1;
+vertices ((0 0 0) (0 1 0) (0 1 1) (0 0 1) (1 0 0) (1 1 0) (1 1 1) (1 0 1));
+blocks (hex (0 1 2 3 4 5 6 7) ({ROWS} 1 COLUMNS) simpleGrading (1 1 1));
+edges (); mergePatchPairs ();
+boundary
+(
+    inlet {{ type patch; faces ((0 1 2 3)); }}
+    outlet {{ type patch; faces ((4 5 6 7)); }}
+    lower {{ type wall; faces ((0 4 7 3)); }}
+    upper {{ type wall; faces ((1 5 6 2)); }}
+    frontAndBack {{ type empty; faces ((0 1 5 4) (3 2 6 7)); }}
+);
+"""
+"""A block that ehlFoam's own is numbered like."""
+
 SCHEMES = """
 ddtSchemes { default steadyState; }
 gradSchemes { default Gauss linear; }
@@ -72,9 +88,9 @@ def _vectors(values: FloatArray) -> str:
 def _mesh(case: Path, solved: Path, columns: int, installed: Installation) -> FloatArray:
     """The first columns of a solved mesh; returns its points, shape (columns + 1, 2, rows + 1, 3)."""
     shutil.copytree(installed.template / "system", case / "system")
-    _write(case, "constant/ehlProperties", "dictionary", f"columns {columns}; rows {ROWS};")
-    assert openfoam_runs.program(installed, installed.block_mesh, case).returncode == 0
-    points = _numbers(solved / "1" / "polyMesh" / "points", 3).reshape(-1, 2, ROWS + 1, 3)[: columns + 1]
+    _write(case, "system/blockMeshDict", "dictionary", BLOCK.replace("COLUMNS", str(columns)))
+    assert openfoam_runs.program(installed, "blockMesh", case).returncode == 0
+    points = _numbers(solved / "constant" / "polyMesh" / "points", 3).reshape(-1, 2, ROWS + 1, 3)[: columns + 1]
     _write(case, "constant/polyMesh/points", "vectorField", f"{points.size // 3}\n{_vectors(points.reshape(-1, 3))}")
     return points
 
@@ -136,7 +152,7 @@ def _differences(folder: Path, columns: int) -> tuple[float, float, float]:
         " lower { type zeroGradient; } upper { type zeroGradient; } frontAndBack { type empty; } }",
     )
     # simpleFoam takes the gradient at a wall from the cell beside it, and pressure drives 1 + 2/rows^2 of the flux of a
-    # parabola: 3/2 at the walls, 1/2 of the midpoint rule. An oil more viscous by that gives it the flux of the parabola.
+    # parabola: 3/2 at the walls, 1/2 of the midpoint rule. An oil more viscous by that gives it the parabola's flux.
     nu = viscosity / density * (1.0 + 2.0 / ROWS**2)
     oil = f"transportModel Newtonian; nu [0 2 -1 0 0] {nu:.15g};"
     _write(case, "constant/transportProperties", "dictionary", oil)

@@ -181,23 +181,6 @@ def test_a_velocity_profile(case):
     np.testing.assert_allclose(velocity, 0.5 + height)
 
 
-def test_a_moved_mesh_has_its_points_beside_the_fields(case):
-    points = (case / "constant" / "polyMesh" / "points").read_text()
-    (case / "1" / "polyMesh").mkdir()
-    (case / "1" / "polyMesh" / "points").write_text(points.replace("0.001)", "0.002)").replace("(", "("))
-    moved = case / "1" / "polyMesh" / "points"
-    before = read_fields(case).points
-    lines = [line.split() for line in moved.read_text().splitlines()]
-    shifted = [
-        " ".join(["(1.0", *line[1:]]) if len(line) == 3 and line[0].startswith("(") else " ".join(line)
-        for line in lines
-    ]
-    moved.write_text("\n".join(shifted))
-    after = read_fields(case).points
-    assert (after[:, 0] == 1.0).all()
-    assert not (before[:, 0] == 1.0).any()
-
-
 @pytest.mark.parametrize(
     ("name", "old", "new", "message"),
     [

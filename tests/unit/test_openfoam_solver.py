@@ -424,7 +424,6 @@ def test_provenance(fake):
 MISSING = {
     "ehlFoam": r"there is no program .*bin/ehlFoam; build it with `openfoam_cases/build`",
     "ehlFoam.build": r"there is no record .*ehlFoam.build of its build; build it again with `openfoam_cases/build`",
-    "blockMesh": "blockMesh is not in PATH; .*install the package openfoam, or source etc/bashrc",
 }
 
 
@@ -437,7 +436,7 @@ def test_what_is_missing_is_named_with_what_to_do(fake, monkeypatch, name):
     setpriv.chmod(0o755)
     (problem,) = installed.missing()
     assert re.search(MISSING[name], problem)
-    with pytest.raises(InputError, match="solver 'openfoam': " + ("OpenFOAM" if name == "blockMesh" else "ehlFoam")):
+    with pytest.raises(InputError, match="solver 'openfoam': ehlFoam"):
         solvers.build("openfoam", {})
     with pytest.raises(InputError, match=r"\[solver\] name: got 'openfoam', which needs more than is here: "):
         read_job("nu308_openfoam", to_run=True)
@@ -486,14 +485,13 @@ def test_everything_that_is_missing_is_named_at_once(tmp_path, monkeypatch):
     found = "\n".join(raised.value.problems)
     for part in (
         "the solver 'openfoam': the package PyFoam cannot be loaded",
-        "OpenFOAM: blockMesh is not in PATH",
         "setpriv is not in PATH; install the package util-linux",
         "ehlFoam: there is no program",
         "case lineContact: is in none of",
         "the folder for temporary files: got '/tmp/with space'; OpenFOAM takes no spaces",
     ):
         assert part in found
-    assert len(raised.value.problems) == 6
+    assert len(raised.value.problems) == 5
 
 
 def test_openfoam_without_its_environment(fake, tmp_path, monkeypatch):
@@ -501,7 +499,9 @@ def test_openfoam_without_its_environment(fake, tmp_path, monkeypatch):
     monkeypatch.setattr(installed, "DEBIAN", tmp_path)
     assert dict(installed.installation(known).environment) == installed.DEBIAN_ENVIRONMENT
     monkeypatch.setattr(installed, "DEBIAN", tmp_path / "none")
-    with pytest.raises(InputError, match=r"WM_PROJECT_DIR is not set .*; source etc/bashrc of the installation"):
+    with pytest.raises(
+        InputError, match=r"WM_PROJECT_DIR is not set .*; install the package openfoam, or source etc/bashrc"
+    ):
         installed.installation(known)
 
 

@@ -245,10 +245,10 @@ def test_the_table_of_contestants():
 
 
 def test_missing_openfoam_is_said(monkeypatch):
-    monkeypatch.setattr(installation, "missing", lambda: ("blockMesh is not in PATH",))
+    monkeypatch.setattr(installation, "missing", lambda: ("setpriv is not in PATH",))
     monkeypatch.setattr("ehdmaps.jobs.tradeoff.contestants", lambda job, openfoam: _nothing_but_formulas(openfoam))
     frame = measure(JOB, 2, 1, 3).frame
-    assert "openfoam: left out; blockMesh is not in PATH" in frame
+    assert "openfoam: left out; setpriv is not in PATH" in frame
     assert "openfoam: left out, as asked" in measure(JOB, 2, 1, 0).frame
 
 

@@ -10,51 +10,44 @@
 #include "fixedValueFvPatchFields.H"
 #include "emptyFvPatchFields.H"
 
+namespace Foam
+{
+
+//- What is stored of a mesh may be changed: its points move in closed form
+template<class Type>
+static Type& stored(const Type& value)
+{
+    return const_cast<Type&>(value);
+}
+
+} // End namespace Foam
+
+
 Foam::filmMesh::filmMesh
 (
-    fvMesh& mesh,
+    const Time& runTime,
     const label columns,
     const label rows,
     const scalar lowerShare
 )
 :
-    mesh_(mesh),
+    block_(columnBlock(runTime, columns, rows)),
+    mesh_(*block_),
     columns_(columns),
     rows_(rows),
     lowerShare_(lowerShare),
     level_(rows + 1),
     x_(columns + 1, Zero),
     h_(columns + 1, Zero),
-    columnFace_(mesh.nInternalFaces(), -1),
-    faceRow_(mesh.nInternalFaces(), -1),
+    columnFace_(mesh_.nInternalFaces(), -1),
+    faceRow_(mesh_.nInternalFaces(), -1),
     acrossFilm
     (
-        IOobject("acrossFilm", mesh.time().timeName(), mesh, IOobject::NO_READ, IOobject::NO_WRITE),
-        mesh,
+        IOobject("acrossFilm", runTime.timeName(), mesh_, IOobject::NO_READ, IOobject::NO_WRITE),
+        mesh_,
         dimensionedScalar("one", dimless, 1)
     )
 {
-    if (rows < 2)
-    {
-        FatalErrorInFunction << "rows: got " << rows << ", allowed are 2 and more" << exit(FatalError);
-    }
-    if (mesh.nCells() != columns*rows || mesh.nPoints() != 2*(columns + 1)*(rows + 1))
-    {
-        FatalErrorInFunction
-            << "the mesh has " << mesh.nCells() << " cells and " << mesh.nPoints()
-            << " points, not those of " << columns << " columns of " << rows
-            << " cells; run blockMesh with the same columns and rows" << exit(FatalError);
-    }
-    for (const word patch : {"inlet", "outlet", "lower", "upper"})
-    {
-        if (mesh.boundaryMesh().findPatchID(patch) < 0)
-        {
-            FatalErrorInFunction << "the mesh has no patch " << patch << exit(FatalError);
-        }
-    }
-
-    const scalarField z(mesh.points().component(vector::Z));
-    depth = max(z) - min(z);
     forAll(level_, j)
     {
         level_[j] = scalar(j)/rows;
@@ -62,7 +55,7 @@ Foam::filmMesh::filmMesh
 
     forAll(columnFace_, face)
     {
-        const label owner = mesh.owner()[face], neighbour = mesh.neighbour()[face];
+        const label owner = mesh_.owner()[face], neighbour = mesh_.neighbour()[face];
         if (owner/rows != neighbour/rows)
         {
             columnFace_[face] = neighbour/rows;
@@ -83,19 +76,87 @@ void Foam::filmMesh::move(const scalarField& x, const scalarField& h)
     }
     x_ = x;
     h_ = h;
-    pointField points(mesh_.nPoints());
-    label point = 0;
+
+    // Columns are trapeziums: their geometry in closed form. movePoints would
+    // find it by the faces, and the volumes that faces sweep, which nobody reads
+    pointField& points = stored(mesh_.points());
+    vectorField& areas = stored(mesh_.faceAreas());
+    vectorField& faceCentres = stored(mesh_.faceCentres());
+    vectorField& centres = stored(mesh_.cellCentres());
+    scalarField& volumes = stored(mesh_.cellVolumes());
+    const scalar middleZ = 0.5*depth;
+    auto put = [&](const label face, const vector& centre, const vector& area)
+    {
+        faceCentres[face] = centre;
+        areas[face] = area;
+    };
     forAll(x, k)
     {
-        for (label side = 0; side < 2; ++side)
+        forAll(level_, j)
         {
-            forAll(level_, j)
-            {
-                points[point++] = vector(x[k], (level_[j] - lowerShare_)*h[k], side*depth);
-            }
+            const scalar y = (level_[j] - lowerShare_)*h[k];
+            points[columnBlockPoint(rows_, k, 0, j)] = vector(x[k], y, 0);
+            points[columnBlockPoint(rows_, k, 1, j)] = vector(x[k], y, depth);
         }
     }
-    mesh_.movePoints(points);
+    auto columnFace = [&](const label face, const label k, const label j, const scalar side)
+    {
+        put
+        (
+            face,
+            vector(x[k], (middle(j) - lowerShare_)*h[k], middleZ),
+            vector(side*share(j)*h[k]*depth, 0, 0)
+        );
+    };
+    auto rowFace = [&](const label face, const label i, const label j, const scalar side)
+    {
+        const scalar level = level_[j] - lowerShare_;
+        put
+        (
+            face,
+            vector(0.5*(x[i] + x[i + 1]), level*film(i), middleZ),
+            side*depth*vector(-level*(h[i + 1] - h[i]), length(i), 0)
+        );
+    };
+    forAll(columnFace_, face)
+    {
+        const label cell = mesh_.owner()[face];
+        if (columnFace_[face] >= 0) columnFace(face, columnFace_[face], faceRow_[face], 1);
+        else rowFace(face, cell/rows_, cell % rows_ + 1, 1);
+    }
+    const polyBoundaryMesh& patches = mesh_.boundaryMesh();
+    for (label j = 0; j < rows_; ++j)
+    {
+        columnFace(patches[inlet()].start() + j, 0, j, -1);
+        columnFace(patches[outlet()].start() + j, columns_, j, 1);
+    }
+    const label flat = patches.findPatchID("frontAndBack");
+    for (label i = 0; i < columns_; ++i)
+    {
+        rowFace(patches[lower()].start() + i, i, 0, -1);
+        rowFace(patches[upper()].start() + i, i, rows_, 1);
+        const scalar a = h[i], b = h[i + 1];
+        const scalar along = x[i] + length(i)*(a + 2*b)/(3*(a + b));
+        const scalar across = 2*(sqr(a) + a*b + sqr(b))/(3*(a + b));
+        for (label j = 0; j < rows_; ++j)
+        {
+            const label c = cell(i, j);
+            const scalar area = share(j)*film(i)*length(i);
+            centres[c] = vector(along, (middle(j) - lowerShare_)*across, middleZ);
+            volumes[c] = area*depth;
+            const label front = patches[flat].start() + c;
+            put(front, vector(centres[c].x(), centres[c].y(), 0), vector(0, 0, -area));
+            put(front + mesh_.nCells(), vector(centres[c].x(), centres[c].y(), depth), vector(0, 0, area));
+        }
+    }
+    stored(mesh_.magSf()) = mag(mesh_.Sf());
+    mesh_.surfaceInterpolation::movePoints();
+}
+
+
+void Foam::filmMesh::write() const
+{
+    mesh_.polyMesh::write();
 }
 
 

@@ -39,7 +39,7 @@ void Foam::blockTridiagonal::factorise()
 }
 
 
-void Foam::blockTridiagonal::solve(Eigen::MatrixXd& right) const
+void Foam::blockTridiagonal::solve(rightSides& right) const
 {
     const Eigen::Index count = factor_.size();
     for (Eigen::Index i = 0; i < count; ++i)

@@ -35,7 +35,7 @@ Foam::linearisation::linearisation
     inner_((s.columns() + group - 1)/group, group*s.flow().blockSize()),
     outer_
     (
-        Eigen::MatrixXd::Zero
+        blockTridiagonal::rightSides::Zero
         (
             (s.columns() + group - 1)/group*group*s.flow().blockSize(),
             s.columns() + 1 + (isobar >= 0) + s.wallSize()
@@ -217,6 +217,8 @@ void Foam::linearisation::addFilms
     filmFlow& flow = slice_.flow();
     const label n = slice_.columns(), size = flow.blockSize(), stride = 2*filmReach;
     const Eigen::MatrixXd byUnknowns = slice_.filmByUnknowns(state_);
+    // by the films that a column sees, from face row - filmReach + 1 on
+    std::vector<Eigen::MatrixXd> byFilms(n, Eigen::MatrixXd::Zero(size, 2*filmReach));
 
     for (label first = 0; first < stride; ++first)
     {
@@ -231,11 +233,17 @@ void Foam::linearisation::addFilms
         {
             for (label row = max(k - filmReach, 0); row < min(k + filmReach, n); ++row)
             {
-                outer_.block(row*size, 0, size, n + 1).noalias() +=
-                    difference(there, here, row, 0, flow.film().rows(), filmStep*film.h[k])
-                   *byUnknowns.row(k);
+                byFilms[row].col(k - row + filmReach - 1) =
+                    difference(there, here, row, 0, flow.film().rows(), filmStep*film.h[k]);
             }
         }
+    }
+    for (label row = 0; row < n; ++row)
+    {
+        const label first = max(row - filmReach + 1, 0), last = min(row + filmReach, n);
+        outer_.block(row*size, 0, size, n + 1).noalias() +=
+            byFilms[row].middleCols(first - (row - filmReach + 1), last - first + 1)
+           *byUnknowns.middleRows(first, last - first + 1);
     }
 }
 
@@ -284,7 +292,7 @@ void Foam::linearisation::reduce(const label isobar)
     const filmFlow& flow = slice_.flow();
     const label n = slice_.columns();
     inner_.factorise();
-    Eigen::MatrixXd response(outer_);
+    blockTridiagonal::rightSides response(outer_);
     inner_.solve(response);
 
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(outer_.cols(), outer_.cols());
@@ -322,9 +330,9 @@ Foam::slice::unknowns Foam::linearisation::solve
 {
     const filmFlow& flow = slice_.flow();
     const label n = slice_.columns();
-    Eigen::MatrixXd inner = Eigen::MatrixXd::Zero(outer_.rows(), 1);
+    blockTridiagonal::rightSides inner = blockTridiagonal::rightSides::Zero(outer_.rows(), 1);
     inner.col(0).head(residual.size()) = residual;
-    const Eigen::MatrixXd right(inner);
+    const blockTridiagonal::rightSides right(inner);
     inner_.solve(inner);
 
     Eigen::VectorXd reduced = Eigen::VectorXd::Zero(outer_.cols());
