@@ -4,6 +4,7 @@
 |---|---|
 | `grid` | nodes graded by a smooth map: inlet, exit, Hertz zone, pressure spike |
 | `elastic` | deflection of the half-spaces: logarithmic kernel, fifth order |
+| `column` | one column of an oil that is not Newtonian: what it lets flow and what it carries |
 | `reynolds` | the discrete equations, their exact Jacobian, and the mass they store |
 | `newton` | damped Newton with the dense Jacobian |
 | `profile` | a converged solution, and how it starts the next one |

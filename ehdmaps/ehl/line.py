@@ -21,6 +21,7 @@ from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.isotherm import log_viscosity
 from ehdmaps.physics.moes import valley_load_number
 from ehdmaps.physics.peak import peak_sampling_error
+from ehdmaps.physics.rheology import NEWTONIAN
 
 LOAD = 0.5 * math.pi
 """Int P dX of a pressure in units of p_H over lengths in units of b."""
@@ -68,6 +69,13 @@ LADDER_RATIO, STEEP_LADDER_RATIO = 1.5, 1.2
 
 LADDER_FEET = 1.0, 0.2
 """Starts of such a ladder, over the load `COLD_START_BELOW`/2 or a lighter one: the second where the first fails."""
+
+
+STRONGEST, LEAST_STRONG = 64.0, 1.5
+"""Strengths of the oil, as factors on its stresses, with which the way to an oil that yields may begin."""
+
+WEAKENING, LEAST_WEAKENING = 0.5, 0.98
+"""First factor from one strength to the next on that way, and the factor closest to one that is tried."""
 
 
 @dataclass(frozen=True)
@@ -307,10 +315,42 @@ def _first(
     if found is None and M < 20.0:
         found, steps, outcome = on_coarse_grid(problem, guess, resolution, None)
         total += steps
-    if found is None:
+    if found is None and problem.shear.form == NEWTONIAN:
         found, steps, outcome = _climb(problem, M, L, resolution)
         total += steps
+    if found is None and problem.shear.form != NEWTONIAN:
+        found, steps, outcome = _yielding(problem, M, L, resolution)
+        total += steps
     return found, total, outcome
+
+
+def _yielding(problem: LineProblem, M: float, L: float, resolution: Resolution) -> tuple[Profile | None, int, int]:
+    """Start with an oil that hardly yields, and let it yield more and more."""
+    guess = expected_film(M, L)
+    stronger, total, outcome = STRONGEST, 0, STAGNATED
+    found: Profile | None = None
+    while found is None and stronger > LEAST_STRONG:
+        found, steps, outcome = on_coarse_grid(_stronger(problem, stronger), guess, resolution, None)
+        total += steps
+        stronger *= WEAKENING if found is None else 1.0
+    weakening = WEAKENING
+    while found is not None and stronger > 1.0:
+        weaker = max(1.0, stronger * weakening)
+        trial, steps, outcome = on_coarse_grid(_stronger(problem, weaker), guess, resolution, found)
+        total += steps
+        if trial is not None:
+            found, stronger, weakening = trial, weaker, weakening**1.5
+        else:
+            weakening = math.sqrt(weakening)
+            if weakening > LEAST_WEAKENING:
+                found = None
+    return found, total, outcome
+
+
+def _stronger(problem: LineProblem, factor: float) -> LineProblem:
+    """The same with an oil that bears more stress before it yields."""
+    shear = problem.shear
+    return problem._replace(shear=shear._replace(stress=factor * shear.stress, ratio=factor * shear.ratio))
 
 
 def _climb(problem: LineProblem, M: float, L: float, resolution: Resolution) -> tuple[Profile | None, int, int]:
@@ -350,7 +390,11 @@ def problem_load(problem: LineProblem) -> float:
 def at_load(problem: LineProblem, factor: float) -> LineProblem:
     """The same contact, oil and speed at `factor` times the load: p_H and b go with its square root."""
     root = math.sqrt(factor)
-    return LineProblem(problem.wedge / (factor * factor), problem.isotherm.scaled(root))
+    return problem._replace(
+        wedge=problem.wedge / (factor * factor),
+        isotherm=problem.isotherm.scaled(root),
+        shear=problem.shear.scaled(1.0 / factor, root),
+    )
 
 
 def on_coarse_grid(

@@ -10,7 +10,15 @@ from numba import njit
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.copies import put
-from ehdmaps.ehl.reynolds import LineProblem, film, residual, steepest_viscosity_step
+from ehdmaps.ehl.reynolds import (
+    LineProblem,
+    film,
+    no_factors,
+    residual_with,
+    shear_factors,
+    steepest_viscosity_step,
+)
+from ehdmaps.physics.rheology import NEWTONIAN
 
 LOG_VISCOSITY_STEP = 5.0
 """Largest change of ln eta in one step."""
@@ -23,6 +31,15 @@ LEAST_LEFT = 0.2
 
 MOST_HALVINGS = 15
 """Halvings of a step in search of one that leaves a film."""
+
+LEAST_RELAXATION = 0.1
+"""Smallest part of a step that is taken where an oil that yields makes steps turn back and forth."""
+
+TURNED = 0.3
+"""Minus the cosine between two steps from which on the second counts as turned back."""
+
+SOFT_ABOVE = 1e-3
+"""Size of the last step above which the tangents of an oil that yields are soft, see `shear_factors`."""
 
 CONVERGED, STAGNATED, DIVERGED = 0, 1, 2
 
@@ -56,6 +73,30 @@ def solve_scaled(jacobian: FloatArray, right_hand_side: FloatArray) -> FloatArra
                 jacobian[i, j] /= largest
             right_hand_side[i] /= largest
     return np.linalg.solve(jacobian, right_hand_side)  # type: ignore[return-value]
+
+
+@njit(cache=True)
+def relaxed(move: FloatArray, old: FloatArray, before: float) -> float:
+    """Part of a step to take: half as much where pressures turn back, half as much again where they go on.
+
+    Parameters
+    ----------
+    move : ndarray, shape (n + 2,)
+        The step.
+    old : ndarray, shape (n - 1,)
+        Pressures of the step before; overwritten with those of this one.
+    before : float
+        Part of the step before.
+    """
+    along = new = past = 0.0
+    for i in range(old.size):
+        along += move[i] * old[i]
+        new += move[i] * move[i]
+        past += old[i] * old[i]
+        old[i] = move[i]
+    if along < -TURNED * math.sqrt(new * past):
+        return max(LEAST_RELAXATION, 0.5 * before)
+    return min(1.0, 1.5 * before)
 
 
 @njit(cache=True)
@@ -98,9 +139,14 @@ def newton(
         unknowns[n + 1] -= clearance
     out = np.empty(size)
     jacobian = np.empty((size, size))
-    last = math.inf
+    last, relaxation = math.inf, 1.0
+    yields = problem.shear.form != NEWTONIAN
+    old = np.zeros(n - 1)
     for count in range(most_steps):
-        lowest = residual(problem, x, step, face_step, kernel, unknowns, load, out, jacobian)
+        factors = no_factors()
+        if yields:
+            factors = shear_factors(problem, x, face_step, kernel, unknowns, last > SOFT_ABOVE)[0]
+        lowest = residual_with(problem, factors, x, step, face_step, kernel, unknowns, load, out, jacobian)
         if not np.all(np.isfinite(out)):
             return NewtonResult(unknowns, DIVERGED, count, last)
         move = solve_scaled(jacobian, -out)
@@ -121,6 +167,9 @@ def newton(
         length = 1.0
         if thickening > LOG_VISCOSITY_STEP:
             length = LOG_VISCOSITY_STEP / thickening
+        if yields:
+            relaxation = relaxed(move, old, relaxation) if last > SOFT_ABOVE else 1.0
+            length = min(length, relaxation)
         length = min(length, EXIT_STEP * (1.0 + abs(unknowns[n])) / max(abs(move[n]), 1e-300))
         for _ in range(MOST_HALVINGS):
             trial = unknowns + length * move

@@ -9,7 +9,9 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.elastic import DRY_DATUM
 from ehdmaps.ehl.grid import Grid, Layout, Spike
-from ehdmaps.ehl.reynolds import LineProblem, film, node_pressure
+from ehdmaps.ehl.reynolds import MOST_LOG_VISCOSITY, LineProblem, face_films, film, node_pressure, shear_factors
+from ehdmaps.physics.isotherm import log_viscosity
+from ehdmaps.physics.rheology import NEWTONIAN
 from ehdmaps.physics.rolling import film_times_rise, rolling_force_of_inlet
 
 
@@ -64,6 +66,29 @@ class Profile:
             -float(self.position[0]), float(self.film[0]), self.mass_flow, self.problem.wedge, radius=1.0
         )
         return inside + before
+
+    @property
+    def stresses(self) -> tuple[FloatArray, FloatArray]:
+        """Mean stress across the film and difference of the stresses at both walls, at the faces, shape (n,)."""
+        problem, grid, pressure = self.problem, self.grid, self.pressure
+        faces = np.asarray(face_films(self.film))
+        rise = 12.0 / problem.wedge * faces * np.diff(pressure) / grid.face_step
+        if problem.shear.form == NEWTONIAN:
+            log_eta = log_viscosity(problem.isotherm, 0.5 * (pressure[1:] + pressure[:-1]))[0]
+            return problem.slide * np.exp(np.minimum(log_eta, MOST_LOG_VISCOSITY)) / faces, rise
+        mean = shear_factors(problem, grid.x, grid.face_step, self.kernel, self.unknowns, False)[1]
+        return np.asarray(mean), rise
+
+    @property
+    def wall_stress(self) -> float:
+        """Largest stress at a wall [eta0 u R/b^2]."""
+        mean, rise = self.stresses
+        return float(np.max(np.abs(mean) + 0.5 * np.abs(rise)))
+
+    @property
+    def traction(self) -> float:
+        """Integral of the mean stress along the film, of the sign of the slide-to-roll ratio [eta0 u R/b]."""
+        return float(self.stresses[0] @ self.grid.face_step)
 
     @property
     def fourth_order_share(self) -> float:

@@ -31,10 +31,23 @@ from numba import njit
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.copies import put
+from ehdmaps.ehl.column import sheared_column
 from ehdmaps.physics.isotherm import Isotherm, density, log_viscosity
+from ehdmaps.physics.rheology import LIMITING, NEWTONIAN, ShearLaw
 
 FITTED_STEP = 3.0
 """Change of ln eta over three cells at which the fourth-order correction of the Poiseuille flux is faded by half."""
+
+
+MOST_LOG_VISCOSITY = 600.0
+"""Largest ln eta whose exponential is taken: beyond, a stress of sliding is bounded by its law anyhow."""
+
+
+YIELDING = 4.0
+"""Power with which the flow grows with the step of pressure, above which soft tangents are taken."""
+
+MOST_DROPS = 60
+"""Steps towards the step of pressure that a flow asks for."""
 
 
 class LineProblem(NamedTuple):
@@ -46,10 +59,43 @@ class LineProblem(NamedTuple):
         lambda = 3 pi^2/(8 M^2).
     isotherm : Isotherm
         Viscosity and density over P: pressures in p_H.
+    shear : ShearLaw
+        How the oil answers to shear, stresses in eta0 u R/b^2.
+    slide : float
+        Slide-to-roll ratio, of no effect on a Newtonian film.
     """
 
     wedge: float
     isotherm: Isotherm
+    shear: ShearLaw = ShearLaw()
+    slide: float = 0.0
+
+
+class Factors(NamedTuple):
+    """What an oil that is not Newtonian, or not of one temperature, changes at the faces; see `column`.
+
+    The flow by pressure through a face is `slope` times the step of pressure plus `offset`, both times the mean of
+    rho/eta. `slope` is the derivative of mobility times step at the step `drop`, about which this is a tangent.
+
+    Attributes
+    ----------
+    slope, offset, drop, carriage : ndarray, shape (n,)
+        See above, and the factor on what the walls carry; of no length where the film is Newtonian.
+    mobility_slopes, carriage_slopes : ndarray, shape (n, 3)
+        Derivatives of mobility and carriage by the pressures at the nodes before and behind the face and by the film at
+        the face; those of the mobility at the step `drop`.
+    mobility_rows, carriage_rows : ndarray, shape (n, n + 2)
+        Their derivatives by all unknowns instead; else of no length.
+    """
+
+    slope: FloatArray
+    offset: FloatArray
+    drop: FloatArray
+    carriage: FloatArray
+    mobility_slopes: FloatArray
+    carriage_slopes: FloatArray
+    mobility_rows: FloatArray
+    carriage_rows: FloatArray
 
 
 _log_viscosity, _density = njit(cache=True)(log_viscosity), njit(cache=True)(density)
@@ -118,16 +164,23 @@ def _bend(d: float) -> tuple[float, float]:
 
 
 @njit(cache=True)
-def _cell_flow(
+def cell_means(
     problem: LineProblem, kinematic: FloatArray, slope: FloatArray, pressure: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Integral of rho/eta dP over each cell, its derivatives by both end pressures, and the step of ln(eta/rho).
+    """Mean of rho/eta over P in each cell, derivatives of its logarithm by both end pressures, step of ln(eta/rho).
 
-    `kinematic` is ln(eta/rho) at the nodes and `slope` its derivative by P. It is taken as a parabola in P through both
-    ends and the middle of a cell; a straight line would leave an error of second order wherever the oil's law bends.
+    ln(eta/rho) is taken as a parabola in P through both ends and the middle of a cell; a straight line would leave an
+    error of second order wherever the oil's law bends.
+
+    Parameters
+    ----------
+    problem : LineProblem
+        Dimensionless groups.
+    kinematic, slope, pressure : ndarray, shape (n + 1,)
+        ln(eta/rho), its derivative by P, and P at the nodes.
     """
     n = pressure.size - 1
-    flow, left, right, jump = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    means, left, right, jump = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     for f in range(n):
         halfway = max(0.5 * (pressure[f] + pressure[f + 1]), 0.0)
         log_eta, eta_slope = _log_viscosity(problem.isotherm, halfway)
@@ -143,16 +196,150 @@ def _cell_flow(
             dphi = -0.5 + d / 3.0 - d * d / 8.0
         bend = 4.0 * (kinematic[f] + kinematic[f + 1]) - 8.0 * middle
         weight, weight_slope = _bend(d)
-        mean = math.exp(0.5 * bend * weight - kinematic[f]) * phi
         by_step = dphi / phi + 0.5 * bend * weight_slope
-        rise = pressure[f + 1] - pressure[f]
-        by_left = 2.0 * weight * (slope[f] - middle_slope) - slope[f] * (1.0 + by_step)
-        by_right = 2.0 * weight * (slope[f + 1] - middle_slope) + slope[f + 1] * by_step
-        flow[f] = mean * rise
-        left[f] = mean * (by_left * rise - 1.0)
-        right[f] = mean * (by_right * rise + 1.0)
+        means[f] = math.exp(0.5 * bend * weight - kinematic[f]) * phi
+        left[f] = 2.0 * weight * (slope[f] - middle_slope) - slope[f] * (1.0 + by_step)
+        right[f] = 2.0 * weight * (slope[f + 1] - middle_slope) + slope[f + 1] * by_step
         jump[f] = d
-    return flow, left, right, jump
+    return means, left, right, jump
+
+
+@njit(cache=True)
+def face_films(gap: FloatArray) -> FloatArray:
+    """H at the faces, shape (n,), from the nodes: central inside, one-sided at the exit."""
+    n = gap.size - 1
+    faces = np.empty(n)
+    for f in range(n):
+        first, weights = _face_weights(f, n)
+        faces[f] = 0.0
+        for k in range(4):
+            if weights[k] != 0.0:
+                faces[f] += weights[k] * gap[first + k]
+    return faces
+
+
+@njit(cache=True)
+def _face_weights(f: int, n: int) -> tuple[int, tuple[float, float, float, float]]:
+    """First of the four nodes that give the film at a face, and their weights."""
+    if f == 0:
+        return -1, (0.0, 0.5, 0.5, 0.0)
+    if f == n - 1:
+        return f - 2, (1.0 / 16.0, -5.0 / 16.0, 15.0 / 16.0, 5.0 / 16.0)
+    return f - 1, (-1.0 / 16.0, 9.0 / 16.0, 9.0 / 16.0, -1.0 / 16.0)
+
+
+@njit(cache=True)
+def no_factors() -> Factors:
+    """Factors of a Newtonian film of one temperature."""
+    none, nothing = np.empty(0), np.empty((0, 0))
+    return Factors(none, none, none, none, nothing, nothing, nothing, nothing)
+
+
+@njit(cache=True)
+def shear_factors(
+    problem: LineProblem, x: FloatArray, face_step: FloatArray, kernel: FloatArray, unknowns: FloatArray, soft: bool
+) -> tuple[Factors, FloatArray]:
+    """Factors at the faces of an isothermal film, and the mean stresses there.
+
+    Where the oil yields, flow rises with stress as by a hundredth power, and Newton would creep. There a soft tangent
+    is taken at the step of pressure that the flow asks for, by which the oil hardly differs, instead of at the trial's.
+
+    Parameters
+    ----------
+    problem : LineProblem
+        Dimensionless groups.
+    x, face_step, kernel, unknowns
+        The arguments of `residual`.
+    soft : bool
+        Whether to take soft tangents: far from a solution. It is the same in a solution.
+    """
+    n = x.size - 1
+    pressure, gap = node_pressure(unknowns), film(x, kernel, unknowns)
+    faces = face_films(gap)
+    log_eta, slope, rho, rho_slope = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
+    oil(problem, pressure, log_eta, slope, rho, rho_slope)
+    mass = rho * gap
+    means = cell_means(problem, log_eta - np.log(rho), slope - rho_slope / rho, pressure)[0] if soft else rho
+    tangent, offset, drops = np.empty(n), np.empty(n), np.empty(n)
+    carriage, stress = np.empty(n), np.empty(n)
+    mobility_slopes, carriage_slopes = np.empty((n, 3)), np.empty((n, 3))
+    for f in range(n):
+        film_here, middle = faces[f], 0.5 * (pressure[f] + pressure[f + 1])
+        log_middle, eta_slope = _log_viscosity(problem.isotherm, max(middle, 0.0))
+        if middle < 0.0:
+            eta_slope = 0.0
+        per_drop = 12.0 / problem.wedge * film_here / face_step[f]
+        sliding = problem.slide * math.exp(min(log_middle, MOST_LOG_VISCOSITY)) / film_here
+        drop = pressure[f + 1] - pressure[f]
+        found = sheared_column(problem.shear, middle, per_drop * drop, sliding, problem.slide)
+        growth = 1.0 + drop * found.mobility_by_rise * per_drop / found.mobility
+        if soft and problem.shear.form == LIMITING and growth > YIELDING:
+            carried = 0.0
+            upwind = _upwind(f)
+            for k in range(4):
+                if upwind[k] != 0.0:
+                    carried += upwind[k] * mass[f - 2 + k]
+            conductance = film_here**3 / (problem.wedge * face_step[f])
+            asked = (found.carriage * carried - unknowns[n - 1]) / (conductance * means[f])
+            drop = _drop_asked(problem, middle, per_drop, sliding, asked, drop)
+            found = sheared_column(problem.shear, middle, per_drop * drop, sliding, problem.slide)
+        drops[f], carriage[f], stress[f] = drop, found.carriage, found.mean_stress
+        tangent[f] = found.mobility + drop * found.mobility_by_rise * per_drop
+        offset[f] = -drop * drop * found.mobility_by_rise * per_drop
+        by_pressure = 0.5 * (found.mobility_by_pressure + found.mobility_by_slide * sliding * eta_slope)
+        mobility_slopes[f, 0] = mobility_slopes[f, 1] = by_pressure
+        mobility_slopes[f, 2] = (
+            found.mobility_by_rise * per_drop * drop - found.mobility_by_slide * sliding
+        ) / film_here
+        by_pressure = 0.5 * (found.carriage_by_pressure + found.carriage_by_slide * sliding * eta_slope)
+        carriage_slopes[f, 0] = by_pressure - found.carriage_by_rise * per_drop
+        carriage_slopes[f, 1] = by_pressure + found.carriage_by_rise * per_drop
+        carriage_slopes[f, 2] = (
+            found.carriage_by_rise * per_drop * drop - found.carriage_by_slide * sliding
+        ) / film_here
+    none = np.empty((0, 0))
+    return Factors(tangent, offset, drops, carriage, mobility_slopes, carriage_slopes, none, none), stress
+
+
+@njit(cache=True)
+def _drop_asked(
+    problem: LineProblem, pressure: float, per_drop: float, sliding: float, asked: float, start: float
+) -> float:
+    """Step of pressure whose product with its mobility is `asked`: Newton on logarithms, kept in its bracket."""
+    wanted = abs(asked)
+    if wanted == 0.0:
+        return 0.0
+    low, high = 0.0, wanted
+    trial = min(abs(start), wanted)
+    if trial == 0.0:
+        trial = wanted
+    for _ in range(MOST_DROPS):
+        found = sheared_column(problem.shear, pressure, per_drop * trial, sliding, problem.slide)
+        total = found.mobility * trial
+        steep = found.mobility + trial * found.mobility_by_rise * per_drop
+        if total > wanted:
+            high = trial
+        else:
+            low = trial
+        move, quadratic = 0.5 * (low + high) - trial, False
+        if math.isfinite(total) and math.isfinite(steep) and steep > 0.0:
+            newton = total / steep * math.log(wanted / total)
+            if low <= trial + newton <= high:
+                move, quadratic = newton, True
+        trial += move
+        if abs(move) <= (1e-5 if quadratic else 1e-9) * trial:
+            break
+    return math.copysign(trial, asked)
+
+
+@njit(cache=True)
+def _upwind(f: int) -> tuple[float, float, float, float]:
+    """Weights of the nodes f-2 .. f+1 in what the walls carry through a face."""
+    if f == 0:
+        return 0.0, 0.0, 0.5, 0.5
+    if f == 1:
+        return 0.0, -0.125, 0.75, 0.375
+    return 1.0 / 16.0, -5.0 / 16.0, 15.0 / 16.0, 5.0 / 16.0
 
 
 @njit(cache=True)
@@ -167,9 +354,37 @@ def residual(
     out: FloatArray,
     jacobian: FloatArray,
 ) -> float:
-    """Residual into `out`, shape (n + 2,), and the smallest H as value.
+    """Residual of an isothermal film into `out`, shape (n + 2,), and the smallest H as value.
 
     The exact Jacobian goes into `jacobian`, shape (n + 2, n + 2); one of shape (1, n + 2) is scratch, and none is made.
+    """
+    factors = no_factors()
+    if problem.shear.form != NEWTONIAN:
+        factors = shear_factors(problem, x, face_step, kernel, unknowns, False)[0]
+    return residual_with(problem, factors, x, step, face_step, kernel, unknowns, load, out, jacobian)
+
+
+@njit(cache=True)
+def residual_with(
+    problem: LineProblem,
+    factors: Factors,
+    x: FloatArray,
+    step: FloatArray,
+    face_step: FloatArray,
+    kernel: FloatArray,
+    unknowns: FloatArray,
+    load: float,
+    out: FloatArray,
+    jacobian: FloatArray,
+) -> float:
+    """The same as `residual` with given factors at the faces.
+
+    Parameters
+    ----------
+    problem, x, step, face_step, kernel, unknowns, load, out, jacobian
+        The arguments of `residual`.
+    factors : Factors
+        Factors at the faces.
     """
     n = x.size - 1
     pressure = node_pressure(unknowns)
@@ -177,90 +392,129 @@ def residual(
     log_eta, slope, rho, rho_slope = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
     oil(problem, pressure, log_eta, slope, rho, rho_slope)
     gap = film(x, kernel, unknowns)
+    faces = face_films(gap)
     mass = rho * gap
     kinematic, kinematic_slope = log_eta - np.log(rho), slope - rho_slope / rho
-    flow, left, right, jump = _cell_flow(problem, kinematic, kinematic_slope, pressure)
+    means, left, right, jump = cell_means(problem, kinematic, kinematic_slope, pressure)
+    sheared, by_rows = factors.slope.size > 0, factors.mobility_rows.shape[0] > 0
+    flow, plain = np.empty(n), np.empty(n)
+    for f in range(n):
+        rise, tangent = pressure[f + 1] - pressure[f], 1.0
+        if sheared:
+            tangent = factors.slope[f]
+            rise = tangent * rise + factors.offset[f]
+            plain[f] = means[f] * factors.drop[f]
+        flow[f] = means[f] * rise
+        left[f] = means[f] * (left[f] * rise - tangent)
+        right[f] = means[f] * (right[f] * rise + tangent)
     limit4 = FITTED_STEP**4
-    by_film = np.empty(5)  # dF_f/dH at nodes f-2 .. f+2
+    by_film = np.empty(7)  # dF_f/dH at nodes f-3 .. f+3
+    by_flow = np.empty(4)  # dF_f/d(flow) of the cells middle-1 .. middle+1 and f
     wanted = jacobian.shape[0] > 1
     for f in range(n):
         by_film[:] = 0.0
+        by_flow[:] = 0.0
         row = jacobian[f if wanted else 0]
         row[:] = 0.0
-        # film at the face: central inside, one-sided at the exit
-        if f == 0:
-            gap_face = 0.5 * (gap[0] + gap[1])
-            weights = (0.0, 0.0, 0.5, 0.5, 0.0)
-        elif f == n - 1:
-            gap_face = (gap[f - 2] - 5.0 * gap[f - 1] + 15.0 * gap[f] + 5.0 * gap[f + 1]) / 16.0
-            weights = (1.0 / 16.0, -5.0 / 16.0, 15.0 / 16.0, 5.0 / 16.0, 0.0)
-        else:
-            gap_face = (9.0 * (gap[f] + gap[f + 1]) - gap[f - 1] - gap[f + 2]) / 16.0
-            weights = (0.0, -1.0 / 16.0, 9.0 / 16.0, 9.0 / 16.0, -1.0 / 16.0)
+        gap_face = faces[f]
         conductance = gap_face**3 / (problem.wedge * face_step[f])
         # Poiseuille flux, with the fourth-order correction where it is safe
         gradient = flow[f]
         middle = f if f < n - 1 else f - 1
-        corrected = f > 0
-        if corrected:
+        if f > 0:
             curvature = flow[middle + 1] - 2.0 * flow[middle] + flow[middle - 1]
             jumps = jump[middle - 1] ** 2 + jump[middle] ** 2 + jump[middle + 1] ** 2
             fade = 1.0 / (1.0 + jumps * jumps / limit4)
             gradient -= fade * curvature / 24.0
-            by_flow = -conductance * fade / 24.0
+            corrected = -conductance * fade / 24.0
             by_jump = conductance * curvature / 24.0 * fade * fade * 4.0 * jumps / limit4
             for k in range(3):
                 i = middle - 1 + k
-                c = by_flow * (-2.0 if k == 1 else 1.0)
+                by_flow[k] = corrected * (-2.0 if k == 1 else 1.0)
                 d = by_jump * jump[i]
                 if i > 0:
-                    row[i - 1] += c * left[i] - d * kinematic_slope[i]
+                    row[i - 1] += by_flow[k] * left[i] - d * kinematic_slope[i]
                 if i + 1 < n:
-                    row[i] += c * right[i] + d * kinematic_slope[i + 1]
+                    row[i] += by_flow[k] * right[i] + d * kinematic_slope[i + 1]
+        by_flow[3] = conductance
         flux = conductance * gradient
         if f > 0:
             row[f - 1] += conductance * left[f]
         if f + 1 < n:
             row[f] += conductance * right[f]
-        for k in range(5):
-            by_film[k] = 3.0 * flux / gap_face * weights[k]
+        first, weights = _face_weights(f, n)
+        for k in range(4):
+            by_film[first + k - f + 3] = 3.0 * flux / gap_face * weights[k]
         # wedge
-        if f == 0:
-            upwind = (0.0, 0.0, 0.5, 0.5)
-        elif f == 1:
-            upwind = (0.0, -0.125, 0.75, 0.375)
-        else:
-            upwind = (1.0 / 16.0, -5.0 / 16.0, 15.0 / 16.0, 5.0 / 16.0)
+        upwind = _upwind(f)
+        carriage = factors.carriage[f] if sheared else 1.0
         carried = 0.0
         for k in range(4):
             i = f - 2 + k
             if upwind[k] != 0.0:
                 carried += upwind[k] * mass[i]
-                by_film[k] -= upwind[k] * rho[i]
+                by_film[k + 1] -= carriage * upwind[k] * rho[i]
                 if 0 < i < n:
-                    row[i - 1] -= upwind[k] * rho_slope[i] * gap[i]
-        out[f] = flux - carried + outflow
-        row[n - 1] = 1.0
-        for k in range(5):
+                    row[i - 1] -= carriage * upwind[k] * rho_slope[i] * gap[i]
+        out[f] = flux - carriage * carried + outflow
+        if sheared and wanted:
+            if by_rows:
+                for k in range(4):
+                    i = middle - 1 + k if k < 3 else f
+                    if by_flow[k] != 0.0:
+                        c, other = by_flow[k] * plain[i], factors.mobility_rows[i]
+                        for j in range(n + 2):
+                            row[j] += c * other[j]
+                other = factors.carriage_rows[f]
+                for j in range(n + 2):
+                    row[j] -= carried * other[j]
+            else:
+                for k in range(5):
+                    i = f
+                    if k < 3:
+                        i = middle - 1 + k
+                    c, slopes = 0.0, factors.mobility_slopes[0]
+                    if k == 4:
+                        c, slopes = -carried, factors.carriage_slopes[f]
+                    elif by_flow[k] != 0.0:
+                        c, slopes = by_flow[k] * plain[i], factors.mobility_slopes[i]
+                    if c == 0.0:
+                        continue
+                    if i > 0:
+                        row[i - 1] += c * slopes[0]
+                    if i + 1 < n:
+                        row[i] += c * slopes[1]
+                    first, weights = _face_weights(i, n)
+                    for q in range(4):
+                        if weights[q] != 0.0:
+                            by_film[first + q - f + 3] += c * slopes[2] * weights[q]
+        row[n - 1] += 1.0
+        for k in range(7):
             c = by_film[k]
             if wanted and c != 0.0:
-                i = f - 2 + k
+                i = f - 3 + k
                 line = kernel[i]
                 for j in range(1, n):
                     row[j - 1] -= c * line[j]
                 row[n] += c * (exit_at + x[i])
                 row[n + 1] += c
+    # the exit takes the factor on the walls' flow from the last two faces
+    carriage = 1.5 * factors.carriage[n - 1] - 0.5 * factors.carriage[n - 2] if by_rows else 1.0
     carried_load = 0.0
     for j in range(1, n):
         carried_load += step[j] * pressure[j]
     if wanted:
         last, total = jacobian[n], jacobian[n + 1]
+        c = carriage * rho[n]
         for j in range(1, n):
-            last[j - 1] = -rho[n] * kernel[n, j]
+            last[j - 1] = -c * kernel[n, j]
             total[j - 1] = step[j]
-        last[n - 1], last[n], last[n + 1] = -1.0, rho[n] * (exit_at + x[n]), rho[n]
+        last[n - 1], last[n], last[n + 1] = -1.0, c * (exit_at + x[n]), c
         total[n - 1], total[n], total[n + 1] = 0.0, 0.0, 0.0
-    out[n] = mass[n] - outflow
+        if by_rows:
+            for j in range(n + 2):
+                last[j] += mass[n] * (1.5 * factors.carriage_rows[n - 1, j] - 0.5 * factors.carriage_rows[n - 2, j])
+    out[n] = carriage * mass[n] - outflow
     out[n + 1] = carried_load - load
     lowest: float = np.min(gap)
     return lowest

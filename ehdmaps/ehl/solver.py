@@ -29,6 +29,7 @@ from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.rheology import CARREAU, LIMITING, NEWTONIAN, ShearLaw, shear_law
 from ehdmaps.physics.solution import (
     ContactSolverDefaults,
     FilmSolution,
@@ -54,6 +55,7 @@ the linear response, made of both, loses digits, and its equations are singular 
 LARGEST_OIL_NUMBER = 150.0
 """Moes' L above which no solve is tried."""
 
+NEWTONIAN_LAW = ShearLaw()
 
 THINNEST_LAYER = 1e-6
 """Oil layer [b^2/R] below which the place of the meniscus, and the film, are below round-off of the deflection."""
@@ -91,8 +93,8 @@ class SuppliedFilm:
 class ReynoldsSolver(ContactSolverDefaults):
     """Finite-difference solver of the steady line contact and of its linear response.
 
-    Isothermal, Newtonian, piezoviscous, compressible, with Reynolds' cavitation condition at the exit; fully flooded,
-    but for `supplied_film`, which takes an oil layer before the contact.
+    Isothermal, piezoviscous, compressible, with Reynolds' cavitation condition at the exit, Newtonian unless another
+    law of shear is chosen; fully flooded, but for `supplied_film`, which takes an oil layer before the contact.
 
     Attributes
     ----------
@@ -106,6 +108,12 @@ class ReynoldsSolver(ContactSolverDefaults):
         Largest h/R that is no refusal; infinite for lines that stand for their groups only.
     physics : {"isothermal", "inlet-heat"}
         What films know of heat: nothing, or that of the inlet by the rule of `ehdmaps.physics.inlet_heat`.
+    shear : str
+        Law of shear, one of `ehdmaps.physics.rheology.SHEARS`.
+    shear_stress, limiting_ratio, carreau_exponent : float, optional
+        Numbers of the law, see `ehdmaps.physics.rheology.shear_law`.
+    slide_to_roll : float
+        (u_upper - u_lower)/u, -2 to 2.
 
     Raises
     ------
@@ -118,6 +126,11 @@ class ReynoldsSolver(ContactSolverDefaults):
     tolerance: float = 1e-6
     thickest_film: float = THICKEST_FILM
     physics: str = ISOTHERMAL
+    shear: str = "newtonian"
+    shear_stress: float | None = None
+    limiting_ratio: float | None = None
+    carreau_exponent: float | None = None
+    slide_to_roll: float = 0.0
 
     def __post_init__(self) -> None:
         problems = [
@@ -128,6 +141,10 @@ class ReynoldsSolver(ContactSolverDefaults):
         ]
         if self.physics not in PHYSICS:
             problems.append(f"reynolds solver, physics: got {self.physics!r:.60}; allowed: {', '.join(PHYSICS)}")
+        try:
+            shear_law(self.shear, self.shear_stress, self.limiting_ratio, self.carreau_exponent)
+        except InputError as error:
+            problems += [f"reynolds solver, {problem}" for problem in error.problems]
         if problems:
             raise InputError(problems)
 
@@ -135,6 +152,11 @@ class ReynoldsSolver(ContactSolverDefaults):
     def name(self) -> str:
         """Name of the solver."""
         return "reynolds"
+
+    @property
+    def shear_law(self) -> ShearLaw:
+        """Law of shear in SI."""
+        return shear_law(self.shear, self.shear_stress, self.limiting_ratio, self.carreau_exponent)
 
     @property
     def wants_backbone(self) -> bool:
@@ -164,7 +186,28 @@ class ReynoldsSolver(ContactSolverDefaults):
             "grid_shape": f"{shape}",
             **({} if self.thickest_film == THICKEST_FILM else {"thickest_film": self.thickest_film}),
             **({} if self.physics == ISOTHERMAL else {"physics": self.physics}),
+            **self._flow_settings,
         }
+
+    @property
+    def _flow_settings(self) -> dict[str, float | str]:
+        """Settings of shear where they change anything."""
+        law = self.shear_law
+        settings: dict[str, float | str] = {} if self.slide_to_roll == 0.0 else {"slide_to_roll": self.slide_to_roll}
+        if law.form == NEWTONIAN:
+            return settings
+        settings |= {"shear": self.shear, "shear_stress": law.stress}
+        if law.form == LIMITING:
+            settings["limiting_ratio"] = law.ratio
+        if law.form == CARREAU:
+            settings["carreau_exponent"] = law.exponent
+        return settings
+
+    def _problem(
+        self, contact: LineContact, state: LubricantState, load: float, speed: float
+    ) -> tuple[LineProblem, float, float]:
+        """Groups of one operating point, see `line_problem`."""
+        return line_problem(contact, state, load, speed, self.shear_law, self.slide_to_roll)
 
     def solve_line(
         self,
@@ -251,7 +294,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         if groups is None:
             return slow_spectrum(film, frequencies)
         load, speed = point.load, point.entrainment_speed
-        _, M, L = line_problem(contact, state, load, speed)
+        _, M, L = self._problem(contact, state, load, speed)
         half = float(half_width(load, contact.radius, contact.reduced_modulus))
         found = group_spectrum(M, L, groups, 2.0 * math.pi * frequencies * half / speed)
         unit = 4.0 / contact.reduced_modulus  # b/(p_H R)
@@ -310,7 +353,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         if layer < THINNEST_LAYER:
             reason = f"{supply.label}: {layer:.3g} b^2/R, below {THINNEST_LAYER:g} it is lost in round-off"
             return SuppliedFilm(FilmSolution(Status.OUTSIDE_VALIDITY, reason), ratio)
-        _, M, L = line_problem(contact, state, point.load, point.entrainment_speed)
+        _, M, L = self._problem(contact, state, point.load, point.entrainment_speed)
         started = time.perf_counter()
         starved = starved_groups(M, L, self.resolution, layer, flooded)
         seconds = film.solve_seconds + time.perf_counter() - started
@@ -344,7 +387,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
         if speed == 0.0:
             return dry_film(peak, "no entrainment: dry contact"), None
-        problem, M, L = line_problem(contact, state, load, speed)
+        problem, M, L = self._problem(contact, state, load, speed)
         beyond = _beyond_reach(peak, M, L)
         if beyond:
             return FilmSolution(Status.OUTSIDE_VALIDITY, beyond), None
@@ -367,7 +410,12 @@ class ReynoldsSolver(ContactSolverDefaults):
 
 
 def line_problem(
-    contact: LineContact, state: LubricantState, load: float, speed: float
+    contact: LineContact,
+    state: LubricantState,
+    load: float,
+    speed: float,
+    shear: ShearLaw = NEWTONIAN_LAW,
+    slide_to_roll: float = 0.0,
 ) -> tuple[LineProblem, float, float]:
     """Groups of one operating point: those of the equations, and Moes' M and L.
 
@@ -381,11 +429,18 @@ def line_problem(
         w [N/m].
     speed : float
         u [m/s].
+    shear : ShearLaw
+        Law of shear in SI.
+    slide_to_roll : float
+        (u_upper - u_lower)/u.
     """
     alpha = state.pressure_viscosity.pressure_viscosity
     peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
     M, L = moes_groups(load, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
-    return LineProblem(3.0 * math.pi**2 / (8.0 * M * M), state.isotherm(peak)), float(M), L
+    half = float(half_width(load, contact.radius, contact.reduced_modulus))
+    stress = state.viscosity * speed * contact.radius / half**2
+    wedge = 3.0 * math.pi**2 / (8.0 * M * M)
+    return LineProblem(wedge, state.isotherm(peak), shear.scaled(stress, peak), slide_to_roll), float(M), L
 
 
 def dry_film(peak: float, reason: str) -> FilmSolution:
@@ -409,6 +464,8 @@ def dry_film(peak: float, reason: str) -> FilmSolution:
         max_pressure_error=0.0,
         rolling_force_error=0.0,
         mass_flow_error=0.0,
+        traction=0.0,
+        wall_stress=0.0,
     )
 
 
@@ -449,6 +506,9 @@ def _in_si(
     seconds: float,
 ) -> FilmSolution:
     """Scale films by b^2/R, the compliance by b/(p_H R), the loss by b^2/(p_H R u), the rolling force by p_H b^2/R."""
+    profile = groups.profile
+    assert profile is not None
+    newtonian = profile.problem.shear.form == NEWTONIAN
     film = half * half / contact.radius
     compliance = half / (peak * contact.radius)
     status, notes = Status.CONVERGED, []
@@ -457,10 +517,11 @@ def _in_si(
         status = Status.ASYMPTOTE
         notes.append("film thicker than 1 % of the radius: limit of thin-film theory, Reynolds with a parabolic gap")
     elif groups.loss < 0.0:
-        notes.append("negative damping at the valley of an isothermal, Newtonian film; a contact law takes zero")
-    profile = groups.profile
-    assert profile is not None
-    notes.append(wall_stress_note(profile.position * half, profile.pressure * peak, profile.film * film))
+        kind = " of an isothermal, Newtonian film" if newtonian else ""
+        notes.append(f"negative damping at the valley{kind}; a contact law takes zero")
+    stress = state.viscosity * speed / film
+    if newtonian:
+        notes.append(wall_stress_note(profile.position * half, profile.pressure * peak, profile.film * film))
     return FilmSolution(
         status=status,
         reason="; ".join(filter(None, notes)),
@@ -480,6 +541,8 @@ def _in_si(
         max_pressure_error=groups.max_pressure_error,
         rolling_force_error=groups.rolling_force_error,
         mass_flow_error=groups.mass_flow_error,
+        traction=profile.traction * stress * half,
+        wall_stress=profile.wall_stress * stress,
         iterations=groups.steps,
         solve_seconds=seconds,
         viscosity_extrapolated=groups.max_pressure * peak * (1.0 + groups.max_pressure_error) > state.fitted_pressure,

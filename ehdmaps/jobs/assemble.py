@@ -17,7 +17,7 @@ from ehdmaps.jobs.correction_design import places_of
 from ehdmaps.jobs.holes import filled, isolated_holes
 from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
-from ehdmaps.jobs.tasks import LineTask, solver_version, with_later_fields
+from ehdmaps.jobs.tasks import FOUND_BY_SOME, LineTask, solver_version, with_later_fields
 from ehdmaps.maps import schema
 from ehdmaps.maps.records import contacts_json, surface_json
 from ehdmaps.maps.structure import MODEL_ERRORS, derived
@@ -36,6 +36,7 @@ _FILLED_FIELDS = (
     "max_pressure",
     "rolling_force",
     "mass_flow",
+    *FOUND_BY_SOME,
 )
 _ALWAYS = ("status", "reason", "iterations", "solve_seconds", "viscosity_extrapolated")
 """Fields of a film that a hole keeps."""
@@ -177,7 +178,8 @@ def with_structure(
     values["loss_compliance_error"] = films["loss_compliance_error"] * np.copysign(1.0, films["film_compliance_error"])
     for name in ("film_offset_error", "film_compliance_error"):
         values[name] = np.abs(films[name])
-    return {entry.name: values[entry.name] for entry in schema.table() if entry.name in values}
+    unknown = [name for name in FOUND_BY_SOME if name in values and not np.any(np.isfinite(values[name]))]
+    return {entry.name: values[entry.name] for entry in schema.table() if entry.name in values.keys() - unknown}
 
 
 def _attributes(job: Job, solver: ContactSolver) -> dict[str, Any]:

@@ -85,13 +85,25 @@ def parser() -> argparse.ArgumentParser:
         help='response at many frequencies, spaced logarithmically: "10 Hz" "20 kHz" 60; with --plot as a picture',
     )
     solve.add_argument(
-        "--slide-to-roll",
-        nargs=3,
-        metavar=("FROM", "TO", "POINTS"),
-        help="reynolds: traction over the slide-to-roll ratio, spaced logarithmically: 0.001 1 7",
+        "--physics", metavar="NAME", help="isothermal | inlet-heat | thermal: what the film knows of heat; the job's"
     )
-    solve.add_argument("--eyring-stress", metavar="STRESS", help='for --slide-to-roll; default: "6 MPa"')
-    solve.add_argument("--limiting-ratio", metavar="RATIO", help="limiting stress over pressure; default: 0.05")
+    solve.add_argument(
+        "--shear", metavar="LAW", help="newtonian | eyring | carreau | limiting: law of the shear stress; the job's"
+    )
+    solve.add_argument("--shear-stress", metavar="STRESS", help='of --shear, such as "6 MPa"; default: of that law')
+    solve.add_argument(
+        "--slide-to-roll",
+        nargs="+",
+        metavar="RATIO",
+        help="one value: the film is solved with this sliding, (u2 - u1)/u from -2 to 2; FROM TO POINTS: reynolds, "
+        "traction on the film of pure rolling over the ratio, spaced logarithmically: 0.001 1 7",
+    )
+    solve.add_argument("--eyring-stress", metavar="STRESS", help='for --slide-to-roll FROM TO POINTS; default: "6 MPa"')
+    solve.add_argument(
+        "--limiting-ratio",
+        metavar="RATIO",
+        help="limiting stress over pressure, of --shear limiting or --slide-to-roll FROM TO POINTS; default: 0.05",
+    )
     solve.add_argument(
         "--supply",
         metavar="SUPPLY",

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.report import ERRORS, NONE_STATED
+from ehdmaps.jobs.report import ERRORS, FOUND_BY_SOME, NONE_STATED
+from ehdmaps.jobs.solvers import solver_words
 from ehdmaps.maps.rough_films import FILM_PARAMETER, FILM_SHARE, LEAST_SPEED, film_share
 from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.physics import hertz
@@ -34,6 +35,7 @@ _SOLUTION_FIELDS = (
     "max_pressure",
     "rolling_force",
     "mass_flow",
+    *(name for name, _, _ in FOUND_BY_SOME),
     *ERRORS,
     "loss_compliance_error",
     "iterations",
@@ -153,7 +155,8 @@ def point_table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, 
     """
     rows: list[tuple[str, str, list[Any]]] = list(_rows(records, length))
     law = job.contacts[0].structural_law
-    header = f"{job.title}, {job.lubricant.title}, solver {job.solver}, structural law {law}"
+    solver = f"solver {job.solver}{solver_words(job.solver_options)}"
+    header = f"{job.title}, {job.lubricant.title}, {solver}, structural law {law}"
     place = f"{LOAD.text(point.load)}, {_speed(job, point)}, {TEMPERATURE.text(point.temperature)}"
     if length is not None:
         place += f", slice of {LENGTH.text(length)} ({point.load * length:.5g} N)"
@@ -212,6 +215,9 @@ def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple
         yield row("film's share of load", FILM_SHARE, plain)
     yield row("rolling force", "rolling_force", ROLLING_FORCE)
     yield row("mass flow", "mass_flow", MASS_FLOW)
+    for name, words, display in FOUND_BY_SOME:
+        if any(record[name] is not None for record in records):
+            yield row(words, name, display)
     yield row("stiffness k", "stiffness", Display("N/m2"))
     yield row("damping c", "damping", Display("N s/m2"))
     if length is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 from importlib import resources
 from os import PathLike, fspath
 from pathlib import Path
@@ -21,7 +22,9 @@ from ehdmaps.maps.backbone_plan import STEP_LIMITS, STEPS, Steps
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.heat import ISOTHERMAL, heat_data
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.solids import Material
 from ehdmaps.units import KELVIN, closest
 
 LONGEST_FILE = 1_000_000
@@ -122,6 +125,8 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
     bearing, contacts = read_contacts(top, law)
     oil_section = top.table("lubricant", "[lubricant]", required="a table with the name of an oil, or its data")
     oil = read_lubricant(oil_section) if oil_section else None
+    if oil is not None and contacts:
+        _check_heat(top, oil, contacts[0].material, options, rest["corrected_by"] if rest else None)
     supply = top.optional("supply", "[supply]", read_supply)
     surface = top.optional("surface", "[surface]", read_surface)
 
@@ -224,6 +229,20 @@ def _grid(grid: Table, contacts: int, bearing: BearingGeometry | None) -> list[t
             f"got {lengths} = {points} points; allowed: at most {MOST_POINTS}; use fewer points on the axes",
         )
     return axes
+
+
+def _check_heat(
+    top: Table, oil: Lubricant, material: Material, options: Mapping[str, object], by: CorrectedBy | None
+) -> None:
+    """Note what heat needs and nobody stated, where a solver of the job knows heat."""
+    known = (options.get("physics"), by.options.get("physics") if by else None)
+    if all(physics in (None, ISOTHERMAL) for physics in known):
+        return
+    try:
+        heat_data(oil, material)
+    except InputError as error:
+        for problem in error.problems:
+            top.note("[lubricant]", problem)
 
 
 def _check_temperatures(oil: Lubricant, temperatures: tuple[float, ...], grid: Table) -> None:

@@ -43,6 +43,14 @@ ERRORS = (
 )
 """Error estimates in the order in which they are listed; the last five are missing in maps made before they were."""
 
+FOUND_BY_SOME = (
+    ("traction", "traction", ROLLING_FORCE),
+    ("wall_stress", "largest wall stress", PRESSURE),
+    ("film_temperature", "hottest of the film", TEMPERATURE),
+    ("surface_temperature", "hottest of the surfaces", TEMPERATURE),
+)
+"""What only films with sliding, shear laws or heat have: name, words and display."""
+
 NONE_STATED = "none stated"
 """What stands in place of an error that the solver does not state."""
 
@@ -177,6 +185,7 @@ def value_lines(dataset: xr.Dataset) -> Iterator[str]:
         ("max_pressure", PRESSURE),
         ("rolling_force", ROLLING_FORCE),
         ("mass_flow", MASS_FLOW),
+        *((name, display) for name, _, display in FOUND_BY_SOME if name in dataset),
     )
     yield "  variable                     smallest     median    largest  unit"
     for name, display in shown:

@@ -12,7 +12,7 @@ from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, THERMAL
-from ehdmaps.physics.rheology import SHEARS
+from ehdmaps.physics.rheology import SHEAR_LIMITS, SHEARS
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.units import Display, short
 
@@ -91,10 +91,14 @@ class Quantity:
 SHEAR_OPTIONS = (
     Word("shear", tuple(SHEARS), "law of the shear stress, see ehdmaps.physics.rheology"),
     Quantity(
-        "shear_stress", "Pa", 1e3, 1e10, Display("MPa", 1e-6), "stress of that law, or its bound without pressure"
+        "shear_stress",
+        "Pa",
+        *SHEAR_LIMITS["shear_stress"],
+        Display("MPa", 1e-6),
+        "stress of that law, or its bound without pressure",
     ),
-    Number("limiting_ratio", 1e-3, 1.0, "rise of the limiting stress with pressure"),
-    Number("carreau_exponent", 0.05, 1.0, "n of Carreau's law"),
+    Number("limiting_ratio", *SHEAR_LIMITS["limiting_ratio"], "rise of the limiting stress with pressure"),
+    Number("carreau_exponent", *SHEAR_LIMITS["carreau_exponent"], "n of Carreau's law"),
     Number("slide_to_roll", -2.0, 2.0, "difference of the surface speeds over the entrainment speed"),
 )
 """Keys of the solvers that know laws of shear: the same words, limits and meanings for each."""
@@ -133,7 +137,7 @@ class SolverEntry:
         Whether it works in case folders, which it can keep, and has fields of the film.
     """
 
-    options: tuple[Number | Whole | Word | Switch, ...]
+    options: tuple[Number | Whole | Word | Switch | Quantity, ...]
     build: Callable[..., ContactSolver]
     missing: Callable[[], tuple[str, ...]] = _nothing
     keeps_cases: bool = False
@@ -192,10 +196,8 @@ SOLVERS: Mapping[str, SolverEntry] = {
             Whole("columns", 40, 4000, "cells along the film"),
             Whole("rows", 4, 64, "cells across the film"),
             physics_option(ISOTHERMAL, THERMAL),
-            Word("shear", ("newtonian", "eyring", "limiting"), "law of the shear stress"),
-            Number("shear_stress", 1e3, 1e10, "Eyring stress or limiting stress [Pa]"),
+            *SHEAR_OPTIONS,
             Switch("inertia", "whether the momentum equation has its inertia"),
-            Number("slide_to_roll", -2.0, 2.0, "difference of the surface speeds over the entrainment speed"),
             Word("start", ("reynolds", "hertz"), "what a point starts from"),
             Number("timeout", 1.0, 1e6, "seconds after which a point is stopped"),
         ),
@@ -256,6 +258,66 @@ def complete(solver: ContactSolver) -> ContactSolver:
             ]
         )
     return solver
+
+
+PHYSICAL = ("physics", *(option.key for option in SHEAR_OPTIONS))
+"""Keys that say what a film is, and not how it is solved."""
+
+
+def solver_words(options: Mapping[str, Any]) -> str:
+    """What is said of a solver's own keys behind its name: physics, law of shear, sliding; nothing of the defaults.
+
+    Parameters
+    ----------
+    options : mapping
+        Keys of the solver.
+    """
+    words = [str(options[key]) for key in ("physics", "shear") if key in options]
+    told = [word for word in words if word not in (ISOTHERMAL, "newtonian")]
+    slip = options.get("slide_to_roll", 0.0)
+    return "".join(f", {word}" for word in (*told, *([f"slide to roll {slip:g}"] if slip else [])))
+
+
+def stated(name: str, texts: Mapping[str, str], problems: list[str]) -> dict[str, Any]:
+    """Read keys of a solver from a command line.
+
+    Parameters
+    ----------
+    name : str
+        Name of the solver.
+    texts : mapping
+        What was typed, by the key of [solver]; the options of the command line are called as these, with hyphens.
+    problems : list of str
+        Problems, appended to.
+
+    Returns
+    -------
+    dict
+        Values by key; what is wrong is left out.
+    """
+    known = {option.key: option for option in SOLVERS[name].options}
+    values: dict[str, Any] = {}
+    for key, text in texts.items():
+        where, option = f"--{key.replace('_', '-')}", known.get(key)
+        if option is None:
+            having = [other for other, entry in SOLVERS.items() if key in [option.key for option in entry.options]]
+            instead = f"with --solver {' or '.join(having)}" if having else "no solver takes it yet"
+            problems.append(f"{where}: the solver {name!r} knows none; allowed: {instead}")
+            continue
+        found: list[str] = []
+        value = option.read(Table({key: _typed(text)}, where, found))
+        problems += [problem.replace(f"{where} {key}:", f"{where}:", 1) for problem in found]
+        if value is not None:
+            values[key] = value
+    return values
+
+
+def _typed(text: str) -> str | float:
+    """A bare number where the text is one."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def case_options(name: str, keep_cases: str | None) -> dict[str, Any]:

@@ -35,16 +35,10 @@ SPECTRUM_FIELDS = ("response_real", "response_imaginary", "response_error")
 """Complex film compliance over load and natural frequency [m2/N], and its error, relative to its magnitude."""
 
 FILM_FIELDS = tuple(field.name for field in fields(FilmSolution))
-LATER_FIELDS = (
-    "rolling_force",
-    "mass_flow",
-    "rolling_force_error",
-    "mass_flow_error",
-    "traction",
-    "wall_stress",
-    "film_temperature",
-    "surface_temperature",
-)
+FOUND_BY_SOME = ("traction", "wall_stress", "film_temperature", "surface_temperature")
+"""Fields that only films with sliding, shear laws or heat have: a map without any value of one is made without it."""
+
+LATER_FIELDS = ("rolling_force", "mass_flow", "rolling_force_error", "mass_flow_error", *FOUND_BY_SOME)
 """Fields that came after maps had been made: results that lack them, and took days, are taken over without them."""
 
 

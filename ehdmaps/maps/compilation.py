@@ -32,6 +32,7 @@ from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.maps.splines import hermite, spline_coefficients
 from ehdmaps.maps.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
+from ehdmaps.physics.approach import highest_fe_load
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
@@ -69,6 +70,8 @@ class Resolution:
 
 def highest_structural_load(contact: LineContact) -> float:
     """Load [N/m] up to which the structural law of a contact may be continued; inf for the power laws."""
+    if contact.structural_law == "fe" and contact.fe_approach is not None:
+        return highest_fe_load(contact.fe_approach, contact.radius, contact.reduced_modulus)
     if contact.structural_law != "half_space" or contact.reference_depth is None:
         return math.inf
     width = _WIDEST_CONTACT * contact.reference_depth
@@ -79,9 +82,9 @@ def structural_parameters(contact: LineContact) -> tuple[float, float, float]:
     """Structural law of a contact for a kernel: kind and two parameters.
 
     POWER_LAW: delta = a w^b. HALF_SPACE: delta = a w (b - ln(w)/2), which is
-    (4 w/(pi E')) [ln(2 d*/b_Hertz) + 1/2] with the half-width b_Hertz ~ sqrt(w).
+    (4 w/(pi E')) [ln(2 d*/b_Hertz) + 1/2] with the half-width b_Hertz ~ sqrt(w); the law fe has this form too.
     """
-    if contact.structural_law == "half_space":
+    if contact.structural_law in ("half_space", "fe"):
         slope = 4.0 / (math.pi * contact.reduced_modulus)
         return HALF_SPACE, slope, contact.structural_approach(1.0) / slope
     at_one = contact.structural_approach(1.0)

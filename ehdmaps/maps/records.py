@@ -82,13 +82,15 @@ def contacts_from_json(text: str) -> tuple[LineContact, ...]:
 def contact_record(contact: LineContact) -> dict[str, Any]:
     """One contact as a record, see `contacts_from_json`.
 
-    What heat needs of the material is left out where it is that of steel: records that were made before there was any
-    are those of today.
+    What heat needs of the material is left out where it is that of steel, and the approach by finite elements where
+    there is none: records that were made before there was any are those of today.
     """
     record = asdict(contact)
     for name in ("conductivity", "heat_capacity"):
         if record["material"][name] == getattr(STEEL, name):
             del record["material"][name]
+    if record["fe_approach"] is None:
+        del record["fe_approach"]
     return record
 
 

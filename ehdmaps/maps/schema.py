@@ -22,7 +22,9 @@ Version 2 added film compliance, loss compliance and its error to the grid; vers
 damping in their place. Version 3 added rolling force and mass flow, with their errors, and the film compliance at
 natural frequencies to the backbone, where the solver has it: complex, in units of the film alone, over
 omega sqrt(b^2 + 2 h R)/u with b and the film offset h of each point. Version 4 added the model errors of stiffness and
-damping, of a map whose films are corrected by a dearer solver.
+damping, of a map whose films are corrected by a dearer solver. Version 5 added traction, wall stress and temperatures
+of films, where the solver finds them, and to the backbone the films of the outer contact, where heat makes them its
+own.
 
 To add a variable, write one row in `TABLE` with ``since=`` the new version, and raise `SCHEMA_VERSION`. With
 ``required=False`` a map may lack it. It is then written, where `dataset` or `backbone` is given values for it, read,
@@ -41,7 +43,7 @@ import xarray as xr
 
 from ehdmaps.physics.solution import Status
 
-SCHEMA_VERSION = 4
+SCHEMA_VERSION = 5
 """Version of the table; files of this and of all lower versions are read."""
 
 DIMS = ("contact", "load", "entrainment_speed", "temperature")
@@ -175,6 +177,11 @@ def _model_error(name: str, of: str) -> Variable:
     return Variable(name, "1", words, required=False, since=4)
 
 
+def _of_films(name: str, units: str, long_name: str) -> Variable:
+    """Row of what only some solvers find of a film."""
+    return Variable(name, units, long_name, required=False, since=5)
+
+
 def _of_backbone(name: str, units: str, long_name: str, required: bool = True, since: int = 1) -> Variable:
     """Row of a film of the reference contact."""
     long_name = f"{long_name}, reference contact"
@@ -211,6 +218,10 @@ TABLE = (
         since=3,
     ),
     Variable("mass_flow", "kg m-1 s-1", "mass flow of oil per unit length", required=False, since=3),
+    _of_films("traction", "N m-1", "force between the surfaces from sliding, mean of both walls"),
+    _of_films("wall_stress", "Pa", "largest shear stress at a wall"),
+    _of_films("film_temperature", "K", "highest temperature in the film"),
+    _of_films("surface_temperature", "K", "highest temperature of the surfaces of the film"),
     Variable("status", "1", "how the point ended", "int8", flags=_STATUS),
     Variable("reason", "1", "cause of the status, in words", "str"),
     _error("film_offset_error", "film_offset"),

@@ -19,15 +19,18 @@ from ehdmaps.errors import InputError
 from ehdmaps.openfoam.isotherms import STEP, Isotherms
 from ehdmaps.physics.heat import HeatData
 from ehdmaps.physics.lubricant import LubricantState
+from ehdmaps.physics.rheology import CARREAU, EYRING, LIMITING, NEWTONIAN, ShearLaw
 
 Flow = Literal["thin_film", "full_stress"]
-Shear = Literal["newtonian", "eyring", "limiting"]
 
 FLOWS: Mapping[Flow, str] = {"thin_film": "thinFilm", "full_stress": "fullStress"}
 """Words of a job file and those of the dictionary."""
 
-SHEARS: Mapping[Shear, str] = {"newtonian": "Newtonian", "eyring": "Eyring", "limiting": "limiting"}
-"""Words of a job file and those of the dictionary."""
+SHEAR_FORMS: Mapping[int, str] = {NEWTONIAN: "Newtonian", EYRING: "Eyring", CARREAU: "Carreau", LIMITING: "limiting"}
+"""Forms of the laws of shear and their words in the dictionary."""
+
+NEWTON = ShearLaw()
+"""The law of an oil that does not care about shear."""
 
 HEADER = "FoamFile { version 2.0; format ascii; class dictionary; object ehlProperties; }"
 
@@ -137,10 +140,8 @@ class Parameters:
         Cells along and across the film.
     flow : {"thin_film", "full_stress"}
         Stress of thin films, or all of it with the pressure across the film.
-    shear : {"newtonian", "eyring", "limiting"}
-        Law of the shear stress.
-    shear_stress : float
-        Eyring stress, or limiting stress [Pa]; the Newtonian law has none.
+    shear : ShearLaw
+        Law of the shear stress, in Pa.
     inertia : bool
         Whether the momentum equation has its inertia.
     heat : Heat, optional
@@ -170,8 +171,7 @@ class Parameters:
     columns: int
     rows: int
     flow: Flow = "thin_film"
-    shear: Shear = "newtonian"
-    shear_stress: float = 0.0
+    shear: ShearLaw = NEWTON
     inertia: bool = False
     heat: Heat | None = None
     start: Start | None = None
@@ -199,10 +199,7 @@ class Parameters:
         yield _entry("upperSpeed", self.upper_speed)
         yield from _block("viscosity", _viscosity(self.oil))
         yield from _block("density", [f"type {_density(self.oil)};", _entry("density", self.oil.density)])
-        shear = [f"type {_word('shear', self.shear, SHEARS)};"]
-        if self.shear != "newtonian":
-            shear.append(_entry("stress", self.shear_stress))
-        yield from _block("shear", shear)
+        yield from _block("shear", _shear(self.shear))
         yield from _block("cavitation", [_entry("pressureRange", self.cavitation_range)])
         yield f"flow {_word('flow', self.flow, FLOWS)};"
         yield _switch("inertia", self.inertia)
@@ -276,6 +273,18 @@ def _density(oil: LubricantState) -> str:
     return "DowsonHigginson" if oil.compressible else "incompressible"
 
 
+def _shear(law: ShearLaw) -> list[str]:
+    """The law of shear under its name, with the numbers that it has."""
+    entries = [f"type {_word('shear', law.form, SHEAR_FORMS)};"]
+    if law.form != NEWTONIAN:
+        entries.append(_entry("stress", law.stress))
+    if law.form == LIMITING:
+        entries.append(_entry("ratio", law.ratio))
+    if law.form == CARREAU:
+        entries.append(_entry("exponent", law.exponent))
+    return entries
+
+
 def _camel(name: str) -> str:
     """A name in the dictionary's spelling: pressure_scale is pressureScale."""
     first, *others = name.split("_")
@@ -319,6 +328,6 @@ def _list(key: str, values: ArrayLike) -> str:
 
 def _word(key: str, value: object, table: Mapping[Any, str]) -> str:
     """The dictionary's word for a word of the job file."""
-    if not isinstance(value, str) or value not in table:
-        raise InputError(f"ehlProperties, {key}: got {value!r:.60}; allowed: {', '.join(table)}")
+    if not isinstance(value, str | int) or isinstance(value, bool) or value not in table:
+        raise InputError(f"ehlProperties, {key}: got {value!r:.60}; allowed: {', '.join(map(str, table))}")
     return table[value]

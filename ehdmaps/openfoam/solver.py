@@ -17,7 +17,7 @@ from ehdmaps.errors import InputError, SolverError
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
 from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
 from ehdmaps.openfoam.isotherms import isotherms
-from ehdmaps.openfoam.parameters import FLOWS, SHEARS, Flow, Heat, Mesh, Parameters, Shear, Start
+from ehdmaps.openfoam.parameters import FLOWS, Flow, Heat, Mesh, Parameters, Start
 from ehdmaps.openfoam.results import FilmTable
 from ehdmaps.openfoam.run import RunError
 from ehdmaps.physics.closed_form import HertzSolver
@@ -30,6 +30,7 @@ from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import film_from_moes, moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.peak import peak_sampling_error
+from ehdmaps.physics.rheology import ShearLaw, shear_law
 from ehdmaps.physics.rolling import film_times_rise, rolling_force_of_inlet
 from ehdmaps.physics.solution import (
     ContactSolverDefaults,
@@ -108,10 +109,10 @@ class OpenFoamSolver(ContactSolverDefaults):
     physics : {"isothermal", "thermal"}
         Whether the film has the temperature of the surfaces, or the energy of the film is solved with the flow; the
         latter with the flow thin_film.
-    shear : {"newtonian", "eyring", "limiting"}
-        Law of the shear stress.
-    shear_stress : float
-        Eyring stress, or limiting stress [Pa].
+    shear : {"newtonian", "eyring", "carreau", "limiting"}
+        Law of the shear stress, see `ehdmaps.physics.rheology`.
+    shear_stress, limiting_ratio, carreau_exponent : float, optional
+        tau0 [Pa], Lambda and n of that law; its defaults if left out.
     inertia : bool
         Whether the momentum equation has its inertia.
     slide_to_roll : float
@@ -141,8 +142,10 @@ class OpenFoamSolver(ContactSolverDefaults):
     columns: int = 400
     rows: int = 6
     physics: str = ISOTHERMAL
-    shear: Shear = "newtonian"
+    shear: str = "newtonian"
     shear_stress: float | None = None
+    limiting_ratio: float | None = None
+    carreau_exponent: float | None = None
     inertia: bool = False
     slide_to_roll: float = 0.0
     inlet_length: float = 100.0
@@ -178,7 +181,7 @@ class OpenFoamSolver(ContactSolverDefaults):
         ]
         problems += [
             f"openfoam solver, {name}: got {getattr(self, name)!r:.60}; allowed: {', '.join(words)}"
-            for name, words in (("flow", FLOWS), ("shear", SHEARS), ("physics", PHYSICS))
+            for name, words in (("flow", FLOWS), ("physics", PHYSICS))
             if getattr(self, name) not in words
         ]
         if self.physics == THERMAL and self.flow != "thin_film":
@@ -190,16 +193,10 @@ class OpenFoamSolver(ContactSolverDefaults):
                 f"openfoam solver, slide_to_roll: got {self.slide_to_roll!r} with physics thermal; allowed: between -2 "
                 "and 2 without both, since a surface that stands has no steady temperature"
             )
-        if self.shear == "newtonian" and self.shear_stress is not None:
-            problems.append(
-                f"openfoam solver, shear_stress: got {self.shear_stress!r} Pa with shear newtonian, which has none; "
-                "leave it out, or choose shear eyring or limiting"
-            )
-        elif self.shear != "newtonian" and not 1e3 <= (self.shear_stress or 0.0) <= 1e10:
-            problems.append(
-                f"openfoam solver, shear_stress: got {self.shear_stress!r} Pa; allowed: 1e3 to 1e10 Pa with shear "
-                f"{self.shear}; Eyring stresses are some 1e6 Pa"
-            )
+        try:
+            self.shear_law()
+        except InputError as error:
+            problems += [f"openfoam solver, {problem}" for problem in error.problems]
         if self.keep_cases is not None and NO_PATH.search(str(self.keep_cases.absolute())):
             problems.append(
                 f"openfoam solver, keep_cases: got {str(self.keep_cases.absolute())!r}; OpenFOAM takes no spaces or "
@@ -207,6 +204,10 @@ class OpenFoamSolver(ContactSolverDefaults):
             )
         if problems:
             raise InputError(problems)
+
+    def shear_law(self) -> ShearLaw:
+        """Law of the shear stress, in Pa."""
+        return shear_law(self.shear, self.shear_stress, self.limiting_ratio, self.carreau_exponent)
 
     @property
     def name(self) -> str:
@@ -225,13 +226,16 @@ class OpenFoamSolver(ContactSolverDefaults):
 
     def settings(self) -> dict[str, float | int | str]:
         """Everything that changes the numbers; a longer timeout only makes more of them."""
+        own = {"limiting_ratio": self.limiting_ratio, "carreau_exponent": self.carreau_exponent}
+        law = self.shear_law()
         return {
             "flow": self.flow,
             "columns": self.columns,
             "rows": self.rows,
             **({} if self.physics == ISOTHERMAL else {"physics": self.physics}),
             "shear": self.shear,
-            "shear_stress": self.shear_stress or 0.0,
+            "shear_stress": 0.0 if self.shear == "newtonian" else law.stress,
+            **{key: value for key, value in own.items() if value is not None},
             "inertia": int(self.inertia),
             "slide_to_roll": self.slide_to_roll,
             "inlet_length": self.inlet_length,
@@ -395,8 +399,7 @@ class OpenFoamSolver(ContactSolverDefaults):
             columns=self.columns,
             rows=self.rows,
             flow=self.flow,
-            shear=self.shear,
-            shear_stress=self.shear_stress or 0.0,
+            shear=self.shear_law(),
             inertia=self.inertia,
             heat=self._heat(contact, lubricant, point.temperature),
             start=start,
@@ -461,7 +464,7 @@ def _film(
         status = Status.ASYMPTOTE
         notes.append("film thicker than 1 % of the radius: the gap is that of a parabola")
     elif found.loss_compliance[0] < 0.0:
-        notes.append("negative damping at the valley of an isothermal film; a contact law takes zero")
+        notes.append("negative damping at the valley; a contact law takes zero")
     if newtonian:
         notes.append(wall_stress_note(fine.film.x, fine.film.pressure, fine.film.film))
     largest_error = abs(error(found.max_pressure, rough.max_pressure))

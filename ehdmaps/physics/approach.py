@@ -1,7 +1,8 @@
 """Structural laws: the elastic part of the approach of one contact over its load, and its derivative.
 
-A plane log kernel has no absolute approach, so it is taken from one of three laws that name their
-reference: `iso16281` and `palmgren` for a steel roller of finite length, `half_space` for a stated depth.
+A plane log kernel has no absolute approach, so it is taken from one of four laws that name their
+reference: `iso16281` and `palmgren` for a steel roller of finite length, `half_space` for a stated depth, and
+`finite_elements` for roller, rings and their seats as they are.
 Each law is zero for loads at and below zero, where its compliance is inf (an unloaded contact has no
 stiffness).
 """
@@ -13,19 +14,26 @@ from typing import Literal
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics._values import Values, as_given
 from ehdmaps.physics.solids import STEEL, reduced_modulus
 
-StructuralLaw = Literal["iso16281", "palmgren", "half_space"]
-STRUCTURAL_LAWS: tuple[StructuralLaw, ...] = ("iso16281", "palmgren", "half_space")
+StructuralLaw = Literal["iso16281", "palmgren", "half_space", "fe"]
+STRUCTURAL_LAWS: tuple[StructuralLaw, ...] = ("iso16281", "palmgren", "half_space", "fe")
 
 STEEL_REDUCED_MODULUS = reduced_modulus(STEEL, STEEL)
 ISO_LINE_CONSTANT = 35948.0
 """c_L/L^(8/9) of ISO/TS 16281 for the total approach of both contacts of a roller, N and mm."""
 
+FE_LOAD = 1e5
+"""Load [N/m] at which the law of finite elements states its approach: 100 N/mm."""
+
 _LOAD_EXPONENT = 0.9
 _HALF_PLANE_DEPTH_RATIO = 0.49
+_WIDEST_FE = 0.25
+"""Half-width over reduced radius up to which the law of finite elements holds."""
+_LARGEST_EXPONENT = 700.0
 
 
 def iso16281(load: Values, roller_length: float, reduced_modulus: float = STEEL_REDUCED_MODULUS) -> Values:
@@ -178,6 +186,85 @@ def half_space_compliance(load: Values, reference_depth: float, radius: float, r
     return as_given(4.0 / (math.pi * reduced_modulus) * np.log(2.0 * ratio), load)
 
 
+def finite_elements(
+    load: Values, fe_approach: float, radius: float, reduced_modulus: float = STEEL_REDUCED_MODULUS
+) -> Values:
+    """Elastic approach of roller and ring as finite elements give it, between roller's axis and seat of the ring [m].
+
+    delta = w [delta_0/w_0 + (2/(pi E')) ln(w_0/w)] with w_0 = `FE_LOAD`. Bodies are linear, so that the approach over
+    the load depends on the load by the width of the contact alone, as in `half_space`, of which this is the form with
+    the depth that roller, ring and seat have: the number delta_0 holds all of their shape. See `ehdmaps.solids`, which
+    finds it.
+
+    Parameters
+    ----------
+    load : float or array
+        w [N/m]; negative loads are taken as zero.
+    fe_approach : float
+        delta_0, the approach at `FE_LOAD` [m].
+    radius : float
+        Reduced radius R [m]; it limits the load, see `highest_fe_load`.
+    reduced_modulus : float
+        E' [Pa].
+
+    Raises
+    ------
+    InputError
+        If the contact is too wide for the law.
+
+    Examples
+    --------
+    >>> round(1e6 * finite_elements(1e5, fe_approach=3e-6, radius=5.5e-3), 3)
+    3.0
+    """
+    positive = _checked_load(load, fe_approach, radius, reduced_modulus)
+    slope = 2.0 / (math.pi * reduced_modulus)
+    loaded = np.where(positive > 0.0, positive, FE_LOAD)
+    delta = positive * (fe_approach / FE_LOAD + slope * np.log(FE_LOAD / loaded))
+    return as_given(delta, load)
+
+
+def finite_elements_compliance(
+    load: Values, fe_approach: float, radius: float, reduced_modulus: float = STEEL_REDUCED_MODULUS
+) -> Values:
+    """d(delta)/dw of `finite_elements`, delta/w - 2/(pi E') [m2/N]; inf at and below zero load.
+
+    Parameters
+    ----------
+    load : float or array
+        w [N/m].
+    fe_approach, radius, reduced_modulus
+        See `finite_elements`.
+    """
+    positive = _checked_load(load, fe_approach, radius, reduced_modulus)
+    slope = 2.0 / (math.pi * reduced_modulus)
+    with np.errstate(divide="ignore"):
+        logarithm = np.log(np.divide(FE_LOAD, positive))
+    return as_given(fe_approach / FE_LOAD + slope * (logarithm - 1.0), load)
+
+
+def highest_fe_load(fe_approach: float, radius: float, reduced_modulus: float = STEEL_REDUCED_MODULUS) -> float:
+    """Load up to which `finite_elements` holds [N/m].
+
+    There the contact is as wide as a quarter of the reduced radius, b = R/4, or as the depth that stands for the
+    bodies, where d(delta)/dw has fallen to (4/(pi E')) ln 2.
+
+    Parameters
+    ----------
+    fe_approach, radius, reduced_modulus
+        See `finite_elements`.
+
+    Examples
+    --------
+    >>> round(1e-3 * highest_fe_load(3e-6, 5.515e-3))
+    31243
+    """
+    slope = 2.0 / (math.pi * reduced_modulus)
+    wide = math.pi * reduced_modulus * radius * _WIDEST_FE**2 / 8.0
+    deep = fe_approach / FE_LOAD / slope - 1.0 - 2.0 * math.log(2.0)
+    return min(wide, FE_LOAD * math.exp(min(deep, _LARGEST_EXPONENT)))
+
+
 def roller_reference_depth(roller_diameter: float) -> float:
     """Depth d* = D/e [m] that stands for the centre of a roller of diameter D [m].
 
@@ -222,6 +309,18 @@ def _power_law_slope(load: Values, approach: Values) -> Values:
     """0.9 delta/w, inf at zero."""
     loaded = np.asarray(load) > 0.0
     return as_given(np.where(loaded, _LOAD_EXPONENT * approach / np.where(loaded, load, 1.0), np.inf), load)
+
+
+def _checked_load(load: Values, fe_approach: float, radius: float, reduced_modulus: float) -> FloatArray:
+    """Load without its negative part."""
+    positive = np.maximum(np.asarray(load, dtype=np.float64), 0.0)
+    most, highest = float(np.max(positive, initial=0.0)), highest_fe_load(fe_approach, radius, reduced_modulus)
+    if most > highest:
+        raise InputError(
+            f"fe law: got the load {most:.6g} N/m; allowed: at most {highest:.4g} N/m, where the contact is too wide "
+            f"for the law (approach of {fe_approach:.4g} m at {FE_LOAD:g} N/m); lower the load or check that approach"
+        )
+    return positive
 
 
 def _half_space_terms(

@@ -24,12 +24,14 @@ class LineContact:
         Reduced radius R [m].
     material : Material
         Material of both bodies.
-    structural_law : {"iso16281", "palmgren", "half_space"}
+    structural_law : {"iso16281", "palmgren", "half_space", "fe"}
         Law of the elastic part of the approach, see `ehdmaps.physics.approach`.
     roller_length : float, optional
         Length of the whole roller [m]; iso16281 and palmgren need it.
     reference_depth : float, optional
         d* [m]; half_space needs it.
+    fe_approach : float, optional
+        Approach at `ehdmaps.physics.approach.FE_LOAD` by finite elements [m]; fe needs it.
 
     Raises
     ------
@@ -43,6 +45,7 @@ class LineContact:
     structural_law: StructuralLaw
     roller_length: float | None = None
     reference_depth: float | None = None
+    fe_approach: float | None = None
 
     def __post_init__(self) -> None:
         where = f"contact {self.name!r}"
@@ -51,6 +54,7 @@ class LineContact:
             ("radius", self.radius),
             ("roller_length", self.roller_length),
             ("reference_depth", self.reference_depth),
+            ("fe_approach", self.fe_approach),
         ):
             if value is not None and not (math.isfinite(value) and value > 0):
                 problems.append(f"{where}, {key}: got {value!r} m; allowed: finite and > 0")
@@ -64,6 +68,12 @@ class LineContact:
                     f"{where}, reference_depth: got none; the half_space law needs it; "
                     "give the depth d* [m] of the point whose approach is meant, or choose another "
                     "structural_law"
+                )
+        elif self.structural_law == "fe":
+            if self.fe_approach is None:
+                problems.append(
+                    f"{where}, fe_approach: got none; the fe law needs it; give the approach [m] at "
+                    f"{approach.FE_LOAD:g} N/m that `ehdmaps solids` finds, or choose another structural_law"
                 )
         elif self.roller_length is None:
             problems.append(
@@ -85,6 +95,8 @@ class LineContact:
         """
         if self.structural_law == "half_space":
             return approach.half_space(load, self._depth, self.radius, self.reduced_modulus)
+        if self.structural_law == "fe":
+            return approach.finite_elements(load, self._fe_approach, self.radius, self.reduced_modulus)
         if self.structural_law == "palmgren":
             return approach.palmgren(load, self._length, self.reduced_modulus)
         return approach.iso16281(load, self._length, self.reduced_modulus)
@@ -96,14 +108,16 @@ class LineContact:
         """
         if self.structural_law == "half_space":
             return approach.half_space_compliance(load, self._depth, self.radius, self.reduced_modulus)
+        if self.structural_law == "fe":
+            return approach.finite_elements_compliance(load, self._fe_approach, self.radius, self.reduced_modulus)
         if self.structural_law == "palmgren":
             return approach.palmgren_compliance(load, self._length, self.reduced_modulus)
         return approach.iso16281_compliance(load, self._length, self.reduced_modulus)
 
     @property
     def structural_scaling(self) -> float:
-        """Factor on the structural approach of steel; 1 for half_space, which knows the material."""
-        if self.structural_law == "half_space":
+        """Factor on the structural approach of steel; 1 for half_space and fe, which know the material."""
+        if self.structural_law in ("half_space", "fe"):
             return 1.0
         load = 1e5  # any: the laws are power laws of the load
         return self.structural_approach(load) / replace(self, material=STEEL).structural_approach(load)
@@ -117,3 +131,8 @@ class LineContact:
     def _depth(self) -> float:
         """Reference depth; its presence was checked when the contact was made."""
         return math.nan if self.reference_depth is None else self.reference_depth
+
+    @property
+    def _fe_approach(self) -> float:
+        """Approach by finite elements; its presence was checked when the contact was made."""
+        return math.nan if self.fe_approach is None else self.fe_approach

@@ -28,6 +28,8 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from ehdmaps.errors import InputError
+
 NEWTONIAN, EYRING, CARREAU, LIMITING = range(4)
 """Forms of `ShearLaw`."""
 
@@ -46,6 +48,16 @@ LIMITING_RATIO = 0.05
 
 CARREAU_EXPONENT = 0.5
 """n of Carreau's law where none is given: assumed. Measured ones are 0.3 to 0.8."""
+
+STRESSES: Mapping[int, float] = {EYRING: EYRING_STRESS, CARREAU: EYRING_STRESS, LIMITING: LIMITING_STRESS_AT_REST}
+"""tau0 of the forms that have one, where none is given [Pa]."""
+
+SHEAR_LIMITS: Mapping[str, tuple[float, float]] = {
+    "shear_stress": (1e3, 1e10),
+    "limiting_ratio": (1e-3, 1.0),
+    "carreau_exponent": (0.05, 1.0),
+}
+"""What `shear_law` takes: tau0 [Pa], Lambda and n."""
 
 NEAR = 0.999
 """Part of the limiting stress up to which the circular law holds as written."""
@@ -84,6 +96,62 @@ class ShearLaw(NamedTuple):
     def scaled(self, stress_unit: float, pressure_unit: float) -> ShearLaw:
         """The same law for stresses and pressures in units that are as many times as large."""
         return self._replace(stress=self.stress / stress_unit, ratio=self.ratio * pressure_unit / stress_unit)
+
+
+def shear_law(
+    shear: str = "newtonian",
+    shear_stress: float | None = None,
+    limiting_ratio: float | None = None,
+    carreau_exponent: float | None = None,
+) -> ShearLaw:
+    """Law by its word, in Pa, with the default of each number that is left out.
+
+    Parameters
+    ----------
+    shear : str
+        A word of `SHEARS`.
+    shear_stress : float, optional
+        tau0 [Pa] of any law but the Newtonian.
+    limiting_ratio : float, optional
+        Lambda of the limiting law.
+    carreau_exponent : float, optional
+        n of Carreau's law.
+
+    Raises
+    ------
+    InputError
+        For an unknown word, a number outside `SHEAR_LIMITS`, and one that the law does not have.
+
+    Examples
+    --------
+    >>> shear_law("limiting")
+    ShearLaw(form=3, stress=2000000.0, ratio=0.05, exponent=1.0)
+    """
+    if not isinstance(shear, str) or shear not in SHEARS:
+        raise InputError(f"shear: got {shear!r:.60}; allowed: {', '.join(SHEARS)}")
+    form = SHEARS[shear]
+    problems = []
+    keys = {
+        "shear_stress": (shear_stress, form != NEWTONIAN),
+        "limiting_ratio": (limiting_ratio, form == LIMITING),
+        "carreau_exponent": (carreau_exponent, form == CARREAU),
+    }
+    for key, (value, belongs) in keys.items():
+        low, high = SHEAR_LIMITS[key]
+        if value is None:
+            continue
+        if not belongs:
+            problems.append(f"{key}: got {value!r} with shear {shear}, which has none; leave it out")
+        elif not low <= value <= high:
+            problems.append(f"{key}: got {value!r}; allowed: {low:g} to {high:g}; leave it out for the default")
+    if problems:
+        raise InputError(problems)
+    return ShearLaw(
+        form,
+        STRESSES.get(form, 1.0) if shear_stress is None else shear_stress,
+        (LIMITING_RATIO if limiting_ratio is None else limiting_ratio) if form == LIMITING else 0.0,
+        (CARREAU_EXPONENT if carreau_exponent is None else carreau_exponent) if form == CARREAU else 1.0,
+    )
 
 
 def thinning(law: ShearLaw, tau: float, p: float) -> tuple[float, float]:

@@ -190,6 +190,10 @@ class ContactSolution:
     max_pressure_error: float
     rolling_force_error: float
     mass_flow_error: float
+    traction: float
+    wall_stress: float
+    film_temperature: float
+    surface_temperature: float
     iterations: int
     solve_seconds: float
     viscosity_extrapolated: bool
@@ -475,6 +479,10 @@ def contact_solution(film: FilmSolution, contact: LineContact, point: OperatingP
         max_pressure_error=film.max_pressure_error,
         rolling_force_error=film.rolling_force_error,
         mass_flow_error=film.mass_flow_error,
+        traction=film.traction,
+        wall_stress=film.wall_stress,
+        film_temperature=film.film_temperature,
+        surface_temperature=film.surface_temperature,
         iterations=film.iterations,
         solve_seconds=film.solve_seconds,
         viscosity_extrapolated=film.viscosity_extrapolated,

@@ -11,8 +11,11 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.catalogue import boundary
 from ehdmaps.physics.solids import STEEL, Material
 
-Seat = Literal["rigid", "elastic"]
-SEATS: tuple[Seat, ...] = ("rigid", "elastic")
+Seat = Literal["elastic", "rigid"]
+SEATS: tuple[Seat, ...] = ("elastic", "rigid")
+
+HOUSING_RATIO = 1.5
+"""Outer diameter of a housing over that of the bearing, where none is given."""
 
 THINNEST_SHARE = 0.02
 """Least thickness of a ring or of the wall of a roller over the roller's diameter: what a mesh still resolves."""
@@ -34,12 +37,12 @@ class Sections:
         Boundary diameters of the bearing [m], where the rings end. Ribs are left out.
     rollers : int
         Number of rollers.
-    seat : {"rigid", "elastic"}
-        What both rings are fixed to: rigid surfaces, or shaft and housing of the same material.
+    seat : {"elastic", "rigid"}
+        What both rings are fixed to: shaft and housing of the same material, or rigid surfaces.
     shaft_bore : float
-        Diameter of the bore of the shaft [m]; 0 for a solid shaft. With an elastic seat.
-    housing_diameter : float or None
-        Outer diameter of the housing [m], which is held there. With an elastic seat.
+        Diameter of the bore of the shaft [m]; 0 for a solid shaft. An elastic seat has it.
+    housing_diameter : float
+        Outer diameter of the housing [m], which is held there. An elastic seat has it.
     material : Material
         Material of all bodies.
 
@@ -56,10 +59,10 @@ class Sections:
     bore: float
     outside_diameter: float
     rollers: int
+    seat: Seat
+    shaft_bore: float
+    housing_diameter: float
     roller_bore: float = 0.0
-    seat: Seat = "rigid"
-    shaft_bore: float = 0.0
-    housing_diameter: float | None = None
     material: Material = STEEL
 
     def __post_init__(self) -> None:
@@ -73,15 +76,10 @@ class Sections:
         problems = [
             f"solids, {name}: got {value!r} m; allowed: finite and {'>= 0' if name in _MAY_BE_ZERO else '> 0'}"
             for name, value in lengths.items()
-            if value is not None
-            and not (math.isfinite(value) and (value > 0.0 or (value == 0.0 and name in _MAY_BE_ZERO)))
+            if not (math.isfinite(value) and (value > 0.0 or (value == 0.0 and name in _MAY_BE_ZERO)))
         ]
         if self.seat not in SEATS:
             problems.append(f"solids, seat: got {self.seat!r}; allowed: {', '.join(SEATS)}")
-        elif self.seat == "elastic" and self.housing_diameter is None:
-            problems.append(
-                "solids, housing_diameter: got none; an elastic seat needs the outer diameter of the housing"
-            )
         if problems:
             return problems
         least = 2.0 * THINNEST_SHARE * self.roller_diameter
@@ -90,9 +88,8 @@ class Sections:
             ("bore", self.bore, "inner_raceway_diameter", self.inner_raceway_diameter),
             ("outer_raceway_diameter", self.outer_raceway_diameter, "outside_diameter", self.outside_diameter),
             ("shaft_bore", self.shaft_bore, "bore", self.bore),
+            ("outside_diameter", self.outside_diameter, "housing_diameter", self.housing_diameter),
         ]
-        if self.housing_diameter is not None:
-            walls.append(("outside_diameter", self.outside_diameter, "housing_diameter", self.housing_diameter))
         return [
             f"solids, {inner}: got {a!r} m with the {outer} {b!r} m; allowed: smaller by {least:.4g} m or more"
             for inner, a, outer, b in walls
@@ -115,7 +112,7 @@ def sections_of(
     bore: float | None = None,
     outside_diameter: float | None = None,
     roller_bore: float = 0.0,
-    seat: Seat = "rigid",
+    seat: Seat = "elastic",
     shaft_bore: float = 0.0,
     housing_diameter: float | None = None,
 ) -> Sections:
@@ -129,8 +126,10 @@ def sections_of(
         Material of all bodies.
     bore, outside_diameter : float, optional
         Boundary diameters of the bearing [m]; those of its designation by ISO 15 if left out.
-    roller_bore, seat, shaft_bore, housing_diameter
+    roller_bore, seat, shaft_bore
         See `Sections`.
+    housing_diameter : float, optional
+        Outer diameter of the housing [m]; `HOUSING_RATIO` times the outside diameter if left out.
 
     Raises
     ------
@@ -163,6 +162,6 @@ def sections_of(
         roller_bore=roller_bore,
         seat=seat,
         shaft_bore=shaft_bore,
-        housing_diameter=housing_diameter,
+        housing_diameter=HOUSING_RATIO * outside_diameter if housing_diameter is None else housing_diameter,
         material=material,
     )

@@ -37,6 +37,9 @@ ISOVISCOUS = Lubricant.barus(viscosity=VISCOSITY, pressure_viscosity=0.0, densit
 ISOVISCOUS_L = 0.5
 """Oil number that sets the speed, and so h/R, of points whose oil has none: h/R is 1.6e-8 Moes films."""
 
+SETTINGS = ("inlet_length", "slide_to_roll", "flow", "shear", "shear_stress", "limiting_ratio", "carreau_exponent")
+"""What is a setting of the solver, and not of one run."""
+
 
 def parameters(
     M: float, L: float, columns: int = 100, rows: int = 8, *, hertz: bool = False, **changes: Any
@@ -45,7 +48,7 @@ def parameters(
 
     L = 0 is an isoviscous, incompressible oil; `changes` are other settings of the run, or of the solver.
     """
-    settings = {key: changes.pop(key) for key in ("inlet_length", "slide_to_roll", "flow") if key in changes}
+    settings = {key: changes.pop(key) for key in SETTINGS if key in changes}
     solver = OpenFoamSolver(starter=reynolds_start, **settings)
     oil = ROELANDS if L > 0.0 else ISOVISCOUS
     load, speed = load_and_speed(M, L or ISOVISCOUS_L, VISCOSITY, ALPHA, CONTACT.radius, CONTACT.reduced_modulus)

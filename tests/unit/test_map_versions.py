@@ -19,10 +19,10 @@ from ehdmaps.maps.emap import EHDMap, open_map
 from tests.cases.laws import dataset_of
 
 DATA = Path(__file__).parents[1] / "data"
-OLD, OLD_2, OLD_3 = DATA / "schema1.nc", DATA / "schema2.nc", DATA / "schema3.nc"
-"""NU308 by the solver reynolds, with a standstill and a backbone, as `ehdmaps generate` wrote it in schema 1 to 3."""
+OLD, OLD_2, OLD_3, OLD_4 = (DATA / f"schema{version}.nc" for version in (1, 2, 3, 4))
+"""NU308 by the solver reynolds, with a standstill and a backbone, as `ehdmaps generate` wrote it in schema 1 to 4."""
 
-RECORDED = {path: json.loads(path.with_suffix(".json").read_text()) for path in (OLD, OLD_2, OLD_3)}
+RECORDED = {path: json.loads(path.with_suffix(".json").read_text()) for path in (OLD, OLD_2, OLD_3, OLD_4)}
 """Values of their laws, recorded when tables were laid along the solved valley, which moved them by the error of a
 table from the code that made the maps, 3e-6 of w, 7e-4 of k, 2e-3 of c at most: points (approach, rate, speed,
 temperature) and (w, dw/ddelta, dw/drate) of the laws of the backbone, and of those of the grid alone; of schema 2
@@ -61,6 +61,17 @@ def test_a_map_of_schema_3_gives_the_laws_that_it_gave_in_time_too():
     np.testing.assert_allclose(found, recorded["memory"]["series"], rtol=1e-10)
     other = open_map(OLD_3, structural_law="half_space")
     assert other.dataset.attrs["schema_version"] == schema.SCHEMA_VERSION
+
+
+def test_a_map_of_schema_4_gives_the_laws_that_it_gave():
+    """It has neither temperatures nor traction, and its oil and solids the heat that is assumed today."""
+    emap, recorded = open_map(OLD_4), RECORDED[OLD_4]
+    assert emap.dataset.attrs["schema_version"] == 4 and "film_temperature" not in emap.dataset
+    assert emap.lubricant == ehdmaps.Lubricant.named("FVA3")
+    law = emap.law("series")
+    np.testing.assert_allclose(
+        [law(*point) for point in recorded["points"]], recorded["laws"]["series"], rtol=SAME_CODE
+    )
 
 
 @pytest.mark.parametrize("kind", ["series", "inner", "outer"])

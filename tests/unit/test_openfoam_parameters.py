@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
-from ehdmaps.openfoam.parameters import Mesh, Oscillation, Parameters, Start
+from ehdmaps.openfoam.isotherms import STEP, isotherms
+from ehdmaps.openfoam.parameters import Heat, Mesh, Oscillation, Parameters, Start
 from ehdmaps.openfoam.pyfoam import parse
+from ehdmaps.physics.heat import HeatData
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.rheology import ShearLaw, shear_law
 
 OIL = Lubricant.named("FVA3").at(313.15)
 GOOD = Parameters(
@@ -63,6 +66,30 @@ def test_what_is_not_asked_for_is_left_out(tmp_path):
     assert list(found["response"]["frequencies"]) == []
 
 
+def test_heat_has_the_oil_over_temperature(tmp_path):
+    oil = isotherms(Lubricant.named("FVA3"), 333.15)
+    found = entries(replace(GOOD, heat=Heat(333.15, HeatData(oil_conductivity=0.15), oil)), tmp_path)["heat"]
+    assert (found["temperature"], found["oilConductivity"], found["solidConductivity"]) == (333.15, 0.15, 46.0)
+    lists = found["isotherms"]
+    place = round((333.15 - lists["first"]) / STEP)
+    assert (lists["viscosity"]["type"], lists["density"]["type"], lists["step"]) == ("FVA3", "DowsonHigginson", STEP)
+    assert lists["viscosity"]["viscosity"][place] == Lubricant.named("FVA3").at(333.15).viscosity
+    assert {len(lists[law][key]) for law, key in (("viscosity", "pressureScale"), ("density", "density"))} == {
+        len(oil.states)
+    }
+    assert "heat" not in entries(GOOD, tmp_path)
+
+
+def test_isotherms_end_where_the_laws_do():
+    oil = isotherms(Lubricant.named("FVA3"), 273.15)
+    assert 273.15 - 14.67 < oil.first < 273.15 - 14.67 + STEP
+    numbers = {"viscosity": 1e-4, "pressure_viscosity": 1e-8, "density": 100.0, "density_slope": -10.0}
+    with pytest.raises(
+        InputError, match=r"got 296.15 K, about which its laws hold over .* K; allowed with heat: at least"
+    ):
+        isotherms(Lubricant.barus(**numbers), 296.15)
+
+
 def test_an_oscillation(tmp_path):
     found = entries(replace(GOOD, oscillation=Oscillation(1000.0, 1e-3, 80, 4)), tmp_path)
     assert dict(found["oscillation"]) == {"frequency": 1000.0, "amplitude": 1e-3, "stepsPerCycle": 80, "cycles": 4}
@@ -83,10 +110,16 @@ def test_the_laws_of_the_oil(oil, words):
     assert re.search(words, replace(GOOD, oil=oil.at(313.15)).text())
 
 
-@pytest.mark.parametrize("shear", ["eyring", "limiting"])
-def test_a_shear_law_has_its_stress(tmp_path, shear):
-    found = entries(replace(GOOD, shear=shear, shear_stress=5e6), tmp_path)
-    assert dict(found["shear"]) == {"type": {"eyring": "Eyring", "limiting": "limiting"}[shear], "stress": 5e6}
+@pytest.mark.parametrize(
+    ("law", "numbers"),
+    [
+        (shear_law("eyring", 5e6), {"type": "Eyring", "stress": 5e6}),
+        (shear_law("carreau", 5e6, None, 0.4), {"type": "Carreau", "stress": 5e6, "exponent": 0.4}),
+        (shear_law("limiting", 3e6, 0.07), {"type": "limiting", "stress": 3e6, "ratio": 0.07}),
+    ],
+)
+def test_a_shear_law_has_its_numbers(tmp_path, law, numbers):
+    assert dict(entries(replace(GOOD, shear=law), tmp_path)["shear"]) == numbers
 
 
 HOSTILE = [
@@ -137,8 +170,12 @@ def test_only_booleans_switch(value):
 def test_only_known_words_get_in(value):
     with pytest.raises(InputError, match=r"flow: got .*; allowed: thin_film, full_stress"):
         replace(GOOD, flow=value).text()
-    with pytest.raises(InputError, match=r"shear: got .*; allowed: newtonian, eyring, limiting"):
-        replace(GOOD, shear=value).text()
+
+
+@pytest.mark.parametrize("value", ["Eyring; #calc", None, ["Eyring"], 4], ids=repr)
+def test_only_known_laws_of_shear_get_in(value):
+    with pytest.raises(InputError, match=r"shear: got .*; allowed: 0, 1, 2, 3"):
+        replace(GOOD, shear=ShearLaw(value)).text()
 
 
 @pytest.mark.parametrize(

@@ -371,11 +371,15 @@ OPTIONS = {
     "odd columns": (dict(columns=401), "columns: got 401; allowed: an even number"),
     "rows": (dict(rows=65), "rows: got 65; allowed: 4 to 64"),
     "flow": (dict(flow="thick"), "flow: got 'thick'; allowed: thin_film, full_stress"),
-    "shear": (dict(shear="plastic"), "shear: got 'plastic'; allowed: newtonian, eyring, limiting"),
-    "no stress": (dict(shear="eyring"), "shear_stress: got None Pa; allowed: 1e3 to 1e10 Pa with shear eyring"),
-    "a stress": (dict(shear_stress=5e6), "shear_stress: got 5000000.0 Pa with shear newtonian, which has none"),
+    "shear": (dict(shear="plastic"), "solver, shear: got 'plastic'; allowed: newtonian, eyring, carreau, limiting"),
+    "no stress": (dict(shear="eyring", shear_stress=0.0), "solver, shear_stress: got 0.0; allowed: 1000 to 1e.10"),
+    "a stress": (dict(shear_stress=5e6), "solver, shear_stress: got 5000000.0 with shear newtonian, which has none"),
+    "a ratio": (dict(shear="eyring", limiting_ratio=0.1), "limiting_ratio: got 0.1 with shear eyring, which has none"),
     "slide": (dict(slide_to_roll=3.0), "slide_to_roll: got 3.0; allowed: -2 to 2"),
     "nan": (dict(slide_to_roll=float("nan")), "slide_to_roll: got nan; allowed: -2 to 2"),
+    "physics": (dict(physics="inlet-heat"), "physics: got 'inlet-heat'; allowed: isothermal, thermal"),
+    "all stresses with heat": (dict(physics="thermal", flow="full_stress"), "physics: got thermal with flow 'full_str"),
+    "a wall that stands": (dict(physics="thermal", slide_to_roll=-2.0), "slide_to_roll: got -2.0 with physics thermal"),
     "timeout": (dict(timeout=0.0), "timeout: got 0.0; allowed: 0.1 to"),
     "folder": (dict(keep_cases=Path("/tmp/my cases")), "OpenFOAM takes no spaces or quotes in the path of a case"),
 }
@@ -391,6 +395,10 @@ def test_settings_out_of_range(fake, name):
 def test_a_shear_law_with_its_stress(fake):
     solver = OpenFoamSolver(shear="eyring", shear_stress=5e6)
     assert "shear { type Eyring; stress 5000000.0; }" in solver.parameters(CONTACT, OIL, POINT).text()
+    usual = OpenFoamSolver(shear="limiting")
+    assert "shear { type limiting; stress 2000000.0; ratio 0.05; }" in usual.parameters(CONTACT, OIL, POINT).text()
+    assert usual.settings()["shear_stress"] == 2e6 and "limiting_ratio" not in usual.settings()
+    assert OpenFoamSolver(shear="limiting", limiting_ratio=0.07).settings()["limiting_ratio"] == 0.07
 
 
 def test_settings_and_build_are_in_the_key_of_a_task_but_the_timeout_is_not(fake):
@@ -524,7 +532,8 @@ HOSTILE_KEYS = {
     "rows = 100": "rows: got 100; allowed: a whole number from 4 to 64",
     "shear_stress = nan": "shear_stress: got nan; allowed: 1000 to 1e.10",
     "shear_stress = inf": "shear_stress: got inf",
-    'shear_stress = "$load"': r"shear_stress: got '\$load'; allowed: a bare number",
+    'shear_stress = "$load"': r"shear_stress: got '\$load', which does not start with a number",
+    'physics = "inlet-heat"': "physics: got 'inlet-heat'; allowed: 'isothermal', 'thermal'",
     "slide_to_roll = -3": "slide_to_roll: got -3; allowed: -2 to 2",
     'inertia = "yes"': "inertia: got 'yes'; allowed: true or false, without quotes",
     'start = "zero"': "start: got 'zero'; allowed: 'reynolds', 'hertz'",
@@ -543,9 +552,9 @@ def test_keys_of_a_job_that_are_refused(line):
 
 
 def test_keys_of_a_job_that_are_taken():
-    text = JOB.text.replace('shear = "newtonian"', 'shear = "limiting"\nshear_stress = 2e7\ninertia = true')
+    text = JOB.text.replace('shear = "newtonian"', 'shear = "limiting"\nlimiting_ratio = 0.07\ninertia = true')
     options = parse_job(text, "job", "job.toml").solver_options
-    assert (options["shear"], options["shear_stress"], options["inertia"]) == ("limiting", 2e7, True)
+    assert (options["shear"], options["limiting_ratio"], options["inertia"]) == ("limiting", 0.07, True)
 
 
 def test_places_of_velocity_profiles():

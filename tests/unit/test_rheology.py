@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-from ehdmaps.physics.rheology import CARREAU, EYRING, LIMITING, NEWTONIAN, ShearLaw, thinning, yielding
+from ehdmaps.errors import InputError
+from ehdmaps.physics.rheology import CARREAU, EYRING, LIMITING, NEWTONIAN, ShearLaw, shear_law, thinning, yielding
 
 LAWS = (
     ShearLaw(NEWTONIAN),
@@ -65,3 +66,19 @@ def test_compiled_kernels_give_the_same():
     for law in LAWS:
         assert njit(thinning)(law, 2.5, PRESSURE) == pytest.approx(thinning(law, 2.5, PRESSURE), rel=1e-15)
         assert njit(yielding)(law, 2.5, PRESSURE) == pytest.approx(yielding(law, 2.5, PRESSURE), rel=1e-15)
+
+
+def test_laws_by_their_words():
+    assert shear_law() == ShearLaw()
+    assert shear_law("eyring") == ShearLaw(EYRING, 6e6)
+    assert shear_law("carreau", 5e6, carreau_exponent=0.7) == ShearLaw(CARREAU, 5e6, exponent=0.7)
+    assert shear_law("limiting", limiting_ratio=0.08) == ShearLaw(LIMITING, 2e6, 0.08)
+    for options, problem in (
+        ({"shear": "plastic"}, "shear: got 'plastic'; allowed: newtonian, eyring, carreau, limiting"),
+        ({"shear_stress": 1e6}, "shear_stress: got 1000000.0 with shear newtonian, which has none; leave it out"),
+        ({"shear": "eyring", "limiting_ratio": 0.1}, "limiting_ratio: got 0.1 with shear eyring, which has none"),
+        ({"shear": "limiting", "limiting_ratio": 0.0}, "limiting_ratio: got 0.0; allowed: 0.001 to 1"),
+        ({"shear": "carreau", "carreau_exponent": 2.0}, "carreau_exponent: got 2.0; allowed: 0.05 to 1"),
+    ):
+        with pytest.raises(InputError, match=problem):
+            shear_law(**options)

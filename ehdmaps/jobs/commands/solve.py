@@ -6,7 +6,7 @@ import argparse
 import json
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -233,6 +233,8 @@ def _read(arguments: argparse.Namespace) -> _Request:
         frequencies = _frequencies(arguments, read, problems)
     elif arguments.frequency is not None:
         frequencies = _one_frequency(arguments, read, problems)
+    if job is not None:
+        job = _with_stated(arguments, job, problems)
     traction = _traction(arguments, job, problems)
     supply = _supply(arguments, job, problems)
     if job is not None and temperature is not None:
@@ -243,6 +245,22 @@ def _read(arguments: argparse.Namespace) -> _Request:
     if problems or job is None or load is None or speed is None or temperature is None:
         raise InputError(problems)
     return _Request(job, OperatingPoint(load, speed, temperature), length, frequencies, traction, supply)
+
+
+def _with_stated(arguments: argparse.Namespace, job: Job, problems: list[str]) -> Job:
+    """The job with physics, law of shear and sliding of the command line."""
+    given = {key: getattr(arguments, key) for key in ("physics", "shear", "shear_stress")}
+    if _slips(arguments) == 1:
+        (given["slide_to_roll"],) = arguments.slide_to_roll
+    if _slips(arguments) < 2:
+        given["limiting_ratio"] = arguments.limiting_ratio
+    texts = {key: text for key, text in given.items() if text is not None}
+    return replace(job, solver_options={**job.solver_options, **solvers.stated(job.solver, texts, problems)})
+
+
+def _slips(arguments: argparse.Namespace) -> int:
+    """How many values --slide-to-roll has."""
+    return len(arguments.slide_to_roll or ())
 
 
 def _one_frequency(arguments: argparse.Namespace, read: _Reader, problems: list[str]) -> FloatArray | None:
@@ -279,17 +297,22 @@ def _frequencies(arguments: argparse.Namespace, read: _Reader, problems: list[st
 
 def _traction(arguments: argparse.Namespace, job: Job | None, problems: list[str]) -> TractionRequest | None:
     """Slips and stresses of --slide-to-roll FROM TO POINTS; None where there are none, or a problem was noted."""
-    if arguments.slide_to_roll is None:
-        problems += [
-            f"{option}: stands without --slide-to-roll, whose law it belongs to; add that, or delete it"
-            for option, given in (
-                ("--eyring-stress", arguments.eyring_stress),
-                ("--limiting-ratio", arguments.limiting_ratio),
-            )
-            if given is not None
-        ]
-        return None
     option, before = "--slide-to-roll", len(problems)
+    if _slips(arguments) not in (0, 1, 3):
+        problems.append(f"{option}: got {_slips(arguments)} values; allowed: one ratio, or FROM TO POINTS")
+        return None
+    if _slips(arguments) < 3:
+        if arguments.eyring_stress is not None:
+            problems.append(
+                "--eyring-stress: stands without --slide-to-roll FROM TO POINTS, whose law it belongs to; add that, or "
+                "delete it; the stress of --shear is --shear-stress"
+            )
+        return None
+    if job is not None and (told := solvers.solver_words(job.solver_options)):
+        problems.append(
+            f"{option}: got FROM TO POINTS beside {told[2:]}; traction over the ratio is that of isothermal, newtonian "
+            "films of pure rolling; allowed: one ratio, with which the film is solved"
+        )
     if job is not None and job.solver != "reynolds":
         problems.append(f"{option}: the solver {job.solver!r} keeps no film for it; allowed: with --solver reynolds")
     for other in ("frequency", "frequencies", "fields", "plot"):
@@ -324,6 +347,10 @@ def _supply(arguments: argparse.Namespace, job: Job | None, problems: list[str])
         return None
     if job is not None and job.solver != "reynolds":
         problems.append(f"--supply: the solver {job.solver!r} knows no meniscus; allowed: with --solver reynolds")
+    elif job is not None and (told := solvers.solver_words(job.solver_options)):
+        problems.append(
+            f"--supply: stands beside {told[2:]}; allowed: with isothermal, newtonian films of pure rolling"
+        )
     for other in ("frequency", "frequencies", "slide_to_roll", "fields", "plot"):
         if getattr(arguments, other) is not None:
             option = other.replace("_", "-")

@@ -134,11 +134,16 @@ Foam::scalarField Foam::filmFlow::columnFlux(const surfaceScalarField& massFlux)
 
 Foam::scalar Foam::filmFlow::velocityStep
 (
-    const scalar viscosity,
-    const label column,
-    const label row
+    const scalar v,
+    const scalar thickness,
+    const scalar below,
+    const scalar velocity,
+    const scalar above
 ) const
 {
-    const scalar rate = contact_.entrainment()/(film_.film(column)*film_.share(row));
-    return min(scalar(1e-6), 1e-3*oil_.shearStress()/(viscosity*rate));
+    // Newtonian up to this difference over a row; beyond, stress is about linear in the logarithm of the rate
+    const scalar newtonian =
+        oil_.shearStress(oil_.pressure(v))*thickness/(oil_.viscosity(v)*contact_.entrainment());
+    const scalar least = min(mag(velocity - below), mag(above - velocity));
+    return min(scalar(1e-6), 1e-4*max(newtonian, least));
 }

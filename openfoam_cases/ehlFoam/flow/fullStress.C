@@ -33,18 +33,6 @@ static tmp<volVectorField> velocity(const filmMesh& film)
 }
 
 
-//- The same case, which may not ask for heat
-static const dictionary& isothermal(const dictionary& dict)
-{
-    if (dict.found("heat"))
-    {
-        FatalIOErrorInFunction(dict)
-            << "heat: got it with the flow fullStress, allowed with thinFilm only" << exit(FatalIOError);
-    }
-    return dict;
-}
-
-
 //- dU/dn on a surface [1/s], n out of the film
 static tmp<vectorField> wallGradient(const filmMesh& film, const volVectorField& U, const label patch)
 {
@@ -66,7 +54,7 @@ static tmp<vectorField> wallGradient(const filmMesh& film, const volVectorField&
 
 Foam::fullStress::fullStress(const dictionary& dict, filmMesh& film, const lineContact& contact)
 :
-    filmFlow(isothermal(dict), film, contact),
+    filmFlow(dict, film, contact),
     p_(film.field("p", dimPressure, true)),
     mu_(film.field("mu", dimDynamicViscosity)),
     rho_(film.field("rho", dimDensity)),
@@ -182,7 +170,7 @@ Foam::List<Foam::scalarField> Foam::fullStress::residual
     const volTensorField gradU(fvc::grad(U_));
     forAll(mu_, c)
     {
-        mu_[c] = oil_.sheared(mu_[c], Foam::sqrt(2.0)*mag(dev(symm(gradU[c]))));
+        mu_[c] = oil_.sheared(mu_[c], Foam::sqrt(2.0)*mag(dev(symm(gradU[c]))), p_[c]);
     }
     mu_.correctBoundaryConditions();
 

@@ -73,6 +73,18 @@ Foam::thinFilm::thinFilm(const dictionary& dict, filmMesh& film, const lineConta
 }
 
 
+Foam::scalarField Foam::thinFilm::start
+(
+    const scalarField&,
+    const scalarField&,
+    const scalarField& column
+) const
+{
+    // Couette flow; Newton's first step adds what pressure drives
+    return scalarField(column.size()*blockSize(), Zero);
+}
+
+
 Foam::scalar Foam::thinFilm::cellStep
 (
     const filmState& state,
@@ -83,19 +95,122 @@ Foam::scalar Foam::thinFilm::cellStep
 {
     if (kind == across) return heat_->acrossStep(massUnit_, column);
     if (kind == warmth) return warmthStep;
-    return velocityStep(oil_.viscosity(state.column[column]), column, row);
+    const scalar slide = (contact_.upperSpeed - contact_.lowerSpeed)/contact_.entrainment();
+    auto speed = [&](const label j)
+    {
+        return state.local[place(column, j, velocity)] + slide*film_.middle(j);
+    };
+    const scalar here = speed(row);
+    return velocityStep
+    (
+        state.column[column],
+        0.5*(state.h[column] + state.h[column + 1])*film_.share(row),
+        row > 0 ? speed(row - 1) : -here,
+        here,
+        row + 1 < film_.rows() ? speed(row + 1) : 2*slide - here
+    );
 }
 
 
-Foam::scalarField Foam::thinFilm::start
-(
-    const scalarField&,
-    const scalarField&,
-    const scalarField& column
-) const
+Foam::scalarField Foam::thinFilm::addedVelocity(const filmState& state, const label column) const
 {
-    // Couette flow; Newton's first step adds what pressure drives
-    return scalarField(column.size()*blockSize(), Zero);
+    scalarField added(film_.rows());
+    forAll(added, j) added[j] = contact_.entrainment()*state.local[place(column, j, velocity)];
+    return added;
+}
+
+
+Foam::shearedColumn Foam::thinFilm::sheared(const filmState& state, const label column) const
+{
+    const scalar v = state.column[column];
+    return shearedColumn
+    (
+        oil_.shear(),
+        0.5*(state.h[column] + state.h[column + 1]),
+        max(oil_.pressure(v), scalar(0)),
+        contact_.upperSpeed - contact_.lowerSpeed,
+        faceViscosity(state, column)
+    );
+}
+
+
+Foam::scalarField Foam::thinFilm::faceViscosity(const filmState& state, const label column) const
+{
+    const scalar v = state.column[column];
+    const label rows = film_.rows();
+    scalarField viscosity(rows + 1, oil_.viscosity(v));
+    if (!heat_.valid()) return viscosity;
+    auto row = [&](const label j) { return state.local[place(column, j, warmth)]; };
+    forAll(viscosity, k)
+    {
+        const scalar warm = k == 0 ? state.wall[column]
+          : k == rows ? state.wall[film_.columns() + column] : 0.5*(row(k - 1) + row(k));
+        viscosity[k] = heat_->oil().viscosity(oil_.pressure(v), heat_->temperature(warm));
+    }
+    return viscosity;
+}
+
+
+void Foam::thinFilm::balance(filmState& state) const
+{
+    label top = 0;
+    forAll(state.column, i)
+    {
+        if (state.column[i] > state.column[top]) top = i;
+    }
+    auto mass = [&](const label i)
+    {
+        return oil_.density(state.column[i])*0.5*(state.h[i] + state.h[i + 1]);
+    };
+    forAll(state.column, i)
+    {
+        for (label j = 0; j < film_.rows(); ++j)
+        {
+            state.local[place(i, j, velocity)] = mass(top)/mass(i) - 1;
+        }
+    }
+}
+
+
+void Foam::thinFilm::settle(const filmState& before, filmState& after)
+{
+    if (oil_.shear().stress(0) >= GREAT) return;
+    film_.move(after.x, after.h);
+    for (label i = 0; i < film_.columns(); ++i)
+    {
+        for (label j = 0; j < film_.rows(); ++j) p_[film_.cell(i, j)] = oil_.pressure(after.column[i]);
+    }
+    p_.correctBoundaryConditions();
+    const scalarField gradient(fvc::grad(p_)().primitiveField().component(vector::X));
+    const scalar speed = contact_.entrainment(), slide = contact_.upperSpeed - contact_.lowerSpeed;
+    for (label i = 0; i < film_.columns(); ++i)
+    {
+        // where the column was: its flux, and the gradient of its stress
+        const scalarField was(addedVelocity(before, i));
+        const scalar h = 0.5*(before.h[i] + before.h[i + 1]);
+        const scalarField rate(shearedColumn::rates(was, h, slide));
+        const scalar pressure = max(oil_.pressure(before.column[i]), scalar(0));
+        const scalarField viscosity(faceViscosity(before, i));
+        auto stress = [&](const label k)
+        {
+            return viscosity[k]*rate[k]*oil_.shear().yielding(viscosity[k]*rate[k], pressure).factor;
+        };
+        const scalar wasGradient = (stress(film_.rows()) - stress(0))/h;
+
+        shearedColumn byGradient(sheared(after, i)), byFlow(byGradient);
+        byGradient.meetGradient(gradient[film_.cell(i, 0)]);
+        byFlow.meetFlow(average(addedVelocity(after, i)), wasGradient);
+        const scalar unit = oil_.shear().stress(pressure)/h;
+        auto moved = [&](const shearedColumn& column)
+        {
+            return mag(column.gradient() - wasGradient)/unit + mag(column.flow() - average(was))/speed;
+        };
+        const scalarField settled
+        (
+            (moved(byGradient) < moved(byFlow) ? byGradient : byFlow).velocity()/speed
+        );
+        forAll(settled, j) after.local[place(i, j, velocity)] = settled[j];
+    }
 }
 
 
@@ -168,14 +283,14 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
     if (heat_.valid()) warmFaces(muFace);
     forAll(muFace, f)
     {
-        muFace[f] = oil_.sheared(muFace[f], shearRate[f]);
+        muFace[f] = oil_.sheared(muFace[f], shearRate[f], p_[mesh.owner()[f]]);
     }
     for (const label patch : {film_.lower(), film_.upper()})
     {
         scalarField& muWall = muFace.boundaryFieldRef()[patch];
         forAll(muWall, f)
         {
-            muWall[f] = oil_.sheared(muWall[f], shearRate.boundaryField()[patch][f]);
+            muWall[f] = oil_.sheared(muWall[f], shearRate.boundaryField()[patch][f], p_.boundaryField()[patch][f]);
         }
     }
     const volScalarField gradient(fvc::grad(p_)().component(vector::X));
@@ -192,7 +307,7 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
         for (label j = 0; j < film_.rows(); ++j)
         {
             const label c = film_.cell(i, j);
-            mu_[c] = oil_.sheared(mu_[c], cellShearRate(i, j));
+            mu_[c] = oil_.sheared(mu_[c], cellShearRate(i, j), p_[c]);
         }
     }
     mu_.correctBoundaryConditions();
@@ -323,8 +438,8 @@ Foam::scalar Foam::thinFilm::stressByPressure() const
         for (label j = 0; j < film_.rows(); ++j)
         {
             const scalar rate = cellShearRate(i, j);
-            const scalar rise = oil_.sheared(oil_.viscosity(v + step), rate)
-              - oil_.sheared(oil_.viscosity(v), rate);
+            const scalar rise = oil_.sheared(oil_.viscosity(v + step), rate, oil_.pressure(v + step))
+              - oil_.sheared(oil_.viscosity(v), rate, oil_.pressure(v));
             most = max(most, mag(rate*rise)/(step*oil_.pressureSlope(v)));
         }
     }

@@ -6,6 +6,7 @@
 
 #include "Eyring.H"
 #include "oilLaw.H"
+#include <cmath>
 
 addOilLaw(shearLaw, Eyring)
 
@@ -16,8 +17,25 @@ Foam::shearLaws::Eyring::Eyring(const dictionary& dict)
 {}
 
 
-Foam::scalar Foam::shearLaws::Eyring::viscosity(const scalar mu, const scalar rate) const
+Foam::shearAnswer Foam::shearLaws::Eyring::thinning(const scalar tau, const scalar) const
 {
-    const scalar s = mu*mag(rate)/stress_;
-    return s < 1e-3 ? mu*(1 - s*s/6) : mu*Foam::asinh(s)/s;
+    const scalar s = min(mag(tau)/stress_, farthest);
+    if (s < 1e-4) return {1 + s*s/6, 1 + 0.5*s*s};
+    if (s < most) return {std::sinh(s)/s, std::cosh(s)};
+    const scalar slope = std::cosh(most); // its tangent
+    return {std::sinh(most)/s + slope*(1 - most/s), slope};
+}
+
+
+Foam::shearAnswer Foam::shearLaws::Eyring::yielding(const scalar newton, const scalar) const
+{
+    const scalar y = mag(newton)/stress_;
+    if (y < small) return {1, 1};
+    return {std::asinh(y)/y, 1/std::hypot(scalar(1), y)};
+}
+
+
+Foam::scalar Foam::shearLaws::Eyring::stress(const scalar) const
+{
+    return stress_;
 }

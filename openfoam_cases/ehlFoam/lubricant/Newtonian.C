@@ -14,7 +14,19 @@ Foam::shearLaws::Newtonian::Newtonian(const dictionary&)
 {}
 
 
-Foam::scalar Foam::shearLaws::Newtonian::viscosity(const scalar mu, const scalar) const
+Foam::shearAnswer Foam::shearLaws::Newtonian::thinning(const scalar, const scalar) const
 {
-    return mu;
+    return {1, 1};
+}
+
+
+Foam::shearAnswer Foam::shearLaws::Newtonian::yielding(const scalar, const scalar) const
+{
+    return {1, 1};
+}
+
+
+Foam::scalar Foam::shearLaws::Newtonian::stress(const scalar) const
+{
+    return GREAT;
 }

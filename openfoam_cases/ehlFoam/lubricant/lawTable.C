@@ -72,7 +72,7 @@ void Foam::writeLaws(const dictionary& dict, const fileName& points, const fileN
         for (const scalar gamma : rate)
         {
             laws << p << ' ' << gamma << ' ' << mu << ' ' << oil.density(p) << ' '
-                << oil.sheared(mu, gamma)*gamma << nl;
+                << oil.sheared(mu, gamma, p)*gamma << nl;
         }
     }
 }

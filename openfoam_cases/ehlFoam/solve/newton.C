@@ -211,7 +211,7 @@ Foam::newtonResult Foam::newton
         Eigen::Index most = 0;
         (next.column - u.column).cwiseAbs().maxCoeff(&most);
         const bool edge = crossed(s, u, next);
-        u = next;
+        u = s.settled(u, next);
         Info<< "  " << (fresh ? "Newton" : "chord ") << " step " << iteration
             << ": length " << moved << ", part taken " << part
             << ", most at x/b " << s.flow().film().x()[most]/s.contact().halfWidth

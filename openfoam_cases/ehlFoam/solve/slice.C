@@ -285,6 +285,28 @@ Eigen::VectorXd Foam::slice::residual(const unknowns& u, const unknowns* rate)
 }
 
 
+Foam::slice::unknowns Foam::slice::balanced(const unknowns& u)
+{
+    const filmState still(film(u));
+    filmState state(still);
+    flow_.balance(state);
+    flow_.settle(still, state);
+    unknowns next(u);
+    forAll(state.local, k) next.local[k] = state.local[k];
+    return next;
+}
+
+
+Foam::slice::unknowns Foam::slice::settled(const unknowns& before, const unknowns& after)
+{
+    filmState state(film(after));
+    flow_.settle(film(before), state);
+    unknowns u(after);
+    forAll(state.local, k) u.local[k] = state.local[k];
+    return u;
+}
+
+
 Foam::scalar Foam::slice::fluxDefect() const
 {
     const scalarField flux(flow_.columnFlux()), fraction(flow_.columnFraction());

@@ -11,6 +11,19 @@
 #include "interpolateXY.H"
 #include "StringStream.H"
 
+namespace Foam
+{
+
+/*-  Where the law of shear is not met at once: from a Newtonian film, whose
+     bounds of stress fall from so many times as high, by a ratio that shrinks
+     where a stage fails; stages before the last are solved roughly
+*/
+static constexpr scalar firstFactor = 64, firstRatio = 8, leastRatio = 1.1, roughly = 1e-3;
+static constexpr label roughIterations = 20;
+
+} // End namespace Foam
+
+
 Foam::scalar Foam::centralFilm(const filmState& film)
 {
     return interpolateXY(scalar(0), film.x, film.h);
@@ -27,58 +40,120 @@ Foam::solvedFilm Foam::steadyState
 )
 {
     const dictionary& shear = dict.subDict("shear");
+    const bool newtonian = shear.get<word>("type") == "Newtonian";
     const word flow(dict.get<word>("flow"));
     const scalar filmScale = dict.subDict("mesh").get<scalar>("film")*contact.filmUnit();
-    scalarField pressure(startPressure(dict, contact, x));
-    scalar central = dict.found("start") ? positive(dict.subDict("start"), "centralFilm") : filmScale;
+
+    // what a stage starts from: the case's own start, or the stage before
+    struct { scalarField pressure; scalar central; Eigen::VectorXd local, wall, velocity; } from;
+    from.pressure = startPressure(dict, contact, x);
+    from.central = dict.found("start") ? positive(dict.subDict("start"), "centralFilm") : filmScale;
     label iterations = 0;
     solvedFilm found;
+    if (dict.found("heat") && flow != "thinFilm")
+    {
+        FatalIOErrorInFunction(dict)
+            << "heat: got it with the flow " << flow << ", allowed with thinFilm only" << exit(FatalIOError);
+    }
 
-    auto solve = [&](const word& type, const dictionary& shearLaw, const scalar heated = 0)
+    auto solve = [&](const word& type, const dictionary& law, const newtonControls& stageControls, const scalar heated = 0)
     {
         dictionary stage(dict);
-        stage.set("shear", shearLaw);
+        stage.set("shear", law);
         if (heated > 0) stage.subDict("heat").set("share", heated);
         else stage.remove("heat");
         found.contact.reset();
         found.flow = filmFlow::New(type, stage, film, contact);
         found.contact.reset(new slice(*found.flow, contact, x, filmScale));
-        Info<< type << ", " << shearLaw.get<word>("type");
-        if (shearLaw.found("stress")) Info<< " " << shearLaw.get<scalar>("stress") << " Pa";
+        Info<< type << ", " << law.get<word>("type");
+        if (law.found("stress")) Info<< " " << law.get<scalar>("stress") << " Pa";
         if (heated > 0) Info<< ", " << heated << " of the heat";
         Info<< endl;
         std::unique_ptr<linearisation> none;
-        found.result = newton
-        (
-            *found.contact, found.contact->start(pressure, central), contact.load, controls, none
-        );
+        slice::unknowns start(found.contact->start(from.pressure, from.central));
+        if (from.local.size() == start.local.size())
+        {
+            slice::unknowns before(start);
+            before.local = from.local;
+            before.wall = from.wall;
+            start = found.contact->settled(before, before);
+        }
+        else if (heated > 0)
+        {
+            // the velocities of the isothermal film
+            for (label i = 0; i < x.size() - 1; ++i)
+            {
+                for (label j = 0; j < film.rows(); ++j)
+                {
+                    start.local[found.flow->place(i, j, 0)] = from.velocity[film.cell(i, j)];
+                }
+            }
+        }
+        else
+        {
+            start = found.contact->balanced(start);
+        }
+        found.result = newton(*found.contact, start, contact.load, stageControls, none);
         iterations += found.result.iterations;
         found.result.iterations = iterations;
-        const filmState state(found.contact->film(found.result.state));
-        forAll(pressure, i) pressure[i] = found.flow->loadPressure(state.column[i]);
-        central = centralFilm(state);
-        return found.result.end == outcome::converged;
+        const bool converged = found.result.end == outcome::converged;
+        if (converged)
+        {
+            const filmState state(found.contact->film(found.result.state));
+            forAll(from.pressure, i) from.pressure[i] = found.flow->loadPressure(state.column[i]);
+            from.central = centralFilm(state);
+            from.local = found.result.state.local;
+            from.wall = found.result.state.wall;
+            from.velocity.resize(film.columns()*film.rows());
+            for (label c = 0; c < from.velocity.size(); ++c)
+            {
+                from.velocity[c] = from.local[found.flow->place(c/film.rows(), c % film.rows(), 0)];
+            }
+        }
+        return converged;
+    };
+    // the same law with its bounds so many times as high
+    auto eased = [&](const scalar factor)
+    {
+        dictionary law(shear);
+        for (const word bound : {"stress", "ratio"})
+        {
+            if (shear.found(bound)) law.set(bound, factor*shear.get<scalar>(bound));
+        }
+        return law;
     };
 
-    dictionary newtonian(shear);
-    newtonian.set("type", word("Newtonian"));
-    newtonian.remove("stress");
-    if (!solve("thinFilm", newtonian)) return found;
-    if (shear.get<word>("type") != "Newtonian")
+    if (!solve("thinFilm", shear, controls) && !newtonian)
     {
-        for (scalar factor = 64; factor >= 1; factor /= 4)
+        dictionary newton(shear);
+        newton.set("type", word("Newtonian"));
+        if (!solve("thinFilm", newton, controls)) return found;
+        const newtonControls rough{roughly, min(controls.maxIterations, roughIterations)};
+        scalar reached = firstFactor, ratio = firstRatio;
+        while (reached > 1)
         {
-            dictionary eased(shear);
-            eased.set("stress", factor*positive(shear, "stress"));
-            if (!solve("thinFilm", eased)) return found;
+            const scalar next = max(scalar(1), reached/ratio);
+            if (solve("thinFilm", eased(next), next > 1 ? rough : controls))
+            {
+                reached = next;
+            }
+            else if (ratio < leastRatio)
+            {
+                return found;
+            }
+            else
+            {
+                ratio = Foam::sqrt(ratio);
+            }
         }
     }
-    if (dict.found("heat") && !solve(flow, shear, 1))
+    if (found.result.end != outcome::converged) return found;
+    if (dict.found("heat") && !solve(flow, shear, controls, 1))
     {
         // a little heat first: it thins the oil where most of it is made
         for (scalar share = 1.0/64; share <= 1; share *= 4)
         {
-            if (!solve(flow, shear, share)) return found;
+            if (!solve(flow, shear, controls, share)) return found;
         }
     }
     if (flow == "thinFilm") return found;
@@ -96,6 +171,6 @@ Foam::solvedFilm Foam::steadyState
         found.result.reason = reason.str();
         return found;
     }
-    solve(flow, shear);
+    solve(flow, shear, controls);
     return found;
 }
