@@ -23,7 +23,9 @@ _LAW = (
     "damping over stiffness of a dry contact ('hertz:1.25e-5 s'; usual: 0.25e-5 to 2.5e-5 s), DAMPING a constant one "
     "('hertz:100 N s/m' of each contact of a roller), NAME a table [laws.NAME]"
 )
-_STRUCTURE = "law of the solids in the contacts of a map: iso16281 | palmgren | half_space; default: that of its job"
+_STRUCTURE = (
+    "law of the solids in the contacts of a map: iso16281 | palmgren | half_space | fe; default: that of its job"
+)
 
 
 def parser() -> argparse.ArgumentParser:
@@ -259,6 +261,9 @@ def _bearing(commands: Any) -> None:
     command.add_argument("--clearance", metavar="LENGTH", help='diametral, such as "20 um"; default: the file\'s, none')
     command.add_argument("--profile", metavar="PROFILE", default="iso", help="iso | straight, of the rollers (iso)")
     command.add_argument("--slices", metavar="N", default="41", help="of a roller (41)")
+    command.add_argument(
+        "--coupled", action="store_true", help="slices know of their neighbours: the elasticity of three dimensions"
+    )
     command.add_argument(
         "--roughness",
         metavar="LENGTH",

@@ -15,8 +15,22 @@ from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid, GridShape, Layout, Spike, lay_out, thick_film_exit, zone_width
 from ehdmaps.ehl.linearisation import GridShift, Linearisation, Neighbour, linearised
 from ehdmaps.ehl.newton import CONVERGED, DIVERGED, STAGNATED, hertz_start, newton
-from ehdmaps.ehl.profile import Profile, films_of, front, front_cell, front_node, moved, refined, starved_start
+from ehdmaps.ehl.profile import (
+    Profile,
+    Warmth,
+    films_of,
+    front,
+    front_cell,
+    front_node,
+    moved,
+    refined,
+    starved_start,
+    warm_start,
+)
 from ehdmaps.ehl.reynolds import LineProblem
+from ehdmaps.ehl.warm_newton import warm_newton
+from ehdmaps.ehl.warm_oil import NO_HEAT
+from ehdmaps.ehl.warm_response import WarmLinearisation, warm_linearised
 from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.isotherm import log_viscosity
 from ehdmaps.physics.moes import valley_load_number
@@ -70,6 +84,9 @@ LADDER_RATIO, STEEP_LADDER_RATIO = 1.5, 1.2
 LADDER_FEET = 1.0, 0.2
 """Starts of such a ladder, over the load `COLD_START_BELOW`/2 or a lighter one: the second where the first fails."""
 
+
+FIRST_HEAT, LEAST_HEAT = 0.1, 0.01
+"""First part of the heat that is let in on the way to a film with temperatures, and the least part at once."""
 
 STRONGEST, LEAST_STRONG = 64.0, 1.5
 """Strengths of the oil, as factors on its stresses, with which the way to an oil that yields may begin."""
@@ -133,7 +150,8 @@ class Resolution:
 class GroupSolution:
     """Film of one point in units of b, p_H, b^2/R and b/u, with estimated relative errors.
 
-    The rolling force has the unit p_H b^2/R, the mass flow b^2/R times density at rest and u.
+    The rolling force has the unit p_H b^2/R, the mass flow b^2/R times density at rest and u. Rises are those of the
+    highest temperatures in the film and of its surfaces [K], NaN of an isothermal film.
     Those of film offset, film compliance and loss are positive where the value is too large, the others always.
     `profile` is the fine solution and `rough` the coarse one, `linear` and `rough_linear` the equations about them;
     None where there is none.
@@ -142,8 +160,8 @@ class GroupSolution:
     outcome: int
     profile: Profile | None
     rough: Profile | None = None
-    linear: Linearisation | None = None
-    rough_linear: Linearisation | None = None
+    linear: Linearisation | WarmLinearisation | None = None
+    rough_linear: Linearisation | WarmLinearisation | None = None
     film_offset: float = math.nan
     film_compliance: float = math.nan
     loss: float = math.nan
@@ -152,6 +170,8 @@ class GroupSolution:
     max_pressure: float = math.nan
     rolling_force: float = math.nan
     mass_flow: float = math.nan
+    film_rise: float = math.nan
+    surface_rise: float = math.nan
     film_offset_error: float = math.nan
     film_compliance_error: float = math.nan
     loss_error: float = math.nan
@@ -233,14 +253,15 @@ def on_fine_grid(coarse: Profile, tolerance: float) -> tuple[Profile | None, int
     problem, layout, spike = coarse.problem, coarse.layout, coarse.spike
     grid = layout.grid(2 * coarse.cells)
     start = starved_start(coarse, grid) if layout.starved else refined(coarse, grid)
-    fine, total, outcome = converged(problem, layout, grid, start, spike, tolerance)
+    fine, total, outcome = converged(problem, layout, grid, start, spike, tolerance, coarse)
     if fine is None:
         halfway = layout.grid(3 * coarse.cells // 2)
         start = moved(coarse, halfway, by_index=False)
-        between, steps, _ = converged(problem, layout, halfway, start, spike, tolerance)
+        between, steps, _ = converged(problem, layout, halfway, start, spike, tolerance, coarse)
         total += steps
         if between is not None:
-            fine, steps, outcome = converged(problem, layout, grid, moved(between, grid, False), spike, tolerance)
+            start = moved(between, grid, by_index=False)
+            fine, steps, outcome = converged(problem, layout, grid, start, spike, tolerance, between)
             total += steps
     return fine, total, outcome
 
@@ -252,6 +273,7 @@ def converged(
     start: FloatArray | None,
     spike: Spike | None,
     tolerance: float,
+    near: Profile | None = None,
 ) -> tuple[Profile | None, int, int]:
     """Newton on one grid: profile (None unless converged), steps, outcome.
 
@@ -267,11 +289,15 @@ def converged(
         Spike for which the grid is laid.
     tolerance : float
         Newton tolerance.
+    near : Profile, optional
+        Solution nearby that gives temperatures to start from.
     """
     kernel = log_kernel(grid.x, grid.step)
     if start is None:
         guess = layout.film
         start = hertz_start(grid.x, grid.step, kernel, guess, thick_film_exit(guess), LOAD)
+    if problem.heat.log_eta.size > 0:
+        return _converged_warm(problem, layout, grid, kernel, start, spike, tolerance, near)
     try:
         result = newton(problem, grid.x, grid.step, grid.face_step, kernel, start, LOAD, tolerance, MOST_STEPS)
     except np.linalg.LinAlgError:  # a start that is too far away
@@ -279,6 +305,29 @@ def converged(
     if result.outcome != CONVERGED:
         return None, result.steps, result.outcome
     return Profile(problem, layout, grid, kernel, result.unknowns, spike), result.steps, CONVERGED
+
+
+def _converged_warm(
+    problem: LineProblem,
+    layout: Layout,
+    grid: Grid,
+    kernel: FloatArray,
+    start: FloatArray,
+    spike: Spike | None,
+    tolerance: float,
+    near: Profile | None,
+) -> tuple[Profile | None, int, int]:
+    """Newton on one grid for a film with its temperatures."""
+    rises = warm_start(near, grid)
+    at = (problem, grid.x, grid.step, grid.face, grid.face_step, kernel, start, rises, LOAD, tolerance, MOST_STEPS)
+    try:
+        result = warm_newton(*at)
+    except np.linalg.LinAlgError:
+        return None, 0, DIVERGED
+    if result.outcome != CONVERGED:
+        return None, result.steps, result.outcome
+    warmth = Warmth(result.rises, result.first)
+    return Profile(problem, layout, grid, kernel, result.unknowns, spike, warmth), result.steps, CONVERGED
 
 
 def _coarse(
@@ -305,6 +354,8 @@ def _first(
     problem: LineProblem, M: float, L: float, resolution: Resolution, previous: Profile | None
 ) -> tuple[Profile | None, int, int]:
     """Coarse solution with the spike in its place: from the previous point, from Hertz, or up a ladder of loads."""
+    if problem.heat.log_eta.size > 0:
+        return _heated(problem, M, L, resolution, previous)
     guess = expected_film(M, L)
     total, outcome = 0, CONVERGED
     warm = previous if M >= COLD_START_BELOW else None
@@ -322,6 +373,44 @@ def _first(
         found, steps, outcome = _yielding(problem, M, L, resolution)
         total += steps
     return found, total, outcome
+
+
+def _heated(
+    problem: LineProblem, M: float, L: float, resolution: Resolution, previous: Profile | None
+) -> tuple[Profile | None, int, int]:
+    """Coarse solution of a film with temperatures: from the previous point, or from the isothermal film, heated up."""
+    guess, total, outcome = expected_film(M, L), 0, STAGNATED
+    if previous is not None and M >= COLD_START_BELOW:
+        found, steps, outcome = on_coarse_grid(problem, guess, resolution, previous)
+        total += steps
+        if found is not None:
+            return found, total, outcome
+    cold, steps, outcome = _first(problem._replace(heat=NO_HEAT), M, L, resolution, None)
+    total += steps
+    if cold is None:
+        return None, total, outcome
+    found, steps, outcome = on_coarse_grid(problem, guess, resolution, cold)
+    total += steps
+    if found is not None:
+        return found, total, outcome
+    reached, part, found = 0.0, FIRST_HEAT, cold
+    while reached < 1.0 and part > LEAST_HEAT:
+        share = min(1.0, reached + part)
+        trial, steps, outcome = on_coarse_grid(_less_heated(problem, share), guess, resolution, found)
+        total += steps
+        if trial is None:
+            part *= 0.5
+        else:
+            found, reached, part = trial, share, 1.5 * part
+    return found if reached == 1.0 else None, total, outcome
+
+
+def _less_heated(problem: LineProblem, share: float) -> LineProblem:
+    """The same with a part of the heat of shear and compression."""
+    heat = problem.heat
+    return problem._replace(
+        heat=heat._replace(dissipation=share * heat.dissipation, compression=share * heat.compression)
+    )
 
 
 def _yielding(problem: LineProblem, M: float, L: float, resolution: Resolution) -> tuple[Profile | None, int, int]:
@@ -394,6 +483,7 @@ def at_load(problem: LineProblem, factor: float) -> LineProblem:
         wedge=problem.wedge / (factor * factor),
         isotherm=problem.isotherm.scaled(root),
         shear=problem.shear.scaled(1.0 / factor, root),
+        heat=problem.heat.scaled(factor) if problem.heat.log_eta.size > 0 else problem.heat,
     )
 
 
@@ -439,7 +529,7 @@ def on_coarse_grid(
         same_share = previous.spike.width < NARROWING * finest and finest < NARROWING * previous.spike.width
         place = previous.spike.position if same_share else front(previous)[0]
         spike = Spike(place * ratio**-0.7, finest)
-    solution = previous
+    solution = near = previous
     for attempt in range(MOST_MOVES):
         layout = lay_out(guess, resolution.inlet_length, resolution.shape, spike, length)
         span = layout.span if length is None else max(layout.span, LEAST_SPAN)
@@ -451,11 +541,11 @@ def on_coarse_grid(
         else:
             unknowns = starved_start(solution, grid)
         for tolerance in (LOOSE_TOLERANCE, resolution.tolerance):
-            solution, steps, outcome = converged(problem, layout, grid, unknowns, spike, tolerance)
+            solution, steps, outcome = converged(problem, layout, grid, unknowns, spike, tolerance, near)
             total += steps
             if solution is None:
                 return None, total, outcome
-            unknowns = solution.unknowns
+            unknowns, near = solution.unknowns, solution
             place, steepness = front(solution)
             if spike is None:
                 settled = steepness * zone < resolution.spike_steepness * max(1.0, problem_load(problem) / 100.0)
@@ -469,7 +559,7 @@ def on_coarse_grid(
     return solution, total, CONVERGED
 
 
-def linearised_profile(profile: Profile, resolution: Resolution) -> Linearisation:
+def linearised_profile(profile: Profile, resolution: Resolution) -> Linearisation | WarmLinearisation:
     """The equations to first order about a profile, its grid following the spike where there is one.
 
     The meniscus of a starved contact is held where it is.
@@ -489,6 +579,9 @@ def linearised_profile(profile: Profile, resolution: Resolution) -> Linearisatio
         length = laid.length if laid.starved else None
         layout = lay_out(laid.film, resolution.inlet_length, resolution.shape, moved_spike, length)
         neighbour = Neighbour(layout.grid(profile.cells), shift, front_node(profile))
+    if profile.warmth is not None:
+        rises, first = profile.warmth.rises, profile.warmth.first
+        return warm_linearised(profile.problem, profile.grid, profile.unknowns, rises, first, LOAD, neighbour)
     if laid.starved:
         shift = LENGTH_SHIFT * min(laid.length, laid.film)
         longer = GridShift(replace(laid, length=laid.length + shift).grid(profile.cells), shift)
@@ -555,6 +648,8 @@ def assembled(
         max_pressure=float(np.max(fine.pressure)),
         rolling_force=fine.rolling_force,
         mass_flow=fine.mass_flow,
+        film_rise=math.nan if fine.warmth is None else float(np.max(fine.warmth.rises)),
+        surface_rise=math.nan if fine.warmth is None else float(np.max(fine.warmth.rises[:, [0, -1]])),
         film_offset_error=error(fine.film_offset, scale * coarse.film_offset, by_offset, 3.0),
         film_compliance_error=error(response.compliance, rough.compliance, by_response, 6.0, hidden_too),
         loss_error=error(response.loss, rough.loss, by_response, 6.0, hidden),

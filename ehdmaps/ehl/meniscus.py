@@ -25,6 +25,7 @@ from ehdmaps.ehl.line import (
     on_coarse_grid,
     on_fine_grid,
 )
+from ehdmaps.ehl.linearisation import Linearisation
 from ehdmaps.ehl.newton import STAGNATED
 from ehdmaps.ehl.profile import Profile, moved, starved_start
 
@@ -106,7 +107,7 @@ def starved_groups(M: float, L: float, resolution: Resolution, layer: float, flo
     if coarse is None or fine is None:
         return StarvedGroups(GroupSolution(outcome=STAGNATED, profile=None, steps=steps))
     solution = assembled(M, L, fine, coarse, resolution, steps)
-    if solution.linear is None:
+    if not isinstance(solution.linear, Linearisation):
         return StarvedGroups(solution)
     return StarvedGroups(solution, float(fine.position[0]), solution.linear.supplied_compliance())
 

@@ -76,6 +76,74 @@ def solve_scaled(jacobian: FloatArray, right_hand_side: FloatArray) -> FloatArra
 
 
 @njit(cache=True)
+def step_size(unknowns: FloatArray, move: FloatArray) -> float:
+    """Size of a step: pressure relative to its maximum, film and exit relative to film and exit."""
+    n = unknowns.size - 2
+    peak = 0.0
+    for i in range(n - 1):
+        peak = max(peak, unknowns[i])
+    outflow = abs(unknowns[n - 1])
+    size = max(
+        abs(move[n - 1]) / outflow,
+        abs(move[n]) / (1.0 + abs(unknowns[n])),
+        abs(move[n + 1]) / (outflow + 1e-3),
+    )
+    for i in range(n - 1):
+        size = max(size, abs(move[i]) / peak)
+    return size
+
+
+@njit(cache=True)
+def step_length(
+    problem: LineProblem,
+    x: FloatArray,
+    kernel: FloatArray,
+    unknowns: FloatArray,
+    move: FloatArray,
+    lowest: float,
+    most: float,
+) -> float:
+    """Part of a step that may be taken.
+
+    Parameters
+    ----------
+    problem : LineProblem
+        Dimensionless groups.
+    x, kernel, unknowns
+        The arguments of `reynolds.residual`.
+    move : ndarray, shape (n + 2,)
+        The step.
+    lowest : float
+        Smallest film before it.
+    most : float
+        Part to take at most.
+    """
+    n = unknowns.size - 2
+    length = most
+    thickening = steepest_viscosity_step(problem, unknowns, move)
+    if thickening * length > LOG_VISCOSITY_STEP:
+        length = LOG_VISCOSITY_STEP / thickening
+    length = min(length, EXIT_STEP * (1.0 + abs(unknowns[n])) / max(abs(move[n]), 1e-300))
+    for _ in range(MOST_HALVINGS):
+        trial = unknowns + length * move
+        if trial[n - 1] > 0.0 and np.min(film(x, kernel, trial)) >= LEAST_LEFT * min(lowest, trial[n - 1]):
+            break
+        length *= 0.5
+    return length
+
+
+@njit(cache=True)
+def lifted(x: FloatArray, kernel: FloatArray, start: FloatArray) -> FloatArray:
+    """A start, clear of contact: one that is interpolated from another grid can touch."""
+    unknowns = start.copy()
+    n = start.size - 2
+    clearance = np.min(film(x, kernel, unknowns)) - LEAST_LEFT * unknowns[n - 1]
+    if clearance < 0.0:
+        unknowns[n + 1] -= clearance
+    return unknowns
+
+
+@njit(cache=True)
 def relaxed(move: FloatArray, old: FloatArray, before: float) -> float:
     """Part of a step to take: half as much where pressures turn back, half as much again where they go on.
 
@@ -132,11 +200,7 @@ def newton(
     """
     size = start.size
     n = size - 2
-    unknowns = start.copy()
-    # a start interpolated from another grid can touch: lift it clear first
-    clearance = np.min(film(x, kernel, unknowns)) - LEAST_LEFT * unknowns[n - 1]
-    if clearance < 0.0:
-        unknowns[n + 1] -= clearance
+    unknowns = lifted(x, kernel, start)
     out = np.empty(size)
     jacobian = np.empty((size, size))
     last, relaxation = math.inf, 1.0
@@ -150,34 +214,12 @@ def newton(
         if not np.all(np.isfinite(out)):
             return NewtonResult(unknowns, DIVERGED, count, last)
         move = solve_scaled(jacobian, -out)
-        peak = 0.0
-        for i in range(n - 1):
-            peak = max(peak, unknowns[i])
-        outflow = abs(unknowns[n - 1])
-        last = max(
-            abs(move[n - 1]) / outflow,
-            abs(move[n]) / (1.0 + abs(unknowns[n])),
-            abs(move[n + 1]) / (outflow + 1e-3),
-        )
-        for i in range(n - 1):
-            last = max(last, abs(move[i]) / peak)
-        thickening = steepest_viscosity_step(problem, unknowns, move)
+        last = step_size(unknowns, move)
         if not math.isfinite(last):
             return NewtonResult(unknowns, DIVERGED, count, last)
-        length = 1.0
-        if thickening > LOG_VISCOSITY_STEP:
-            length = LOG_VISCOSITY_STEP / thickening
         if yields:
             relaxation = relaxed(move, old, relaxation) if last > SOFT_ABOVE else 1.0
-            length = min(length, relaxation)
-        length = min(length, EXIT_STEP * (1.0 + abs(unknowns[n])) / max(abs(move[n]), 1e-300))
-        for _ in range(MOST_HALVINGS):
-            trial = unknowns + length * move
-            if trial[n - 1] > 0.0:
-                gap = film(x, kernel, trial)
-                if np.min(gap) >= LEAST_LEFT * min(lowest, trial[n - 1]):
-                    break
-            length *= 0.5
+        length = step_length(problem, x, kernel, unknowns, move, lowest, relaxation)
         unknowns = unknowns + length * move
         if length == 1.0 and last < tolerance:
             return NewtonResult(unknowns, CONVERGED, count + 1, last)

@@ -8,11 +8,29 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.elastic import DRY_DATUM
+from ehdmaps.ehl.energy import fill_columns
 from ehdmaps.ehl.grid import Grid, Layout, Spike
 from ehdmaps.ehl.reynolds import MOST_LOG_VISCOSITY, LineProblem, face_films, film, node_pressure, shear_factors
+from ehdmaps.ehl.warm_column import POINTS, empty_columns
 from ehdmaps.physics.isotherm import log_viscosity
 from ehdmaps.physics.rheology import NEWTONIAN
 from ehdmaps.physics.rolling import film_times_rise, rolling_force_of_inlet
+
+
+@dataclass(frozen=True)
+class Warmth:
+    """Temperatures of a film at the faces of its grid.
+
+    Attributes
+    ----------
+    rises : ndarray, shape (n, k)
+        At the Chebyshev points across the film, from the lower to the upper wall [K above T_0].
+    first : int
+        Last face before which nothing is heated.
+    """
+
+    rises: FloatArray
+    first: int
 
 
 @dataclass(frozen=True)
@@ -25,6 +43,7 @@ class Profile:
     kernel: FloatArray
     unknowns: FloatArray
     spike: Spike | None
+    warmth: Warmth | None = None
 
     @property
     def cells(self) -> int:
@@ -73,9 +92,13 @@ class Profile:
         problem, grid, pressure = self.problem, self.grid, self.pressure
         faces = np.asarray(face_films(self.film))
         rise = 12.0 / problem.wedge * faces * np.diff(pressure) / grid.face_step
-        if problem.shear.form == NEWTONIAN:
+        if problem.shear.form == NEWTONIAN and self.warmth is None:
             log_eta = log_viscosity(problem.isotherm, 0.5 * (pressure[1:] + pressure[:-1]))[0]
             return problem.slide * np.exp(np.minimum(log_eta, MOST_LOG_VISCOSITY)) / faces, rise
+        if self.warmth is not None:
+            columns = empty_columns(self.cells)
+            fill_columns(problem, grid.x, grid.face_step, self.kernel, self.unknowns, self.warmth.rises, columns)
+            return columns.stress + 0.5 * rise, rise
         mean = shear_factors(problem, grid.x, grid.face_step, self.kernel, self.unknowns, False)[1]
         return np.asarray(mean), rise
 
@@ -139,6 +162,15 @@ def _parabola(x: FloatArray, y: FloatArray, i: int) -> tuple[float, float, float
     down, up = (y[i] - y[i - 1]) / left, (y[i + 1] - y[i]) / right
     curvature = 2.0 * (up - down) / (left + right)
     return float(y[i]), float((down * right + up * left) / (left + right)), float(curvature)
+
+
+def warm_start(profile: Profile | None, grid: Grid) -> FloatArray:
+    """Temperatures of a solution nearby at the faces of another grid, shape (n, k); none where it has none."""
+    found = np.zeros((grid.face.size, POINTS))
+    if profile is not None and profile.warmth is not None:
+        for k in range(POINTS):
+            found[:, k] = np.interp(grid.face, profile.grid.face, profile.warmth.rises[:, k])
+    return found
 
 
 def moved(profile: Profile, grid: Grid, by_index: bool) -> FloatArray:

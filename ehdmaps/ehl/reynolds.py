@@ -32,6 +32,7 @@ from numba import njit
 from ehdmaps.arrays import FloatArray
 from ehdmaps.copies import put
 from ehdmaps.ehl.column import sheared_column
+from ehdmaps.ehl.warm_oil import NO_HEAT, Heat
 from ehdmaps.physics.isotherm import Isotherm, density, log_viscosity
 from ehdmaps.physics.rheology import LIMITING, NEWTONIAN, ShearLaw
 
@@ -62,13 +63,16 @@ class LineProblem(NamedTuple):
     shear : ShearLaw
         How the oil answers to shear, stresses in eta0 u R/b^2.
     slide : float
-        Slide-to-roll ratio, of no effect on a Newtonian film.
+        Slide-to-roll ratio, of no effect on a Newtonian film of one temperature.
+    heat : Heat
+        Groups of heat, none in an isothermal film.
     """
 
     wedge: float
     isotherm: Isotherm
     shear: ShearLaw = ShearLaw()
     slide: float = 0.0
+    heat: Heat = NO_HEAT
 
 
 class Factors(NamedTuple):
@@ -83,9 +87,9 @@ class Factors(NamedTuple):
         See above, and the factor on what the walls carry; of no length where the film is Newtonian.
     mobility_slopes, carriage_slopes : ndarray, shape (n, 3)
         Derivatives of mobility and carriage by the pressures at the nodes before and behind the face and by the film at
-        the face; those of the mobility at the step `drop`.
+        the face; those of the mobility at the step `drop`. Of no length where the film is warm.
     mobility_rows, carriage_rows : ndarray, shape (n, n + 2)
-        Their derivatives by all unknowns instead; else of no length.
+        Their derivatives by all unknowns where the film is warm; else of no length.
     """
 
     slope: FloatArray
@@ -381,10 +385,12 @@ def residual_with(
 
     Parameters
     ----------
-    problem, x, step, face_step, kernel, unknowns, load, out, jacobian
-        The arguments of `residual`.
+    problem : LineProblem
+        Dimensionless groups.
     factors : Factors
         Factors at the faces.
+    x, step, face_step, kernel, unknowns, load, out, jacobian
+        The other arguments of `residual`.
     """
     n = x.size - 1
     pressure = node_pressure(unknowns)
@@ -498,8 +504,10 @@ def residual_with(
                     row[j - 1] -= c * line[j]
                 row[n] += c * (exit_at + x[i])
                 row[n + 1] += c
-    # the exit takes the factor on the walls' flow from the last two faces
-    carriage = 1.5 * factors.carriage[n - 1] - 0.5 * factors.carriage[n - 2] if by_rows else 1.0
+    # the exit of a warm film takes the factor on the walls' flow from the last two faces; there is no other's
+    carriage = 1.0
+    if sheared and factors.mobility_slopes.shape[0] == 0:
+        carriage = 1.5 * factors.carriage[n - 1] - 0.5 * factors.carriage[n - 2]
     carried_load = 0.0
     for j in range(1, n):
         carried_load += step[j] * pressure[j]
@@ -533,7 +541,7 @@ def stored_mass(
     log_eta, slope, rho, rho_slope = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
     oil(problem, pressure, log_eta, slope, rho, rho_slope)
     mass = rho * film(x, kernel, unknowns)
-    return _accumulate(mass * step), _carried(mass)
+    return accumulated(mass * step), carried_mass(mass)
 
 
 class StoredOil(NamedTuple):
@@ -570,7 +578,7 @@ def stored_mass_rate(
     n = x.size - 1
     pressure_rate = node_pressure(rate)
     gap_rate = rate[n + 1] + (exit_at + x) * rate[n] - kernel @ pressure_rate
-    return _accumulate(stored.by_film * gap_rate + stored.by_pressure * pressure_rate)
+    return accumulated(stored.by_film * gap_rate + stored.by_pressure * pressure_rate)
 
 
 @njit(cache=True)
@@ -588,15 +596,15 @@ def stored_mass_jacobian(
     for j in range(1, n):
         column = -weight * kernel[:, j]
         column[j] += step[j] * rho_slope[j] * gap[j]
-        put(_accumulate(column), by_unknowns[:, j - 1])
+        put(accumulated(column), by_unknowns[:, j - 1])
     by_unknowns[:, n - 1] = 0.0
-    put(_accumulate(weight * (unknowns[n] + x)), by_unknowns[:, n])
-    put(_accumulate(weight), by_unknowns[:, n + 1])
+    put(accumulated(weight * (unknowns[n] + x)), by_unknowns[:, n])
+    put(accumulated(weight), by_unknowns[:, n + 1])
     return by_unknowns
 
 
 @njit(cache=True)
-def _accumulate(density: FloatArray) -> FloatArray:
+def accumulated(density: FloatArray) -> FloatArray:
     """Minus the integral over s from each face (and from the exit: 0) to the exit; fourth order inside.
 
     Counted from the exit, where the film is thin: the inlet holds so much oil that its round-off would drown the rest.
@@ -613,7 +621,7 @@ def _accumulate(density: FloatArray) -> FloatArray:
 
 
 @njit(cache=True)
-def _carried(mass: FloatArray) -> FloatArray:
+def carried_mass(mass: FloatArray) -> FloatArray:
     """rho H at the faces, interpolated as in the wedge term, and at the exit node."""
     n = mass.size - 1
     carried = np.empty(n + 1)

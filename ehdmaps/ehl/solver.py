@@ -10,6 +10,8 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.frequency import group_spectrum
 from ehdmaps.ehl.grid import GridShape
@@ -19,10 +21,11 @@ from ehdmaps.ehl.meniscus import starved_groups
 from ehdmaps.ehl.newton import CONVERGED, DIVERGED
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import LineProblem
+from ehdmaps.ehl.warm_oil import heat_groups
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.film_limits import THICKEST_FILM, THIN_FILM_LIMIT, too_thick
-from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL
+from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, PHYSICS, THERMAL, heat_data
 from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.inlet_heat import heated, heated_spectrum, inlet_heat
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
@@ -45,9 +48,6 @@ from ehdmaps.physics.wall_stress import wall_stress_note
 HEAVIEST_LOAD_NUMBER = 2e6
 """Moes' M above which the film is too thin for double precision to see it beside the elastic deflection."""
 
-PHYSICS = (ISOTHERMAL, INLET_HEAT)
-"""What this solver may know of heat."""
-
 LIGHTEST_LOAD_NUMBER = 1e-12
 """Moes' M below which double precision does not see the elastic deflection, of size b^2/R, beside the film, H ~ 1/M:
 the linear response, made of both, loses digits, and its equations are singular from 1e-16 on."""
@@ -56,6 +56,7 @@ LARGEST_OIL_NUMBER = 150.0
 """Moes' L above which no solve is tried."""
 
 NEWTONIAN_LAW = ShearLaw()
+
 
 THINNEST_LAYER = 1e-6
 """Oil layer [b^2/R] below which the place of the meniscus, and the film, are below round-off of the deflection."""
@@ -93,8 +94,8 @@ class SuppliedFilm:
 class ReynoldsSolver(ContactSolverDefaults):
     """Finite-difference solver of the steady line contact and of its linear response.
 
-    Isothermal, piezoviscous, compressible, with Reynolds' cavitation condition at the exit, Newtonian unless another
-    law of shear is chosen; fully flooded, but for `supplied_film`, which takes an oil layer before the contact.
+    Piezoviscous, compressible, with Reynolds' cavitation condition at the exit; isothermal and Newtonian unless chosen
+    otherwise; fully flooded, but for `supplied_film`, which takes an oil layer before the contact.
 
     Attributes
     ----------
@@ -106,8 +107,9 @@ class ReynoldsSolver(ContactSolverDefaults):
         Newton tolerance on the last (quadratic) step.
     thickest_film : float
         Largest h/R that is no refusal; infinite for lines that stand for their groups only.
-    physics : {"isothermal", "inlet-heat"}
-        What films know of heat: nothing, or that of the inlet by the rule of `ehdmaps.physics.inlet_heat`.
+    physics : {"isothermal", "inlet-heat", "thermal"}
+        What films know of heat: nothing, that of the inlet by the rule of `ehdmaps.physics.inlet_heat`, or temperatures
+        of film and surfaces, solved for besides.
     shear : str
         Law of shear, one of `ehdmaps.physics.rheology.SHEARS`.
     shear_stress, limiting_ratio, carreau_exponent : float, optional
@@ -167,9 +169,9 @@ class ReynoldsSolver(ContactSolverDefaults):
     def natural_frequencies(self) -> tuple[float, ...]:
         """Octaves over which the complex stiffness of a contact goes from that of slow motion to that of a locked film.
 
-        They cost a sixth of a map's time.
+        They cost a sixth of a map's time. None for films with temperatures, whose response is that of slow motion only.
         """
-        return (0.5, 1.0, 2.0, 4.0, 8.0)
+        return (0.5, 1.0, 2.0, 4.0, 8.0) if self.physics != THERMAL else ()
 
     @property
     def resolution(self) -> Resolution:
@@ -191,7 +193,7 @@ class ReynoldsSolver(ContactSolverDefaults):
 
     @property
     def _flow_settings(self) -> dict[str, float | str]:
-        """Settings of shear where they change anything."""
+        """Settings of shear and heat where they change anything."""
         law = self.shear_law
         settings: dict[str, float | str] = {} if self.slide_to_roll == 0.0 else {"slide_to_roll": self.slide_to_roll}
         if law.form == NEWTONIAN:
@@ -204,10 +206,19 @@ class ReynoldsSolver(ContactSolverDefaults):
         return settings
 
     def _problem(
-        self, contact: LineContact, state: LubricantState, load: float, speed: float
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint
     ) -> tuple[LineProblem, float, float]:
         """Groups of one operating point, see `line_problem`."""
-        return line_problem(contact, state, load, speed, self.shear_law, self.slide_to_roll)
+        state, load, speed = lubricant.at(point.temperature), point.load, point.entrainment_speed
+        problem, M, L = line_problem(contact, state, load, speed, self.shear_law, self.slide_to_roll)
+        if self.physics != THERMAL:
+            return problem, M, L
+        half = float(half_width(load, contact.radius, contact.reduced_modulus))
+        peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
+        walls = speed * np.array([1.0 - 0.5 * self.slide_to_roll, 1.0 + 0.5 * self.slide_to_roll])
+        data = heat_data(lubricant, contact.material)
+        heat = heat_groups(lubricant, data, point.temperature, half, contact.radius, peak, walls)
+        return problem._replace(heat=heat), M, L
 
     def solve_line(
         self,
@@ -237,12 +248,13 @@ class ReynoldsSolver(ContactSolverDefaults):
     ) -> tuple[FilmSpectrum, ...]:
         """The same films, each over frequency from its one solution; arguments as of `ContactSolver.line_spectra`."""
         solved = self._solve_line(contact, lubricant, loads, entrainment_speed, temperature)
-        state = lubricant.at(temperature)
+        if self.physics == THERMAL:
+            return tuple(slow_spectrum(film, np.empty(0)) for film, _ in solved)
         spectra = []
         for load, (film, groups) in zip(loads, solved, strict=True):
             point = OperatingPoint(load, entrainment_speed, temperature)
             frequencies = natural_to_hertz(self.natural_frequencies, film, contact, point)
-            spectrum = self._spectrum(contact, state, point, film, groups, frequencies)
+            spectrum = self._spectrum(contact, lubricant, point, film, groups, frequencies)
             spectra.append(self._with_inlet_heat(spectrum, contact, lubricant, point))
         return tuple(spectra)
 
@@ -255,10 +267,10 @@ class ReynoldsSolver(ContactSolverDefaults):
         temperature: float,
     ) -> Iterator[tuple[FilmSolution, GroupSolution | None]]:
         """Films at each load, each from the one before it, with their solutions in groups."""
-        state = lubricant.at(temperature)
         previous: Profile | None = None
         for load in loads:
-            film, groups = self._solve(contact, state, OperatingPoint(load, entrainment_speed, temperature), previous)
+            point = OperatingPoint(load, entrainment_speed, temperature)
+            film, groups = self._solve(contact, lubricant, point, previous)
             previous = previous if groups is None else groups.profile
             yield film, groups
 
@@ -266,9 +278,13 @@ class ReynoldsSolver(ContactSolverDefaults):
         self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: FloatArray
     ) -> FilmSpectrum:
         """Film of one point over frequency, from one solution; arguments as of `ContactSolver.film_spectrum`."""
-        state = lubricant.at(point.temperature)
-        film, groups = self._solve(contact, state, point, None)
-        spectrum = self._spectrum(contact, state, point, film, groups, frequencies)
+        if self.physics == THERMAL:
+            raise InputError(
+                f"reynolds solver, frequency: physics = {self.physics!r} has films of slow motion only; "
+                f"leave the frequencies out, or choose {ISOTHERMAL}"
+            )
+        film, groups = self._solve(contact, lubricant, point, None)
+        spectrum = self._spectrum(contact, lubricant, point, film, groups, frequencies)
         return self._with_inlet_heat(spectrum, contact, lubricant, point)
 
     def _with_inlet_heat(
@@ -282,7 +298,7 @@ class ReynoldsSolver(ContactSolverDefaults):
     def _spectrum(
         self,
         contact: LineContact,
-        state: LubricantState,
+        lubricant: Lubricant,
         point: OperatingPoint,
         film: FilmSolution,
         groups: GroupSolution | None,
@@ -294,7 +310,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         if groups is None:
             return slow_spectrum(film, frequencies)
         load, speed = point.load, point.entrainment_speed
-        _, M, L = self._problem(contact, state, load, speed)
+        _, M, L = self._problem(contact, lubricant, point)
         half = float(half_width(load, contact.radius, contact.reduced_modulus))
         found = group_spectrum(M, L, groups, 2.0 * math.pi * frequencies * half / speed)
         unit = 4.0 / contact.reduced_modulus  # b/(p_H R)
@@ -315,7 +331,7 @@ class ReynoldsSolver(ContactSolverDefaults):
             Load, speed and temperature.
         """
         self._without_a_rule("profile of a film")
-        film, groups = self._solve(contact, lubricant.at(point.temperature), point, None)
+        film, groups = self._solve(contact, lubricant, point, None)
         return film, _profile_in_si(film, groups, contact, point.load)
 
     def supplied_film(
@@ -339,7 +355,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         """
         self._without_a_rule("film behind an oil layer")
         state = lubricant.at(point.temperature)
-        film, flooded = self._solve(contact, state, point, None)
+        film, flooded = self._solve(contact, lubricant, point, None)
         # a flooded film that is refused for its thickness still says how much oil it takes
         if flooded is None or flooded.outcome != CONVERGED:
             return SuppliedFilm(film)
@@ -353,7 +369,10 @@ class ReynoldsSolver(ContactSolverDefaults):
         if layer < THINNEST_LAYER:
             reason = f"{supply.label}: {layer:.3g} b^2/R, below {THINNEST_LAYER:g} it is lost in round-off"
             return SuppliedFilm(FilmSolution(Status.OUTSIDE_VALIDITY, reason), ratio)
-        _, M, L = self._problem(contact, state, point.load, point.entrainment_speed)
+        if self.physics == THERMAL:
+            reason = f"{supply.label}, {ratio:.3g} of the flooded flow: starved films are isothermal ones only"
+            return SuppliedFilm(FilmSolution(Status.OUTSIDE_VALIDITY, reason), ratio)
+        _, M, L = self._problem(contact, lubricant, point)
         started = time.perf_counter()
         starved = starved_groups(M, L, self.resolution, layer, flooded)
         seconds = film.solve_seconds + time.perf_counter() - started
@@ -380,14 +399,15 @@ class ReynoldsSolver(ContactSolverDefaults):
             )
 
     def _solve(
-        self, contact: LineContact, state: LubricantState, point: OperatingPoint, previous: Profile | None
+        self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, previous: Profile | None
     ) -> tuple[FilmSolution, GroupSolution | None]:
         """One point, and its solution in groups where it was solved."""
         load, speed = point.load, point.entrainment_speed
         peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
         if speed == 0.0:
             return dry_film(peak, "no entrainment: dry contact"), None
-        problem, M, L = self._problem(contact, state, load, speed)
+        state = lubricant.at(point.temperature)
+        problem, M, L = self._problem(contact, lubricant, point)
         beyond = _beyond_reach(peak, M, L)
         if beyond:
             return FilmSolution(Status.OUTSIDE_VALIDITY, beyond), None
@@ -398,6 +418,8 @@ class ReynoldsSolver(ContactSolverDefaults):
             word = "diverged" if groups.outcome == DIVERGED else "stagnated"
             status = Status.DIVERGED if groups.outcome == DIVERGED else Status.STAGNATED
             reason = f"Newton {word} at M = {M:.4g}, L = {L:.4g} on every grid tried"
+            if self.physics == THERMAL and self.shear_law.form == NEWTONIAN:
+                reason += "; films with temperatures are found more often with shear = 'eyring' or 'limiting'"
             return FilmSolution(status, reason, iterations=groups.steps, solve_seconds=seconds), groups
         half = float(half_width(load, contact.radius, contact.reduced_modulus))
         film = _in_si(groups, contact, state, half, peak, speed, seconds)
@@ -509,6 +531,7 @@ def _in_si(
     profile = groups.profile
     assert profile is not None
     newtonian = profile.problem.shear.form == NEWTONIAN
+    heat = profile.problem.heat
     film = half * half / contact.radius
     compliance = half / (peak * contact.radius)
     status, notes = Status.CONVERGED, []
@@ -517,7 +540,7 @@ def _in_si(
         status = Status.ASYMPTOTE
         notes.append("film thicker than 1 % of the radius: limit of thin-film theory, Reynolds with a parabolic gap")
     elif groups.loss < 0.0:
-        kind = " of an isothermal, Newtonian film" if newtonian else ""
+        kind = " of an isothermal, Newtonian film" if newtonian and profile.warmth is None else ""
         notes.append(f"negative damping at the valley{kind}; a contact law takes zero")
     stress = state.viscosity * speed / film
     if newtonian:
@@ -541,6 +564,8 @@ def _in_si(
         max_pressure_error=groups.max_pressure_error,
         rolling_force_error=groups.rolling_force_error,
         mass_flow_error=groups.mass_flow_error,
+        film_temperature=heat.temperature + groups.film_rise,
+        surface_temperature=heat.temperature + groups.surface_rise,
         traction=profile.traction * stress * half,
         wall_stress=profile.wall_stress * stress,
         iterations=groups.steps,

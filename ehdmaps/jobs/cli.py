@@ -12,7 +12,7 @@ from ehdmaps.program import Parser, run
 _KEEP = "openfoam: keep the case folders of all runs; default folder: ehdmaps-cases"
 _SOLVER = "hertz | formula | reynolds | openfoam; instead of the job's, with its default settings"
 
-_STRUCTURE = "law of the solids in approach, k and c: iso16281 | palmgren | half_space; default: that of the job"
+_STRUCTURE = "law of the solids in approach, k and c: iso16281 | palmgren | half_space | fe; default: that of the job"
 
 _ROUGHNESS = 'combined rms roughness, "0.2 um", or smooth; default: that of the job'
 
@@ -134,10 +134,27 @@ def parser() -> argparse.ArgumentParser:
     export.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
     export.add_argument("--roughness", metavar="LENGTH", help=_ROUGHNESS)
 
+    _add_solids(commands)
     _add_compare(commands)
     _add_tradeoff(commands)
     _add_stability(commands)
     return top
+
+
+def _add_solids(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Add the arguments of `ehdmaps solids`."""
+    solids = commands.add_parser("solids", help="the structural law of a bearing by finite elements, once per bearing")
+    solids.add_argument("job", metavar="JOB")
+    solids.add_argument("-o", "--output", metavar="FILE.json", help="all that was found; default: none")
+    solids.add_argument("--mesh-convergence", action="store_true", help="three meshes, and other seats of the rings")
+    solids.add_argument("--contact", action="store_true", help="CalculiX solves the contact too; some minutes")
+    solids.add_argument(
+        "--compare",
+        action="store_true",
+        help="k by all structural laws; solves only where the law fe is unknown",
+    )
+    solids.add_argument("--plot", metavar="FIG.png", help="meshes, and the laws over load; also .pdf, .svg")
+    solids.add_argument("--json", action="store_true", help="the numbers as one object, SI")
 
 
 def _add_compare(commands: argparse._SubParsersAction[Parser]) -> None:

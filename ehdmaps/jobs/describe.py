@@ -27,12 +27,14 @@ from ehdmaps.jobs.surface import surface_words
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR
 from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.own_lines import has_own_lines
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.maps.rough_films import BOUNDARY, FILM_PARAMETER, FILM_SHARE, MIXED, rough_variables
+from ehdmaps.physics.approach import FE_LOAD
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solution import Status
-from ehdmaps.units import FILM, LENGTH, PRESSURE, TEMPERATURE, Display
+from ehdmaps.units import FILM, LENGTH, LOAD, PRESSURE, TEMPERATURE, Display
 
 SHOWN_TEMPERATURES = (313.15, 373.15)
 """Where the oil's viscosity is shown [K]: those of its data sheet."""
@@ -132,7 +134,8 @@ def _geometry_lines(emap: EHDMap) -> Iterator[str]:
         yield from _bearing_lines(emap.bearing)
     for contact in emap.contacts:
         depth = f", depth d* {LENGTH.text(contact.reference_depth)}" if contact.reference_depth else ""
-        shown = depth if contact.structural_law == "half_space" else ""
+        found = f", {FILM.text(contact.fe_approach, 5)} at {LOAD.text(FE_LOAD)}" if contact.fe_approach else ""
+        shown = {"half_space": depth, "fe": found}.get(contact.structural_law, "")
         yield f"  {contact.name + ' contact':20s} reduced radius {LENGTH.text(contact.radius, 5)}{shown}"
     material = emap.contacts[0].material
     modulus = PRESSURE.text(material.youngs_modulus)
@@ -189,9 +192,14 @@ def _backbone_lines(backbone: xr.Dataset) -> Iterator[str]:
     """Yield the size of the group of refinement lines."""
     sizes = [backbone.sizes[name] for name in schema.BACKBONE_DIMS]
     yield "refinement lines of the contact law (group backbone)"
-    status = backbone["status"].values
+    held = [name for name in ("status", f"{schema.OWN}status") if name in backbone]
+    status = np.stack([backbone[name].values for name in held])
     solved = int((status != schema.NOT_NEEDED).sum())
-    yield f"  {solved} points: {sizes[0]} loads about the damping valley, {sizes[1]} speeds, {sizes[2]} temperatures"
+    whose = ", of each contact its own" if has_own_lines(backbone) else ""
+    yield (
+        f"  {solved} points: {sizes[0]} loads about the damping valley, {sizes[1]} speeds, {sizes[2]} temperatures"
+        f"{whose}"
+    )
     bridged = solved - int(np.isin(status, [int(known) for known in Status if known.usable]).sum())
     if bridged:
         yield f"  {bridged} of them without a solution: single ones are bridged along their lines"

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.solids import NO_SOLIDS, SolidsKeys
 from ehdmaps.maps.backbone_plan import STEPS, Steps
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
@@ -93,6 +94,8 @@ class Job:
     corrected_by : CorrectedBy or None
         Dearer solver by a few points of which the films of the map are corrected, see `ehdmaps.jobs.correction`; None
         where they are those of `solver`.
+    solids : SolidsKeys
+        What the job says of its solids: dimensions for finite elements, and what they found.
     """
 
     name: str
@@ -112,6 +115,7 @@ class Job:
     supply: OilSupply | None = None
     surface: Surface | None = None
     corrected_by: CorrectedBy | None = None
+    solids: SolidsKeys = NO_SOLIDS
 
     @classmethod
     def build(
@@ -129,6 +133,7 @@ class Job:
         solver: str = "reynolds",
         solver_options: Mapping[str, str | int | float | bool] | None = None,
         structural_law: StructuralLaw = "iso16281",
+        fe_approaches: Mapping[str, float] | None = None,
         fill: str = "neighbours",
         backbone: str = "law",
         law_check: int = 0,
@@ -165,8 +170,11 @@ class Job:
             hertz, formula, reynolds or openfoam.
         solver_options : mapping, optional
             The solver's own keys, as in [solver].
-        structural_law : {"iso16281", "palmgren", "half_space"}
+        structural_law : {"iso16281", "palmgren", "half_space", "fe"}
             Structural law of the bearing's contacts.
+        fe_approaches : mapping of str to float, optional
+            Approaches by finite elements of the bearing's contacts by their names [m]; for the law fe those that come
+            with the package if left out.
         fill, backbone, law_check, line_steps
             See the attributes.
         corrected_by : str, optional
@@ -222,6 +230,7 @@ class Job:
             supply,
             surface,
             correction_options,
+            fe_approaches if contact is None else ({"line": contact.fe_approach} if contact.fe_approach else None),
         )
         job = parse_job(text, name, "Job.build")
         check_oil(lubricant, job, "Job.build, ")

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.solids import solids_keys
 from ehdmaps.jobs.supply import supply_keys
 from ehdmaps.jobs.surface import surface_keys
 from ehdmaps.maps.backbone_plan import Steps
@@ -51,6 +52,7 @@ def job_text(
     supply: OilSupply | None = None,
     surface: Surface | None = None,
     correction: Mapping[str, Entry] | None = None,
+    fe_approaches: Mapping[str, float] | None = None,
 ) -> str:
     """Write a job file.
 
@@ -72,6 +74,8 @@ def job_text(
         Surfaces for [surface]; no such table if left out, or smooth.
     correction : mapping, optional
         All keys of [correction]; no such table if left out, or empty.
+    fe_approaches : mapping of str to float, optional
+        Approaches by finite elements for [solids] [m]; no such table if left out, or empty.
 
     Raises
     ------
@@ -94,6 +98,7 @@ def job_text(
         "lubricant": lubricant_keys(lubricant),
         **({} if supply is None else {"supply": supply_keys(supply)}),
         **({} if surface is None or surface.smooth else {"surface": surface_keys(surface)}),
+        **({"solids": solids_keys(fe_approaches)} if fe_approaches else {}),
         "grid": {
             "load": [_quantity(value, "N/m") for value in loads],
             "entrainment_speed": [_quantity(value, "m/s") for value in speeds],

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any, TypeVar, cast
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.solids import NO_SOLIDS, SolidsKeys, fe_approaches
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics._labels import label_problem
 from ehdmaps.physics.approach import StructuralLaw
@@ -56,7 +57,9 @@ _OIL_KEYS = ("viscosity_law", *_OIL_QUANTITIES, "pressure_viscosity", *_LAW_PARA
 _ISOVISCOUS = ("0 1/GPa", "0 1/Pa")
 
 
-def read_contacts(top: Table, law: str | None) -> tuple[BearingGeometry | None, tuple[LineContact, ...]]:
+def read_contacts(
+    top: Table, law: str | None, solids: SolidsKeys = NO_SOLIDS, key: str = "law"
+) -> tuple[BearingGeometry | None, tuple[LineContact, ...]]:
     """Read [bearing] or [contact], and [material].
 
     Parameters
@@ -65,6 +68,10 @@ def read_contacts(top: Table, law: str | None) -> tuple[BearingGeometry | None, 
         The whole file.
     law : str or None
         Structural law; None where it was wrong already.
+    solids : SolidsKeys
+        What [solids] says.
+    key : str
+        Name of the key with the law, for messages.
 
     Returns
     -------
@@ -83,9 +90,20 @@ def read_contacts(top: Table, law: str | None) -> tuple[BearingGeometry | None, 
     checked = cast(StructuralLaw, law or "half_space")
     bearing = _bearing(rolling) if rolling else None
     if bare:
-        contact = _contact(bare, material or STEEL, checked, law is not None)
+        contact = _contact(bare, material or STEEL, checked, law is not None, solids.approaches.get("line"))
         return bearing, (contact,) if contact and not rolling else ()
-    return bearing, bearing.contacts(material or STEEL, checked) if bearing else ()
+    if bearing is None:
+        return None, ()
+    approaches = solids.approaches
+    if approaches and set(approaches) != {"inner", "outer"}:  # `check_solids` says so
+        return bearing, ()
+    if checked == "fe":
+        try:
+            approaches = fe_approaches(solids, bearing, material or STEEL, key)
+        except InputError as error:
+            top.problems.extend(error.problems)
+            return bearing, ()
+    return bearing, bearing.contacts(material or STEEL, checked, approaches)
 
 
 def _material(section: Table) -> Material | None:
@@ -211,7 +229,9 @@ def _clearance(section: Table) -> float | None:
     return section.quantity("diametral_clearance", "m", -1e-2, 1e-2, LENGTH)
 
 
-def _contact(section: Table, material: Material, law: StructuralLaw, law_known: bool) -> LineContact | None:
+def _contact(
+    section: Table, material: Material, law: StructuralLaw, law_known: bool, fe_approach: float | None
+) -> LineContact | None:
     """Read [contact]."""
     radius = section.quantity("radius", "m", 1e-5, 100.0, LENGTH, required=True)
     depth = section.quantity("reference_depth", "m", 1e-5, 100.0, LENGTH)
@@ -220,7 +240,7 @@ def _contact(section: Table, material: Material, law: StructuralLaw, law_known: 
     given_wrong = ("reference_depth" in section and depth is None) or ("roller_length" in section and length is None)
     if radius is None or given_wrong or not law_known:
         return None
-    return _built(section, lambda: LineContact("line", radius, material, law, length, depth))
+    return _built(section, lambda: LineContact("line", radius, material, law, length, depth, fe_approach))
 
 
 def read_lubricant(section: Table) -> Lubricant | None:

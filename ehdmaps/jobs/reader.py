@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import resources
 from os import PathLike, fspath
 from pathlib import Path
@@ -15,6 +15,7 @@ from ehdmaps.jobs import solvers, toml_text
 from ehdmaps.jobs.axes import LOAD_AXIS, TEMPERATURE_AXIS, read_axis, read_speeds
 from ehdmaps.jobs.job import DEFAULT_CORRECTION_POINTS, MOST_CHECKS, MOST_POINTS, CorrectedBy, Job
 from ehdmaps.jobs.problem import read_contacts, read_lubricant
+from ehdmaps.jobs.solids import NO_SOLIDS, check_solids, read_solids
 from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.surface import read_surface
 from ehdmaps.jobs.table import Table
@@ -22,9 +23,9 @@ from ehdmaps.maps.backbone_plan import STEP_LIMITS, STEPS, Steps
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.heat import ISOTHERMAL, heat_data
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.solids import Material
 from ehdmaps.units import KELVIN, closest
 
 LONGEST_FILE = 1_000_000
@@ -33,8 +34,10 @@ LONGEST_FILE = 1_000_000
 FEWEST_CORRECTION_POINTS, MOST_CORRECTION_POINTS = 4, 200
 """Points of the dearer solver; beyond that a map of its own is the better use of them."""
 
+_ONE = "allowed: one of the two"
 _SIGNATURES = (b"CDF", b"\x89HDF")
-_TABLES = ("schema", "bearing", "contact", "material", "lubricant", "supply", "surface", "grid", "solver", "correction")
+_PROBLEM = ("bearing", "contact", "material", "lubricant", "supply", "surface", "solids")
+_TABLES = ("schema", *_PROBLEM, "grid", "solver", "correction")
 
 
 def shipped_jobs() -> tuple[str, ...]:
@@ -43,7 +46,9 @@ def shipped_jobs() -> tuple[str, ...]:
     return tuple(sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml")))
 
 
-def read_job(source: str | PathLike[str], solver: str | None = None, to_run: bool = False) -> Job:
+def read_job(
+    source: str | PathLike[str], solver: str | None = None, to_run: bool = False, finding_solids: bool = False
+) -> Job:
     """Read a job.
 
     Parameters
@@ -54,6 +59,8 @@ def read_job(source: str | PathLike[str], solver: str | None = None, to_run: boo
         Takes the place of the job's solver; its own keys have their defaults then.
     to_run : bool
         Whether the job is to be run here: what its solver lacks on this machine is a problem then.
+    finding_solids : bool
+        Whether the approaches that the law fe needs are about to be found: the contacts have the law half_space then.
 
     Raises
     ------
@@ -63,19 +70,26 @@ def read_job(source: str | PathLike[str], solver: str | None = None, to_run: boo
     source = fspath(source)
     if source in shipped_jobs():
         text = (resources.files("ehdmaps.jobs") / "shipped" / f"{source}.toml").read_text(encoding="utf-8")
-        return parse_job(text, name=source, where=f"{source} (shipped)", solver=solver, to_run=to_run)
+        return parse_job(text, source, f"{source} (shipped)", solver, to_run, finding_solids)
     path = Path(source)
     known = shipped_jobs()
     allowed = f"a job file, a map file, or a shipped job: {', '.join(known)}{closest(source, known)}"
     if inputs.first_bytes(path, 8, allowed, source).startswith(_SIGNATURES):
         text, name, of_map = _job_of_map(path)
-        return parse_job(text, name=name, where=f"{source} (job of the map)", solver=solver or of_map, to_run=to_run)
+        return parse_job(text, name, f"{source} (job of the map)", solver or of_map, to_run, finding_solids)
     advice = "write long axes as from, to, points"
     text = inputs.read_text(path, LONGEST_FILE, "a job file in TOML, or a map file", advice, source)
-    return parse_job(text, name=path.stem, where=source, solver=solver, to_run=to_run)
+    return parse_job(text, path.stem, source, solver, to_run, finding_solids)
 
 
-def parse_job(text: str, name: str, where: str, solver: str | None = None, to_run: bool = False) -> Job:
+def parse_job(
+    text: str,
+    name: str,
+    where: str,
+    solver: str | None = None,
+    to_run: bool = False,
+    finding_solids: bool = False,
+) -> Job:
     """Read a job from the text of its file.
 
     Parameters
@@ -88,7 +102,7 @@ def parse_job(text: str, name: str, where: str, solver: str | None = None, to_ru
         How messages call the file.
     solver : str, optional
         Takes the place of the job's solver.
-    to_run : bool
+    to_run, finding_solids : bool
         The same as for `read_job`.
 
     Raises
@@ -98,20 +112,28 @@ def parse_job(text: str, name: str, where: str, solver: str | None = None, to_ru
     """
     values = toml_text.parse(text, where)
     problems: list[str] = []
-    job = _job(Table(values, "job file", problems), text, name, solver, to_run)
+    job = _job(Table(values, "job file", problems), text, name, solver, to_run, finding_solids)
     if problems or job is None:
         raise InputError([f"{where}: {problem}" for problem in problems])
     return job
 
 
-def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -> Job | None:
+def _job(top: Table, text: str, name: str, override: str | None, to_run: bool, finding_solids: bool) -> Job | None:
     """Read all tables; None where a problem was noted."""
     schema = top.get("schema", required="schema = 1")
     if "schema" in top and (isinstance(schema, bool) or schema != 1):
         top.note("schema", f"got {schema!r:.60}; allowed: 1; this version of ehdmaps reads no other")
 
     section = top.table("solver", "[solver]", required="a table with name and structural_law")
-    solver, options, law, rest = _solver(section, top) if section else (None, {}, None, {})
+    solids_section = top.table("solids", "[solids]")
+    solids = read_solids(solids_section) if solids_section else NO_SOLIDS
+    law_elsewhere = solids_section is not None and "law" in solids_section
+    solver, options, law, rest = _solver(section, top, law_elsewhere) if section else (None, {}, None, {})
+    key = "[solver] structural_law"
+    if law_elsewhere and section and "structural_law" in section:
+        top.note("[solids] law", f"stands beside structural_law of [solver], which says the same; {_ONE}; delete one")
+    elif law_elsewhere:
+        key, law = "[solids] law", solids.law
     if override is not None and override not in solvers.SOLVER_NAMES:
         top.note("--solver", f"got {override!r:.60}; allowed: {', '.join(solvers.SOLVER_NAMES)}")
     elif override is not None and override != solver:
@@ -122,11 +144,14 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
             for problem in solvers.SOLVERS[needed].missing():
                 top.note(f"[solver] {key}", f"got {needed!r}, which needs more than is here: {problem}")
 
-    bearing, contacts = read_contacts(top, law)
+    bearing, contacts = read_contacts(top, "half_space" if law == "fe" and finding_solids else law, solids, key)
+    if solids_section is not None:
+        check_solids(solids_section, bare="contact" in top)
+        solids_section.close()
     oil_section = top.table("lubricant", "[lubricant]", required="a table with the name of an oil, or its data")
     oil = read_lubricant(oil_section) if oil_section else None
     if oil is not None and contacts:
-        _check_heat(top, oil, contacts[0].material, options, rest["corrected_by"] if rest else None)
+        _check_heat(top, oil, contacts, options, rest.get("corrected_by"))
     supply = top.optional("supply", "[supply]", read_supply)
     surface = top.optional("surface", "[surface]", read_surface)
 
@@ -136,6 +161,7 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
         axes = _grid(grid, len(contacts) or 2, bearing)
         if oil is not None and axes[2] is not None:
             _check_temperatures(oil, axes[2], grid)
+        _check_loads(contacts, axes[0], grid)
     top.close(others=_TABLES)
 
     loads, speeds, temperatures = axes
@@ -149,6 +175,7 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
         lubricant=oil,
         supply=supply,
         surface=surface,
+        solids=solids,
         loads=loads,
         entrainment_speeds=speeds,
         temperatures=temperatures,
@@ -158,10 +185,12 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool) -
     )
 
 
-def _solver(section: Table, top: Table) -> tuple[str | None, dict[str, object], str | None, dict[str, Any]]:
+def _solver(
+    section: Table, top: Table, law_elsewhere: bool
+) -> tuple[str | None, dict[str, object], str | None, dict[str, Any]]:
     """Read [solver]: name, its own keys, structural law, and the keys that every solver has; and [correction]."""
     name = section.choice("name", solvers.SOLVER_NAMES, required=True)
-    law = section.choice("structural_law", STRUCTURAL_LAWS, required=True)
+    law = section.choice("structural_law", STRUCTURAL_LAWS, required=not law_elsewhere)
     rest: dict[str, Any] = {
         "fill": section.choice("fill", ("neighbours", "none")) or "neighbours",
         "backbone": section.choice("backbone", ("law", "none")) or "law",
@@ -215,6 +244,16 @@ def _line_steps(section: Table) -> Steps:
     )
 
 
+def _check_loads(contacts: Sequence[LineContact], loads: Sequence[float] | None, grid: Table) -> None:
+    """Note loads for which the contacts are too wide for the law of finite elements."""
+    for contact in contacts:
+        if contact.structural_law == "fe" and loads:
+            try:
+                contact.structural_approach(loads[-1])
+            except InputError as error:
+                grid.note("load", f"contact {contact.name}: {error.problems[0]}")
+
+
 def _grid(grid: Table, contacts: int, bearing: BearingGeometry | None) -> list[tuple[float, ...] | None]:
     """Read [grid]."""
     axes = [read_axis(grid, LOAD_AXIS), read_speeds(grid, bearing), read_axis(grid, TEMPERATURE_AXIS)]
@@ -232,14 +271,25 @@ def _grid(grid: Table, contacts: int, bearing: BearingGeometry | None) -> list[t
 
 
 def _check_heat(
-    top: Table, oil: Lubricant, material: Material, options: Mapping[str, object], by: CorrectedBy | None
+    top: Table,
+    oil: Lubricant,
+    contacts: tuple[LineContact, ...],
+    options: Mapping[str, object],
+    by: CorrectedBy | None,
 ) -> None:
     """Note what heat needs and nobody stated, where a solver of the job knows heat."""
-    known = (options.get("physics"), by.options.get("physics") if by else None)
-    if all(physics in (None, ISOTHERMAL) for physics in known):
+    own = options.get("physics", ISOTHERMAL)
+    dearer = by.options.get("physics", ISOTHERMAL) if by else own
+    if own == dearer == ISOTHERMAL:
         return
+    if own != dearer and len(contacts) > 1:
+        top.note(
+            "[correction] physics",
+            f"got {dearer!r} for films that are {own}; contacts of a bearing share what they are corrected by, and "
+            "heat is not theirs in common; allowed: the same physics in [solver], or a bare [contact]",
+        )
     try:
-        heat_data(oil, material)
+        heat_data(oil, contacts[0].material)
     except InputError as error:
         for problem in error.problems:
             top.note("[lubricant]", problem)

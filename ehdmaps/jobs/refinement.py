@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
-from ehdmaps.jobs.tasks import SPECTRUM_FIELDS, LineTask, with_later_fields
+from ehdmaps.jobs.tasks import SPECTRUM_FIELDS, LineTask, knows_heat, with_later_fields
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, FILMS, IMAGINARY, REAL, BackboneField
-from ehdmaps.maps.backbone_plan import BackbonePlan, Steps, plan_backbone
-from ehdmaps.maps.records import contact_record, contacts_from_json
+from ehdmaps.maps.backbone_plan import BackbonePlan, Steps, plan_backbone, plan_own_lines
+from ehdmaps.maps.own_lines import lines_by_contact
+from ehdmaps.maps.records import contact_record
 from ehdmaps.maps.rolling_film import NAMES as ROLLING
 from ehdmaps.maps.usable import check_backbone
 from ehdmaps.physics.contact import LineContact
@@ -28,9 +31,12 @@ MOST_LINE_POINTS = 40_000
 
 @dataclass(frozen=True)
 class Refinement:
-    """Plan of a backbone, the steps that it was made with, and its tasks, one a line and in the plan's order."""
+    """Plans of a backbone, its steps, and its tasks, one a line and in the plans' order.
 
-    plan: BackbonePlan
+    There is one plan for all contacts, or one a contact where films know heat, see `ehdmaps.maps.own_lines`.
+    """
+
+    plans: tuple[BackbonePlan, ...]
     steps: Steps
     tasks: tuple[LineTask, ...]
 
@@ -55,8 +61,13 @@ def refinement(job: Job, solver: ContactSolver, steps: Steps | None = None) -> R
     steps = steps or job.line_steps
     if not solver.wants_backbone or job.backbone == "none":
         return None
-    plan = plan_backbone(job.contacts, job.lubricant, job.loads, job.entrainment_speeds, job.temperatures, steps)
-    if plan is None:
+    axes = job.lubricant, job.loads, job.entrainment_speeds, job.temperatures, steps
+    if knows_heat(solver):
+        plans = plan_own_lines(job.contacts, *axes)
+    else:
+        shared = plan_backbone(job.contacts, *axes)
+        plans = (shared,) if shared is not None else ()
+    if not plans:
         return None
     # these lines stand for their groups: how thick their own film is does not matter
     of_groups = replace(solver, thickest_film=math.inf) if isinstance(solver, ReynoldsSolver) else solver
@@ -70,23 +81,45 @@ def refinement(job: Job, solver: ContactSolver, steps: Steps | None = None) -> R
             solver=of_groups,
             natural_frequencies=solver.natural_frequencies,
         )
+        for plan in plans
         for line in plan.lines
     )
-    return Refinement(plan, steps, tasks)
+    return Refinement(plans, steps, tasks)
 
 
 def backbone_group(refined: Refinement, results: Mapping[str, Arrays]) -> xr.Dataset:
     """Put the lines in their places: the group "backbone" of the map file."""
-    plan = refined.plan
+    first = refined.plans[0]
+    natural = refined.tasks[0].natural_frequencies if refined.tasks else ()
+    values: dict[str, npt.NDArray[Any]] = {}
+    start = 0
+    for plan, prefix in zip(refined.plans, ("", schema.OWN), strict=False):
+        tasks = refined.tasks[start : start + len(plan.lines)]
+        start += len(plan.lines)
+        values |= {f"{prefix}{name}": array for name, array in _films(plan, tasks, natural, results).items()}
+    axes = {"zeta": first.zeta, "reference_speed": first.speeds, "temperature": first.temperatures}
+    return schema.backbone(
+        axes | ({schema.NATURAL: natural} if natural else {}),
+        values,
+        {
+            "title": "films of a reference contact, from which the contact laws of the map are made",
+            schema.REFERENCE_CONTACT: record_json(contact_record(first.contact)),
+        },
+    )
+
+
+def _films(
+    plan: BackbonePlan, tasks: Sequence[LineTask], natural: tuple[float, ...], results: Mapping[str, Arrays]
+) -> dict[str, npt.NDArray[Any]]:
+    """Arrays of the films of one plan, by the names of the table."""
     shape = (len(plan.zeta), len(plan.speeds), len(plan.temperatures))
     values = {name: np.full(shape, np.nan) for name in (*FILMS, *ROLLING)}
-    natural = refined.tasks[0].natural_frequencies if refined.tasks else ()
     sources = {name: name for name in (*FILMS, *ROLLING)}
     if natural:
         sources |= dict(zip((REAL, IMAGINARY, ERROR), SPECTRUM_FIELDS, strict=True))
         values |= {name: np.full((*shape, len(natural)), np.nan) for name in (REAL, IMAGINARY, ERROR)}
     status = np.full(shape, schema.NOT_NEEDED, dtype=np.int8)
-    for line, task in zip(plan.lines, refined.tasks, strict=True):
+    for line, task in zip(plan.lines, tasks, strict=True):
         first, speed, temperature = line.place
         along = slice(first, first + task.points)
         arrays = with_later_fields(results[task.key])
@@ -95,15 +128,7 @@ def backbone_group(refined: Refinement, results: Mapping[str, Arrays]) -> xr.Dat
         for name, array in values.items():
             found = arrays[sources[name]]
             array[along, speed, temperature] = np.where(usable if found.ndim == 1 else usable[:, None], found, np.nan)
-    axes = {"zeta": plan.zeta, "reference_speed": plan.speeds, "temperature": plan.temperatures}
-    return schema.backbone(
-        axes | ({schema.NATURAL: natural} if natural else {}),
-        {**values, "status": status},
-        {
-            "title": "films of a reference contact, from which the contact laws of the map are made",
-            schema.REFERENCE_CONTACT: record_json(contact_record(plan.contact)),
-        },
-    )
+    return {**values, "status": status}
 
 
 def line_field(job: Job, group: xr.Dataset, contact: LineContact) -> BackboneField:
@@ -123,9 +148,9 @@ def line_field(job: Job, group: xr.Dataset, contact: LineContact) -> BackboneFie
     MapError
         If the lines have holes that cannot be bridged.
     """
-    (reference,) = contacts_from_json(f"[{group.attrs[schema.REFERENCE_CONTACT]}]")
     speeds = [u for u in job.entrainment_speeds if u > 0.0]
     load_range, speed_range = (min(job.loads), max(job.loads)), (min(speeds), max(speeds))
-    check_backbone(group, reference, (contact,), job.lubricant, load_range, speed_range)
+    ((lines, reference, _),) = lines_by_contact(group, (contact,))
+    check_backbone(lines, reference, (contact,), job.lubricant, load_range, speed_range)
     temperature_range = min(job.temperatures), max(job.temperatures)
-    return BackboneField(group, reference, (contact,), job.lubricant, load_range, speed_range, temperature_range)
+    return BackboneField(lines, reference, (contact,), job.lubricant, load_range, speed_range, temperature_range)

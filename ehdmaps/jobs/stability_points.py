@@ -13,6 +13,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.axes import LOAD_AXIS, SPEED_AXIS
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.sampling import SamplePoint, log_uniform
+from ehdmaps.jobs.solids import FE_APPROACHES
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import DENSITY_LAWS, LUBRICANTS, Lubricant
@@ -89,7 +90,9 @@ def own_contact(rng: np.random.Generator) -> LineContact:
     """
     material = Material(_beyond(rng, _MODULI), float(rng.uniform(0.0, 0.499)))
     law = STRUCTURAL_LAWS[int(rng.integers(len(STRUCTURAL_LAWS)))]
-    return LineContact("line", _beyond(rng, _LENGTHS), material, law, _beyond(rng, _LENGTHS), _beyond(rng, _LENGTHS))
+    radius, length, depth = (_beyond(rng, _LENGTHS) for _ in range(3))
+    approach = log_uniform(rng, *FE_APPROACHES) if law == "fe" else None
+    return LineContact("line", radius, material, law, length, depth, approach)
 
 
 def own_oil(rng: np.random.Generator) -> Lubricant:

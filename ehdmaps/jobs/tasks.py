@@ -126,9 +126,14 @@ class LineTask:
         return not (arrays["status"] == int(Status.FAILED)).any()
 
 
+def knows_heat(solver: ContactSolver) -> bool:
+    """Whether films of a solver hang on heat, which its settings say by the key physics."""
+    return solver.settings().get("physics", ISOTHERMAL) != ISOTHERMAL
+
+
 def _solid_heat(material: Material, solver: ContactSolver) -> dict[str, dict[str, float]]:
     """What heat takes of the solids, for the key of a task; nothing of an isothermal solver."""
-    if solver.settings().get("physics", ISOTHERMAL) == ISOTHERMAL:
+    if not knows_heat(solver):
         return {}
     return {"solids": {name: getattr(material, name) for name in ("conductivity", "heat_capacity", "density")}}
 

@@ -46,6 +46,7 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
+from ehdmaps.physics.bearing import with_law
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.oil_supply import FLOODED
 from ehdmaps.physics.roughness import SMOOTH
@@ -244,7 +245,7 @@ def _lines(job: Job, solver: ReynoldsSolver, steps: Steps) -> _Lines:
     assert refined is not None  # a speed above zero, and backbone = "law"
     results, seconds = _solved(refined.tasks)
     group = backbone_group(refined, results)
-    plan = refined.plan
+    plan = refined.plans[0]
     sizes = len(plan.zeta), len(plan.speeds), len(plan.temperatures)
     return _Lines(job, refined.points, sizes, seconds, lambda contact: line_field(job, group, contact))
 
@@ -330,7 +331,7 @@ def _structure_rows(measurement: _Measurement, grid_seconds: float, usual: _Line
     for name in STRUCTURAL_LAWS:
         seconds = grid_seconds + usual.seconds
         try:
-            contacts = {contact.name: replace(contact, structural_law=name) for contact in job.contacts}
+            contacts = {contact.name: with_law(contact, name, job.bearing) for contact in job.contacts}
             tasks = tuple(replace(task, contact=contacts[task.contact.name]) for task in points.tasks)
             exact = _with_contacts(points, tasks)
         except InputError as error:

@@ -16,6 +16,7 @@ grid_field     the film field of the map's own grid
 low_loads      down to which load films are known, and where the tail is right
 backbone_plan  which lines are solved for a contact law besides the map
 backbone       the film field of those lines
+own_lines      the same, whether contacts share their lines or each has its own
 mixing         the compiled inner loop of the backbone
 rolling_film   rolling force and mass flow of each contact at any load, speed and temperature
 dry            stand-in for the film of a dry map

@@ -121,6 +121,7 @@ def plan_backbone(
     speeds: Sequence[float],
     temperatures: Sequence[float],
     steps: Steps = STEPS,
+    zeta: tuple[float, ...] | None = None,
 ) -> BackbonePlan | None:
     """Backbone that covers the axes of a map for all its contacts; None where no speed is positive.
 
@@ -134,6 +135,8 @@ def plan_backbone(
         Axes of the map [N/m], [m/s], [K].
     steps : Steps
         Largest steps of the backbone.
+    zeta : tuple of float, optional
+        Axis of zeta that covers what is needed; made if left out.
     """
     positive = [u for u in speeds if u > 0.0]
     if not positive:
@@ -148,7 +151,8 @@ def plan_backbone(
         for k, T in enumerate(temperature_axis):
             low, high = zeta_span(contacts, lubricant, reference, loads, u, T)
             span[j, k] = min(low, RIGID), high
-    zeta = _zeta_axis(min(low for low, _ in span.values()), max(high for _, high in span.values()), steps.load)
+    if zeta is None:
+        zeta = _zeta_axis(min(low for low, _ in span.values()), max(high for _, high in span.values()), steps.load)
     reach = NEIGHBOURS // 2
     lines = []
     for k, T in enumerate(temperature_axis):
@@ -181,6 +185,31 @@ def plan_backbone(
                 )
             )
     return BackbonePlan(reference, zeta, speed_axis, temperature_axis, tuple(lines))
+
+
+def plan_own_lines(
+    contacts: Sequence[LineContact],
+    lubricant: Lubricant,
+    loads: Sequence[float],
+    speeds: Sequence[float],
+    temperatures: Sequence[float],
+    steps: Steps = STEPS,
+) -> tuple[BackbonePlan, ...]:
+    """A backbone for each contact, on common axes: for films that are no functions of M and L alone.
+
+    Parameters
+    ----------
+    contacts, lubricant, loads, speeds, temperatures, steps
+        The arguments of `plan_backbone`.
+    """
+    axes = loads, speeds, temperatures, steps
+    plans = [plan_backbone((contact,), lubricant, *axes) for contact in contacts]
+    ends = [(plan.zeta[0], plan.zeta[-1]) for plan in plans if plan is not None]
+    if not ends:
+        return ()
+    zeta = _zeta_axis(min(low for low, _ in ends), max(high for _, high in ends), steps.load)
+    own = (plan_backbone((contact,), lubricant, *axes, zeta) for contact in contacts)
+    return tuple(plan for plan in own if plan is not None)
 
 
 def zeta_span(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property, partial
 from os import PathLike, fspath
@@ -12,18 +13,18 @@ import xarray as xr
 
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.maps import schema
-from ehdmaps.maps.backbone import FILMS, BackboneField
+from ehdmaps.maps.backbone import FILMS
 from ehdmaps.maps.checksum import check_content, content_sha256
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
 from ehdmaps.maps.law_errors import LawErrors
 from ehdmaps.maps.low_loads import FirstLoads, LowLoads, first_loads, known_from, low_loads, same_load
+from ehdmaps.maps.own_lines import line_field, lines_by_contact
 from ehdmaps.maps.reading import read_map
 from ehdmaps.maps.records import (
     bearing_from_json,
     check_oil,
-    contacts_from_json,
     contacts_of,
     lubricant_from_json,
     supply_from_json,
@@ -35,7 +36,7 @@ from ehdmaps.maps.structure import completed, restructured
 from ehdmaps.maps.usable import check_backbone, check_grid, check_loads
 from ehdmaps.maps.validation import check_tables, validate
 from ehdmaps.physics.approach import StructuralLaw
-from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.bearing import BearingGeometry, with_law
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
@@ -73,7 +74,11 @@ class EHDMap:
         self.backbone = backbone
 
     def with_structure(
-        self, structural_law: StructuralLaw, reference_depth: float | None = None, roller_length: float | None = None
+        self,
+        structural_law: StructuralLaw,
+        reference_depth: float | None = None,
+        roller_length: float | None = None,
+        fe_approaches: Mapping[str, float] | None = None,
     ) -> EHDMap:
         """The same films between solids of another structural law.
 
@@ -83,27 +88,32 @@ class EHDMap:
 
         Parameters
         ----------
-        structural_law : {"iso16281", "palmgren", "half_space"}
+        structural_law : {"iso16281", "palmgren", "half_space", "fe"}
             Law of the elastic part of the approach, see `ehdmaps.physics.approach`.
         reference_depth : float, optional
             d* of half_space [m]; that of the map's contacts if left out. Those of a bearing have D/e.
         roller_length : float, optional
             Length of the whole roller, for iso16281 and palmgren [m]; that of the map's contacts if left out.
+        fe_approaches : mapping of str to float, optional
+            Approaches by finite elements of the contacts by their names, for fe [m]; those of the map's contacts if
+            left out, or those that come with the package for the map's bearing.
 
         Raises
         ------
         InputError
             If there is no such law, if it lacks a length, or if it does not hold for the loads of the map.
         """
-        contacts = tuple(
+        known = fe_approaches or {}
+        given = (
             replace(
                 contact,
-                structural_law=structural_law,
                 reference_depth=contact.reference_depth if reference_depth is None else reference_depth,
                 roller_length=contact.roller_length if roller_length is None else roller_length,
+                fe_approach=known.get(contact.name, contact.fe_approach),
             )
             for contact in self.contacts
         )
+        contacts = tuple(with_law(contact, structural_law, self.bearing) for contact in given)
         if contacts == self.contacts:
             return self
         dataset = restructured(self.dataset, contacts)
@@ -230,15 +240,8 @@ class EHDMap:
         chosen = tuple(contact for contact in self.contacts if contacts is None or contact.name in contacts)
         self._check_films(chosen)
         if self.backbone is not None:
-            return BackboneField(
-                self.backbone,
-                self._reference(self.backbone),
-                chosen,
-                self.lubricant,
-                load_range=self._range("load"),
-                speed_range=self._range("entrainment_speed"),
-                temperature_range=self._range("temperature"),
-            )
+            ranges = (self._range(axis) for axis in ("load", "entrainment_speed", "temperature"))
+            return line_field(self.backbone, chosen, self.lubricant, *ranges)
         data = self.dataset.sel(contact=[contact.name for contact in chosen]).transpose(*schema.DIMS, ...)
         return GridField(
             line_contacts=chosen,
@@ -255,8 +258,7 @@ class EHDMap:
 
         Maps of schema 1 and 2 and those of the solvers `formula` and `hertz` hold none, nor do those with holes.
         """
-        reference = None if self.backbone is None else self._reference(self.backbone)
-        return rolling_film(self.dataset, self.backbone, reference, self.contacts, self.lubricant)
+        return rolling_film(self.dataset, self.backbone, self.contacts, self.lubricant)
 
     @cached_property
     def low_loads(self) -> LowLoads | None:
@@ -268,9 +270,7 @@ class EHDMap:
         (lowest, _), speeds = self._range("load"), self._range("entrainment_speed")
         first: FirstLoads = partial(same_load, lowest)
         if self.backbone is not None:
-            group = self.backbone.transpose(*schema.BACKBONE_DIMS, ...)
-            solved = np.all([np.isfinite(group[name].values) for name in FILMS], axis=0)
-            start = known_from(group[schema.BACKBONE_DIMS[0]].values, solved)
+            start = max(_known_from(group) for group, *_ in lines_by_contact(self.backbone, self.contacts))
             first = partial(first_loads, self.contacts, self.lubricant, lowest, start)
         ends = float(temperatures[0]), float(temperatures[-1])
         return low_loads(first, self.contacts, self.lubricant, lowest, speeds, ends)
@@ -297,14 +297,9 @@ class EHDMap:
         if self.backbone is None:
             check_grid(self.dataset, chosen)
         else:
-            reference = self._reference(self.backbone)
             ranges = self._range("load"), self._range("entrainment_speed")
-            check_backbone(self.backbone, reference, chosen, self.lubricant, *ranges)
-
-    def _reference(self, group: xr.Dataset) -> LineContact:
-        """The contact of the refinement lines."""
-        (reference,) = contacts_from_json(f"[{group.attrs[schema.REFERENCE_CONTACT]}]")
-        return reference
+            for group, reference, read in lines_by_contact(self.backbone, chosen):
+                check_backbone(group, reference, read, self.lubricant, *ranges)
 
     def _range(self, axis: str) -> tuple[float, float]:
         """Lowest value above zero, and highest value, of an axis."""
@@ -313,6 +308,13 @@ class EHDMap:
         if not positive.size:
             raise MapError(f"map: has a backbone and no {axis} above zero; generate the map again")
         return float(positive[0]), float(positive[-1])
+
+
+def _known_from(group: xr.Dataset) -> float:
+    """Lowest zeta from which on all lines of one reference contact are solved."""
+    group = group.transpose(*schema.BACKBONE_DIMS, ...)
+    solved = np.all([np.isfinite(group[name].values) for name in FILMS], axis=0)
+    return known_from(group[schema.BACKBONE_DIMS[0]].values, solved)
 
 
 def open_map(path: str | PathLike[str], structural_law: StructuralLaw | None = None) -> EHDMap:
@@ -324,7 +326,7 @@ def open_map(path: str | PathLike[str], structural_law: StructuralLaw | None = N
     ----------
     path : str or path
         The file.
-    structural_law : {"iso16281", "palmgren", "half_space"}, optional
+    structural_law : {"iso16281", "palmgren", "half_space", "fe"}, optional
         Law by which approach, stiffness and damping are derived from the films; that of the map's job if left out. A
         map of a bare contact has the length of one law only: see `EHDMap.with_structure`.
 

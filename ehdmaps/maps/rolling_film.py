@@ -29,6 +29,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.backbone import FEWEST_NODES, LATTICE_STEP, lagrange
 from ehdmaps.maps.low_loads import known_from, load_at
 from ehdmaps.maps.mixing import mix_lines
+from ehdmaps.maps.own_lines import lines_by_contact
 from ehdmaps.maps.schema import BACKBONE_DIMS, DIMS
 from ehdmaps.maps.splines import spline_weights
 from ehdmaps.physics.contact import LineContact
@@ -207,7 +208,6 @@ class RollingFilm:
 def rolling_film(
     dataset: xr.Dataset,
     backbone: xr.Dataset | None,
-    reference: LineContact | None,
     contacts: Sequence[LineContact],
     lubricant: Lubricant,
 ) -> RollingFilm | None:
@@ -219,8 +219,6 @@ def rolling_film(
         The map.
     backbone : xarray.Dataset or None
         Group of its refinement lines.
-    reference : LineContact or None
-        Contact of that group.
     contacts : sequence of LineContact
         Contacts of the map.
     lubricant : Lubricant
@@ -235,15 +233,29 @@ def rolling_film(
     axes = [moving[name].values.astype(np.float64) for name in DIMS[1:]]
     reader: _Reader | None = None
     start = math.inf
-    if backbone is not None and reference is not None and all(name in backbone for name in NAMES):
-        group = backbone.transpose(*BACKBONE_DIMS, ...)
-        reader = _backbone_reader(group, reference, lubricant)
-        solved = [np.isfinite(group[name].values) for name in NAMES]
-        start = known_from(group[BACKBONE_DIMS[0]].values, np.all(solved, axis=0))
+    if backbone is not None and all(name in backbone for name in NAMES):
+        reader, start = _lines_reader(backbone, contacts, lubricant)
     if reader is None:
         reader, start = _grid_reader(values, axes, contacts, lubricant), math.inf
     load_range, _, temperature_range = ((float(axis[0]), float(axis[-1])) for axis in axes)
     return RollingFilm(contacts, lubricant, reader, load_range, temperature_range, start)
+
+
+def _lines_reader(
+    backbone: xr.Dataset, contacts: Sequence[LineContact], lubricant: Lubricant
+) -> tuple[_Reader | None, float]:
+    """Reader of the backbone, and the zeta from which on it is read; None where a line has too few solved points."""
+    readers: dict[str, _Reader] = {}
+    starts = []
+    for lines, reference, read in lines_by_contact(backbone, contacts):
+        group = lines.transpose(*BACKBONE_DIMS, ...)
+        reader = _backbone_reader(group, reference, lubricant)
+        if reader is None:
+            return None, math.inf
+        readers |= {contact.name: reader for contact in read}
+        solved = [np.isfinite(group[name].values) for name in NAMES]
+        starts.append(known_from(group[BACKBONE_DIMS[0]].values, np.all(solved, axis=0)))
+    return lambda contact, *at: readers[contact.name](contact, *at), max(starts)
 
 
 def _backbone_reader(group: xr.Dataset, reference: LineContact, lubricant: Lubricant) -> _Reader | None:

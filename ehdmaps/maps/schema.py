@@ -67,6 +67,13 @@ NATURAL = "natural_frequency"
 RESPONSE_DIMS = (*BACKBONE_DIMS, NATURAL)
 """Order of the dims of how these films answer."""
 
+OWN = "outer_"
+"""How the films of the outer contact begin where it has lines of its own, on the axes of those of the inner one.
+
+Films with heat are no functions of M and L alone: contacts do not share their lines. The reference contact is then the
+inner one, and the outer one is its own.
+"""
+
 NOT_NEEDED = -1
 """Status of a place of the backbone that no contact of the map comes to."""
 
@@ -194,7 +201,53 @@ def _of_response(name: str, units: str, long_name: str) -> Variable:
     return Variable(name, units, words, required=False, dims=RESPONSE_DIMS, group=BACKBONE, since=3)
 
 
+def _own(entry: Variable) -> Variable:
+    """Row of a film of the outer contact, like that of the reference contact; see `OWN`."""
+    words = entry.long_name.replace("reference contact", "outer contact")
+    return replace(entry, name=f"{OWN}{entry.name}", long_name=words, required=False, since=5)
+
+
 _KELVINS = (1.0, 1e4)
+
+_LINE_AXES = (
+    _axis("zeta", "1", "ln(M/M_valley(L))", (-100.0, 100.0), BACKBONE),
+    _axis("reference_speed", "m s-1", "entrainment speed of the reference contact", (1e-12, 1e6), BACKBONE),
+    _axis("temperature", "K", "temperature of the raceways, the surfaces of the contact", _KELVINS, BACKBONE),
+)
+"""Axes of the refinement lines."""
+
+_LINES = (
+    _of_backbone("film_offset", "m", "dry minus lubricated approach at equal load"),
+    _of_backbone("film_compliance", "m2 N-1", "minus the derivative of the film offset by load"),
+    _of_backbone("loss_compliance", "m2 s N-1", "damping over squared stiffness, low-frequency limit"),
+    _of_backbone(
+        "rolling_force", "N m-1", "force of both walls together against pure rolling", required=False, since=3
+    ),
+    _of_backbone("mass_flow", "kg m-1 s-1", "mass flow per unit length", required=False, since=3),
+    Variable(
+        "status",
+        "1",
+        "how the point ended; -1: no contact of the map comes here",
+        "int8",
+        flags=((NOT_NEEDED, "not_needed"), *_STATUS),
+        dims=BACKBONE_DIMS,
+        group=BACKBONE,
+    ),
+    Variable(
+        NATURAL,
+        "1",
+        "omega sqrt(b^2 + 2 h R)/u of a small oscillation, with the film offset h",
+        required=False,
+        dims=(NATURAL,),
+        group=BACKBONE,
+        since=3,
+        limits=(1e-6, 1e6),
+    ),
+    _of_response("film_compliance_real", "m2 N-1", "real part of the complex film compliance S"),
+    _of_response("film_compliance_imaginary", "m2 N-1", "imaginary part of S, minus omega times the loss compliance,"),
+    _of_response("film_compliance_error", "1", "estimated numerical error of S, relative to its magnitude,"),
+)
+"""Films of the refinement lines: of the reference contact, which stands for all contacts where films know no heat."""
 
 TABLE = (
     Variable("contact", "1", "contact of the roller with this raceway", "str", dims=("contact",)),
@@ -251,38 +304,9 @@ TABLE = (
         flags=_NO_YES,
     ),
     Variable("filled", "1", "values interpolated from neighbours; status keeps the cause", "int8", flags=_NO_YES),
-    _axis("zeta", "1", "ln(M/M_valley(L))", (-100.0, 100.0), BACKBONE),
-    _axis("reference_speed", "m s-1", "entrainment speed of the reference contact", (1e-12, 1e6), BACKBONE),
-    _axis("temperature", "K", "temperature of the raceways, the surfaces of the contact", _KELVINS, BACKBONE),
-    _of_backbone("film_offset", "m", "dry minus lubricated approach at equal load"),
-    _of_backbone("film_compliance", "m2 N-1", "minus the derivative of the film offset by load"),
-    _of_backbone("loss_compliance", "m2 s N-1", "damping over squared stiffness, low-frequency limit"),
-    _of_backbone(
-        "rolling_force", "N m-1", "force of both walls together against pure rolling", required=False, since=3
-    ),
-    _of_backbone("mass_flow", "kg m-1 s-1", "mass flow per unit length", required=False, since=3),
-    Variable(
-        "status",
-        "1",
-        "how the point ended; -1: no contact of the map comes here",
-        "int8",
-        flags=((NOT_NEEDED, "not_needed"), *_STATUS),
-        dims=BACKBONE_DIMS,
-        group=BACKBONE,
-    ),
-    Variable(
-        NATURAL,
-        "1",
-        "omega sqrt(b^2 + 2 h R)/u of a small oscillation, with the film offset h",
-        required=False,
-        dims=(NATURAL,),
-        group=BACKBONE,
-        since=3,
-        limits=(1e-6, 1e6),
-    ),
-    _of_response("film_compliance_real", "m2 N-1", "real part of the complex film compliance S"),
-    _of_response("film_compliance_imaginary", "m2 N-1", "imaginary part of S, minus omega times the loss compliance,"),
-    _of_response("film_compliance_error", "1", "estimated numerical error of S, relative to its magnitude,"),
+    *_LINE_AXES,
+    *_LINES,
+    *(_own(entry) for entry in _LINES if not entry.axis),
 )
 """All rows, in the order in which they are written."""
 
@@ -348,7 +372,9 @@ def table(group: str = GRID, version: int | None = None) -> tuple[Variable, ...]
 
 def response_rows(version: int) -> tuple[Variable, ...]:
     """Return the rows of the backbone that say how its films answer: a file of that version has all of them or none."""
-    return tuple(entry for entry in table(BACKBONE, version) if NATURAL in entry.dims)
+    return tuple(
+        entry for entry in table(BACKBONE, version) if NATURAL in entry.dims and not entry.name.startswith(OWN)
+    )
 
 
 def version_of(dataset: xr.Dataset) -> int:

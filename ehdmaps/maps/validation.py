@@ -146,6 +146,13 @@ def _backbone_problems(group: xr.Dataset, version: int) -> Iterator[str]:
     if lacking and len(lacking) < len(together):
         held = ", ".join(entry.name for entry in together if entry not in lacking)
         yield from (f"{_what(entry)} is missing; it belongs to {held}; {_AGAIN}" for entry in lacking)
+    own = [entry for entry in schema.table(schema.BACKBONE, version) if entry.name.startswith(schema.OWN)]
+    if any(entry.name in group.variables for entry in own):
+        there = [entry for entry in own if entry.name.removeprefix(schema.OWN) in group.variables]
+        lost = [entry for entry in there if entry.name not in group.variables]
+        yield from (
+            f"{_what(entry)} is missing; it belongs to the lines of the outer contact; {_AGAIN}" for entry in lost
+        )
 
 
 def _table_problems(dataset: xr.Dataset, group: str, version: int) -> Iterator[str]:

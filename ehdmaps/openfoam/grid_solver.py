@@ -13,12 +13,17 @@ from ehdmaps.openfoam.case import working_case
 from ehdmaps.openfoam.fields import FilmFields, read_fields
 from ehdmaps.openfoam.installation import Installation
 from ehdmaps.openfoam.parameters import Parameters, Start
-from ehdmaps.openfoam.results import FilmTable, Results, read_film, read_results
+from ehdmaps.openfoam.results import THIN_FILM, FilmTable, Results, read_film, read_results
 from ehdmaps.openfoam.run import KilledError, RunError, log_tail, run
+from ehdmaps.physics.rheology import NEWTONIAN
 from ehdmaps.physics.solution import Status
+from ehdmaps.physics.wall_stress import wall_stress_note
 
 MOVED_COLUMNS = 1.1
 """Columns of a second try, over those asked for."""
+
+TRIED_AGAIN = (Status.STAGNATED, Status.OUTSIDE_VALIDITY)
+"""Statuses of a run that may converge from another start or on other columns."""
 
 LEAST_ROWS = 2
 """Rows from which the solver takes the gradient at a wall."""
@@ -67,7 +72,7 @@ class GridSolver:
     def solve(
         self, parameters: Parameters, name: str, with_fields: bool, end: float, start: Start | None = None
     ) -> GridSolution:
-        """Run one grid from `start`; where that stagnates over a grid between, from its own start, on other columns.
+        """Run one grid from `start`; where that fails to converge over a grid between, from its own start, on others.
 
         Behind a steep pressure spike, whether Newton's method converges depends on the positions of the columns, and
         the spike of a grid twice as coarse may be too far from that of the fine one.
@@ -101,7 +106,7 @@ class GridSolver:
             try:
                 grid = self._in_turn(attempt, name, with_fields, end)
             except RunError as error:
-                if error.status is not Status.STAGNATED or attempt is tries[-1]:
+                if error.status not in TRIED_AGAIN or attempt is tries[-1]:
                     raise
                 self._forget(error)
             else:
@@ -159,10 +164,10 @@ class GridSolver:
                     film = read_film(case, parameters.columns)
                     fields = read_fields(case) if with_fields else None
                     return GridSolution(results, film, fields, parameters.cavitation_range)
+                status, reason = _cause(parameters, results, case)
             except SolverError as error:
                 raise RunError(f"{error}; {log_tail(log)}") from error
-            message = f"ehlFoam {results.status.word}: {results.reason}; {log_tail(log)}"
-            raise RunError(message, results.status, results.iterations)
+            raise RunError(f"ehlFoam {status.word}: {reason}; {log_tail(log)}", status, results.iterations)
 
     def _in_turn(self, grids: tuple[Parameters, ...], name: str, with_fields: bool, end: float) -> GridSolution:
         """Run the last of some grids, from the solution of the one before if there is one."""
@@ -175,6 +180,19 @@ class GridSolver:
         """Remove the folder of a failed run after which another one follows, unless cases are kept."""
         if self.keep_cases is None and error.case is not None:
             shutil.rmtree(error.case, ignore_errors=True)
+
+
+def _cause(parameters: Parameters, results: Results, case: Path) -> tuple[Status, str]:
+    """Status and reason of a run without a solution: whether all stresses of a Newtonian oil can have one there."""
+    if results.status is Status.STAGNATED and parameters.flow == "full_stress" and parameters.shear.form == NEWTONIAN:
+        thin = read_film(case, parameters.columns, THIN_FILM) if (case / THIN_FILM).exists() else None
+        note = wall_stress_note(thin.x, thin.pressure, thin.film) if thin else ""
+        if note:
+            return Status.OUTSIDE_VALIDITY, (
+                f"the thin film has a {note}; with all stresses {results.reason}: take flow thin_film, or a law of "
+                "shear that limits the stress"
+            )
+    return results.status, results.reason
 
 
 def _resized(parameters: Parameters, columns: float, rows: float) -> Parameters:

@@ -71,7 +71,7 @@ class Mesh:
     """
 
     film: float
-    inlet_length: float = 100.0
+    inlet_length: float = 20.0
     outlet_length: float = 3.0
     spike_position: float = 0.0
     spike_width: float = 0.0
@@ -151,7 +151,7 @@ class Parameters:
     frequencies : tuple of float
         Frequencies of the linear response [Hz]; 0 is the low-frequency limit.
     oscillation : Oscillation, optional
-        Oscillation in time, the independent check of the response.
+        Oscillation in time, a check of the linear response by the same equations.
     max_iterations : int
         Number of iterations after which a run counts as stagnated.
     tolerance : float

@@ -1,4 +1,4 @@
-"""What a run of `ehlFoam` wrote: the dictionary `results` and the table `film.dat`."""
+"""What a run of `ehlFoam` wrote: the dictionary `results` and the tables `film.dat` and `thinFilm.dat`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,6 @@ STATUSES: Mapping[str, Status] = {
     "converged": Status.CONVERGED,
     "stagnated": Status.STAGNATED,
     "diverged": Status.DIVERGED,
-    "outsideValidity": Status.OUTSIDE_VALIDITY,
 }
 """Words of `ehlFoam` for how a run ended."""
 
@@ -34,8 +33,11 @@ HEAT: Mapping[str, str] = {
 }
 """Numbers of a film with heat, and their words there."""
 
+FILM, THIN_FILM = "film.dat", "thinFilm.dat"
+"""Tables of the film as it is, and, of a run with all stresses, of the thin film from which it starts."""
+
 COLUMNS = ("x", "pressure", "film", "flux", "density", "liquid_fraction")
-"""Columns of `film.dat`."""
+"""Columns of both."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +109,7 @@ class Results:
 
 @dataclass(frozen=True)
 class FilmTable:
-    """The film over the columns of cells, each of shape (columns,).
+    """A film over the columns of cells, each of shape (columns,).
 
     Attributes
     ----------
@@ -176,15 +178,24 @@ def read_results(case: Path) -> Results:
     )
 
 
-def read_film(case: Path, columns: int) -> FilmTable:
-    """Read the table `film.dat` of a case with so many columns of cells.
+def read_film(case: Path, columns: int, name: str = FILM) -> FilmTable:
+    """Read a table of the film.
+
+    Parameters
+    ----------
+    case : Path
+        The case folder.
+    columns : int
+        Columns of cells that it has.
+    name : str
+        FILM or THIN_FILM.
 
     Raises
     ------
     SolverError
         If it is not there or is not a table of finite numbers with the columns of `COLUMNS`.
     """
-    path = case / "film.dat"
+    path = case / name
     try:
         with path.open(encoding="ascii") as file:
             header = file.readline().lstrip("#").split()

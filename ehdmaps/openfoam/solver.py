@@ -148,7 +148,7 @@ class OpenFoamSolver(ContactSolverDefaults):
     carreau_exponent: float | None = None
     inertia: bool = False
     slide_to_roll: float = 0.0
-    inlet_length: float = 100.0
+    inlet_length: float = 20.0
     tolerance: float = 1e-9
     max_iterations: int = 40
     starter: Starter | None = None

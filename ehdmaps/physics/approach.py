@@ -257,7 +257,7 @@ def highest_fe_load(fe_approach: float, radius: float, reduced_modulus: float = 
     Examples
     --------
     >>> round(1e-3 * highest_fe_load(3e-6, 5.515e-3))
-    31243
+    31237
     """
     slope = 2.0 / (math.pi * reduced_modulus)
     wide = math.pi * reduced_modulus * radius * _WIDEST_FE**2 / 8.0

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics._labels import label_problem
 from ehdmaps.physics.approach import StructuralLaw, roller_reference_depth
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.fe_shipped import shipped_approaches, shipped_names
 from ehdmaps.physics.solids import Material
 
 
@@ -136,11 +138,32 @@ class BearingGeometry:
         """
         return entrainment_speed / self.entrainment_speed(1.0)
 
-    def contacts(self, material: Material, structural_law: StructuralLaw) -> tuple[LineContact, LineContact]:
+    def contacts(
+        self,
+        material: Material,
+        structural_law: StructuralLaw,
+        fe_approaches: Mapping[str, float] | None = None,
+    ) -> tuple[LineContact, LineContact]:
         """The contacts "inner" and "outer" of a roller.
 
         Roller length and reference depth d* = D/e are given to both, whichever of them the law uses.
+
+        Parameters
+        ----------
+        material : Material
+            Material of both bodies.
+        structural_law : {"iso16281", "palmgren", "half_space", "fe"}
+            Law of the elastic part of the approach.
+        fe_approaches : mapping of str to float, optional
+            Approaches of both contacts by finite elements [m], see `LineContact`; for the law fe those that come with
+            the package if left out.
+
+        Raises
+        ------
+        InputError
+            If the law is fe and there are no such approaches.
         """
+        known = fe_approaches or (self.fe_approaches(material) if structural_law == "fe" else {})
         inner, outer = (
             LineContact(
                 name=name,
@@ -149,10 +172,61 @@ class BearingGeometry:
                 structural_law=structural_law,
                 roller_length=self.roller_length,
                 reference_depth=roller_reference_depth(self.roller_diameter),
+                fe_approach=known.get(name),
             )
             for name, radius in (("inner", self.inner_radius), ("outer", self.outer_radius))
         )
         return inner, outer
+
+    def fe_approaches(self, material: Material) -> dict[str, float]:
+        """Approaches of both contacts by finite elements that come with the package, by their names [m].
+
+        Parameters
+        ----------
+        material : Material
+            Material of all bodies.
+
+        Raises
+        ------
+        InputError
+            If none come with it for this bearing and material.
+        """
+        found = shipped_approaches(self.record(), material)
+        if found is None:
+            raise InputError(
+                f"law fe: got the bearing {self.name!r}, E = {material.youngs_modulus / 1e9:g} GPa, nu = "
+                f"{material.poisson_ratio:g}; allowed: {', '.join(shipped_names())} with nu = 0.3, whose finite "
+                "elements come with the package; for others run `ehdmaps solids JOB` and add the lines that it prints"
+            )
+        return found
+
+
+def with_law(contact: LineContact, structural_law: StructuralLaw, bearing: BearingGeometry | None) -> LineContact:
+    """The same contact by another structural law.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact, with the lengths that its laws need.
+    structural_law : {"iso16281", "palmgren", "half_space", "fe"}
+        The law.
+    bearing : BearingGeometry or None
+        Bearing of the contact, for the law fe of a contact that does not know its approach; None for a bare contact.
+
+    Raises
+    ------
+    InputError
+        If the law lacks what it needs.
+    """
+    known = contact.fe_approach
+    if bearing is not None:
+        if structural_law == "fe" and known is None:
+            known = bearing.fe_approaches(contact.material)[contact.name]
+        elif structural_law != "fe" and known is not None:
+            # what comes with the package is no part of a contact by another law
+            shipped = shipped_approaches(bearing.record(), contact.material) or {}
+            known = None if shipped.get(contact.name) == known else known
+    return replace(contact, structural_law=structural_law, fe_approach=known)
 
 
 def _problems(bearing: BearingGeometry) -> list[str]:

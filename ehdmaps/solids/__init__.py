@@ -5,4 +5,17 @@ It runs off-line, once per bearing, and gives a few numbers: what reads or uses 
 `ehdmaps.solids.sections`   roller, rings and their seats as dimensions
 `ehdmaps.solids.mesh`       gmsh, where it is installed
 `ehdmaps.solids.calculix`   CalculiX, where it is installed: running a deck
+
+A roller of finite length:
+
+`ehdmaps.solids.three_d`              pressures over width and length, from half spaces and free ends
+`ehdmaps.solids.slices`               what slices of a roller know of their neighbours, as a matrix
+`ehdmaps.solids.three_d_mesh`         bricks of roller and raceway
+`ehdmaps.solids.three_d_elements`     stiffness of bricks
+`ehdmaps.solids.three_d_compliance`   how far their surface yields
+`ehdmaps.solids.three_d_contact`      forces between surfaces that touch
+`ehdmaps.solids.three_d_reference`    the contact by finite elements, and its shipped results
+`ehdmaps.solids.three_d_calculix`     the same bricks in CalculiX
+`ehdmaps.solids.three_d_make`         all cases of a bearing, made anew
+`ehdmaps.solids.three_d_compare`      pressures over the length beside the finite elements
 """

@@ -58,12 +58,16 @@ class LawFit:
     slope_error : float
         Relative difference of the slope of G over ln b, where it is left free, from -4/(pi E'): what the mesh at the
         contact is good for.
+    gap_curvature : float
+        Relative change of 1/R that the gap of finite bodies has at `FE_LOAD`, beside that between half spaces under the
+        same pressure; it grows with the load. Films between half spaces leave it out.
     """
 
     fe_approach: float
     approach_error: float
     compliance_error: float
     slope_error: float
+    gap_curvature: float
 
 
 def series_of(half_widths: FloatArray, compliance: FloatArray, radius: float, reduced_modulus: float) -> PlaneSeries:
@@ -108,10 +112,13 @@ def fitted(series: PlaneSeries, compliance: FloatArray, radius: float, reduced_m
     law = finite_elements(series.load, fe_approach, radius, reduced_modulus)
     tangent = finite_elements_compliance(series.load, fe_approach, radius, reduced_modulus)
     b = series.half_width
+    bend = float(np.polyfit(b**2, compliance + 2.0 * slope * np.log(b), 1)[0])
     free = np.linalg.lstsq(np.stack([np.ones_like(b), np.log(b), b**2], axis=1), compliance, rcond=None)[0]
     return LawFit(
         fe_approach,
         float(np.max(np.abs(law / series.approach - 1.0))),
         float(np.max(np.abs(tangent / series.compliance - 1.0))),
         float(-free[1] / (2.0 * slope) - 1.0),
+        # what a kernel adds with k (x - x')^2 adds k b^2/2 to G, and 2 k w to the curvature of the gap
+        4.0 * bend * FE_LOAD * radius,
     )

@@ -58,7 +58,7 @@ class PlaneYield(NamedTuple):
 def body_yield(
     mesh: PlaneMesh,
     material: Material,
-    half_widths: Sequence[float],
+    half_widths: Sequence[float] | FloatArray,
     plane: Plane = "strain",
     shaft_radius: float | None = None,
     roller: bool = False,
@@ -70,8 +70,8 @@ def body_yield(
     mesh : PlaneMesh
         The body.
     material : Material
-        Its material.
-    half_widths : sequence of float
+        Material of the body.
+    half_widths : sequence of float or array
         Half-widths b of the contact [m].
     plane : {"strain", "stress"}
         Plane strain, a long roller; or plane stress, its ends free: a bound.

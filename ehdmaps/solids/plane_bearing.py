@@ -121,7 +121,7 @@ def solve_contact(
     bearing : BearingGeometry
         The bearing, for the reduced radii and the pitch of the rollers.
     sections : Sections
-        Its bodies.
+        Bodies of the bearing.
     name : {"inner", "outer"}
         Which contact.
     grading : float
@@ -197,6 +197,23 @@ def check_contact(bearing: BearingGeometry, sections: Sections, name: str) -> Co
     ring, _ = _ring(fixed, name, smallest, _CHECK_GRADING)
     found = contact_loads(roller, ring, fixed.material, approaches.tolist(), _REACH * float(widths[-1]))
     return ContactCheck(tuple(approaches.tolist()), tuple(series.load[_CHECKED].tolist()), tuple(found.tolist()))
+
+
+def contact_meshes(sections: Sections, name: str, grading: float) -> tuple[PlaneMesh, PlaneMesh]:
+    """Meshes of roller and ring, fine enough for contacts of a hundredth of the roller's radius and more.
+
+    Parameters
+    ----------
+    sections : Sections
+        The bodies.
+    name : {"inner", "outer"}
+        Which contact.
+    grading : float
+        Size of an element over its distance from the contact.
+    """
+    smallest = 5e-3 * grading * sections.roller_diameter
+    roller = roller_mesh(0.5 * sections.roller_diameter, 0.5 * sections.roller_bore, smallest, grading)
+    return roller, _ring(sections, name, smallest, grading)[0]
 
 
 def seats(sections: Sections) -> Iterator[tuple[str, Sections]]:

@@ -14,46 +14,22 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.physics.profiles import iso_profile
+from ehdmaps.physics.solids import STEEL, Material, reduced_modulus
+from ehdmaps.solids.slices import slice_coupling
+from ehdmaps.solids.three_d import FiniteLine
 
 Profile = str | Callable[[FloatArray], npt.ArrayLike] | tuple[float, ...] | FloatArray
 
 MOST_SLICES = 100_000
-_LONG = 2.5
+
+MOST_COUPLED = 100
+"""Slices that know of their neighbours: more would be narrower than the contacts are wide."""
+
+STATIC_LIMIT = 4e9
+"""Hertz pressure of the static load rating of roller bearings after ISO 76 [Pa]; permanent deformation above it."""
+
 _PROFILES = ("iso", "straight")
-
-
-def iso_profile(x: FloatArray, roller_diameter: float, roller_length: float) -> FloatArray:
-    """Profile of a roller: how far its surface lies below the cylinder, on one side [m].
-
-    P(x) = 0.00035 D ln(1/(1 - (2x/L)^2)) for L <= 2.5 D. Longer rollers are straight in the middle, with
-    P(x) = 0.0005 D ln(1/(1 - ((2|x| - (L - 2.5 D))/(2.5 D))^2)) outside it.
-
-    Parameters
-    ----------
-    x : array
-        Distance from the middle of the roller [m], |x| < L/2.
-    roller_diameter, roller_length : float
-        D and L [m].
-
-    References
-    ----------
-    ISO/TS 16281:2008; DIN 26281:2010.
-
-    Examples
-    --------
-    A quarter of the length from the middle of the roller of an NU308:
-
-    >>> float(round(1e6 * iso_profile(np.array([3.75e-3]), 14e-3, 15e-3)[0], 4))
-    1.4096
-    """
-    if roller_length <= _LONG * roller_diameter:
-        part, depth = 2.0 * np.abs(x) / roller_length, 0.00035 * roller_diameter
-    else:
-        crowned = _LONG * roller_diameter
-        part = np.maximum(2.0 * np.abs(x) - (roller_length - crowned), 0.0) / crowned
-        depth = 0.0005 * roller_diameter
-    return np.asarray(-depth * np.log1p(-(part**2)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +47,9 @@ class Bearing:
         Number of slices of equal length of a roller. Statics want 30 or more.
     material : Material
         Material of the bearing; its density gives the rollers their centrifugal load.
+    coupled : bool
+        Whether the slices of a roller know of their neighbours, see `mbs.bearings.coupled_kernel`; else each bears
+        its load alone.
 
     Raises
     ------
@@ -88,11 +67,14 @@ class Bearing:
     profile: Profile = "iso"
     slices: int = 41
     material: Material = STEEL
+    coupled: bool = False
 
     def __post_init__(self) -> None:
         count = self.slices
         if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= MOST_SLICES:
             raise InputError(f"bearing, slices: got {count!r}; allowed: a whole number from 1 to {MOST_SLICES}")
+        if self.coupled and count > MOST_COUPLED:
+            raise InputError(f"bearing, slices: got {count} that are coupled; allowed: at most {MOST_COUPLED}")
         _ = self.profile_depths
 
     @classmethod
@@ -158,6 +140,22 @@ class Bearing:
                 f"{geometry.roller_diameter:.6g} m; check its unit"
             )
         return depths
+
+    @cached_property
+    def coupling(self) -> FloatArray:
+        """Compliances between the slices of a roller, beyond a plane law of its contacts, (slices, slices) [m2/N].
+
+        Both contacts together, see `ehdmaps.solids.slices`: for contacts up to the static limit of bearings, with free
+        end faces of the roller, raceways that go on beyond them, and bodies of the rings as deep as the roller is
+        thick.
+        """
+        geometry, modulus = self.geometry, reduced_modulus(self.material, self.material)
+        diameter = geometry.roller_diameter
+        total = np.zeros((self.slices, self.slices))
+        for radius in (geometry.inner_radius, geometry.outer_radius):
+            line = FiniteLine(radius, geometry.roller_length, 0.5 * diameter, diameter, self.material)
+            total += slice_coupling(line, self.slices, 4.0 * radius * STATIC_LIMIT / modulus)
+        return total
 
     @property
     def roller_mass(self) -> float:

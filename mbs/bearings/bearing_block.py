@@ -253,7 +253,7 @@ def room_of(films: int, varies: bool) -> Films:
 
 def _takes(element: Element) -> bool:
     """Whether the force of a bearing is the compiled one."""
-    return isinstance(element, BearingElement) and type(element.force) is BearingForce
+    return isinstance(element, BearingElement) and type(element.force) is BearingForce and not element.bearing.coupled
 
 
 BEARINGS = Kind(

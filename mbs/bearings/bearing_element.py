@@ -13,7 +13,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.bearing_force import NO_COUPLED_MEMORY, BearingForce
 from mbs.bearings.bearing_kernel import approaches_of_arrays
 from mbs.bearings.contact_energy import brought_by_speed, cage_moment, energy_at_rest
 from mbs.bearings.contact_groups import ContactGroup
@@ -120,7 +120,7 @@ class BearingElement(RingElement):
     Raises
     ------
     InputError
-        For films with memory and a centrifugal load.
+        For films with memory and a centrifugal load, or slices that are coupled.
     """
 
     name: str
@@ -139,6 +139,8 @@ class BearingElement(RingElement):
     def __post_init__(self) -> None:
         if self.films == "memory" and self.centrifugal:
             raise InputError(f"bearing {self.name!r}, films: {NO_CENTRIFUGAL}")
+        if self.films == "memory" and self.bearing.coupled:
+            raise InputError(f"bearing {self.name!r}, films: {NO_COUPLED_MEMORY}")
 
     @property
     def ports(self) -> tuple[Port, ...]:
@@ -215,7 +217,9 @@ class BearingElement(RingElement):
         return law.errors.words if isinstance(law, ContactLaw) and law.errors is not None else ""
 
     def contact_groups(self, displacement: FloatArray, operation: Operation) -> tuple[ContactGroup, ...]:
-        """See `RingElement.contact_groups`: slices of both contacts in series."""
+        """See `RingElement.contact_groups`: slices of both contacts in series; none where slices are coupled."""
+        if self.bearing.coupled:
+            return ()
         if not isinstance(self.force, BearingForce) or not isinstance(self.force.law, ContactLaw):
             return ()
         u, q = self.entrainment_speed(operation), self.centrifugal_load(operation)
@@ -250,14 +254,25 @@ class BearingElement(RingElement):
         if not isinstance(self.force, BearingForce):
             return None
         conditions = self.entrainment_speed(operation), self.temperature, self.centrifugal_load(operation)
-        approach = self.rollers(displacement, operation).approach
-        return energy_at_rest(self.force.law, conditions, self.bearing, approach)
+        rollers = self.rollers(displacement, operation)
+        energy = energy_at_rest(self.force.law, conditions, self.bearing, rollers.approach)
+        coupling = self.force.coupling
+        if coupling is None:
+            return energy
+        w = rollers.load_per_length
+        return energy + 0.5 * self.bearing.slice_length * float(np.sum((w @ coupling) * w))
 
     def brought_by_speed(self, displacements: FloatArray, operations: Sequence[Operation]) -> float:
         """Energy that changes of the speed brought into its films, see `mbs.bearings.contact_energy`."""
         if not isinstance(self.force, BearingForce):
             return 0.0
         conditions = [(self.entrainment_speed(op), self.temperature, self.centrifugal_load(op)) for op in operations]
+        if self.bearing.coupled:
+
+            def own(sample: int) -> FloatArray:
+                return self.rollers(displacements[sample], operations[sample]).approach
+
+            return brought_by_speed(self.force.law, self.force.bearing, conditions, own)
 
         work, state = Arrays(self.force.bearing), np.zeros(13)
         shape = np.array(work.sizes), work.slices, work.angles

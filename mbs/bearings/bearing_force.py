@@ -5,8 +5,9 @@ its velocity the rate of that; the force is conjugate to it. Neither x nor theta
 axially is another element. Spins, cage angle, entrainment speed, temperature and centrifugal load are given beside, and
 are held fixed in the derivatives.
 
-Each slice of each roller carries w(delta, rate) times its length, w the law of the roller between both raceways: no
-slice knows of its neighbours (the alternative slicing technique of ISO 16281 is left out). Slip and traction, contacts
+Each slice of each roller carries w(delta, rate) times its length, w the law of the roller between both raceways. By
+default no slice knows of its neighbours; those of a `Bearing` with `coupled` do, see `ehdmaps.solids.slices` and
+`mbs.bearings.coupled_kernel`. Slip and traction, contacts
 with the cage and with the ribs are left out too. An EHD law takes the contacts as fully flooded all round: without
 clearance the films of the unloaded side preload the bearing.
 """
@@ -23,13 +24,15 @@ from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.memory import FilmState
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.force_at_point import Arrays, FlatLaw, ForceAtPoint, Triple, check_conditions
+from mbs.bearings.force_at_point import Arrays, FlatLaw, ForceAtPoint, Triple, check_conditions, coupling_beside
 from mbs.bearings.force_in_time import ForceInTime
 from mbs.bearings.kinematics import RingState
 from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.ring_forces import RingForces, ring_forces
 from mbs.bearings.roller_loads import RollerLoads
 from mbs.model.elements import Forces
+
+NO_COUPLED_MEMORY = "got coupled slices with films that have a memory; allowed: slow films, or slices on their own"
 
 _ALIKE = 1e-6
 
@@ -48,6 +51,11 @@ class BearingForce:
     outside : {"error", "clamp", "asymptote"}, optional
         If given, what the law must do outside its map; that is chosen where the law is made, by
         `emap.law("series", outside)`.
+
+    Attributes
+    ----------
+    coupling : array (slices, slices) or None
+        Compliances between slices beside the law [m2/N]; None for slices on their own.
 
     Raises
     ------
@@ -69,7 +77,8 @@ class BearingForce:
         _check_law(law, bearing, outside)
         self.law = law
         self.flat_law = FlatLaw(law)
-        self._work = Arrays(self.bearing)
+        self.coupling = coupling_beside(self.bearing, law)
+        self._work = Arrays(self.bearing, self.coupling)
         self._current: ForceAtPoint | None = None
         self._in_time: ForceInTime | None = None
 
@@ -246,6 +255,8 @@ class BearingForce:
             For a dry law, and for values that are no finite numbers.
         """
         law = self.law
+        if self.bearing.coupled:
+            raise InputError(f"bearing force, advance: {NO_COUPLED_MEMORY}")
         if not isinstance(law, ContactLaw):
             raise InputError(
                 f"bearing force, advance: got the law {law.name!r}, which has no films; allowed: the law of a map, or "

@@ -334,8 +334,18 @@ def _lifting_sums(
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
-def _added(plane: Plane, roller: Roller, flat: float, mixed: float, tilted: float) -> Plane:
-    """The sum with one more roller, from its sums over 1, x and x^2."""
+def added(plane: Plane, roller: Roller, flat: float, mixed: float, tilted: float) -> Plane:
+    """The sum with one more roller, from its sums over 1, x and x^2.
+
+    Parameters
+    ----------
+    plane : Plane
+        The sum so far.
+    roller : Roller
+        The roller.
+    flat, mixed, tilted : float
+        Sums over its slices, for each length of a slice.
+    """
     c, s = roller.cos, roller.sin
     cc, cs, ss = c * c, c * s, s * s
     return Plane(
@@ -352,8 +362,18 @@ def _added(plane: Plane, roller: Roller, flat: float, mixed: float, tilted: floa
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _write(plane: Plane, length: float, out: FloatArray) -> None:
-    """Write a sum into `out` (6, 6), for slices of a length."""
+def write_plane(plane: Plane, length: float, out: FloatArray) -> None:
+    """Write a sum into `out` (6, 6), for slices of a length.
+
+    Parameters
+    ----------
+    plane : Plane
+        The sum over all rollers.
+    length : float
+        Length of a slice [m].
+    out : array (6, 6)
+        Matrix, written.
+    """
     for i in range(6):
         for k in range(6):
             out[i, k] = 0.0
@@ -404,14 +424,14 @@ def assemble(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: Floa
         z -= roller.sin * load
         a += roller.sin * moment
         b -= roller.cos * moment
-        stiffness = _added(stiffness, roller, k0 * slope, k1 * slope, k2 * slope)
-        damping = _added(damping, roller, c0, c1, c2)
+        stiffness = added(stiffness, roller, k0 * slope, k1 * slope, k2 * slope)
+        damping = added(damping, roller, c0, c1, c2)
         if roller.deepest > numbers.safe_approach and np.max(w[j]) > numbers.highest:
             above += 1
     out[0, 0] = out[0, 3] = 0.0
     out[0, 1], out[0, 2], out[0, 4], out[0, 5] = y * length, z * length, a * length, b * length
-    _write(stiffness, length, out[1:7])
-    _write(damping, length, out[7:13])
+    write_plane(stiffness, length, out[1:7])
+    write_plane(damping, length, out[7:13])
     return above
 
 
@@ -605,14 +625,14 @@ def sizes_of(numbers: FloatArray) -> Sizes:
 
 
 @njit(cache=True, error_model="numpy")
-def _ring_motion(state: FloatArray) -> RingMotion:
+def ring_motion(state: FloatArray) -> RingMotion:
     """What rollers feel of pose (6,), velocity (6,) and cage angle in a row."""
     c, s = math.cos(state[12]), math.sin(state[12])
     return RingMotion(state[1], state[2], state[4], state[5], state[7], state[8], state[10], state[11], c, s)
 
 
 @njit(cache=True, error_model="numpy")
-def _all_finite(state: FloatArray) -> bool:
+def all_finite(state: FloatArray) -> bool:
     """Whether all numbers are finite, and their sum is."""
     total = 0.0
     for value in state:
@@ -651,11 +671,11 @@ def force_of_arrays(
     out : array (13, 6)
         Result, see `bearing_force`.
     """
-    if not _all_finite(state):
+    if not all_finite(state):
         return NOT_FINITE
     shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
     law = PreparedLaw(law_numbers(numbers), cells)
-    status: int = bearing_force(_ring_motion(state), shape, law, Work(rows, states), out)
+    status: int = bearing_force(ring_motion(state), shape, law, Work(rows, states), out)
     return status
 
 
@@ -684,10 +704,10 @@ def force_of_point_arrays(
     out : array (13, 6)
         Result, see `bearing_force`.
     """
-    if not _all_finite(state):
+    if not all_finite(state):
         return NOT_FINITE
     shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
-    status: int = bearing_force_of_point(point, _ring_motion(state), shape, law_numbers(numbers), states, counts, out)
+    status: int = bearing_force_of_point(point, ring_motion(state), shape, law_numbers(numbers), states, counts, out)
     return status
 
 
@@ -701,7 +721,7 @@ def rollers_of_arrays(state: FloatArray, sizes: FloatArray, slices: FloatArray, 
         The same arrays as for `force_of_arrays`.
     """
     shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
-    motion = _ring_motion(state)
+    motion = ring_motion(state)
     found = np.empty((4, shape.cos.size))
     for j in range(shape.cos.size):
         roller = roller_of(motion, shape, j)
@@ -722,10 +742,10 @@ def approaches_of_arrays(
     out : array (Z, n)
         Approaches, written [m].
     """
-    if not _all_finite(state):
+    if not all_finite(state):
         return NOT_FINITE
     shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
-    motion = _ring_motion(state)
+    motion = ring_motion(state)
     slice_approaches(motion, shape, out.reshape(-1))
     wrong: int = check_motion(motion, shape.sizes)
     return wrong
@@ -747,4 +767,4 @@ def assemble_arrays(
         Result, see `bearing_force`.
     """
     shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
-    assemble_slices(_ring_motion(state), shape, states, out)
+    assemble_slices(ring_motion(state), shape, states, out)

@@ -13,12 +13,10 @@ from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.thermal import inlet_shear_heating_factor, thermal_loading, viscosity_slope
 from ehdmaps.units import LOAD, PRESSURE, SPEED, TEMPERATURE
+from mbs.bearings.bearing import STATIC_LIMIT
 from mbs.bearings.films import SIDES, ContactState, FilmSource
 from mbs.bearings.laws import Law
 from mbs.bearings.roller_loads import RollerLoads
-
-STATIC_LIMIT = 4e9
-"""Hertz pressure of the static load rating of roller bearings after ISO 76 [Pa]; permanent deformation above it."""
 
 
 @dataclass(frozen=True, eq=False)

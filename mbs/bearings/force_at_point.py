@@ -9,10 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.errors import AnalysisError, InputError, OutsideMapError
 from ehdmaps.maps.kernel import LOAD_TOLERANCE
 from ehdmaps.maps.law import ContactLaw, LawAtPoint
 from ehdmaps.maps.tables import POWER_LAW, Point
+from ehdmaps.solids.slices import without_ends
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_kernel import (
@@ -22,6 +23,7 @@ from mbs.bearings.bearing_kernel import (
     force_of_point_arrays,
     rollers_of_arrays,
 )
+from mbs.bearings.coupled_kernel import NO_LOADS, coupled_arrays
 from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.roller_loads import RollerLoads, roller_loads
 from mbs.model.elements import Forces
@@ -30,6 +32,7 @@ Triple = tuple[FloatArray, FloatArray, FloatArray]
 """Force, stiffness, damping."""
 
 _MOST_TILT = 0.5
+_WHOLE_ROLLERS = ("iso16281", "palmgren")
 _SIX, _OUT = (6,), (13, 6)
 _POWER = table.LawNumbers(
     kind=table.POWER, coefficient=0.0, exponent=0.0, damping=0.0, damping_time=0.0, centre=0.0, inverse_scale=0.0,
@@ -40,9 +43,17 @@ _BY_SLICES = _POWER._replace(lift_off=-math.inf, safe_approach=math.inf)
 
 
 class Arrays:
-    """Arrays of one element: its constants for compiled code, and work space."""
+    """Arrays of one element: its constants for compiled code, and work space.
 
-    def __init__(self, bearing: Bearing) -> None:
+    Parameters
+    ----------
+    bearing : Bearing
+        Geometry, clearance, profile, slices.
+    coupling : array (slices, slices), optional
+        Compliances between slices [m2/N]; none for slices on their own.
+    """
+
+    def __init__(self, bearing: Bearing, coupling: FloatArray | None = None) -> None:
         geometry = bearing.geometry
         rollers, slices = geometry.rollers, bearing.slices
         self.sizes = Sizes(
@@ -63,6 +74,8 @@ class Arrays:
         self.cells = np.zeros((1, 8))
         self.buffer = np.zeros((1, 1))
         self.counts = np.zeros(4, dtype=np.int64)
+        self.coupling = coupling
+        self.own = np.zeros((rollers, slices)) if coupling is not None else np.zeros((0, 0))
 
     def make_room(self) -> None:
         """Make the arrays that only a tabulated law needs."""
@@ -123,9 +136,10 @@ class ForceAtPoint:
     ) -> None:
         self.conditions = conditions
         self._bearing, self._flat_law = bearing, flat_law
-        self._work = work or Arrays(bearing)
+        self._work = work or Arrays(bearing, coupling_beside(bearing, flat_law.law))
         self._law: LawAtPoint | None = None
         self._by_slices = False
+        self._coupled = self._work.coupling is not None
         self._outside = False
         law, numbers, centrifugal_load = flat_law.law, self._work.numbers, conditions[2]
         if isinstance(law, DryLaw):
@@ -175,14 +189,14 @@ class ForceAtPoint:
             own_velocity[...] = six_numbers("velocity", velocity)
         state[12] = cage_angle
         out: FloatArray = np.empty(_OUT)
-        status = self._from_law(out) if self._by_slices else force_of_arrays(*self.arrays, out)
+        status = self._from_law(out) if self._by_slices or self._coupled else force_of_arrays(*self.arrays, out)
         outside = self._settle(status, out) if status != 0 or self._outside else False
         return out, outside
 
     @property
     def tabulated(self) -> bool:
-        """Whether `arrays` hold the law; else it is called for each slice."""
-        return not self._by_slices
+        """Whether `arrays` hold the law; else it is called for each slice, or slices are coupled."""
+        return not (self._by_slices or self._coupled)
 
     @property
     def outside(self) -> bool:
@@ -206,7 +220,8 @@ class ForceAtPoint:
         self(pose, velocity, cage_angle)
         w = self._work
         rollers = rollers_of_arrays(*self._shape[:4])
-        return roller_loads(self._bearing, w.slices, w.states, rollers, cage_angle)
+        own = w.own if self._coupled else None
+        return roller_loads(self._bearing, w.slices, w.states, rollers, cage_angle, own)
 
     def _prepare(self, law: ContactLaw) -> None:
         """Make the law of this point ready for compiled code."""
@@ -250,19 +265,35 @@ class ForceAtPoint:
         return status
 
     def _from_law(self, out: FloatArray) -> int:
-        """Call the law for each slice, at conditions that no table fits."""
+        """Call the law for each slice, at conditions that no table fits; slices that are coupled with any law."""
         law = self._flat_law.law
+        if self._coupled:
+            return self._from_coupled(law, out)
         assert isinstance(law, ContactLaw)
         return self._from_slices(law, out)
+
+    def _from_coupled(self, law: Law, out: FloatArray) -> int:
+        """Solve for the loads of coupled slices."""
+        w = self._work
+        assert w.coupling is not None
+        point = self._point(law) if self._by_slices and isinstance(law, ContactLaw) else None
+        status: int = coupled_arrays(point, *self.arrays, w.coupling, w.own, w.counts, out)
+        return status
 
     def _settle(self, status: int, out: FloatArray) -> bool:
         """Raise what a status asks for; above the load of the table ask the law itself. Whether outside the map."""
         work, law = self._work, self._flat_law.law
+        if status == NO_LOADS:
+            raise AnalysisError(
+                f"bearing force, coupled slices: no loads of a roller at the pose {work.state[:6].tolist()}; its "
+                "contacts are wider than at the static limit, for which the coupling is made, or slices are too many; "
+                "take fewer slices, or slices that are not coupled"
+            )
         if status < 0:
             raise_state(work.state, work.sizes, status == NOT_FINITE)
         if not isinstance(law, ContactLaw):
             return False
-        if status > 0 and not self._by_slices:
+        if status > 0 and not (self._by_slices or self._coupled):
             numbers = work.numbers.copy()
             status = self._from_slices(law, out)
             work.numbers[:] = numbers
@@ -276,6 +307,26 @@ class ForceAtPoint:
                 "make a map that reaches there, or take a law with outside='clamp' or outside='asymptote'"
             )
         return True
+
+
+def coupling_beside(bearing: Bearing, law: Law) -> FloatArray | None:
+    """Compliances between the slices of a bearing beside its law, (slices, slices) [m2/N]; None where there are none.
+
+    The laws of ISO 16281 and Palmgren, and dry laws, hold for whole rollers: their ends are in them already.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+    law : Law
+        Law of a roller between both raceways.
+    """
+    if not bearing.coupled:
+        return None
+    plane = isinstance(law, ContactLaw) and all(
+        contact.structural_law not in _WHOLE_ROLLERS for contact in law.contacts
+    )
+    return bearing.coupling if plane else without_ends(bearing.coupling)
 
 
 def check_conditions(conditions: tuple[float, float, float]) -> float:

@@ -32,7 +32,8 @@ class RollerLoads:
     damping : array (Z, n)
         Damping of the slices at rest, per unit length [N s/m2].
     approach : array (Z, n)
-        Total approach of both contacts of the slices [m]; below zero a gap, or a film.
+        Total approach of both contacts of the slices [m]; below zero a gap, or a film. Of coupled slices the part that
+        belongs to their own load.
     position : array (n,)
         Middles of the slices [m].
     """
@@ -111,7 +112,12 @@ class RollerLoads:
 
 
 def roller_loads(
-    bearing: Bearing, slices: FloatArray, states: FloatArray, rollers: FloatArray, cage_angle: float
+    bearing: Bearing,
+    slices: FloatArray,
+    states: FloatArray,
+    rollers: FloatArray,
+    cage_angle: float,
+    own: FloatArray | None = None,
 ) -> RollerLoads:
     """Make the record from what a call of `bearing_force` leaves.
 
@@ -127,13 +133,18 @@ def roller_loads(
         Motion of the rollers, see `mbs.bearings.bearing_kernel.rollers_of_arrays`.
     cage_angle : float
         Angle of the first roller [rad].
+    own : array (Z, n), optional
+        Approaches that the law takes, of slices that are coupled [m]; their loads are those at rest.
     """
     count = bearing.geometry.rollers
     x, lost = slices
     gap, tilt, gap_rate, tilt_rate = (part[:, None] for part in rollers)
     approach = gap + x * tilt - lost
     rate = gap_rate + x * tilt_rate
-    load, _, _ = unilateral_forces(states[0], states[1], states[2], states[3], rate)
+    if own is None:
+        load, _, _ = unilateral_forces(states[0], states[1], states[2], states[3], rate)
+    else:
+        load, approach = states[0].copy(), own.copy()
     angle = cage_angle + 2.0 * math.pi * np.arange(count) / count
     return RollerLoads(
         angle=np.arctan2(np.sin(angle), np.cos(angle)),

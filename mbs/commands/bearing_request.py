@@ -29,7 +29,7 @@ from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from ehdmaps.physics.roughness import FINEST, ROUGHEST, SMOOTH, Surface
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
-from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing import MOST_COUPLED, Bearing
 from mbs.bearings.films import SIDES, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.fits import Mounting, operating_clearance
 from mbs.bearings.state import BearingState
@@ -296,7 +296,7 @@ def _sliced(
             f"--profile: got {short(arguments.profile)}{closest(arguments.profile, PROFILES)}; allowed: "
             f"{', '.join(PROFILES)}"
         )
-    slices = _whole("--slices", arguments.slices, 1, MOST_SLICES, problems)
+    slices = _whole("--slices", arguments.slices, 1, MOST_COUPLED if arguments.coupled else MOST_SLICES, problems)
     if given is None:
         return None
     geometry = given.geometry
@@ -307,7 +307,7 @@ def _sliced(
             problems += [f"--clearance: {problem}" for problem in error.problems]
     if len(problems) > before:
         return Bearing(given.geometry, "iso", 41, given.material)
-    return Bearing(geometry, arguments.profile, slices, given.material)
+    return Bearing(geometry, arguments.profile, slices, given.material, arguments.coupled)
 
 
 def _map(path: str | None, structure: str | None, problems: list[str]) -> EHDMap | None:

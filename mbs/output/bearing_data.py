@@ -185,6 +185,7 @@ def _attributes(description: BearingDescription, points: Points) -> dict[str, An
         "roughness_m": description.roughness,
         "profile": str(bearing.profile),
         "slices": bearing.slices,
+        "slices_coupled": int(bearing.coupled),
         "assumed": "; ".join(description.assumed),
         "warnings": "\n".join(dict.fromkeys(line for point in everything for line in (*point.problems, *point.notes))),
     }

@@ -16,7 +16,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import COLOURS, WARNING, typeset
 from ehdmaps.units import PRESSURE, RPM
 from mbs.analyses.bearing_point import BearingPoint
-from mbs.bearings.contact_report import STATIC_LIMIT
+from mbs.bearings.bearing import STATIC_LIMIT
 from mbs.bearings.films import SIDES
 from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, Points, bearing_row
 from mbs.output.bearing_text import bearing_heading, without_numbers

@@ -10,6 +10,7 @@ import numpy as np
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.units import FILM, PRESSURE, RPM, TEMPERATURE
 from mbs.analyses.bearing_point import BearingPoint
+from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import SIDES
 from mbs.bearings.rolling_loss import RollingLoss
 from mbs.output.bearing_data import BearingDescription, Points, bearing_row
@@ -22,6 +23,8 @@ FLOODED_NOTE = (
     "--supply 'oil bath'"
 )
 """What is said beside the rolling torque of flooded bearings."""
+
+_PLACES = 11
 
 REGIMES = ((1.0, "boundary: the surfaces touch"), (3.0, "mixed: asperities touch"), (math.inf, "full film"))
 """What is usually said of Lambda below these values."""
@@ -41,6 +44,7 @@ def bearing_text(description: BearingDescription, points: Points) -> list[str]:
     lines = bearing_heading(description)
     if len(everything) == 1:
         lines += _page(everything[0], description) + _rollers(everything[0])
+        lines += _along(everything[0]) if description.bearing.coupled else []
     else:
         lines += _table(everything, description)
     torque = max((point.loss.torque for point in everything), default=math.nan)
@@ -54,10 +58,15 @@ def bearing_heading(description: BearingDescription) -> list[str]:
     state = clearance if description.state is None else state_words(description.state)
     return [
         f"{bearing.geometry.name}: law {description.law}; {description.films}",
-        f"  {TEMPERATURE.text(description.temperature)}, {state}, profile {bearing.profile}, {bearing.slices} slices, "
+        f"  {TEMPERATURE.text(description.temperature)}, {state}, profile {bearing.profile}, {_slices(bearing)}, "
         f"load at {description.direction:.4g} deg from y (a roller) towards z, {surface_label(description.surface)}",
         f"  assumed: {', '.join(description.assumed) or 'nothing'}",
     ]
+
+
+def _slices(bearing: Bearing) -> str:
+    """Number of slices, and whether they are coupled."""
+    return f"{bearing.slices} {'coupled ' if bearing.coupled else ''}slices"
 
 
 def _page(point: BearingPoint, description: BearingDescription) -> list[str]:
@@ -161,6 +170,25 @@ def _rollers(point: BearingPoint) -> list[str]:
             f"{_shown(films[0], 3):>11s}{_shown(films[1], 3):>10s}"
         )
     return [line.rstrip() for line in lines]
+
+
+def _along(point: BearingPoint) -> list[str]:
+    """Load and pressures along the most loaded roller, at some of its slices, both ends among them."""
+    rollers, index = point.rollers, point.most_loaded
+    count = rollers.position.size
+    shown = np.unique(np.linspace(0, count - 1, min(count, _PLACES)).round().astype(int))
+    rows = [
+        ("place, mm", 1e3 * rollers.position, "8.2f"),
+        ("load per length, N/mm", 1e-3 * rollers.load_per_length[index], "8.1f"),
+        *(
+            (f"{name} Hertz pressure, GPa", 1e-9 * side.hertz_pressure[index], "8.3f")
+            for name, side in zip(SIDES, point.contacts.sides, strict=True)
+        ),
+    ]
+    return [
+        "  along the most loaded roller",
+        *(f"  {words:27s}" + "".join(f"{values[i]:{form}}" for i in shown) for words, values, form in rows),
+    ]
 
 
 def _table(points: list[BearingPoint], description: BearingDescription) -> list[str]:

@@ -8,6 +8,7 @@ from ehdmaps.jobs.problem import read_contacts
 from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import short
+from mbs.bearings.bearing import MOST_COUPLED
 from mbs.scene import fields
 from mbs.scene.fields import DEGREE
 from mbs.scene.specs import BearingSpec
@@ -42,6 +43,13 @@ def read_bearing(section: Table, name: str) -> BearingSpec | None:
     centrifugal = section.get("centrifugal")
     if "centrifugal" in section and not isinstance(centrifugal, bool):
         section.note("centrifugal", f"got {short(centrifugal)}; allowed: true, false")
+    coupled = section.get("slices_coupled")
+    if "slices_coupled" in section and not isinstance(coupled, bool):
+        section.note("slices_coupled", f"got {short(coupled)}; allowed: true, false")
+    elif coupled and rollers == "bodies":
+        section.note("slices_coupled", "got true with rollers = 'bodies'; allowed: with rollers = 'massless'")
+    elif coupled and slices > MOST_COUPLED:
+        section.note("slices", f"got {slices} with slices_coupled; allowed: at most {MOST_COUPLED}")
     thermal, mounting = read_thermal(section), read_mounting(section)
     supply = section.optional("supply", f"{section.where} supply", read_supply)
     if inner is None or outer is None or geometry is None:
@@ -59,6 +67,7 @@ def read_bearing(section: Table, name: str) -> BearingSpec | None:
         thermal,
         mounting,
         supply,
+        coupled is True,
     )
 
 
@@ -104,7 +113,7 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
     from mbs.bearings.roller_element import RollerElement, roller_body
     from mbs.scene.surroundings import Built
 
-    bearing = Bearing(spec.geometry, spec.profile, spec.slices)
+    bearing = Bearing(spec.geometry, spec.profile, spec.slices, coupled=spec.slices_coupled)
     laws = surroundings.laws.of(bearing, surroundings.laws.supply(spec))
     memory = surroundings.laws.memory == "memory"
     plain = (MemoryBearing if memory and not spec.rollers_as_bodies else BearingElement)(

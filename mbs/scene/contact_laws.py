@@ -19,6 +19,7 @@ from ehdmaps.units import closest, quantity
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import NO_CENTRIFUGAL
+from mbs.bearings.bearing_force import NO_COUPLED_MEMORY
 from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import DryLaw, Law
 from mbs.model.relaxation import DEFAULT_FILMS, Films
@@ -220,7 +221,12 @@ class ContactLaws:
             return [f"{got}; allowed: the laws map and formula, which have films"]
         bearings = self.scene.bearings
         centrifugal = [entry.name for entry in bearings if entry.centrifugal and not entry.rollers_as_bodies]
-        return [f"--films: {NO_CENTRIFUGAL}; so has {', '.join(centrifugal)}"] if centrifugal else []
+        coupled = [entry.name for entry in bearings if entry.slices_coupled]
+        return [
+            f"--films: {words}; so has {', '.join(names)}"
+            for words, names in ((NO_CENTRIFUGAL, centrifugal), (NO_COUPLED_MEMORY, coupled))
+            if names
+        ]
 
     def bearing_problems(self, name: str, geometry: BearingGeometry) -> list[str]:
         """In what the map in force was made for something else than a bearing."""

@@ -214,6 +214,8 @@ class BearingSpec:
         that is the one in operation.
     supply : OilSupply or None
         Oil supply of this bearing; None for that of the scene.
+    slices_coupled : bool
+        Whether the slices of a roller know of their neighbours.
     """
 
     name: str
@@ -228,6 +230,7 @@ class BearingSpec:
     thermal: GivenTemperatures | HeatPaths | None = None
     mounting: Mounting | None = None
     supply: OilSupply | None = None
+    slices_coupled: bool = False
 
     @property
     def changes_in_operation(self) -> bool:

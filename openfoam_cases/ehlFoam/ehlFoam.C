@@ -31,6 +31,10 @@
 using namespace Foam;
 
 
+//- Longest inlet with all stresses [reduced radii]
+static constexpr scalar longestInlet = 0.5;
+
+
 //- Frequencies [Hz] of the linear response that is asked for
 scalarField askedFrequencies(const dictionary& dict)
 {
@@ -91,7 +95,12 @@ int main(int argc, char* argv[])
     }
     const label columns = numberOf(dict, "columns", 10), rows = numberOf(dict, "rows", 2);
     const newtonControls controls{positive(dict, "tolerance"), dict.get<label>("maxIterations")};
-    const dictionary& meshDict = dict.subDict("mesh");
+    dictionary meshDict(dict.subDict("mesh"));
+    if (dict.get<word>("flow") == "fullStress")
+    {
+        // a parabola farther out is no gap between rollers, and its slopes are no matter of a film
+        meshDict.set("longestInlet", longestInlet*contact.radius/contact.halfWidth);
+    }
     const scalarField x(contact.halfWidth*columnLayout(meshDict).faces(columns));
     const scalarField frequencies(askedFrequencies(dict));
     const scalar filmScale = positive(meshDict, "film")*contact.filmUnit();
@@ -110,7 +119,7 @@ int main(int argc, char* argv[])
     resultsFile results(runTime);
     reportFilm(results, s, solved);
     reportHeat(runTime, results, s, solved);
-    writeTable(runTime, s, s.film(solved.state));
+    writeTable(runTime.path()/"film.dat", s, s.film(solved.state));
     if (dict.lookupOrDefault<bool>("writeFields", true))
     {
         runTime.setTime(1, 1);

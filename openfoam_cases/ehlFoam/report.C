@@ -21,8 +21,7 @@ static constexpr scalar mostEnergyDefect = 1e-4;
 Foam::word Foam::wordOf(const outcome end)
 {
     return end == outcome::converged ? "converged"
-         : end == outcome::stagnated ? "stagnated"
-         : end == outcome::diverged ? "diverged" : "outsideValidity";
+         : end == outcome::stagnated ? "stagnated" : "diverged";
 }
 
 
@@ -63,11 +62,11 @@ void Foam::reportFilm(resultsFile& results, slice& s, newtonResult& solved)
 }
 
 
-void Foam::writeTable(const Time& runTime, const slice& s, const filmState& state)
+void Foam::writeTable(const fileName& path, const slice& s, const filmState& state)
 {
     const scalarField flux(s.flow().columnFlux()), fraction(s.flow().columnFraction());
     const scalarField density(s.flow().columnDensity());
-    OFstream table(runTime.path()/"film.dat");
+    OFstream table(path);
     table.precision(12);
     table << "# x pressure film flux density liquid_fraction" << nl;
     forAll(state.column, i)
@@ -108,7 +107,7 @@ void Foam::reportHeat(const Time& runTime, resultsFile& results, slice& s, newto
     }
     if (solved.end == outcome::converged && !(heat->hottest() < heat->oil().hottest()))
     {
-        solved.end = outcome::outsideValidity;
+        solved.end = outcome::stagnated;
         reason << "the film has " << heat->hottest() << " K, the oil has laws up to " << heat->oil().hottest()
             << " K";
     }

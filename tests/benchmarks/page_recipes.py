@@ -30,6 +30,7 @@ TIMES = tuple(
         r"\b(\d[\d.]*) (?:ms|s|us)\b(?! of)",  # with its unit
         r"^ +\d+\.\d +(\d+)  ",  # points a second, of bench_ehl
         r"\bx +(\d[\d.]*)  ",  # ratio of times, of bench_ehl
+        r"   x (\d[\d.]*)(?:;|$)",  # ratio of times, of bench_physics
         r"^(?:law|scipy|xarray)[^\d\n]*?(?:grid 25x12x6)? +(\d[\d.]* +\d[\d.]*)",  # bench_law
         r"(\d+) times reynolds",
         r" (\d\S*) +\d+/\d+(?: |$)",  # beside what was solved, of a trade

@@ -98,10 +98,12 @@ header = "FoamFile { version 2.0; format ascii; class %s; object %s; }\\n"
 b = math.sqrt(8 * load * R / (math.pi * E))
 x = [b * (-4 + 6 * (i + 0.5) / columns) for i in range(columns)]
 row = "%r %r %r %r %r %r\\n"
-gap = h if mode[0] == "steep" else 1e-2 * h  # thin where a Hertz pressure's edges are not to be too steep for the walls
+gap = h if "steep" in mode else 1e-2 * h  # thin where a Hertz pressure's edges are not to be too steep for the walls
 table = [row % (v, 1e8 * math.sqrt(max(0, 1 - (v / b) ** 2)), gap, 1e-3, 880.0, 1.0) for v in x]
 head = "# x pressure film flux density liquid_fraction\\n"
 (case / "film.dat").write_text(head + "".join(table[: 3 if mode[0] == "cut" else None]))
+if "flow fullStress" in text:
+    (case / "thinFilm.dat").write_text(head + "".join(table))
 if mode[0] == "table":
     (case / "film.dat").write_text("# x pressure\\nwhat is this\\n")
 if "writeFields true" in text:

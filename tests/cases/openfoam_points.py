@@ -73,30 +73,29 @@ PLACES = tuple(
         ("N1014", 0, 3e3, 5.0, 80.0),
         ("N1014", 0, 1e5, 1.0, 100.0),
         ("N1014", 1, 5e2, 1.0, 60.0),
+        ("NU308", 0, 5e3, 5.0, 20.0),
+        ("NU308", 0, 5e4, 4.0, 80.0),
+        ("N1014", 1, 2e4, 0.2, 40.0),
     )
 )
-"""Both bearings and contacts; light and heavy, slow and fast, cold and hot."""
+"""25 points drawn over both maps: light and heavy, slow and fast, cold and hot."""
 
 SPIKED = (
     Place("N1014", 0, 8.8889e4, 3.297, 40.0),
     Place("N1014", 1, 2e4, 3.0, 30.0),
     Place("NU308", 0, 5e4, 2.0, 40.0),
 )
-"""Cold and loaded: a pressure spike so steep that a Newtonian liquid has no slow flow with all stresses."""
-
-UNSOLVED = (
-    Place("NU308", 0, 5e3, 5.0, 20.0),
-    Place("NU308", 0, 5e4, 4.0, 80.0),
-    Place("N1014", 1, 2e4, 0.2, 40.0),
-)
-"""Drawn with PLACES and taken out: Newton's method stagnates there with all stresses; thin film agrees."""
+"""Cold and loaded: a pressure spike so steep that the walls bear more than any oil does."""
 
 THICK = (Place("N1014", 0, 5e2, 10.0, 40.0), Place("N1014", 1, 1e2, 10.0, 20.0))
 """Light and fast: films so thick that their slopes are not small."""
 
 
 FILM_BARS: dict[Flow, float] = {"thin_film": 1e-3, "full_stress": 2e-3}
-"""Most that films may differ from the Reynolds equation."""
+"""Most that films of a Newtonian oil may differ from the Reynolds equation, isothermal."""
+
+FILM_BAR, DAMPING_BAR, NEWTONIAN_DAMPING_BAR = 0.01, 0.05, 0.03
+"""Most that films, and c, may differ with other laws of shear and with heat; and c without either."""
 
 
 @dataclass(frozen=True)
@@ -107,6 +106,7 @@ class Comparison:
     flow: Flow
     cfd: FilmSolution
     reynolds: FilmSolution
+    way: str = "newtonian"
 
     def difference(self, name: str) -> float:
         """Of one number of the film."""
@@ -176,13 +176,16 @@ def thickness(place: Place) -> float:
 
 
 def agrees(found: Comparison) -> list[str]:
-    """What does not agree as well as it should: film compliance 5 % or 0.2 % of all, c 3 %, films `FILM_BARS`."""
+    """What does not agree as well as it should: film compliance 5 % or 0.2 % of all; films and c by the bars above."""
+    newtonian = found.way == "newtonian"
+    film_bar = FILM_BARS[found.flow] if newtonian else FILM_BAR
+    damping_bar = NEWTONIAN_DAMPING_BAR if newtonian else DAMPING_BAR
     wrong = []
     for name in ("central_film", "minimum_film"):
-        if not abs(found.difference(name)) <= FILM_BARS[found.flow]:
+        if not abs(found.difference(name)) <= film_bar:
             wrong.append(f"{name} {100 * found.difference(name):+.2f} %")
     if not (abs(found.difference("film_compliance")) <= 0.05 or abs(found.compliance_share) <= 0.002):
         wrong.append(f"film compliance {100 * found.difference('film_compliance'):+.2f} %")
-    if not abs(found.damping) <= 0.03 or math.isnan(found.damping):
+    if not abs(found.damping) <= damping_bar or math.isnan(found.damping):
         wrong.append(f"c {100 * found.damping:+.2f} %")
     return wrong

@@ -151,7 +151,7 @@ def _differences(folder: Path, columns: int) -> tuple[float, float, float]:
         f" outlet {{ type fixedValue; value uniform {at_cut / density:.15g}; }}"
         " lower { type zeroGradient; } upper { type zeroGradient; } frontAndBack { type empty; } }",
     )
-    # simpleFoam takes the gradient at a wall from the cell beside it: pressure drives 1 + 2/rows^2 of the flux of a
+    # simpleFoam takes the gradient at a wall from the cell beside it, and pressure drives 1 + 2/rows^2 of the flux of a
     # parabola: 3/2 at the walls, 1/2 of the midpoint rule. An oil more viscous by that gives it the parabola's flux.
     nu = viscosity / density * (1.0 + 2.0 / ROWS**2)
     oil = f"transportModel Newtonian; nu [0 2 -1 0 0] {nu:.15g};"

@@ -18,6 +18,7 @@ from ehdmaps.maps.checksum import content_sha256
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.structure import DERIVED, SAME
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
+from ehdmaps.physics.bearing import BearingGeometry, with_law
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.solution import FilmSolution, Status
 from tests.cases.jobs import map_job, spaced
@@ -221,7 +222,7 @@ def test_the_end_of_a_backbone_line_counts_as_far_as_the_map_goes(tmp_path, load
 def test_contacts_of_a_bearing_have_the_lengths_of_every_law():
     for contact in CONTACTS:
         for law in STRUCTURAL_LAWS:
-            assert dataclasses.replace(contact, structural_law=law).structural_approach(1e5) > 0.0
+            assert with_law(contact, law, BearingGeometry.named("NU308")).structural_approach(1e5) > 0.0
 
 
 def test_show_by_another_structural_law(paths, capsys):

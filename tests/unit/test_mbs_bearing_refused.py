@@ -10,9 +10,10 @@ import pytest
 from ehdmaps.errors import InputError, OutsideMapError, SolverError
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.profiles import iso_profile
 from ehdmaps.physics.solids import STEEL, Material
 from mbs.bearings import laws
-from mbs.bearings.bearing import Bearing, iso_profile
+from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from tests.cases.bearings import AT, LAWS, bearing, force, map_law, single_law
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD

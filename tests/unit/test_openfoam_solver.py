@@ -204,6 +204,26 @@ def test_only_the_last_case_of_a_point_that_failed_stays(fake):
     assert len(left(fake, "temporary")) == 2
 
 
+def test_all_stresses_without_a_solution_where_no_oil_is_newtonian(fake):
+    openfoam_fake.set_mode(fake, "steep")
+    flagged = [solved(OpenFoamSolver(flow=flow)) for flow in ("thin_film", "full_stress")]
+    assert all(film.status is Status.CONVERGED and "no oil is Newtonian there" in film.reason for film in flagged)
+    openfoam_fake.set_mode(fake, "stagnated")
+    assert solved(OpenFoamSolver(flow="full_stress")).status is Status.STAGNATED
+    openfoam_fake.set_mode(fake, "stagnated steep")
+    film = solved(OpenFoamSolver(flow="full_stress"))
+    assert film.status is Status.OUTSIDE_VALIDITY
+    assert re.match(
+        r"coarse grid: ehlFoam outside_validity: the thin film has a wall stress [\d.]+ of the pressure, above 0.1: "
+        r"no oil is Newtonian there; with all stresses residual 1e-3 after 200 iterations: take flow thin_film, or a "
+        r"law of shear that limits the stress; last lines of the log",
+        film.reason,
+    )
+    assert openfoam_fake.grids(fake)[-2:] == ["200x3", "220x3"]  # it might have converged on other columns
+    assert solved(OpenFoamSolver()).status is Status.STAGNATED
+    assert solved(OpenFoamSolver(flow="full_stress", shear="eyring", shear_stress=5e6)).status is Status.STAGNATED
+
+
 def test_kept_cases_are_those_of_all_tries(fake, tmp_path):
     openfoam_fake.set_mode(fake, "stagnates_on 400x6<200 200x3")
     assert solved(OpenFoamSolver(keep_cases=tmp_path / "kept")).status is Status.CONVERGED

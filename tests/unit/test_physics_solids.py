@@ -1,5 +1,6 @@
 """Solids: materials, structural laws, contacts, bearing geometry."""
 
+import dataclasses
 import math
 import pickle
 
@@ -10,16 +11,16 @@ from hypothesis import strategies as st
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics import approach
-from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
+from ehdmaps.physics.bearing import BEARINGS, BearingGeometry, with_law
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.solids import STEEL, Material, reduced_modulus
 
 ROUND_OFF = 1e-12
-LAWS = ("iso16281", "palmgren", "half_space")
+LAWS = ("iso16281", "palmgren", "half_space", "fe")
 
 
 def contact(law="iso16281", material=STEEL):
-    return LineContact("line", 5.5e-3, material, law, roller_length=15e-3, reference_depth=5e-3)
+    return LineContact("line", 5.5e-3, material, law, roller_length=15e-3, reference_depth=5e-3, fe_approach=3e-6)
 
 
 # --- material --------------------------------------------------------------------------------------------
@@ -148,6 +149,52 @@ def test_half_space_refuses_a_contact_wider_than_its_depth():
         line.structural_compliance(np.array([1.0, 1e6]))
 
 
+def test_finite_elements_have_the_form_of_the_half_space():
+    """The law is that of a half space whose depth gives the stated approach at 100 N/mm: round-off."""
+    half, loads = contact("half_space"), np.geomspace(1.0, 1e6, 7)
+    line = LineContact("line", half.radius, STEEL, "fe", fe_approach=half.structural_approach(approach.FE_LOAD))
+    np.testing.assert_allclose(line.structural_approach(loads), half.structural_approach(loads), rtol=1e-9)
+    np.testing.assert_allclose(line.structural_compliance(loads), half.structural_compliance(loads), rtol=1e-9)
+
+
+def test_finite_elements_refuse_a_contact_that_is_too_wide():
+    """A half-width of a quarter of the radius, by the formula of Hertz."""
+    line = LineContact("line", 5.5e-3, STEEL, "fe", fe_approach=3e-6)
+    most = approach.highest_fe_load(3e-6, 5.5e-3)
+    half_width = math.sqrt(8.0 * most * 5.5e-3 / (math.pi * line.reduced_modulus))
+    assert half_width == pytest.approx(5.5e-3 / 4.0, rel=ROUND_OFF)
+    with pytest.raises(InputError, match=r"fe law: got the load 1e\+09 N/m; allowed: at most 3\.115e\+07 N/m, where"):
+        line.structural_approach(1e9)
+    shallow = approach.highest_fe_load(1.2e-6, 5.5e-3)  # bodies of little depth limit the load before
+    assert shallow < 0.1 * most
+    assert approach.finite_elements_compliance(shallow, 1.2e-6, 5.5e-3) > 0.0
+
+
+def test_approaches_that_come_with_the_package():
+    nu308 = BearingGeometry.named("NU308")
+    inner, outer = nu308.contacts(STEEL, "fe")
+    assert inner.fe_approach > outer.fe_approach > 2e-6
+    assert with_law(inner, "iso16281", nu308) == nu308.contacts(STEEL, "iso16281")[0]
+    assert with_law(nu308.contacts(STEEL, "iso16281")[0], "fe", nu308) == inner
+    stated = dataclasses.replace(inner, fe_approach=3e-6)
+    assert with_law(with_law(stated, "iso16281", nu308), "fe", nu308) == stated
+    for other in (Material(210e9, 0.28), STEEL):
+        bearing = nu308 if other is not STEEL else dataclasses.replace(nu308, rollers=11)
+        with pytest.raises(
+            InputError, match=r"law fe: got the bearing 'NU308', .*; allowed: N1014, NU308 with nu = 0\.3"
+        ):
+            bearing.contacts(other, "fe")
+
+
+def test_a_softer_bearing_has_the_same_law_of_the_same_width():
+    """Linear bodies: delta over the half-width depends on the half-width alone, whatever the modulus; round-off."""
+    soft = Material(100e9, 0.3)
+    lines = [BearingGeometry.named("NU308").contacts(material, "fe")[1] for material in (STEEL, soft)]
+    loads = [line.reduced_modulus * 1e-6 for line in lines]
+    first, second = (line.structural_approach(load) for line, load in zip(lines, loads, strict=True))
+    assert second == pytest.approx(first, rel=1e-12)
+
+
 # --- contact ---------------------------------------------------------------------------------------------
 
 
@@ -166,8 +213,9 @@ def test_half_space_refuses_a_contact_wider_than_its_depth():
         ),
         (
             (1e-3, "hertz", 1e-3, None),
-            r"structural_law: got 'hertz'; allowed: iso16281, palmgren, half_space",
+            r"structural_law: got 'hertz'; allowed: iso16281, palmgren, half_space, fe",
         ),
+        ((1e-3, "fe", 1e-3, 1e-3), r"fe_approach: got none; the fe law needs it; .* that `ehdmaps solids` finds"),
         ((1e-3, "iso16281", math.nan, None), r"roller_length: got nan m"),
         ((1e-3, "half_space", None, -1.0), r"reference_depth: got -1.0 m"),
     ],

@@ -62,7 +62,7 @@ def test_maps_without_lines_know_no_valley(trade: Trade) -> None:
 
 def test_structural_laws_are_told_apart_from_numerical_errors(trade: Trade) -> None:
     laws = group(trade, "structural law")
-    assert set(laws) == {"iso16281", "palmgren", "half_space"}
+    assert set(laws) == {"iso16281", "palmgren", "half_space", "fe"}
     assert laws["iso16281"].default
     assert laws["iso16281"].model["stiffness"].largest == 0.0
     # another law of the solids moves k far more than all that is numerical

@@ -54,6 +54,7 @@ Foam::columnLayout::columnLayout(const dictionary& dict)
     // pressure rises over half of a thick film's length, and at the edge of the Hertz zone of a thin one
     inletEdge_ = -Foam::sqrt(1 + 0.25*sqr(length));
     start_ = inletEdge_ - leastInlet - inletLength*length;
+    if (dict.found("longestInlet")) start_ = max(start_, -positive(dict, "longestInlet"));
     end_ = exit_ + outletLength*zone;
     blur_ = blur*Foam::sqrt(1 + sqr(length));
     core_ = coreWeight/Foam::sqrt(1 + 0.25*sqr(length));

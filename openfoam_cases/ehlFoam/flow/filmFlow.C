@@ -5,6 +5,7 @@
 \*---------------------------------------------------------------------------*/
 
 #include "filmFlow.H"
+#include "upstream.H"
 #include "linear.H"
 #include "fvcSurfaceIntegrate.H"
 
@@ -41,11 +42,8 @@ Foam::filmFlow::filmFlow(const dictionary& dict, filmMesh& film, const lineConta
     contact_(contact),
     oil_(dict, contact.pressure),
     heat_(dict.found("heat") ? new filmHeat(dict.subDict("heat"), film, contact) : nullptr),
-    massUnit_
-    (
-        oil_.density(0)*contact.entrainment()*film.depth
-       *contact.filmUnit()*dict.subDict("mesh").get<scalar>("film")
-    )
+    expectedFilm_(contact.filmUnit()*dict.subDict("mesh").get<scalar>("film")),
+    massUnit_(oil_.density(0)*contact.entrainment()*film.depth*expectedFilm_)
 {}
 
 
@@ -104,6 +102,15 @@ Foam::tmp<Foam::scalarField> Foam::filmFlow::gathered
           + density.primitiveField()*film_.volumeRate(rate->x, rate->h);
     }
     return tmass;
+}
+
+
+Foam::scalar Foam::filmFlow::inletPressure(const filmState& state) const
+{
+    return upstreamFilm
+    (
+        oil_.viscosity(0)*contact_.entrainment(), contact_.radius, -state.x[0], state.h[0], expectedFilm_
+    ).pressure;
 }
 
 

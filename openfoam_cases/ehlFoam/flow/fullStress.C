@@ -161,6 +161,7 @@ Foam::List<Foam::scalarField> Foam::fullStress::residual
         U_.boundaryFieldRef()[patch] == Uwall;
     }
     U_.correctBoundaryConditions();
+    p_.boundaryFieldRef()[film_.inlet()] == inletPressure(state);
     p_.correctBoundaryConditions();
     rho_.correctBoundaryConditions();
     fraction_.correctBoundaryConditions();

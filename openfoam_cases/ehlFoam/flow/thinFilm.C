@@ -267,6 +267,7 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
         }
         T_->correctBoundaryConditions();
     }
+    p_.boundaryFieldRef()[film_.inlet()] == inletPressure(state);
     p_.correctBoundaryConditions();
     mu_.correctBoundaryConditions();
     rho_.correctBoundaryConditions();
@@ -424,26 +425,6 @@ Foam::scalar Foam::thinFilm::cellShearRate(const label column, const label row) 
     const scalar dy = (last ? 1 : film_.middle(row + 1)) - (first ? 0 : film_.middle(row - 1));
     const scalar du = (last ? 0 : u_[c + 1]) - (first ? 0 : u_[c - 1]);
     return (du/dy + contact_.upperSpeed - contact_.lowerSpeed)/film_.film(column);
-}
-
-
-Foam::scalar Foam::thinFilm::stressByPressure() const
-{
-    const scalar step = 1e-6;
-    scalar most = 0;
-    for (label i = 0; i < film_.columns(); ++i)
-    {
-        const scalar v = oil_.unknown(p_[film_.cell(i, 0)]);
-        if (v <= 0) continue;
-        for (label j = 0; j < film_.rows(); ++j)
-        {
-            const scalar rate = cellShearRate(i, j);
-            const scalar rise = oil_.sheared(oil_.viscosity(v + step), rate, oil_.pressure(v + step))
-              - oil_.sheared(oil_.viscosity(v), rate, oil_.pressure(v));
-            most = max(most, mag(rate*rise)/(step*oil_.pressureSlope(v)));
-        }
-    }
-    return most;
 }
 
 

@@ -5,6 +5,7 @@
 \*---------------------------------------------------------------------------*/
 
 #include "slice.H"
+#include "upstream.H"
 
 namespace
 {
@@ -44,6 +45,14 @@ Foam::slice::slice
     solid_(contact, x),
     x_(x),
     filmScale_(filmScale),
+    upstreamLoad_
+    (
+        upstreamFilm
+        (
+            flow.oil().viscosity(0)*contact.entrainment(), contact.radius, -x[0],
+            filmScale + sqr(x[0])/(2*contact.radius), filmScale
+        ).load
+    ),
     faceShift_(x.size(), Zero),
     shiftStep_(0),
     wallUnit_(flow.heat() ? flow.heat()->fluxUnit()/flow.heat()->bulk() : 0)
@@ -156,7 +165,7 @@ Foam::slice::unknowns Foam::slice::start
 
 Foam::scalar Foam::slice::load(const unknowns& u) const
 {
-    scalar sum = 0;
+    scalar sum = upstreamLoad_;
     for (label i = 0; i < columns(); ++i)
     {
         sum += flow_.loadPressure(u.column[i])*(x_[i + 1] - x_[i]);

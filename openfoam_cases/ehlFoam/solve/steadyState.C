@@ -5,11 +5,10 @@
 \*---------------------------------------------------------------------------*/
 
 #include "steadyState.H"
+#include "report.H"
 #include "startPressure.H"
-#include "thinFilm.H"
 #include "positive.H"
 #include "interpolateXY.H"
-#include "StringStream.H"
 
 namespace Foam
 {
@@ -158,19 +157,9 @@ Foam::solvedFilm Foam::steadyState
     }
     if (flow == "thinFilm") return found;
 
+    // where all stresses have no solution to be found, the thin film shows whether the law of shear is admissible
     found.contact->residual(found.result.state, nullptr);
-    const scalar rise = refCast<const thinFilm>(*found.flow).stressByPressure();
-    Info<< "shear stress rises by " << rise << " times the pressure at most" << endl;
-    if (flow == "fullStress" && rise >= 1)
-    {
-        OStringStream reason;
-        reason << "the shear stress of this liquid rises " << rise
-            << " times as fast as pressure; from 1 on slow flow with all stresses has no elliptic"
-               " equations: take thinFilm, or a shear law that limits the stress";
-        found.result.end = outcome::outsideValidity;
-        found.result.reason = reason.str();
-        return found;
-    }
+    writeTable(film.mesh().time().path()/"thinFilm.dat", *found.contact, found.contact->film(found.result.state));
     solve(flow, shear, controls);
     return found;
 }

@@ -1,0 +1,339 @@
+"""Columns of a film with temperatures: velocity, flow and heat of shear across the film, with exact derivatives.
+
+Temperatures stand at Chebyshev points across the film, and all integrals are those of the polynomial through them. With
+F = rate/tau of the law of shear at the viscosity of the place, A_0 and A_1 the integrals of F and F zeta from the lower
+wall, and rho in units of its value at the surfaces' temperature,
+
+    mobility = -12 eta(T_0) Int rho (A_1 - A_1(1)/A_0(1) A_0) dzeta,   carriage = Int rho (U_1 + dU A_0/A_0(1)) dzeta
+
+take the place of those of `column`. For the energy a column says how much oil goes through each height, Y = rho U H,
+and what its shear heats, rate tau. Y is corrected by a parabola so that it sums up to the flow through the contact:
+what the discrete Reynolds equation and the column differ by is an error of both, and heat has to go with one flow.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.ehl.reynolds import LineProblem
+from ehdmaps.ehl.warm_oil import warm_viscosity
+from ehdmaps.physics.isotherm import density
+from ehdmaps.physics.rheology import LIMITING, NEWTONIAN, ShearLaw, thinning, yielding
+
+POINTS = 11
+"""Chebyshev points across the film, both walls included; see the module's tests for what fewer do."""
+
+MOST_STEPS = 200
+"""Steps towards the stress of a column."""
+
+_thinning, _yielding = njit(cache=True)(thinning), njit(cache=True)(yielding)
+_density = njit(cache=True)(density)
+
+
+def _chebyshev(points: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Places on 0 .. 1, derivative, and integral from 0, as matrices on values at the places."""
+    last = points - 1
+    x = -np.cos(math.pi * np.arange(points) / last)
+    ends = np.where((np.arange(points) % last) == 0, 2.0, 1.0) * (-1.0) ** np.arange(points)
+    apart = x[:, None] - x[None, :] + np.eye(points)
+    derivative = np.outer(ends, 1.0 / ends) / apart
+    derivative -= np.diag(derivative.sum(axis=1))
+    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, last))
+    series = np.polynomial.chebyshev.chebint(to_series, lbnd=-1, axis=0)
+    integral = 0.5 * np.polynomial.chebyshev.chebvander(x, points) @ series
+    return 0.5 * (x + 1.0), 2.0 * derivative, np.ascontiguousarray(integral)
+
+
+HEIGHTS, SLOPE, INTEGRAL = _chebyshev(POINTS)
+BEND = np.ascontiguousarray(SLOPE @ SLOPE)
+WEIGHTS = INTEGRAL[-1].copy()
+PARABOLA = 6.0 * HEIGHTS * (1.0 - HEIGHTS)
+
+
+class Columns(NamedTuple):
+    """All columns of a film, with derivatives by pressure, film, gradient and flow, in this order, and by temperatures.
+
+    Attributes
+    ----------
+    place : ndarray, shape (n, 3)
+        P, H and dP/dX at the faces.
+    stress : ndarray, shape (n,)
+        Stress at the lower wall.
+    mobility, carriage : ndarray, shape (n, 4)
+        Value, and derivatives by pressure, film and gradient.
+    mobility_warm, carriage_warm : ndarray, shape (n, k)
+        Derivatives by the temperatures.
+    flow, flow_slopes, flow_warm : ndarray, shapes (n, k), (n, 4, k) and (n, k, k)
+        Y = rho U H at the heights.
+    heat, heat_slopes, heat_warm : ndarray, shapes (n, k), (n, 3, k) and (n, k, k)
+        rate tau.
+    density, density_slope, density_warm : ndarray, shapes (n, k), (n, k) and (n,)
+        rho/rho_0, its derivatives by pressure and by temperature.
+    """
+
+    place: FloatArray
+    stress: FloatArray
+    mobility: FloatArray
+    carriage: FloatArray
+    mobility_warm: FloatArray
+    carriage_warm: FloatArray
+    flow: FloatArray
+    flow_slopes: FloatArray
+    flow_warm: FloatArray
+    heat: FloatArray
+    heat_slopes: FloatArray
+    heat_warm: FloatArray
+    density: FloatArray
+    density_slope: FloatArray
+    density_warm: FloatArray
+
+
+@njit(cache=True)
+def empty_columns(n: int) -> Columns:
+    """Return columns to be filled."""
+    k = POINTS
+    return Columns(
+        np.empty((n, 3)),
+        np.zeros(n),
+        np.empty((n, 4)),
+        np.empty((n, 4)),
+        np.empty((n, k)),
+        np.empty((n, k)),
+        np.empty((n, k)),
+        np.empty((n, 4, k)),
+        np.empty((n, k, k)),
+        np.empty((n, k)),
+        np.empty((n, 3, k)),
+        np.empty((n, k, k)),
+        np.empty((n, k)),
+        np.empty((n, k)),
+        np.empty(n),
+    )
+
+
+@njit(cache=True)
+def lower_stress(law: ShearLaw, pressure: float, rise: float, rate: float, fluid: FloatArray, guess: float) -> float:
+    """Stress at the lower wall for which the column shears by `rate`: Newton in a bracket.
+
+    Parameters
+    ----------
+    law : ShearLaw
+        The law.
+    pressure : float
+        P.
+    rise : float
+        Stress at the upper wall less that at the lower one.
+    rate : float
+        dU/H.
+    fluid : ndarray, shape (k,)
+        1/eta at the heights.
+    guess : float
+        Stress to start from.
+    """
+    a0 = a1 = 0.0
+    thickest = 0.0
+    for k in range(POINTS):
+        a0 += WEIGHTS[k] * fluid[k]
+        a1 += WEIGHTS[k] * fluid[k] * HEIGHTS[k]
+        thickest = max(thickest, 1.0 / fluid[k])
+    if law.form == NEWTONIAN:
+        return (rate - rise * a1) / a0
+    sign = -1.0 if rate < 0.0 else 1.0
+    rise, rate, guess = sign * rise, sign * rate, sign * guess
+    bound = rate * thickest
+    bound *= _yielding(law, bound, pressure)[0]
+    low, high = min(-rise, 0.0), max(0.0, -rise) + bound
+    trial = min(max(guess, low), high)
+    unit = law.stress * a0
+    for _ in range(MOST_STEPS):
+        total = slope = 0.0
+        for k in range(POINTS):
+            tau = trial + HEIGHTS[k] * rise
+            factor, steep = _thinning(law, tau, pressure)
+            total += WEIGHTS[k] * fluid[k] * factor * tau
+            slope += WEIGHTS[k] * fluid[k] * steep
+        if total > rate:
+            high = trial
+        else:
+            low = trial
+        move, quadratic = 0.5 * (low + high) - trial, False
+        if math.isfinite(total) and math.isfinite(slope) and slope > 0.0:
+            miss = math.asinh(rate / unit) - math.asinh(total / unit)
+            newton = miss * math.hypot(unit, total) / slope
+            if low <= trial + newton <= high:
+                move, quadratic = newton, True
+        trial += move
+        if abs(move) <= (1e-9 if quadratic else 1e-14) * (abs(trial) + abs(rise)):
+            break
+    return sign * trial
+
+
+@njit(cache=True)
+def fill_column(
+    problem: LineProblem,
+    i: int,
+    pressure: float,
+    film: float,
+    gradient: float,
+    outflow: float,
+    rises: FloatArray,
+    columns: Columns,
+) -> None:
+    """Fill column i; `columns.stress[i]` is taken as a start.
+
+    Parameters
+    ----------
+    problem : LineProblem
+        Dimensionless groups.
+    i : int
+        Number of the column.
+    pressure, film, gradient, outflow : float
+        P, H, dP/dX, and the flow through the contact.
+    rises : ndarray, shape (k,)
+        Temperatures [K above T_0].
+    columns : Columns
+        What is filled.
+    """
+    law, k = problem.shear, POINTS
+    p = max(pressure, 0.0)
+    log_eta, warm, stiff = np.empty(k), np.empty(k), np.empty(k)
+    warm_viscosity(problem.isotherm, problem.heat, p, rises, log_eta, warm, stiff)
+    cold, cold_warm, cold_stiff = np.empty(1), np.empty(1), np.empty(1)
+    warm_viscosity(problem.isotherm, problem.heat, p, np.zeros(1), cold, cold_warm, cold_stiff)
+    ratio, ratio_slope = _density(problem.isotherm, p)
+    if pressure < 0.0:
+        stiff[:] = 0.0
+        cold_stiff[:] = 0.0
+        ratio_slope = 0.0
+    per_rise = 12.0 / problem.wedge
+    rise, slide = per_rise * film * gradient, problem.slide
+    # fluidities are kept above the range of numbers: oil that thick is a solid anyhow
+    fluid = np.exp(-np.minimum(log_eta, 600.0))
+    low = lower_stress(law, p, rise, slide / film, fluid, columns.stress[i])
+    columns.place[i, 0], columns.place[i, 1], columns.place[i, 2], columns.stress[i] = pressure, film, gradient, low
+    rate, steepness, bend, yields, rho = np.empty(k), np.empty(k), np.empty(k), np.empty(k), np.empty(k)
+    secant = np.empty(k)
+    total = 0.0
+    for j in range(k):
+        tau = low + HEIGHTS[j] * rise
+        factor, steep = _thinning(law, tau, p)
+        secant[j] = fluid[j] * factor
+        rate[j] = secant[j] * tau
+        steepness[j] = fluid[j] * steep
+        bend[j] = fluid[j] * (steep - factor) / tau if tau != 0.0 else 0.0
+        yields[j] = 0.0
+        if law.form == LIMITING and pressure > 0.0:
+            yields[j] = -fluid[j] * (steep - factor) * law.ratio / (law.stress + law.ratio * p)
+        rho[j] = 1.0 + problem.heat.density_slope * rises[j]
+        total += WEIGHTS[j] * steepness[j]
+    # how the stress follows: by pressure, film, gradient, and each temperature
+    stress_by, rise_by = np.zeros(3), np.array([0.0, per_rise * gradient, per_rise * film])
+    stress_warm = np.empty(k)
+    for j in range(k):
+        stress_by[0] += WEIGHTS[j] * (rate[j] * stiff[j] - yields[j] * (low + HEIGHTS[j] * rise))
+        stress_by[1] -= WEIGHTS[j] * steepness[j] * HEIGHTS[j] * rise_by[1]
+        stress_by[2] -= WEIGHTS[j] * steepness[j] * HEIGHTS[j] * rise_by[2]
+        stress_warm[j] = WEIGHTS[j] * rate[j] * warm[j] / total
+    stress_by[1] -= slide / (film * film)
+    stress_by /= total
+    # mobility and carriage, and their slopes by F and rho
+    a0, a1 = INTEGRAL @ secant, INTEGRAL @ (secant * HEIGHTS)
+    end = a0[k - 1]
+    lever = a1[k - 1] / end
+    below = (WEIGHTS * rho) @ INTEGRAL
+    held = 0.0
+    for j in range(k):
+        held += WEIGHTS[j] * rho[j] * a0[j]
+    scale = 12.0 * math.exp(min(cold[0], 600.0))
+    first = 1.0 - 0.5 * slide
+    mobility = carriage = 0.0
+    m_by, c_by, m_rho, c_rho = np.empty(k), np.empty(k), np.empty(k), np.empty(k)
+    for j in range(k):
+        m_rho[j] = -scale * WEIGHTS[j] * (a1[j] - lever * a0[j])
+        m_by[j] = -scale * (HEIGHTS[j] - lever) * (below[j] - WEIGHTS[j] * held / end)
+        c_rho[j] = WEIGHTS[j] * (first + slide * a0[j] / end)
+        c_by[j] = slide * (below[j] / end - WEIGHTS[j] * held / (end * end))
+        mobility += m_rho[j] * rho[j]
+        carriage += c_rho[j] * rho[j]
+    columns.mobility[i, 0], columns.carriage[i, 0] = mobility, carriage
+    m_stress = c_stress = 0.0
+    for j in range(k):
+        m_stress += m_by[j] * bend[j]
+        c_stress += c_by[j] * bend[j]
+    for v in range(3):
+        m = c = 0.0
+        for j in range(k):
+            change = bend[j] * (stress_by[v] + HEIGHTS[j] * rise_by[v])
+            if v == 0:
+                change += yields[j] - secant[j] * stiff[j]
+            m += m_by[j] * change
+            c += c_by[j] * change
+        columns.mobility[i, 1 + v], columns.carriage[i, 1 + v] = m, c
+    columns.mobility[i, 1] += mobility * cold_stiff[0]
+    density_slope = problem.heat.density_slope
+    for j in range(k):
+        cooled = -secant[j] * warm[j]
+        columns.mobility_warm[i, j] = m_rho[j] * density_slope + m_by[j] * cooled + m_stress * stress_warm[j]
+        columns.carriage_warm[i, j] = c_rho[j] * density_slope + c_by[j] * cooled + c_stress * stress_warm[j]
+    # heat of shear
+    for j in range(k):
+        tau = low + HEIGHTS[j] * rise
+        columns.heat[i, j] = rate[j] * tau
+        by_stress = rate[j] + tau * steepness[j]
+        for v in range(3):
+            columns.heat_slopes[i, v, j] = by_stress * (stress_by[v] + HEIGHTS[j] * rise_by[v])
+        columns.heat_slopes[i, 0, j] += tau * (yields[j] * tau - rate[j] * stiff[j])
+        for q in range(k):
+            columns.heat_warm[i, j, q] = by_stress * stress_warm[q]
+        columns.heat_warm[i, j, j] -= tau * rate[j] * warm[j]
+    # flow at the heights
+    sheared, softened = INTEGRAL @ rate, INTEGRAL @ steepness
+    raised = INTEGRAL @ (steepness * HEIGHTS)
+    stiffened = INTEGRAL @ (rate * stiff)
+    yielded = np.zeros(k)
+    if law.form == LIMITING:
+        stresses = np.empty(k)
+        for j in range(k):
+            stresses[j] = yields[j] * (low + HEIGHTS[j] * rise)
+        yielded = INTEGRAL @ stresses
+    missing = outflow
+    for j in range(k):
+        speed = first + film * sheared[j]
+        columns.density[i, j] = ratio * rho[j]
+        columns.density_slope[i, j] = ratio_slope * rho[j]
+        columns.flow[i, j] = ratio * rho[j] * speed * film
+        missing -= WEIGHTS[j] * columns.flow[i, j]
+        for v in range(3):
+            by = film * (softened[j] * stress_by[v] + raised[j] * rise_by[v])
+            if v == 0:
+                by += film * (yielded[j] - stiffened[j])
+            elif v == 1:
+                by += sheared[j]
+            columns.flow_slopes[i, v, j] = ratio * rho[j] * film * by
+        columns.flow_slopes[i, 0, j] += ratio_slope * rho[j] * speed * film
+        columns.flow_slopes[i, 1, j] += ratio * rho[j] * speed
+        columns.flow_slopes[i, 3, j] = 0.0
+        for q in range(k):
+            by = film * (softened[j] * stress_warm[q] - INTEGRAL[j, q] * rate[q] * warm[q])
+            columns.flow_warm[i, j, q] = ratio * rho[j] * film * by
+        columns.flow_warm[i, j, j] += ratio * density_slope * speed * film
+    columns.density_warm[i] = ratio * density_slope
+    for j in range(k):
+        columns.flow[i, j] += PARABOLA[j] * missing
+    for v in range(4):
+        lost = 1.0 if v == 3 else 0.0
+        for j in range(k):
+            lost -= WEIGHTS[j] * columns.flow_slopes[i, v, j]
+        for j in range(k):
+            columns.flow_slopes[i, v, j] += PARABOLA[j] * lost
+    for q in range(k):
+        lost = 0.0
+        for j in range(k):
+            lost -= WEIGHTS[j] * columns.flow_warm[i, j, q]
+        for j in range(k):
+            columns.flow_warm[i, j, q] += PARABOLA[j] * lost

@@ -1,0 +1,140 @@
+"""Full Newton for a film with its temperatures, which follow the film's unknowns by their own equations."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.ehl.energy import LARGEST_RISE, first_column, followed, wall_weights, warm_temperatures
+from ehdmaps.ehl.newton import CONVERGED, DIVERGED, SOFT_ABOVE, STAGNATED, lifted, relaxed, solve_scaled, step_length
+from ehdmaps.ehl.newton import step_size as size_of
+from ehdmaps.ehl.reynolds import Factors, LineProblem, film, node_pressure, residual_with
+from ehdmaps.ehl.warm_column import POINTS, Columns, empty_columns
+
+LOOSE, TIGHT = 0.1, 1e-7
+"""Last step of the temperatures for a film that is far from its solution, and for one that is there [K]."""
+
+MOST_STEPS = 25
+"""Steps of the temperatures of one film."""
+
+SWEPT = 1e-5
+"""What the derivatives of temperatures may lack where oil flows back, relative: Newton does not see it."""
+
+
+class WarmResult(NamedTuple):
+    """Unknowns and temperatures, outcome, Newton steps, last step.
+
+    Attributes
+    ----------
+    unknowns : ndarray, shape (n + 2,)
+        Pressures, flow, exit and height.
+    rises : ndarray, shape (n, k)
+        Temperatures at the faces [K above T_0].
+    first : int
+        Last column that is not heated.
+    outcome, steps : int
+        CONVERGED, STAGNATED or DIVERGED, and Newton steps taken.
+    last_step : float
+        Size of the last step.
+    """
+
+    unknowns: FloatArray
+    rises: FloatArray
+    first: int
+    outcome: int
+    steps: int
+    last_step: float
+
+
+@njit(cache=True)
+def warm_factors(
+    columns: Columns, unknowns: FloatArray, mobility_rows: FloatArray, carriage_rows: FloatArray
+) -> Factors:
+    """Factors at the faces of a film with temperatures.
+
+    Parameters
+    ----------
+    columns : Columns
+        Columns of the film.
+    unknowns : ndarray, shape (n + 2,)
+        Its unknowns.
+    mobility_rows, carriage_rows : ndarray, shape (n, n + 2)
+        Derivatives by all unknowns; of no length for the residual alone.
+    """
+    drop = np.diff(node_pressure(unknowns))
+    none = np.empty((0, 0))
+    mobility, carriage = columns.mobility[:, 0].copy(), columns.carriage[:, 0].copy()
+    return Factors(mobility, np.zeros(drop.size), drop, carriage, none, none, mobility_rows, carriage_rows)
+
+
+@njit(cache=True)
+def warm_newton(
+    problem: LineProblem,
+    x: FloatArray,
+    step: FloatArray,
+    face: FloatArray,
+    face_step: FloatArray,
+    kernel: FloatArray,
+    start: FloatArray,
+    warm_start: FloatArray,
+    load: float,
+    tolerance: float,
+    most_steps: int,
+) -> WarmResult:
+    """Solve the discrete contact with its temperatures.
+
+    Parameters
+    ----------
+    problem : LineProblem
+        Dimensionless groups, those of heat among them.
+    x, step, face, face_step : ndarray
+        The grid, see `Grid`.
+    kernel, start, load, tolerance, most_steps
+        The arguments of `newton`.
+    warm_start : ndarray, shape (n, k)
+        Temperatures to start from [K above T_0].
+    """
+    size = start.size
+    n = size - 2
+    unknowns = lifted(x, kernel, start)
+    rises = warm_start.copy()
+    first = first_column(film(x, kernel, unknowns), unknowns[n - 1])
+    rises[: first + 1] = 0.0
+    walls = wall_weights(face, first)[0]
+    columns = empty_columns(n)
+    out, jacobian = np.empty(size), np.empty((size, size))
+    last, relaxation = math.inf, 1.0
+    old = np.zeros(n - 1)
+    for count in range(most_steps):
+        close = max(TIGHT, min(LOOSE, 0.1 * last))
+        equations, left, _ = warm_temperatures(
+            problem, x, face_step, kernel, unknowns, walls, first, rises, columns, close, MOST_STEPS
+        )
+        if not left <= close:
+            return WarmResult(unknowns, rises, first, DIVERGED, count, last)
+        by_unknowns, mobility, carriage = followed(equations, columns, x, face_step, kernel, unknowns, first, SWEPT)
+        factors = warm_factors(columns, unknowns, mobility, carriage)
+        lowest = residual_with(problem, factors, x, step, face_step, kernel, unknowns, load, out, jacobian)
+        if not np.all(np.isfinite(out)):
+            return WarmResult(unknowns, rises, first, DIVERGED, count, last)
+        move = solve_scaled(jacobian, -out)
+        last = size_of(unknowns, move)
+        if not math.isfinite(last):
+            return WarmResult(unknowns, rises, first, DIVERGED, count, last)
+        relaxation = relaxed(move, old, relaxation) if last > SOFT_ABOVE else 1.0
+        length = step_length(problem, x, kernel, unknowns, move, lowest, relaxation)
+        unknowns = unknowns + length * move
+        change = by_unknowns.reshape((n * POINTS, size)) @ (length * move)
+        largest = np.max(np.abs(change))
+        rises += min(1.0, LARGEST_RISE / max(largest, 1e-300)) * change.reshape((n, POINTS))
+        if length == 1.0 and last < tolerance:
+            _, left, _ = warm_temperatures(
+                problem, x, face_step, kernel, unknowns, walls, first, rises, columns, TIGHT, MOST_STEPS
+            )
+            outcome = CONVERGED if left <= TIGHT else DIVERGED
+            return WarmResult(unknowns, rises, first, outcome, count + 1, last)
+    return WarmResult(unknowns, rises, first, STAGNATED, most_steps, last)

@@ -1,0 +1,319 @@
+"""Contact of a roller of finite length: pressures over width and length, from the elasticity of both bodies.
+
+The surface of each body is cut into rectangles of even pressure. A half space yields under one of them after Love; what
+the finite depth of the body changes is smooth, and is added for each length of the roller. The end faces of the roller
+are free: pressures mirrored there take their shear stresses away, and a published factor on the mirrored pressures
+what is left of their normal stresses. The raceway goes on beyond the ends, or ends with the roller too. Pressures
+are found where they are positive and gaps elsewhere; bodies are linear, dry and without friction.
+
+    gap = x^2/(2 R) + P(y) - approach - tilt y + u(p) >= 0,    p >= 0,    p gap = 0
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.special import j0
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
+from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.solids.three_d_contact import touching
+
+Profile = Callable[[FloatArray], FloatArray]
+"""Depth of the profile of the roller below its cylinder, on one side [m], by the places along it [m]."""
+
+_LONGEST_WAVE_DEPTHS = 24.0
+_WIDER = 1.35
+
+
+@dataclass(frozen=True)
+class FiniteLine:
+    """A roller on a raceway.
+
+    Attributes
+    ----------
+    radius : float
+        Reduced radius R [m].
+    length : float
+        Length L of the roller [m].
+    roller_depth : float
+        Distance of the middle plane of the roller from the contact [m], half its diameter: the plane keeps flat, as
+        between two raceways.
+    race_depth : float
+        Depth of the raceway's body on a flat ground without friction [m].
+    material : Material
+        Material of both bodies.
+    flush : bool
+        Whether the raceway ends where the roller does; else it goes on.
+
+    Raises
+    ------
+    InputError
+        With every length that is not positive.
+    """
+
+    radius: float
+    length: float
+    roller_depth: float
+    race_depth: float
+    material: Material = STEEL
+    flush: bool = False
+
+    def __post_init__(self) -> None:
+        problems = []
+        for name in ("radius", "length", "roller_depth", "race_depth"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                problems.append(f"finite line, {name}: got {value!r} m; allowed: finite and > 0")
+        if problems:
+            raise InputError(problems)
+
+    @property
+    def body_compliance(self) -> float:
+        """(1 - nu^2)/(pi E) of each body [m2/N]: a force on a half space moves it by this over the distance."""
+        return (1.0 - self.material.poisson_ratio**2) / (math.pi * self.material.youngs_modulus)
+
+    def half_width(self, load: float) -> float:
+        """Half-width of Hertz [m] at a load per length [N/m]."""
+        return math.sqrt(8.0 * load * self.radius * self.body_compliance)
+
+
+@dataclass(frozen=True, eq=False)
+class LengthSolution:
+    """Pressures of a roller.
+
+    Attributes
+    ----------
+    places : array (n,)
+        Middles of the cells along the roller [m].
+    widths : array (n,)
+        Their lengths [m].
+    load_per_length : array (n,)
+        w [N/m].
+    peak_pressure : array (n,)
+        Pressure in the middle of the width [Pa].
+    approach, tilt : float
+        Approach of the bodies in the middle of the roller [m], and how it grows along it.
+    """
+
+    places: FloatArray
+    widths: FloatArray
+    load_per_length: FloatArray
+    peak_pressure: FloatArray
+    approach: float
+    tilt: float
+
+    @property
+    def load(self) -> float:
+        """Load of the roller [N]."""
+        return float(self.load_per_length @ self.widths)
+
+    @property
+    def moment(self) -> float:
+        """Moment of the load about the middle of the roller [N m]."""
+        return float(self.load_per_length @ (self.widths * self.places))
+
+
+def love(x: FloatArray, y: FloatArray, half_x: FloatArray | float, half_y: FloatArray | float) -> FloatArray:
+    """Integral of 1/distance over a rectangle [m]; an even pressure p moves the surface by p (1 - nu^2)/(pi E) of it.
+
+    Parameters
+    ----------
+    x, y : array
+        Places on the surface, from the middle of the rectangle [m].
+    half_x, half_y : array or float
+        Half its sides [m].
+
+    References
+    ----------
+    A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377-420; K. L. Johnson, Contact Mechanics, Cambridge, 1985,
+    section 3.5.
+
+    Examples
+    --------
+    Under the middle of a square of side 2: 8 ln(1 + sqrt 2):
+
+    >>> float(round(love(np.array(0.0), np.array(0.0), 1.0, 1.0) / (8.0 * math.log(1.0 + math.sqrt(2.0))), 12))
+    1.0
+    """
+    total = np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(half_x), np.shape(half_y)))
+    for sign_x in (1.0, -1.0):
+        for sign_y in (1.0, -1.0):
+            a, b = x + sign_x * half_x, y + sign_y * half_y
+            total += sign_x * sign_y * (a * np.arcsinh(b / np.abs(a)) + b * np.arcsinh(a / np.abs(b)))
+    return total
+
+
+def layer_response(s: FloatArray) -> FloatArray:
+    """Response of a layer on a flat ground without friction over that of a half space, by wave number times depth.
+
+    (cosh 2s - 1)/(sinh 2s + 2s): s/2 for long waves, where the layer yields as in plane strain compression, and 1 for
+    short ones (K. L. Johnson, Contact Mechanics, Cambridge, 1985, section 5.8).
+
+    Parameters
+    ----------
+    s : array
+        Wave number times depth, > 0.
+    """
+    decayed = np.exp(-2.0 * s)
+    return np.asarray((1.0 - decayed) ** 2 / (1.0 - decayed**2 + 4.0 * s * decayed))
+
+
+@lru_cache(maxsize=1)
+def _depth_spline() -> CubicSpline:
+    """Values of `depth_term` for distances of up to `_LONGEST_WAVE_DEPTHS` depths."""
+    # The integrand is flat beyond 20, and its waves are longer than the steps of the rule.
+    x, weights = np.polynomial.legendre.leggauss(16)
+    edges = np.linspace(0.0, 24.0, 193)
+    half = 0.5 * np.diff(edges)
+    s = (edges[:-1, None] + half[:, None] * (1.0 + x)).ravel()
+    w = (half[:, None] * weights).ravel() * (layer_response(s) - 1.0)
+    ratio = np.linspace(0.0, _LONGEST_WAVE_DEPTHS, 1201)
+    return CubicSpline(ratio, j0(ratio[:, None] * s) @ w)
+
+
+def depth_term(distance: FloatArray, depth: float) -> FloatArray:
+    """What is added to 1/distance, the response of a half space to a force, for a layer of a depth [1/m].
+
+    Far away the sum of both is zero: a layer does not yield a few depths beside a force.
+
+    Parameters
+    ----------
+    distance : array
+        Distance from the force along the surface [m].
+    depth : float
+        Depth of the layer [m].
+    """
+    ratio = np.abs(distance) / depth
+    spline = _depth_spline()
+    near = spline(np.minimum(ratio, _LONGEST_WAVE_DEPTHS)) / depth
+    far = ratio > _LONGEST_WAVE_DEPTHS
+    return np.asarray(np.where(far, -1.0 / np.where(far, np.abs(distance), 1.0), near))
+
+
+def mirror_factor(material: Material) -> float:
+    """Factor on pressures mirrored at a free end face; with 1 the face bears no shear stress, but normal stress.
+
+    psi = 1.29 - (0.08 - 0.5 nu)/(1 - nu).
+
+    References
+    ----------
+    R. Guilbault, A fast correction for elastic quarter-space applied to 3D modeling of edge contact problems,
+    J. Tribol. 133 (2011) 031402.
+
+    Examples
+    --------
+    >>> round(mirror_factor(STEEL), 3)
+    1.39
+    """
+    nu = material.poisson_ratio
+    return 1.29 - (0.08 - 0.5 * nu) / (1.0 - nu)
+
+
+def length_cells(length: float, cells: int) -> FloatArray:
+    """Ends of cells along a roller that get shorter towards both ends, (cells + 1,) [m], from its middle.
+
+    Parameters
+    ----------
+    length : float
+        [m].
+    cells : int
+        How many.
+    """
+    return np.asarray(-0.5 * length * np.cos(np.linspace(0.0, math.pi, cells + 1)))
+
+
+def solve_length(
+    line: FiniteLine,
+    profile: Profile,
+    load: float,
+    moment: float | None = 0.0,
+    cells: tuple[int, int] = (12, 60),
+    mirrored: float | None = None,
+) -> LengthSolution:
+    """Pressures of a roller under a load and a moment.
+
+    Parameters
+    ----------
+    line : FiniteLine
+        Roller and raceway.
+    profile : callable
+        P(y) [m].
+    load : float
+        Load of the roller [N].
+    moment : float or None
+        Moment about its middle [N m]; None for a roller that may not tilt.
+    cells : (int, int)
+        Cells over half the width, and along the roller.
+    mirrored : float, optional
+        Factor on pressures mirrored at a free end; `mirror_factor` if left out.
+
+    Raises
+    ------
+    InputError
+        For a load that is not positive.
+    AnalysisError
+        If no pressures are found.
+    """
+    if not (math.isfinite(load) and load > 0.0):
+        raise InputError(f"finite line, load: got {load!r} N; allowed: finite and > 0")
+    edges = length_cells(line.length, cells[1])
+    y, widths = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+    wanted = np.array([load] if moment is None else [load, moment])
+    wide = _WIDER * line.half_width(load / line.length)
+    factor = mirror_factor(line.material) if mirrored is None else mirrored
+    while True:
+        x_edges = np.linspace(0.0, wide, cells[0] + 1)
+        x = 0.5 * (x_edges[1:] + x_edges[:-1])
+        matrix = _influence(line, x, x_edges[1] * 0.5, y, 0.5 * widths, factor)
+        gap = (x[None, :] ** 2 / (2.0 * line.radius) + profile(y)[:, None]).ravel()
+        areas, arms = np.repeat(2.0 * x_edges[1] * widths, x.size), np.repeat(y, x.size)
+        rigid = np.stack([np.ones(gap.size), arms], axis=1)[:, : wanted.size]
+        pressure, motions = touching(matrix, gap, rigid, areas, wanted)
+        shape = pressure.reshape(y.size, x.size)
+        if not np.any(shape[:, -1]):
+            break
+        wide *= _WIDER
+    w = 2.0 * x_edges[1] * shape.sum(axis=1)
+    # The parabola through the first two cells, even in x.
+    peak = shape[:, 0] + (shape[:, 0] - shape[:, 1]) * x[0] ** 2 / (x[1] ** 2 - x[0] ** 2)
+    tilt = 0.0 if moment is None else float(motions[1])
+    return LengthSolution(y, widths, w, peak, float(motions[0]), tilt)
+
+
+def _influence(
+    line: FiniteLine, x: FloatArray, half_x: float, y: FloatArray, half_y: FloatArray, factor: float
+) -> FloatArray:
+    """Approach of both surfaces in the middles of cells by pressures of cells at x and -x, (cells, cells) [m/Pa]."""
+    # Cells of one width: their middles are whole numbers of widths apart.
+    index = np.arange(x.size)
+    apart, mirrored_apart = np.abs(index[:, None] - index[None, :]), index[:, None] + index[None, :] + 1
+    shifts: FloatArray = 2.0 * half_x * np.arange(2 * x.size, dtype=np.float64)
+
+    def placed(sources: FloatArray) -> FloatArray:
+        far = y[:, None] - sources[None, :]
+        found = love(shifts[:, None, None], far[None], half_x, half_y[None, None, :])
+        return np.asarray((found[apart] + found[mirrored_apart]).transpose(2, 0, 3, 1))
+
+    def deep(sources: FloatArray, depth: float) -> FloatArray:
+        return depth_term(y[:, None] - sources[None, :], depth) * (4.0 * half_x) * (2.0 * half_y)[None, :]
+
+    direct = placed(y)
+    ends = [line.length - y, -line.length - y]
+    mirrored = placed(ends[0]) + placed(ends[1])
+    free = 2 if line.flush else 1
+    total = 2.0 * direct + free * factor * mirrored
+    smooth = np.zeros((y.size, y.size))
+    for depth, has_ends in ((line.roller_depth, True), (line.race_depth, line.flush)):
+        smooth += deep(y, depth)
+        if has_ends:
+            smooth += factor * sum(deep(end, depth) for end in ends)
+    total += smooth[:, None, :, None]
+    count = y.size * x.size
+    return np.asarray(line.body_compliance * total.reshape(count, count))

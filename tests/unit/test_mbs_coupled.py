@@ -1,0 +1,112 @@
+"""Bearings whose slices know of their neighbours: against the method in Python, derivatives, energy, refusals."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.solids.slices import coupled_loads, without_ends
+from mbs.bearings import laws
+from mbs.bearings.bearing import MOST_COUPLED, Bearing
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_force import BearingForce
+from mbs.model.elements import Operation
+
+PLAIN = Bearing.named("NU308", clearance=20e-6, slices=21)
+COUPLED = dataclasses.replace(PLAIN, coupled=True)
+POSE = np.array([0.0, 25e-6, 5e-6, 0.0, 4e-4, 2e-4])
+FILMS = {"entrainment_speed": 1.7, "temperature": 313.15}
+DRY = laws.hertz(PLAIN, damping_time=1e-5)
+
+
+@pytest.fixture(scope="module")
+def film() -> BearingForce:
+    """A coupled bearing with films."""
+    ranges = {"load": (1e3, 2e6), "entrainment_speed": (1.5, 2.0), "temperature": (313.0, 314.0)}
+    return BearingForce(COUPLED, laws.formula(PLAIN, Lubricant.named("FVA3"), **ranges, outside="clamp"))
+
+
+def test_rollers_bear_what_the_method_in_python_finds():
+    """Two methods of Newton for the same equations: their tolerances, 1e-9."""
+    force = BearingForce(COUPLED, DRY)
+    alone, found = BearingForce(PLAIN, DRY).rollers(POSE), force.rollers(POSE)
+    length = PLAIN.geometry.roller_length
+
+    def law(approach: FloatArray) -> tuple[FloatArray, FloatArray]:
+        load, slope, _ = DRY.evaluate(approach, np.zeros_like(approach))
+        return load / length, slope / length
+
+    for j in range(PLAIN.geometry.rollers):
+        load, _ = coupled_loads(alone.approach[j], law, without_ends(COUPLED.coupling))
+        np.testing.assert_allclose(found.load_per_length[j], load, rtol=1e-8, atol=1e-6)
+    assert found.load_per_length.max() > 1e5
+    # a tilted roller bears more where its neighbours bear less: the coupling matters
+    assert np.abs(found.load_per_length - alone.load_per_length).max() > 0.05 * alone.load_per_length.max()
+    total = force(POSE)[0]
+    c, s = np.cos(found.angle), np.sin(found.angle)
+    expected = [-found.load @ c, -found.load @ s, found.moment @ s, -found.moment @ c]
+    np.testing.assert_allclose(total[[1, 2, 4, 5]], expected, rtol=1e-10)
+
+
+@pytest.mark.parametrize("dry", [True, False])
+def test_stiffness_and_damping_are_the_derivatives_of_the_force(dry, film):
+    """Central differences at rest: 1e-5 of the largest of a row, their own error."""
+    force, at = (BearingForce(COUPLED, DRY), {}) if dry else (film, FILMS)
+    _, stiffness, damping = force(POSE, **at)
+    for matrix in (stiffness, damping):
+        np.testing.assert_allclose(matrix, matrix.T, rtol=1e-9, atol=1e-12 * matrix.max())
+    for i in (1, 2, 4, 5):
+        step = np.zeros(6)
+        step[i] = 1e-9
+        slope = (force(POSE - step, **at)[0] - force(POSE + step, **at)[0]) / 2e-9
+        np.testing.assert_allclose(slope, stiffness[i], atol=1e-5 * np.abs(stiffness[i]).max())
+        slope = (force(POSE, -1e4 * step, **at)[0] - force(POSE, 1e4 * step, **at)[0]) / 2e-5
+        np.testing.assert_allclose(slope, damping[i], atol=1e-5 * np.abs(damping[i]).max())
+
+
+def test_the_work_of_a_path_is_the_stored_energy_and_dampers_take_up(film):
+    """Gauss' rule over a path with contacts that open: 1e-4 of the energy; power of any motion from round-off on."""
+    element = BearingElement("bearing", "inner", "outer", COUPLED, BearingForce(COUPLED, DRY), 313.15)
+    operation, first = Operation(0.0), np.array([0.0, 5e-6, 0.0, 0.0, 0.0, 0.0])
+    places, weights = np.polynomial.legendre.leggauss(12)
+    work = 0.0
+    for cell in range(8):
+        for place, weight in zip(places, weights, strict=True):
+            pose = first + (POSE - first) * (cell + 0.5 * (1.0 + place)) / 8.0
+            work -= weight / 16.0 * float(element.evaluate(pose, np.zeros(6), operation).force @ (POSE - first))
+    stored = [element.stored(None, pose, operation) for pose in (first, POSE)]
+    assert None not in stored
+    assert stored[1] - stored[0] == pytest.approx(work, rel=1e-4)
+    random = np.random.default_rng(1)
+    rest = film(POSE, **FILMS)[0]
+    for _ in range(20):
+        velocity = np.array([0.0, 0.1, 0.1, 0.0, 1.0, 1.0]) * random.standard_normal(6)
+        moving = film(POSE, velocity, **FILMS)[0]
+        assert (moving - rest) @ velocity <= 1e-9
+
+
+def test_slices_at_low_speed_call_the_law_itself(film):
+    """Below the lowest speed of the law no table holds it; the force is continuous from there: 1 %."""
+    here, above = (film(POSE, entrainment_speed=u, temperature=313.15)[0] for u in (1.45, 1.55))
+    assert np.abs(here - above).max() < 0.01 * np.abs(above).max()
+
+
+def test_what_cannot_be_coupled_is_refused(film):
+    """Every message."""
+    with pytest.raises(
+        InputError, match=rf"bearing, slices: got 200 that are coupled; allowed: at most {MOST_COUPLED}"
+    ):
+        dataclasses.replace(COUPLED, slices=200)
+    with pytest.raises(InputError, match=r"bearing 'b', films: got coupled slices with films that have a memory"):
+        BearingElement("b", "inner", "outer", COUPLED, film, 313.15, films="memory")
+    with pytest.raises(InputError, match=r"bearing force, advance: got coupled slices with films that have a memory"):
+        film.advance(None, POSE, 1e-5, **FILMS)
+    far = np.array([0.0, 5e-3, 0.0, 0.0, 0.0, 0.0])
+    narrow = dataclasses.replace(COUPLED, slices=MOST_COUPLED)
+    with pytest.raises(AnalysisError, match=r"bearing force, coupled slices: no loads of a roller at the pose"):
+        BearingForce(narrow, DRY)(far)
