@@ -55,6 +55,9 @@ the linear response, made of both, loses digits, and its equations are singular 
 LARGEST_OIL_NUMBER = 150.0
 """Moes' L above which no solve is tried."""
 
+MOST_SLIP_OF_A_RULE = 0.1
+"""Slide-to-roll ratio up to which sliding changes a film with heat by less than the rule of inlet heat is wrong by."""
+
 NEWTONIAN_LAW = ShearLaw()
 
 
@@ -143,6 +146,11 @@ class ReynoldsSolver(ContactSolverDefaults):
         ]
         if self.physics not in PHYSICS:
             problems.append(f"reynolds solver, physics: got {self.physics!r:.60}; allowed: {', '.join(PHYSICS)}")
+        if self.physics == INLET_HEAT and abs(self.slide_to_roll) > MOST_SLIP_OF_A_RULE:
+            problems.append(
+                f"reynolds solver, slide_to_roll: got {self.slide_to_roll:g} with physics {INLET_HEAT}, whose rule "
+                f"knows no heat of sliding; allowed: {-MOST_SLIP_OF_A_RULE:g} to {MOST_SLIP_OF_A_RULE:g}"
+            )
         try:
             shear_law(self.shear, self.shear_stress, self.limiting_ratio, self.carreau_exponent)
         except InputError as error:

@@ -26,6 +26,7 @@ from ehdmaps.jobs.contact_ways import (
 )
 from ehdmaps.jobs.job import Job
 from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
+from ehdmaps.physics.heat import INLET_HEAT, THERMAL
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solution import ContactSolver
@@ -44,6 +45,8 @@ OPENFOAM_TIMEOUT = 900.0
 
 OIL_LAYER, ROUGHNESS = OilSupply.named("oil air"), Surface(2e-7)
 """Oil supply and surface that are measured where the job states none of its own."""
+
+NEWTONIAN = "newtonian"
 
 _RESOLUTIONS = (0.5, 0.7, 1.0, 1.4, 2.0)
 """Grid densities that are measured, over that of the job."""
@@ -115,7 +118,8 @@ def contestants(job: Job, openfoam: bool) -> tuple[Entry, ...]:
     openfoam : bool
         Whether the solver `openfoam` takes part; it has to be installed.
     """
-    own = _own(job, "reynolds")
+    stated = _own(job, "reynolds")
+    own = {key: value for key, value in stated.items() if key not in solvers.PHYSICAL}
     usual, fine, rule = _finer(own, 1.0), _finer(own, REFINEMENT, 2.0), _finer(own, RULE_REFINEMENT)
     layer = OIL_LAYER if job.supply is None or job.supply.flooded else job.supply
     surface = ROUGHNESS if job.surface is None or job.surface.smooth else job.surface
@@ -145,6 +149,8 @@ def contestants(job: Job, openfoam: bool) -> tuple[Entry, ...]:
             for grid in dict.fromkeys(_finer(own, 1.0, factor) for factor in _INLETS)
         ),
         *(_openfoam_entries(job, solved) if openfoam else ()),
+        *_shear_entries(own, stated),
+        *(_heat_entries(own) if job.lubricant.thermal_conductivity is not None else ()),
         Entry(supplied, "layer: flooded film", Flooded(usual), solved, default=True),
         Entry(supplied, "layer: rule of contact laws", LayerRule(usual, layer), LayerRule(rule, layer)),
         Entry(supplied, f"layer: reynolds, {density}", OnLayer(usual, layer), supplied.truth),
@@ -155,6 +161,37 @@ def contestants(job: Job, openfoam: bool) -> tuple[Entry, ...]:
         Entry(moving, "frequency: one pole, fitted", LockedPole(usual, True), LockedPole(rule, True), default=True),
         Entry(moving, f"frequency: reynolds, {density}", AtFrequency(usual), moving.truth),
         *(_openfoam_responses(job, moving) if openfoam else ()),
+    )
+
+
+def _shear_entries(own: dict[str, Any], stated: dict[str, Any]) -> tuple[Entry, ...]:
+    """Entries of films with a law of shear: the job's, else a limiting stress; and the Newtonian film beside it."""
+    law = {key: value for key, value in stated.items() if key in solvers.PHYSICAL and key != "physics"}
+    if law.get("shear", NEWTONIAN) == NEWTONIAN:
+        law = {"shear": "limiting"}
+    fine, usual = (_finer({**own, **law}, factor) for factor in (RULE_REFINEMENT, 1.0))
+    newtonian = _finer(own, 1.0)
+    name = f"shear, {law['shear']}"
+    group = Group(name, Flooded(fine), f"reynolds, {law['shear']}, density {fine.density:g}")
+    return (
+        Entry(group, "shear: newtonian", Flooded(newtonian), Flooded(_finer(own, RULE_REFINEMENT)), default=True),
+        Entry(group, f"shear: {law['shear']}, density {usual.density:g}", Flooded(usual), group.truth),
+    )
+
+
+def _heat_entries(own: dict[str, Any]) -> tuple[Entry, ...]:
+    """Entries of films with heat: none, that of the inlet by its rule, and solved; none where nothing solves it."""
+    if not solvers.takes("reynolds", "physics", THERMAL):
+        return ()
+    fine, usual = (_finer({**own, "physics": THERMAL}, factor) for factor in (RULE_REFINEMENT, 1.0))
+    group = Group("heat", Flooded(fine), f"reynolds, thermal, density {fine.density:g}")
+    rule = {**own, "physics": INLET_HEAT}
+    return (
+        Entry(
+            group, "heat: isothermal", Flooded(_finer(own, 1.0)), Flooded(_finer(own, RULE_REFINEMENT)), default=True
+        ),
+        Entry(group, "heat: rule of the inlet", Flooded(_finer(rule, 1.0)), Flooded(_finer(rule, RULE_REFINEMENT))),
+        Entry(group, f"heat: solved, density {usual.density:g}", Flooded(usual), group.truth),
     )
 
 

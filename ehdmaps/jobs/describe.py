@@ -134,7 +134,7 @@ def _geometry_lines(emap: EHDMap) -> Iterator[str]:
         yield from _bearing_lines(emap.bearing)
     for contact in emap.contacts:
         depth = f", depth d* {LENGTH.text(contact.reference_depth)}" if contact.reference_depth else ""
-        found = f", {FILM.text(contact.fe_approach, 5)} at {LOAD.text(FE_LOAD)}" if contact.fe_approach else ""
+        found = f", approach {FILM.text(contact.fe_approach, 5)} at {LOAD.text(FE_LOAD)}" if contact.fe_approach else ""
         shown = {"half_space": depth, "fe": found}.get(contact.structural_law, "")
         yield f"  {contact.name + ' contact':20s} reduced radius {LENGTH.text(contact.radius, 5)}{shown}"
     material = emap.contacts[0].material

@@ -129,11 +129,11 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool, f
     solids = read_solids(solids_section) if solids_section else NO_SOLIDS
     law_elsewhere = solids_section is not None and "law" in solids_section
     solver, options, law, rest = _solver(section, top, law_elsewhere) if section else (None, {}, None, {})
-    key = "[solver] structural_law"
+    law_key = "[solver] structural_law"
     if law_elsewhere and section and "structural_law" in section:
         top.note("[solids] law", f"stands beside structural_law of [solver], which says the same; {_ONE}; delete one")
     elif law_elsewhere:
-        key, law = "[solids] law", solids.law
+        law_key, law = "[solids] law", solids.law
     if override is not None and override not in solvers.SOLVER_NAMES:
         top.note("--solver", f"got {override!r:.60}; allowed: {', '.join(solvers.SOLVER_NAMES)}")
     elif override is not None and override != solver:
@@ -144,7 +144,7 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool, f
             for problem in solvers.SOLVERS[needed].missing():
                 top.note(f"[solver] {key}", f"got {needed!r}, which needs more than is here: {problem}")
 
-    bearing, contacts = read_contacts(top, "half_space" if law == "fe" and finding_solids else law, solids, key)
+    bearing, contacts = read_contacts(top, "half_space" if law == "fe" and finding_solids else law, solids, law_key)
     if solids_section is not None:
         check_solids(solids_section, bare="contact" in top)
         solids_section.close()

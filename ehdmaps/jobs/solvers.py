@@ -187,6 +187,7 @@ SOLVERS: Mapping[str, SolverEntry] = {
             Number("inlet_length", *SETTING_LIMITS["inlet_length"], "length of the inlet over sqrt(2 h R)"),
             Number("tolerance", *SETTING_LIMITS["tolerance"], "Newton tolerance on the last step"),
             physics_option(ISOTHERMAL, INLET_HEAT),
+            *SHEAR_OPTIONS,
         ),
         _reynolds,
     ),
@@ -262,6 +263,22 @@ def complete(solver: ContactSolver) -> ContactSolver:
 
 PHYSICAL = ("physics", *(option.key for option in SHEAR_OPTIONS))
 """Keys that say what a film is, and not how it is solved."""
+
+
+def takes(name: str, key: str, word: str) -> bool:
+    """Whether a solver takes a word for one of its keys.
+
+    Parameters
+    ----------
+    name : str
+        Name of the solver.
+    key : str
+        One of its keys, which takes words.
+    word : str
+        The word.
+    """
+    words = [option.allowed for option in SOLVERS[name].options if isinstance(option, Word) and option.key == key]
+    return any(word in allowed for allowed in words)
 
 
 def solver_words(options: Mapping[str, Any]) -> str:

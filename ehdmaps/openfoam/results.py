@@ -54,6 +54,11 @@ class Results:
         [m].
     max_pressure : float
         [Pa].
+    wall_stress : float
+        Largest shear stress at a wall [Pa].
+    traction, rolling_force : float
+        Integrals of the shear stress along the cells: of the mean of both walls, of the sign of the slide-to-roll
+        ratio, and of their difference [N/m].
     frequencies : tuple of float
         Frequencies of the responses that follow [Hz].
     film_compliance : tuple of float
@@ -82,6 +87,9 @@ class Results:
     minimum_film: float = math.nan
     max_pressure: float = math.nan
     film_offset: float = math.nan
+    wall_stress: float = math.nan
+    traction: float = math.nan
+    rolling_force: float = math.nan
     frequencies: tuple[float, ...] = ()
     film_compliance: tuple[float, ...] = ()
     loss_compliance: tuple[float, ...] = ()
@@ -163,6 +171,9 @@ def read_results(case: Path) -> Results:
         minimum_film=_number(path, entries, "minimumFilm"),
         max_pressure=_number(path, entries, "maximumPressure"),
         film_offset=_number(path, entries, "filmOffset"),
+        wall_stress=_number(path, entries, "wallStress"),
+        traction=_number(path, entries, "traction"),
+        rolling_force=_number(path, entries, "rollingForce"),
         frequencies=frequencies,
         film_compliance=_numbers(path, entries, "filmCompliance", len(frequencies)),
         loss_compliance=_numbers(path, entries, "lossCompliance", len(frequencies)),

@@ -480,6 +480,8 @@ def _film(
         max_pressure=found.max_pressure,
         rolling_force=rolling,
         mass_flow=flow,
+        traction=found.traction,
+        wall_stress=found.wall_stress,
         film_offset_error=error(found.film_offset, rough.film_offset),
         film_compliance_error=error(found.film_compliance[0], rough.film_compliance[0]),
         loss_compliance_error=error(found.loss_compliance[0], rough.loss_compliance[0]),

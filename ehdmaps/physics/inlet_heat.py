@@ -4,7 +4,7 @@ The oil that turns back in the inlet shears itself warm, and what enters the con
 film that is a factor phi of the film, with three rules:
 
 - film offset, central and smallest film, flow and rolling force times phi,
-- film compliance as it is: a higher load heats its inlet more, so that dh/dw hardly falls with h,
+- film compliance minus the derivative of that film offset by load, so that laws can be made of both,
 - loss compliance times phi^n, n = 1 + M^2/(1 + M^2): 1 below the damping valley and 2 above it.
 
     phi = 1/(1 + 0.236 QL^0.72 M/(M + 0.25)),    QL = -(d eta0/dT) u^2/k_f
@@ -33,6 +33,9 @@ from ehdmaps.physics.moes import moes_groups, valley_load_number
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import FilmSolution, FilmSpectrum, Status, no_spectrum
 from ehdmaps.physics.thermal import thermal_loading, viscosity_slope
+
+LIGHTEST = 0.25
+"""M at which the factor's heating is half of that of a loaded contact."""
 
 LARGEST_LOADING = 3.0
 """QL above which no factor is given."""
@@ -64,15 +67,18 @@ class InletHeat:
         Factor phi of the film; 1 without heat.
     refused : str
         Why the rule does not hold there; empty where it does.
+    slope : float
+        Derivative of phi by load [m/N].
     exponent : float
         n: the loss compliance goes with phi^n.
     film_error, loss_error : float
-        How far film, and film compliance and loss compliance, may be from those of a film with temperatures, relative:
-        bounds of the rule itself, beside the numerical errors of the isothermal film.
+        How far the film, and film compliance and loss compliance, may be from those of a film with temperatures,
+        relative: bounds of the rule itself, beside the numerical errors of the isothermal film.
     """
 
     factor: float
     refused: str
+    slope: float
     exponent: float
     film_error: float
     loss_error: float
@@ -84,7 +90,7 @@ class InletHeat:
             return ""
         return (
             f"inlet heat by a formula: film x {self.factor:.3f} within {100.0 * self.film_error:.1f} %, loss x "
-            f"{self.factor**self.exponent:.3f} and film compliance x 1 within {100.0 * self.loss_error:.0f} %"
+            f"{self.factor**self.exponent:.3f}, loss and film compliance within {100.0 * self.loss_error:.0f} %"
         )
 
 
@@ -108,7 +114,7 @@ def inlet_heat_factor(load_number: float, loading: float) -> float:
     >>> round(inlet_heat_factor(20.0, 0.5), 3)
     0.876
     """
-    heating: float = 0.236 * loading**0.72 * load_number / (load_number + 0.25)
+    heating: float = 0.236 * loading**0.72 * load_number / (load_number + LIGHTEST)
     return 1.0 / (1.0 + heating)
 
 
@@ -131,7 +137,7 @@ def inlet_heat(contact: LineContact, lubricant: Lubricant, point: OperatingPoint
     """
     conductivity = heat_data(lubricant, contact.material).oil_conductivity
     if point.entrainment_speed == 0.0:
-        return InletHeat(1.0, "", 1.0, 0.0, 0.0)
+        return InletHeat(1.0, "", 0.0, 1.0, 0.0, 0.0)
     state = lubricant.at(point.temperature)
     loading = thermal_loading(viscosity_slope(lubricant, point.temperature), point.entrainment_speed, conductivity)
     alpha = state.pressure_viscosity.pressure_viscosity
@@ -141,10 +147,11 @@ def inlet_heat(contact: LineContact, lubricant: Lubricant, point: OperatingPoint
     M, factor = float(M), inlet_heat_factor(float(M), loading)
     zeta = math.log(M / float(valley_load_number(L)))
     square = M * M
-    share = 0.6 if abs(zeta) > 1.0 else 2.0
+    share = 0.8 if abs(zeta) > 1.0 else 4.0
     return InletHeat(
         factor=factor,
         refused=_refused(M, L, zeta, loading, factor),
+        slope=-(1.0 - factor) * factor * LIGHTEST / (M + LIGHTEST) / point.load,
         exponent=1.0 + square / (1.0 + square),
         film_error=0.4 * (1.0 - factor),
         loss_error=share * (1.0 - factor),
@@ -191,13 +198,16 @@ def heated(film: FilmSolution, heat: InletHeat) -> FilmSolution:
     return replace(
         film,
         reason="; ".join(filter(None, (film.reason, heat.note))),
+        film_compliance=film.film_compliance * heat.factor - film.film_offset * heat.slope,
         loss_compliance=film.loss_compliance * heat.factor**heat.exponent,
         **{name: getattr(film, name) * heat.factor for name in thinner},
     )
 
 
 def heated_spectrum(spectrum: FilmSpectrum, heat: InletHeat) -> FilmSpectrum:
-    """An isothermal film over frequency with heat in its inlet: the imaginary part goes as the loss compliance.
+    """An isothermal film over frequency with heat in its inlet.
+
+    The real part of the film compliance goes as that of slow motion, the imaginary part as the loss compliance.
 
     Parameters
     ----------
@@ -213,10 +223,11 @@ def heated_spectrum(spectrum: FilmSpectrum, heat: InletHeat) -> FilmSpectrum:
     film = heated(spectrum.film, heat)
     if not film.status.usable:
         return no_spectrum(film, spectrum.frequencies)
-    lost = heat.factor**heat.exponent
+    kept, lost = heat.factor, heat.factor**heat.exponent
+    more = -spectrum.film.film_offset * heat.slope
     return replace(
         spectrum,
         film=film,
-        compliance=np.asarray(spectrum.compliance.real + 1j * lost * spectrum.compliance.imag),
-        errors=np.asarray(spectrum.errors.real + 1j * lost * spectrum.errors.imag),
+        compliance=np.asarray(kept * spectrum.compliance.real + more + 1j * lost * spectrum.compliance.imag),
+        errors=np.asarray(kept * spectrum.errors.real + 1j * lost * spectrum.errors.imag),
     )

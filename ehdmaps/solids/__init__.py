@@ -6,6 +6,15 @@ It runs off-line, once per bearing, and gives a few numbers: what reads or uses 
 `ehdmaps.solids.mesh`       gmsh, where it is installed
 `ehdmaps.solids.calculix`   CalculiX, where it is installed: running a deck
 
+Roller and rings in the plane, and their structural law `fe`:
+
+`ehdmaps.solids.mesh_plane`      triangles, graded to the contact
+`ehdmaps.solids.plane`           how far a body yields under Hertz' pressure of any width (scikit-fem)
+`ehdmaps.solids.law`             from these numbers to the approach over the load
+`ehdmaps.solids.plane_contact`   the contact by CalculiX, with no pressure assumed
+`ehdmaps.solids.plane_bearing`   both contacts of a bearing, and the studies that tell how good they are
+`ehdmaps.solids.plane_record`    all of it as plain values, as it is written and shipped
+
 A roller of finite length:
 
 `ehdmaps.solids.three_d`              pressures over width and length, from half spaces and free ends

@@ -10,7 +10,8 @@
 
     constant/ehlProperties says what is solved; the answer goes to `results`
     (an OpenFOAM dictionary), film.dat (a table over the columns) and, if asked,
-    to the fields p, U, mu, rho, liquidFraction (and T with heat) of the time folder 1.
+    to the fields p, U, mu, rho, liquidFraction, wallShear (and T with heat) of the
+    time folder 1.
 
     ehlFoam -laws FILE solves nothing and writes the oil as a table, laws.dat;
     ehlFoam -walls FILE the surfaces under sources of heat, walls.dat.
@@ -125,6 +126,7 @@ int main(int argc, char* argv[])
         runTime.setTime(1, 1);
         film.write();
         s.flow().write();
+        s.flow().writeWallStress();
     }
 
     // how it moves: linear response, and the check in time

@@ -41,6 +41,19 @@ void Foam::reportFilm(resultsFile& results, slice& s, newtonResult& solved)
     results.write("filmOffset", solved.state.offset*s.filmScale() - s.solid().dry().offset);
     results.write("outletDefect", mag(flux.last()/flux[0] - 1));
 
+    scalar largest = 0, traction = 0, rolling = 0;
+    for (label i = 0; i < s.columns(); ++i)
+    {
+        const scalar lower = s.flow().wallStress(0)[i], upper = s.flow().wallStress(1)[i];
+        const scalar length = state.x[i + 1] - state.x[i];
+        largest = max(largest, max(mag(lower), mag(upper)));
+        traction += 0.5*(lower + upper)*length;
+        rolling += (upper - lower)*length;
+    }
+    results.write("wallStress", largest);
+    results.write("traction", traction);
+    results.write("rollingForce", rolling);
+
     struct { word key; const char* name; scalar defect, most; } const balances[] =
     {
         {"loadDefect", "the load", mag(s.load(solved.state)/s.contact().load - 1), 1e-8},

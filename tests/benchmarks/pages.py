@@ -40,6 +40,7 @@ PAGES = (
     "FILMS.md",
     "TRADE.md",
     "docs/accuracy.md",
+    "docs/solids.md",
     "docs/python.md",
     "ehdmaps/GLOSSARY.md",
     "mbs/MACHINES.md",

@@ -81,6 +81,7 @@ entries = {
     "filmCompliance": listed([h * 0.1 / load * grid for _ in frequencies]),
     "lossCompliance": listed([1e-18 * grid / (1 + frequency) for frequency in frequencies]),
     "responseResidual": listed([0.0 if frequency < 1e6 else 0.1 for frequency in frequencies]),
+    "wallStress": 2e7, "traction": 0.0, "rollingForce": 1.0,
     "loadDefect": 1e-10, "fluxDefect": 1e-10, "outletDefect": 1e-4, "cellContinuity": 1e-8, "seconds": 0.1,
 }
 if status != "converged":

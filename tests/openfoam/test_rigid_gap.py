@@ -95,6 +95,13 @@ def _mesh(case: Path, solved: Path, columns: int, installed: Installation) -> Fl
     return points
 
 
+def _inlet_pressure(solved: Path) -> float:
+    """Pressure that ehlFoam gives the inlet, of the film before it [Pa]."""
+    found = re.search(r"inlet\s*\{[^}]*value\s+uniform\s+(\S+);", (solved / "1" / "p").read_text())
+    assert found is not None
+    return float(found[1])
+
+
 def _wall_speeds(points: FloatArray, case: Path, patch: str, speed: float) -> str:
     """A surface that moves along itself, face by face in the order of its patch."""
     edge = points[:, 0, 0 if patch == "lower" else -1]
@@ -129,6 +136,7 @@ def _differences(folder: Path, columns: int) -> tuple[float, float, float]:
     weight = (points[-1, 0, 0, 0] - before) / (behind - before)
     at_cut = (1.0 - weight) * pressure[cut - 1] + weight * pressure[cut]
 
+    at_inlet = _inlet_pressure(solved)
     density, viscosity = settings.oil.density, settings.oil.viscosity
     walls = " ".join(
         _wall_speeds(points, case, patch, speed)
@@ -147,11 +155,11 @@ def _differences(folder: Path, columns: int) -> tuple[float, float, float]:
         "0/p",
         "volScalarField",
         "dimensions [0 2 -2 0 0]; internalField uniform 0;\n"
-        "boundaryField { inlet { type fixedValue; value uniform 0; }"
+        f"boundaryField {{ inlet {{ type fixedValue; value uniform {at_inlet / density:.15g}; }}"
         f" outlet {{ type fixedValue; value uniform {at_cut / density:.15g}; }}"
         " lower { type zeroGradient; } upper { type zeroGradient; } frontAndBack { type empty; } }",
     )
-    # simpleFoam takes the gradient at a wall from the cell beside it, and pressure drives 1 + 2/rows^2 of the flux of a
+    # simpleFoam takes the gradient at a wall from the cell beside it: pressure drives 1 + 2/rows^2 of the flux of a
     # parabola: 3/2 at the walls, 1/2 of the midpoint rule. An oil more viscous by that gives it the parabola's flux.
     nu = viscosity / density * (1.0 + 2.0 / ROWS**2)
     oil = f"transportModel Newtonian; nu [0 2 -1 0 0] {nu:.15g};"

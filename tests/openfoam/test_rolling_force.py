@@ -1,4 +1,4 @@
-"""The stress on both walls, from the velocities of the cells, against the rolling force of pressure and film."""
+"""The stress on both walls, from the velocities of the cells: rolling force and traction."""
 
 from __future__ import annotations
 
@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 
 from ehdmaps import STEEL, BearingGeometry, Lubricant, OperatingPoint
-from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.openfoam.fields import FilmFields
 from ehdmaps.openfoam.solver import OpenFoamSolver
 from ehdmaps.physics.rolling import rolling_force_of_inlet
 
@@ -19,39 +17,25 @@ OIL = Lubricant.named("FVA3")
 SPEED = 2.0
 
 
-def _wall_force(fields: FilmFields, columns: int, rows: int) -> float:
-    """Force of the film on both walls against their motion [N/m]: mu dU/dn of the two rows of cells beside them.
-
-    Of the parabola whose means over the rows they are: that is the stress with which the cells' own balance closes.
-    """
-    corners = fields.points[fields.quads]
-    centre = corners.mean(axis=1)
-    order = np.argsort(centre[:, 0], kind="stable").reshape(columns, rows)
-    order = np.take_along_axis(order, np.argsort(centre[order][:, :, 1], axis=1), axis=1)
-    heights = np.sort(corners[:, :, 1], axis=1)
-
-    def stress(first: IntArray, second: IntArray) -> FloatArray:
-        thickness = heights[first, 2:].mean(axis=1) - heights[first, :2].mean(axis=1)
-        slope = (3.0 * SPEED - 3.5 * fields.U[first, 0] + 0.5 * fields.U[second, 0]) / thickness
-        return np.asarray(fields.mu[first] * slope)
-
-    both = stress(order[:, 0], order[:, 1]) + stress(order[:, -1], order[:, -2])
-    return float(np.sum(both * np.ptp(corners[order[:, 0]][:, :, 0], axis=1)))
-
-
-@pytest.mark.parametrize("load", [1e3, 2e4])
-def test_the_walls_feel_the_rolling_force(load: float) -> None:
+@pytest.mark.parametrize(("load", "shear"), [(1e3, "newtonian"), (2e4, "newtonian"), (2e4, "limiting")])
+def test_the_walls_feel_the_rolling_force(load: float, shear: str) -> None:
     point = OperatingPoint(load, SPEED, 333.15)
-    solver = OpenFoamSolver()
-    film, grid = solver.solve_fields(CONTACT, OIL, point, with_fields=True)
-    assert grid is not None and grid.fields is not None
+    solver = OpenFoamSolver(shear=shear)
+    film, grid = solver.solve_fields(CONTACT, OIL, point)
+    assert grid is not None
     state = OIL.at(point.temperature)
     x, gap = grid.film.x, grid.film.film
     taken_in = film.mass_flow / (state.density * SPEED)
     before = rolling_force_of_inlet(-x[0], gap[0], taken_in, 12.0 * state.viscosity * SPEED, CONTACT.radius)
-    walls = _wall_force(grid.fields, solver.columns, solver.rows) + before
+    walls = grid.results.rolling_force + before
     # 1e-3: the balance of forces of the cells, and the rule by which pressure and film are summed up
     assert walls == pytest.approx(film.rolling_force, rel=1e-3)
+    # the stress of pure rolling is h/2 dp/dx at both walls; round-off of the sum
+    assert abs(film.traction) < 1e-9 * film.rolling_force
+    steepest = 0.5 * gap * np.abs(np.gradient(grid.film.pressure, x))
+    assert film.wall_stress == pytest.approx(steepest.max(), rel=0.1)
+    if shear != "newtonian":
+        return
     (other,) = ReynoldsSolver().solve_line(CONTACT, OIL, (load,), SPEED, point.temperature)
     # the grids of both, which state 0.1 to 0.2 % together
     assert walls == pytest.approx(other.rolling_force, rel=1e-3)

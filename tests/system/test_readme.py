@@ -111,6 +111,7 @@ PAGES = (
     "FILMS.md",
     "TRADE.md",
     "docs/accuracy.md",
+    "docs/solids.md",
     "ehdmaps/REFERENCE.md",
     "mbs/REFERENCE.md",
     "mbs/MACHINES.md",

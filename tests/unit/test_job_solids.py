@@ -119,6 +119,11 @@ def test_wrong_solids(solids, geometry, solver, message):
         read(solids, geometry, solver)
 
 
+def test_a_job_to_run_names_the_same_key():
+    with pytest.raises(InputError, match=r"\[solids\] law: got 'fe' with bore of \[solids\]"):
+        parse_job(text('[solids]\nlaw = "fe"\nbore = "41 mm"\n'), "job", "job.toml", to_run=True)
+
+
 def test_loads_too_wide_for_the_law():
     with pytest.raises(InputError, match=r"\[grid\] load: contact inner: fe law: got the load 1e\+06 N/m; allowed"):
         read('[solids]\nlaw = "fe"\ninner_approach = "1 um"\nouter_approach = "3 um"\n', load='"1000 N/mm"')

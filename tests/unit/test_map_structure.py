@@ -126,6 +126,20 @@ def test_structural_laws_that_do_not_suit_are_refused(paths):
     with pytest.raises(InputError, match="roller_length: got none; the palmgren law needs it; give the length"):
         bare.with_structure("palmgren")
     assert bare.with_structure("palmgren", roller_length=15e-3).contacts[0].structural_law == "palmgren"
+    with pytest.raises(InputError, match="fe_approach: got none; the fe law needs it; give the approach"):
+        bare.with_structure("fe")
+    assert bare.with_structure("fe", fe_approaches={"line": 3e-6}).contacts[0].fe_approach == 3e-6
+
+
+def test_finite_elements_of_other_rings(paths):
+    """Approaches that are given stay with the map, those that come with the package go with their law."""
+    emap = open_map(paths["iso16281"])
+    own = emap.with_structure("fe", fe_approaches={"inner": 3e-6, "outer": 2.8e-6})
+    assert [contact.fe_approach for contact in own.with_structure("iso16281").with_structure("fe").contacts] == [
+        3e-6,
+        2.8e-6,
+    ]
+    assert emap.with_structure("fe").with_structure("iso16281").contacts == emap.contacts
 
 
 @pytest.mark.parametrize("name", DERIVED)

@@ -10,6 +10,7 @@ import pytest
 
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
+from ehdmaps.jobs import solvers
 from ehdmaps.jobs.answers import Answer, Question, film_answer, scales
 from ehdmaps.jobs.contact_ways import AtFrequency, Flooded, LayerRule, LockedPole, OnLayer, RoughRule, Slow
 from ehdmaps.jobs.contestants import Entry, Group, contestants
@@ -238,6 +239,8 @@ def test_the_table_of_contestants():
     assert [entry.label for entry in plain if entry.default] == [
         "formula, moes",
         "reynolds, density 6.5",
+        "shear: newtonian",
+        *(["heat: isothermal"] if solvers.takes("reynolds", "physics", "thermal") else []),
         "layer: flooded film",
         "rough: smooth film",
         "frequency: one pole, fitted",

@@ -139,6 +139,22 @@ Foam::scalarField Foam::filmFlow::columnFlux(const surfaceScalarField& massFlux)
 }
 
 
+void Foam::filmFlow::writeWallStress() const
+{
+    volScalarField stress
+    (
+        IOobject("wallShear", film_.mesh().time().timeName(), film_.mesh()),
+        film_.mesh(),
+        dimensionedScalar("wallShear", dimPressure, 0)
+    );
+    for (const label side : {0, 1})
+    {
+        stress.boundaryFieldRef()[side ? film_.upper() : film_.lower()] == wallStress_[side];
+    }
+    stress.write();
+}
+
+
 Foam::scalar Foam::filmFlow::velocityStep
 (
     const scalar v,

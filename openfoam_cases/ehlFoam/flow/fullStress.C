@@ -236,6 +236,11 @@ Foam::List<Foam::scalarField> Foam::fullStress::residual
         (
             normalGradient.boundaryField()[patch] & mesh.boundary()[patch].nf()
         );
+        // along the surface, against its normal at the lower one
+        const label side = patch == film_.upper() ? 1 : 0;
+        const vectorField gradient(normalGradient.boundaryField()[patch]);
+        wallStress_[side] = (side ? 1 : -1)*mu_.boundaryField()[patch]*fraction_.boundaryField()[patch]
+           *((gradient - (gradient & mesh.boundary()[patch].nf())*mesh.boundary()[patch].nf()) & vector(1, 0, 0));
         forAll(cells, f)
         {
             const label c = cells[f];

@@ -153,6 +153,7 @@ Foam::scalarField Foam::thinFilm::faceViscosity(const filmState& state, const la
 
 void Foam::thinFilm::balance(filmState& state) const
 {
+    if (newtonian()) return;
     label top = 0;
     forAll(state.column, i)
     {
@@ -174,7 +175,7 @@ void Foam::thinFilm::balance(filmState& state) const
 
 void Foam::thinFilm::settle(const filmState& before, filmState& after)
 {
-    if (oil_.shear().stress(0) >= GREAT) return;
+    if (newtonian()) return;
     film_.move(after.x, after.h);
     for (label i = 0; i < film_.columns(); ++i)
     {
@@ -300,6 +301,13 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
         fvc::surfaceIntegrate(muFace*shearRate*film_.flatArea())().primitiveField()
       - gradient.primitiveField()
     );
+
+    for (const label side : {0, 1})
+    {
+        const label patch = side ? film_.upper() : film_.lower();
+        wallStress_[side] = muFace.boundaryField()[patch]*shearRate.boundaryField()[patch]
+           *fraction_.boundaryField()[patch];
+    }
 
     // viscosity of a cell under shear
     const scalarField oilViscosity(mu_.primitiveField());
