@@ -11,7 +11,7 @@ from typing import Any
 from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
-from ehdmaps.physics.heat import ISOTHERMAL, PHYSICS
+from ehdmaps.physics.heat import ISOTHERMAL, PHYSICS, THERMAL
 from ehdmaps.physics.rheology import SHEAR_LIMITS, SHEARS
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.units import Display, short
@@ -196,6 +196,7 @@ SOLVERS: Mapping[str, SolverEntry] = {
             Word("flow", ("thin_film", "full_stress"), "stress of thin films, or all of it"),
             Whole("columns", 40, 4000, "cells along the film"),
             Whole("rows", 4, 64, "cells across the film"),
+            physics_option(ISOTHERMAL, THERMAL),
             *SHEAR_OPTIONS,
             Switch("inertia", "whether the momentum equation has its inertia"),
             Word("start", ("reynolds", "hertz"), "what a point starts from"),

@@ -16,13 +16,15 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
 from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
-from ehdmaps.openfoam.parameters import FLOWS, Flow, Mesh, Parameters, Start
+from ehdmaps.openfoam.isotherms import isotherms
+from ehdmaps.openfoam.parameters import FLOWS, Flow, Heat, Mesh, Parameters, Start
 from ehdmaps.openfoam.results import FilmTable
 from ehdmaps.openfoam.run import RunError
 from ehdmaps.physics.closed_form import HertzSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.film_limits import THIN_FILM_LIMIT, too_thick
 from ehdmaps.physics.films import moes_central
+from ehdmaps.physics.heat import ISOTHERMAL, THERMAL, heat_data
 from ehdmaps.physics.hertz import DRY_COMPLIANCE, LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import film_from_moes, moes_groups
@@ -46,6 +48,9 @@ CAVITATION_RANGE = 1e-6
 
 PARAMETER_VERSION = 4
 """Raised when a change of this package changes numbers: results of another version are not taken over."""
+
+PHYSICS = (ISOTHERMAL, THERMAL)
+"""What the solver may know of heat."""
 
 StartWord = Literal["reynolds", "hertz"]
 
@@ -102,6 +107,9 @@ class OpenFoamSolver(ContactSolverDefaults):
         Stress of thin films, or all of it with the pressure across the film.
     columns, rows : int
         Cells along and across the film.
+    physics : {"isothermal", "thermal"}
+        Whether the film has the temperature of the surfaces, or the energy of the film is solved with the flow; the
+        latter with the flow thin_film.
     shear : {"newtonian", "eyring", "carreau", "limiting"}
         Law of the shear stress, see `ehdmaps.physics.rheology`.
     shear_stress, limiting_ratio, carreau_exponent : float, optional
@@ -134,6 +142,7 @@ class OpenFoamSolver(ContactSolverDefaults):
     flow: Flow = "thin_film"
     columns: int = 400
     rows: int = 6
+    physics: str = ISOTHERMAL
     shear: str = "newtonian"
     shear_stress: float | None = None
     limiting_ratio: float | None = None
@@ -171,8 +180,20 @@ class OpenFoamSolver(ContactSolverDefaults):
             for name in ("columns", "rows")
             if getattr(self, name) % 2
         ]
-        if self.flow not in FLOWS:
-            problems.append(f"openfoam solver, flow: got {self.flow!r:.60}; allowed: {', '.join(FLOWS)}")
+        problems += [
+            f"openfoam solver, {name}: got {getattr(self, name)!r:.60}; allowed: {', '.join(words)}"
+            for name, words in (("flow", FLOWS), ("physics", PHYSICS))
+            if getattr(self, name) not in words
+        ]
+        if self.physics == THERMAL and self.flow != "thin_film":
+            problems.append(
+                f"openfoam solver, physics: got thermal with flow {self.flow!r:.60}; allowed: with flow thin_film"
+            )
+        if self.physics == THERMAL and not abs(self.slide_to_roll) < 2.0:
+            problems.append(
+                f"openfoam solver, slide_to_roll: got {self.slide_to_roll!r} with physics thermal; allowed: between -2 "
+                "and 2 without both, since a surface that stands has no steady temperature"
+            )
         try:
             self.shear_law()
         except InputError as error:
@@ -212,6 +233,7 @@ class OpenFoamSolver(ContactSolverDefaults):
             "flow": self.flow,
             "columns": self.columns,
             "rows": self.rows,
+            **({} if self.physics == ISOTHERMAL else {"physics": self.physics}),
             "shear": self.shear,
             "shear_stress": 0.0 if self.shear == "newtonian" else law.stress,
             **{key: value for key, value in own.items() if value is not None},
@@ -386,11 +408,18 @@ class OpenFoamSolver(ContactSolverDefaults):
             flow=self.flow,
             shear=self.shear_law(),
             inertia=self.inertia,
+            heat=self._heat(contact, lubricant, point.temperature),
             start=start,
             frequencies=(0.0, *frequencies),
             max_iterations=self.max_iterations,
             tolerance=self.tolerance,
         )
+
+    def _heat(self, contact: LineContact, lubricant: Lubricant, temperature: float) -> Heat | None:
+        """What the energy of the film is solved with; None where it is not."""
+        if self.physics == ISOTHERMAL:
+            return None
+        return Heat(temperature, heat_data(lubricant, contact.material), isotherms(lubricant, temperature))
 
     def surface_speeds(self, entrainment_speed: float) -> tuple[float, float]:
         """Speeds of the lower and the upper surface [m/s]."""
@@ -442,7 +471,7 @@ def _film(
         status = Status.ASYMPTOTE
         notes.append("film thicker than 1 % of the radius: the gap is that of a parabola")
     elif found.loss_compliance[0] < 0.0:
-        notes.append("negative damping at the valley of an isothermal film; a contact law takes zero")
+        notes.append("negative damping at the valley; a contact law takes zero")
     if newtonian:
         notes.append(wall_stress_note(fine.film.x, fine.film.pressure, fine.film.film))
     largest_error = abs(error(found.max_pressure, rough.max_pressure))
@@ -468,6 +497,8 @@ def _film(
         max_pressure_error=largest_error,
         rolling_force_error=abs(error(rolling, rough_rolling)),
         mass_flow_error=abs(error(flow, rough_flow)),
+        film_temperature=found.film_temperature,
+        surface_temperature=found.surface_temperature,
         iterations=rough.iterations + found.iterations,
         solve_seconds=seconds,
         viscosity_extrapolated=found.max_pressure * (1.0 + largest_error) > state.fitted_pressure,
