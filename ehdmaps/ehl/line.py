@@ -56,6 +56,9 @@ LEAST_SPAN = 8.0
 MOST_MOVES = 6
 """Coarse grids laid in search of the spike."""
 
+MOST_WARM_STEPS = 30
+"""The same for a film with temperatures, whose steps take longer."""
+
 LOOSE_TOLERANCE = 1e-2
 """Newton tolerance while the place of the spike is still being looked for."""
 
@@ -85,7 +88,7 @@ LADDER_FEET = 1.0, 0.2
 """Starts of such a ladder, over the load `COLD_START_BELOW`/2 or a lighter one: the second where the first fails."""
 
 
-FIRST_HEAT, LEAST_HEAT = 0.1, 0.01
+FIRST_HEAT, LEAST_HEAT = 0.25, 0.1
 """First part of the heat that is let in on the way to a film with temperatures, and the least part at once."""
 
 STRONGEST, LEAST_STRONG = 64.0, 1.5
@@ -319,7 +322,7 @@ def _converged_warm(
 ) -> tuple[Profile | None, int, int]:
     """Newton on one grid for a film with its temperatures."""
     rises = warm_start(near, grid)
-    at = (problem, grid.x, grid.step, grid.face, grid.face_step, kernel, start, rises, LOAD, tolerance, MOST_STEPS)
+    at = (problem, grid.x, grid.step, grid.face, grid.face_step, kernel, start, rises, LOAD, tolerance, MOST_WARM_STEPS)
     try:
         result = warm_newton(*at)
     except np.linalg.LinAlgError:

@@ -18,11 +18,14 @@ from ehdmaps.ehl.warm_column import POINTS, Columns, empty_columns
 LOOSE, TIGHT = 0.1, 1e-7
 """Last step of the temperatures for a film that is far from its solution, and for one that is there [K]."""
 
-MOST_STEPS = 25
+MOST_STEPS = 15
 """Steps of the temperatures of one film."""
 
-SWEPT = 1e-5
-"""What the derivatives of temperatures may lack where oil flows back, relative: Newton does not see it."""
+SMOOTH, MOST_FROZEN = 0.05, 12
+"""Size of the last step from which on temperatures follow, and the steps after which they do at all events."""
+
+MOST_RETURNS = 4
+"""Halvings of a step after which the film has no temperatures."""
 
 
 class WarmResult(NamedTuple):
@@ -109,14 +112,27 @@ def warm_newton(
     out, jacobian = np.empty(size), np.empty((size, size))
     last, relaxation = math.inf, 1.0
     old = np.zeros(n - 1)
+    before, warm_before, taken, warming = unknowns, rises, np.zeros(size), np.zeros((n, POINTS))
+    frozen, known = True, False
     for count in range(most_steps):
         close = max(TIGHT, min(LOOSE, 0.1 * last))
+        # from another grid pressures are too rough to heat anything: first with the temperatures as they are
         equations, left, _ = warm_temperatures(
-            problem, x, face_step, kernel, unknowns, walls, first, rises, columns, close, MOST_STEPS
+            problem, x, face_step, kernel, unknowns, walls, first, rises, columns, close, 0 if frozen else MOST_STEPS
         )
-        if not left <= close:
+        for _ in range(MOST_RETURNS):
+            if frozen or left <= close or not known:
+                break
+            # too far: an oil that yields too much is heated without bound
+            taken, warming = 0.5 * taken, 0.5 * warming
+            unknowns, rises = before + taken, warm_before + warming
+            equations, left, _ = warm_temperatures(
+                problem, x, face_step, kernel, unknowns, walls, first, rises, columns, close, MOST_STEPS
+            )
+        if not (frozen or left <= close):
             return WarmResult(unknowns, rises, first, DIVERGED, count, last)
-        by_unknowns, mobility, carriage = followed(equations, columns, x, face_step, kernel, unknowns, first, SWEPT)
+        by_unknowns, mobility, carriage = followed(equations, columns, x, face_step, kernel, unknowns, first, frozen)
+        known = not frozen
         factors = warm_factors(columns, unknowns, mobility, carriage)
         lowest = residual_with(problem, factors, x, step, face_step, kernel, unknowns, load, out, jacobian)
         if not np.all(np.isfinite(out)):
@@ -127,11 +143,13 @@ def warm_newton(
             return WarmResult(unknowns, rises, first, DIVERGED, count, last)
         relaxation = relaxed(move, old, relaxation) if last > SOFT_ABOVE else 1.0
         length = step_length(problem, x, kernel, unknowns, move, lowest, relaxation)
-        unknowns = unknowns + length * move
-        change = by_unknowns.reshape((n * POINTS, size)) @ (length * move)
-        largest = np.max(np.abs(change))
-        rises += min(1.0, LARGEST_RISE / max(largest, 1e-300)) * change.reshape((n, POINTS))
-        if length == 1.0 and last < tolerance:
+        before, warm_before, taken = unknowns, rises, length * move
+        warming = (by_unknowns.reshape((n * POINTS, size)) @ taken).reshape((n, POINTS))
+        warming *= min(1.0, LARGEST_RISE / max(np.max(np.abs(warming)), 1e-300))
+        unknowns, rises = before + taken, warm_before + warming
+        if frozen and (last < SMOOTH or count == MOST_FROZEN):
+            frozen = False
+        elif length == 1.0 and last < tolerance:
             _, left, _ = warm_temperatures(
                 problem, x, face_step, kernel, unknowns, walls, first, rises, columns, TIGHT, MOST_STEPS
             )

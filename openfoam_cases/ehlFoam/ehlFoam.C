@@ -26,6 +26,7 @@
 #include "columnLayout.H"
 #include "positive.H"
 #include "argList.H"
+#include "sigFpe.H"
 #include "Time.H"
 #include "clockTime.H"
 
@@ -76,6 +77,8 @@ int main(int argc, char* argv[])
     argList::addOption("walls", "file", "write surface temperatures under the heat of a file to walls.dat, solve nothing");
     const argList args(argc, argv);
     Time runTime(Time::controlDictName, args);
+    // a number that overflows, or a pivot that is zero, ends a solve with a status
+    const sigFpe::ignore withoutTraps;
     const clockTime clock;
 
     // the problem
