@@ -23,6 +23,7 @@
 #include "columnLayout.H"
 #include "positive.H"
 #include "argList.H"
+#include "sigFpe.H"
 #include "Time.H"
 #include "clockTime.H"
 
@@ -72,6 +73,8 @@ int main(int argc, char* argv[])
     argList::addOption("laws", "file", "write the oil at the pressures and rates of a file to laws.dat, solve nothing");
     const argList args(argc, argv);
     Time runTime(Time::controlDictName, args);
+    // a number that overflows, or a pivot that is zero, ends a solve with a status
+    const sigFpe::ignore withoutTraps;
     const clockTime clock;
 
     // the problem

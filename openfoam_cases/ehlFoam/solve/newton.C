@@ -19,6 +19,13 @@ static constexpr scalar mostPressure = 0.25, mostViscosity = 5, leastFilm = 0.4;
 //- Defect of the mass flux upstream of rupture that counts as none; that of a cell may be a hundred times as large
 static constexpr scalar mostDefect = 1e-8;
 
+//- Steps that are cut one after another, and full steps of no length beside balances that are not met, before it is
+//  given up; and steps in which none is half as long as the shortest before
+static constexpr label mostCuts = 12, mostIdle = 3, mostLost = 15;
+
+//- Length of a step that is none
+static constexpr scalar noLength = 1e-12;
+
 //- v of a column that a step takes from film to mixture, or back: just past the edge,
 //  since the derivatives on one side say nothing of the other
 static constexpr scalar intoMixture = -0.01, intoFilm = 1e-7;
@@ -140,7 +147,8 @@ Foam::newtonResult Foam::newton
     slice::unknowns u(start);
     const label n = s.columns();
     scalar previous = GREAT;
-    label backAndForth = 0;
+    label backAndForth = 0, cuts = 0, idle = 0, lost = 0;
+    scalar shortest = GREAT;
     for (label iteration = 1; iteration <= controls.maxIterations; ++iteration)
     {
         slice::unknowns rate;
@@ -176,7 +184,7 @@ Foam::newtonResult Foam::newton
             change = step();
             next = stepped(s, u, 1, change);
         }
-        if (!(change.column.cwiseAbs().maxCoeff() < GREAT && mag(change.offset) < GREAT))
+        if (!(change.column.allFinite() && change.local.allFinite() && mag(change.offset) < GREAT))
         {
             return {outcome::diverged, "Newton's step has no finite length", iteration, u};
         }
@@ -200,9 +208,25 @@ Foam::newtonResult Foam::newton
         {
             return {outcome::converged, "", iteration, u};
         }
-        if (part < 1e-6)
+        if (!(part >= 1e-6))
         {
             return {outcome::stagnated, "Newton's steps are cut to nothing", iteration, u};
+        }
+        cuts = part < 1 ? cuts + 1 : 0;
+        idle = part == 1 && moved < noLength ? idle + 1 : 0;
+        lost = moved < 0.5*shortest ? 0 : lost + 1;
+        shortest = min(shortest, moved);
+        if (cuts >= mostCuts || idle >= mostIdle || lost >= mostLost)
+        {
+            return
+            {
+                outcome::stagnated,
+                cuts >= mostCuts ? "the last " + std::to_string(cuts) + " of Newton's steps had to be cut"
+              : idle >= mostIdle ? "Newton's steps end where mass is not conserved"
+              : "Newton's steps have not become shorter for " + std::to_string(lost) + " steps",
+                iteration,
+                u
+            };
         }
         backAndForth = edge && moved > slow*previous ? backAndForth + 1 : 0;
         // a step that was cut, or took columns from film to mixture, says nothing about how fast steps shrink

@@ -247,10 +247,11 @@ Foam::slice::unknowns Foam::slice::settled(const unknowns& before, const unknown
 Foam::scalar Foam::slice::fluxDefect() const
 {
     const scalarField flux(flow_.columnFlux()), fraction(flow_.columnFraction());
+    // up to the last full column: mass is conserved in mixture as well
+    label last = columns() - 1;
+    while (last >= 0 && fraction[last] < 1) --last;
+    if (last < 0) return 1;
     scalar defect = 0;
-    for (label i = 0; i < columns() && fraction[i] >= 1; ++i)
-    {
-        defect = max(defect, mag(flux[i]/flux[0] - 1));
-    }
+    for (label i = 1; i <= last; ++i) defect = max(defect, mag(flux[i]/flux[0] - 1));
     return defect;
 }

@@ -70,7 +70,7 @@ Foam::solvedFilm Foam::steadyState
         }
         else
         {
-            start = found.contact->balanced(start);
+            if (!newtonian) start = found.contact->balanced(start);
         }
         found.result = newton(*found.contact, start, contact.load, stageControls, none);
         iterations += found.result.iterations;
