@@ -66,7 +66,7 @@ def test_a_film_of_one_height_and_pressure():
 
 
 PROTOTYPE = {5e4: (0.0015, 0.0102, 0.029, 0.053), 2e5: (0.022, 0.035, 0.049, 0.064)}
-"""Isothermal traction by Eyring at 2 m/s and 60 degC by a program of its own, at the slips above, two digits."""
+"""Isothermal traction by Eyring's law at 2 m/s and 60 degC by another program, at the slips above, two digits."""
 
 
 @pytest.mark.parametrize("load", [5e4, 2e5])

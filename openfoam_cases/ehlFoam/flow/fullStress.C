@@ -205,11 +205,22 @@ Foam::List<Foam::scalarField> Foam::fullStress::residual
     rho_ *= fraction_;
 
     // momentum
-    const surfaceScalarField muFace(linear<scalar>(mesh).interpolate(mu_));
+    surfaceScalarField muFace(linear<scalar>(mesh).interpolate(mu_));
     surfaceVectorField normalGradient(fvc::snGrad(U_));
     for (const label patch : {film_.lower(), film_.upper()})
     {
         normalGradient.boundaryFieldRef()[patch] = wallGradient(film_, U_, patch);
+        // shear is greatest at the surface itself, and the oil thinnest
+        const labelUList& cells = mesh.boundary()[patch].faceCells();
+        const vectorField normal(mesh.boundary()[patch].nf());
+        scalarField& muWall = muFace.boundaryFieldRef()[patch];
+        forAll(cells, f)
+        {
+            const vector& gradient = normalGradient.boundaryField()[patch][f];
+            const label c = cells[f];
+            const scalar v = state.local[place(c/film_.rows(), c % film_.rows(), 2)];
+            muWall[f] = oil_.sheared(oil_.viscosity(v), mag(gradient - (gradient & normal[f])*normal[f]), p_[c]);
+        }
     }
     volVectorField force
     (
@@ -239,7 +250,7 @@ Foam::List<Foam::scalarField> Foam::fullStress::residual
         // along the surface, against its normal at the lower one
         const label side = patch == film_.upper() ? 1 : 0;
         const vectorField gradient(normalGradient.boundaryField()[patch]);
-        wallStress_[side] = (side ? 1 : -1)*mu_.boundaryField()[patch]*fraction_.boundaryField()[patch]
+        wallStress_[side] = (side ? 1 : -1)*muFace.boundaryField()[patch]*fraction_.boundaryField()[patch]
            *((gradient - (gradient & mesh.boundary()[patch].nf())*mesh.boundary()[patch].nf()) & vector(1, 0, 0));
         forAll(cells, f)
         {
