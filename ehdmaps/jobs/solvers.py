@@ -59,18 +59,6 @@ class Whole:
 
 
 @dataclass(frozen=True)
-class Switch:
-    """A key that takes true or false."""
-
-    key: str
-    meaning: str
-
-    def read(self, table: Table) -> Any:
-        """Return the switch, or None if absent or wrong."""
-        return table.switch(self.key)
-
-
-@dataclass(frozen=True)
 class Quantity:
     """A key that takes a number with its unit, or a bare one in SI, within [low, high]."""
 
@@ -137,7 +125,7 @@ class SolverEntry:
         Whether it works in case folders, which it can keep, and has fields of the film.
     """
 
-    options: tuple[Number | Whole | Word | Switch | Quantity, ...]
+    options: tuple[Number | Whole | Word | Quantity, ...]
     build: Callable[..., ContactSolver]
     missing: Callable[[], tuple[str, ...]] = _nothing
     keeps_cases: bool = False
@@ -198,7 +186,7 @@ SOLVERS: Mapping[str, SolverEntry] = {
             Whole("rows", 4, 64, "cells across the film"),
             physics_option(ISOTHERMAL, THERMAL),
             *SHEAR_OPTIONS,
-            Switch("inertia", "whether the momentum equation has its inertia"),
+            Number("inlet_length", 5.0, 1e5, "length of the inlet over sqrt(2 h R)"),
             Word("start", ("reynolds", "hertz"), "what a point starts from"),
             Number("timeout", 1.0, 1e6, "seconds after which a point is stopped"),
         ),

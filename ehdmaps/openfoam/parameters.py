@@ -142,8 +142,6 @@ class Parameters:
         Stress of thin films, or all of it with the pressure across the film.
     shear : ShearLaw
         Law of the shear stress, in Pa.
-    inertia : bool
-        Whether the momentum equation has its inertia.
     heat : Heat, optional
         None for an isothermal film.
     start : Start, optional
@@ -172,7 +170,6 @@ class Parameters:
     rows: int
     flow: Flow = "thin_film"
     shear: ShearLaw = NEWTON
-    inertia: bool = False
     heat: Heat | None = None
     start: Start | None = None
     frequencies: tuple[float, ...] = (0.0,)
@@ -202,7 +199,6 @@ class Parameters:
         yield from _block("shear", _shear(self.shear))
         yield from _block("cavitation", [_entry("pressureRange", self.cavitation_range)])
         yield f"flow {_word('flow', self.flow, FLOWS)};"
-        yield _switch("inertia", self.inertia)
         yield _count("columns", self.columns)
         yield _count("rows", self.rows)
         mesh = [

@@ -46,7 +46,13 @@ from ehdmaps.physics.wall_stress import wall_stress_note
 CAVITATION_RANGE = 1e-6
 """Pressure over which liquid turns into the cavitated mixture, over the largest of the film (about)."""
 
-PARAMETER_VERSION = 4
+LONGEST_INLET, LEAST_LENGTHS = 0.5, 3.0
+"""Inlet with all stresses: where `ehlFoam` cuts it, over the radius, and its least length over sqrt(2 h R)."""
+
+INLET_LIMITS = (5.0, 1e5)
+"""Least and longest inlet over sqrt(2 h R); the film upstream of it is known in closed form."""
+
+PARAMETER_VERSION = 5
 """Raised when a change of this package changes numbers: results of another version are not taken over."""
 
 PHYSICS = (ISOTHERMAL, THERMAL)
@@ -114,8 +120,6 @@ class OpenFoamSolver(ContactSolverDefaults):
         Law of the shear stress, see `ehdmaps.physics.rheology`.
     shear_stress, limiting_ratio, carreau_exponent : float, optional
         tau0 [Pa], Lambda and n of that law; its defaults if left out.
-    inertia : bool
-        Whether the momentum equation has its inertia.
     slide_to_roll : float
         (u_upper - u_lower)/u.
     inlet_length : float
@@ -147,7 +151,6 @@ class OpenFoamSolver(ContactSolverDefaults):
     shear_stress: float | None = None
     limiting_ratio: float | None = None
     carreau_exponent: float | None = None
-    inertia: bool = False
     slide_to_roll: float = 0.0
     inlet_length: float = 20.0
     tolerance: float = 1e-9
@@ -164,7 +167,7 @@ class OpenFoamSolver(ContactSolverDefaults):
             "columns": (40, 4000),
             "rows": (4, 64),
             "slide_to_roll": (-2.0, 2.0),
-            "inlet_length": (20.0, 1e5),
+            "inlet_length": INLET_LIMITS,
             "tolerance": (1e-13, 1e-3),
             "max_iterations": (1, 100_000),
             "timeout": (0.1, 1e6),
@@ -237,7 +240,6 @@ class OpenFoamSolver(ContactSolverDefaults):
             "shear": self.shear,
             "shear_stress": 0.0 if self.shear == "newtonian" else law.stress,
             **{key: value for key, value in own.items() if value is not None},
-            "inertia": int(self.inertia),
             "slide_to_roll": self.slide_to_roll,
             "inlet_length": self.inlet_length,
             "tolerance": self.tolerance,
@@ -333,6 +335,9 @@ class OpenFoamSolver(ContactSolverDefaults):
         stage, done = "coarse grid", 0
         try:
             fine = self.parameters(contact, lubricant, point, frequencies)
+            short = self._inlet_too_short(contact, point, fine.mesh)
+            if short:
+                return FilmSolution(Status.OUTSIDE_VALIDITY, short), None, None
             halved = replace(fine, columns=fine.columns // 2, rows=fine.rows // 2)
             name = _case_name(contact, point)
             grids = GridSolver(self.installed, self.keep_cases)
@@ -407,7 +412,6 @@ class OpenFoamSolver(ContactSolverDefaults):
             rows=self.rows,
             flow=self.flow,
             shear=self.shear_law(),
-            inertia=self.inertia,
             heat=self._heat(contact, lubricant, point.temperature),
             start=start,
             frequencies=(0.0, *frequencies),
@@ -420,6 +424,19 @@ class OpenFoamSolver(ContactSolverDefaults):
         if self.physics == ISOTHERMAL:
             return None
         return Heat(temperature, heat_data(lubricant, contact.material), isotherms(lubricant, temperature))
+
+    def _inlet_too_short(self, contact: LineContact, point: OperatingPoint, mesh: Mesh) -> str:
+        """Why a film is too thick for all stresses, whose inlet is cut; empty where it is not."""
+        thickness = (
+            mesh.film * (float(half_width(point.load, contact.radius, contact.reduced_modulus)) / contact.radius) ** 2
+        )
+        if self.flow == "thin_film" or 2.0 * thickness * LEAST_LENGTHS**2 < LONGEST_INLET**2:
+            return ""
+        lengths = LONGEST_INLET / math.sqrt(2.0 * thickness)
+        return (
+            f"film of {thickness:.2g} of the radius: {LONGEST_INLET:g} radii, where full_stress begins, are only "
+            f"{lengths:.2g} lengths sqrt(2 h R) of inlet, below {LEAST_LENGTHS:g}; take flow thin_film"
+        )
 
     def surface_speeds(self, entrainment_speed: float) -> tuple[float, float]:
         """Speeds of the lower and the upper surface [m/s]."""

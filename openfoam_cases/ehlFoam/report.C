@@ -27,6 +27,8 @@ Foam::word Foam::wordOf(const outcome end)
 
 void Foam::reportFilm(resultsFile& results, slice& s, newtonResult& solved)
 {
+    // a state that went astray has no numbers
+    if (solved.end == outcome::diverged) return;
     s.residual(solved.state, nullptr);
     const filmState state(s.film(solved.state));
     const scalarField flux(s.flow().columnFlux());

@@ -40,7 +40,7 @@ def entries(parameters, tmp_path):
 def test_the_file_says_what_the_parameters_say(tmp_path):
     found = entries(GOOD, tmp_path)
     assert (found["reducedRadius"], found["load"], found["upperSpeed"]) == (5.5e-3, 1e4, 1.5)
-    assert (found["flow"], found["inertia"], found["columns"], found["rows"]) == ("thinFilm", False, 400, 6)
+    assert (found["flow"], found["columns"], found["rows"]) == ("thinFilm", 400, 6)
     assert found["viscosity"]["type"] == "FVA3"
     assert found["viscosity"]["viscosity"] == OIL.viscosity
     assert found["viscosity"]["pressureScale"] == OIL.pressure_viscosity.pressure_scale
@@ -48,7 +48,7 @@ def test_the_file_says_what_the_parameters_say(tmp_path):
     assert dict(found["shear"]) == {"type": "Newtonian"}
     assert dict(found["mesh"]) == {
         "film": 0.2,
-        "inletLength": 100.0,
+        "inletLength": 20.0,
         "outletLength": 3.0,
         "spikePosition": 0.8,
         "spikeWidth": 0.05,
@@ -162,8 +162,8 @@ def test_only_whole_numbers_count(value):
 
 @pytest.mark.parametrize("value", ["yes", 1, None, HOSTILE[0]], ids=repr)
 def test_only_booleans_switch(value):
-    with pytest.raises(InputError, match=r"inertia: got .*; allowed: true or false"):
-        replace(GOOD, inertia=value).text()
+    with pytest.raises(InputError, match=r"writeFields: got .*; allowed: true or false"):
+        replace(GOOD, write_fields=value).text()
 
 
 @pytest.mark.parametrize("value", ["thinFilm; #calc", "thinFilm", None, ["thin_film"], 3], ids=repr)

@@ -555,7 +555,7 @@ HOSTILE_KEYS = {
     'shear_stress = "$load"': r"shear_stress: got '\$load', which does not start with a number",
     'physics = "inlet-heat"': "physics: got 'inlet-heat'; allowed: 'isothermal', 'thermal'",
     "slide_to_roll = -3": "slide_to_roll: got -3; allowed: -2 to 2",
-    'inertia = "yes"': "inertia: got 'yes'; allowed: true or false, without quotes",
+    "inlet_length = 2": "inlet_length: got 2; allowed: 5 to",
     'start = "zero"': "start: got 'zero'; allowed: 'reynolds', 'hertz'",
     "timeout = 0": "timeout: got 0; allowed: 1 to",
     "density = 6.5": "density: unknown key",
@@ -572,9 +572,9 @@ def test_keys_of_a_job_that_are_refused(line):
 
 
 def test_keys_of_a_job_that_are_taken():
-    text = JOB.text.replace('shear = "newtonian"', 'shear = "limiting"\nlimiting_ratio = 0.07\ninertia = true')
+    text = JOB.text.replace('shear = "newtonian"', 'shear = "limiting"\nlimiting_ratio = 0.07\ninlet_length = 40')
     options = parse_job(text, "job", "job.toml").solver_options
-    assert (options["shear"], options["limiting_ratio"], options["inertia"]) == ("limiting", 0.07, True)
+    assert (options["shear"], options["limiting_ratio"], options["inlet_length"]) == ("limiting", 0.07, 40.0)
 
 
 def test_places_of_velocity_profiles():
