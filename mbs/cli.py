@@ -369,6 +369,12 @@ def _auto(command: argparse.ArgumentParser, tolerance: bool = True) -> None:
         "supply and roughness on where they matter; check that all of it lies inside, else plan wider",
     )
     command.add_argument("--maps", metavar="FOLDER", help="where --auto makes and keeps maps; default: this folder")
+    command.add_argument(
+        "--physics",
+        metavar="NAME",
+        help="heat in the films of the map of --auto: isothermal | inlet-heat | thermal; default: by the rule of the "
+        "inlet where that matters and holds",
+    )
     if not tolerance:
         return
     command.add_argument(

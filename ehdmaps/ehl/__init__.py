@@ -7,6 +7,11 @@
 | `column` | one column of an oil that is not Newtonian: what it lets flow and what it carries |
 | `reynolds` | the discrete equations, their exact Jacobian, and the mass they store |
 | `newton` | damped Newton with the dense Jacobian |
+| `warm_oil` | groups of heat, and the oil's laws over temperature for compiled code |
+| `warm_column` | one column with temperatures: velocity, flow and heat of shear, with exact derivatives |
+| `energy` | the energy of all columns, and the derivative of temperatures by pressures |
+| `warm_newton` | damped Newton for a film with its temperatures |
+| `warm_response` | their response to slow motion, with stored heat |
 | `profile` | a converged solution, and how it starts the next one |
 | `linearisation` | the equations to first order, on a grid that follows the spike; response to slow motion |
 | `spectrum` | response at many frequencies from one Krylov space |

@@ -5,14 +5,13 @@ Columns stand at the faces of the grid. Lengths across are zeta = z/H, along X i
     a H (Y T_X + W T_zeta) = T_zetazeta + Br H^2 rate tau - Cc H^2 T (rho_T/rho) U P_X,      W = -Int_0 Y_X dzeta
     walls:  T(X) = T_0 + B Int q(S)/sqrt(X - S) dS,   q = +- T_zeta/H    (J. C. Jaeger, Proc. R. Soc. NSW 76, 1942, 203)
 
-by collocation across and upwind differences of second order along, which telescope: oil is carried from column to column
-with the flow that left the one before, so that the heat that goes into the walls and out with the oil is the heat made.
-Where oil flows back the differences look downstream. Before the column `first` the film is so thick that the eddies in
-it are closed, and the oil has the temperature of the surfaces.
+by collocation across and upwind differences of second order along, which telescope: what leaves a column enters the
+next one. So the heat that goes into the walls and out with the oil is the heat made. Before the column `first` the film
+is so thick that the eddies in it are closed, and the oil has the temperature of the surfaces.
 
-The equations of all temperatures, linearised, are solved column by column from `first` on; columns with backflow are
-gone over until nothing changes. Many right-hand sides at once cost little: those of all unknowns of the film give the
-derivative of the temperatures by the pressures, and with that the exact Jacobian of the film with its temperatures.
+The equations of all temperatures, linearised, are solved column by column; those of columns with backflow, which see
+each other, together. Many right-hand sides at once cost little: those of all unknowns of the film give the derivative
+of the temperatures by the pressures, and with that the exact Jacobian of the film with its temperatures.
 """
 
 from __future__ import annotations
@@ -38,9 +37,6 @@ HEATED_FROM = 30.0
 """Film over that of the flow through the contact at which heating begins: from 10 or 100 the central film differs by
 0.7 or 0.1 % at most."""
 
-MOST_SWEEPS = 40
-"""Times that columns with backflow are gone over."""
-
 
 LARGEST_RISE = 30.0
 """Largest change of a temperature in one step [K]."""
@@ -53,8 +49,8 @@ class EnergyEquations(NamedTuple):
     ----------
     residual : ndarray, shape (n, k)
         What is wrong with the energy of each height; 0 up to `first`.
-    inverse : ndarray, shape (n, k, k)
-        Inverse of the derivative by the temperatures of the column itself.
+    itself, inverse : ndarray, shape (n, k, k)
+        Derivative by the temperatures of the column itself, and its inverse.
     before, before_that : ndarray, shape (n, k, k)
         Derivatives by the temperatures of the two columns before.
     behind, behind_that : ndarray, shape (n, k)
@@ -70,6 +66,7 @@ class EnergyEquations(NamedTuple):
     """
 
     residual: FloatArray
+    itself: FloatArray
     inverse: FloatArray
     before: FloatArray
     before_that: FloatArray
@@ -88,7 +85,7 @@ def wall_weights(x: FloatArray, first: int) -> tuple[FloatArray, FloatArray]:
     Parameters
     ----------
     x : ndarray, shape (n,)
-        Places.
+        Places along the wall [b].
     first : int
         Place before which nothing flows.
     """
@@ -181,6 +178,7 @@ def energy(
     """
     n, k, heat = face_step.size, POINTS, problem.heat
     out = np.zeros((n, k))
+    itself = np.zeros((n, k, k))
     inverse, before, before_that = np.zeros((n, k, k)), np.zeros((n, k, k)), np.zeros((n, k, k))
     behind, behind_that, slopes = np.zeros((n, k)), np.zeros((n, k)), np.zeros((n, 3, 4, k))
     taken = np.empty((2, n, n))
@@ -205,30 +203,39 @@ def energy(
         for j in range(1, k - 1):
             y = flow[f, j]
             carried = across[j] * lean[j]
-            if y >= 0.0:
-                steady = flow[f - 1, j] > 0.0 and flow[f - 2, j] > 0.0
-                c1 = 2.0 * (flow[f - 1, j] if steady else y)
-                c2 = 0.5 * (flow[f - 2, j] if steady else y)
-                carried += c1 * (here[j] - one[j]) - c2 * (here[j] - two[j])
-                matrix[j, j] += along * (c1 - c2)
-                before[f, j, j] -= along * c1
-                before_that[f, j, j] += along * c2
-                if steady:
-                    by_one[j, j] += along * 2.0 * (here[j] - one[j])
-                    by_two[j, j] -= along * 0.5 * (here[j] - two[j])
-                else:
-                    own[j, j] += along * (2.0 * (here[j] - one[j]) - 0.5 * (here[j] - two[j]))
+            # what enters and leaves between columns, its temperature extrapolated from where it comes
+            leaves, enters = 1.5 * y - 0.5 * flow[f - 1, j], 1.5 * flow[f - 1, j] - 0.5 * flow[f - 2, j]
+            change = 0.0
+            if leaves >= 0.0:
+                change = 0.5 * (here[j] - one[j])
+                matrix[j, j] += along * 0.5 * leaves
+                before[f, j, j] -= along * 0.5 * leaves
             elif f < n - 1:
                 last_back = f
-                c1, c2 = (2.0, 0.5) if f < n - 2 else (1.0, 0.0)
-                change = c1 * (here[j] - rises[f + 1, j])
+                c1, c2 = (1.5, -0.5) if f < n - 2 else (1.0, 0.0)
+                change = c1 * rises[f + 1, j] - here[j]
                 if f < n - 2:
-                    change -= c2 * (here[j] - rises[f + 2, j])
-                    behind_that[f, j] -= along * y * c2
-                carried -= y * change
-                matrix[j, j] -= along * y * (c1 - c2)
-                behind[f, j] += along * y * c1
-                own[j, j] -= along * change
+                    change += c2 * rises[f + 2, j]
+                behind[f, j] += along * c1 * leaves
+                behind_that[f, j] += along * c2 * leaves
+                matrix[j, j] -= along * leaves
+            carried += leaves * change
+            own[j, j] += along * 1.5 * change
+            by_one[j, j] -= along * 0.5 * change
+            change = 0.0
+            if enters >= 0.0:
+                change = 1.5 * one[j] - 0.5 * two[j] - here[j]
+                matrix[j, j] += along * enters
+                before[f, j, j] -= along * 1.5 * enters
+                before_that[f, j, j] += along * 0.5 * enters
+            elif f < n - 1:
+                last_back = f
+                change = 0.5 * (here[j] - rises[f + 1, j])
+                behind[f, j] += along * 0.5 * enters
+                matrix[j, j] -= along * 0.5 * enters
+            carried -= enters * change
+            by_one[j, j] -= along * 1.5 * change
+            by_two[j, j] += along * 0.5 * change
             warm = heat.temperature + here[j]
             rho, rho_warm = columns.density[f, j], columns.density_warm[f]
             pressed = heat.compression * film_here * gradient * rho_warm / (rho * rho)
@@ -269,15 +276,21 @@ def energy(
             for q in range(k):
                 matrix[j, q] -= taken[side, f, f] * sign * SLOPE[j, q] / film_here
             slopes[f, 0, 1, j] += taken[side, f, f] * flux[side, f] / film_here
+        if not np.all(np.isfinite(matrix)):
+            out[f] = np.nan
+            break
+        itself[f] = matrix
         inverse[f] = np.linalg.inv(matrix)
-    return EnergyEquations(out, inverse, before, before_that, behind, behind_that, slopes, taken, flux, last_back)
+    return EnergyEquations(
+        out, itself, inverse, before, before_that, behind, behind_that, slopes, taken, flux, last_back
+    )
 
 
 @njit(cache=True)
 def marched(
-    equations: EnergyEquations, faces: FloatArray, right: FloatArray, flux: FloatArray, first: int, tolerance: float
+    equations: EnergyEquations, faces: FloatArray, right: FloatArray, flux: FloatArray, first: int
 ) -> FloatArray:
-    """Temperatures of linear equations, shape (n, k, m), for m right-hand sides.
+    """Temperatures of the linear equations, shape (n, k, m), for m right-hand sides.
 
     Parameters
     ----------
@@ -291,36 +304,67 @@ def marched(
         What comes to the fluxes into the walls besides that of the temperatures, for the columns behind.
     first : int
         Last column that is not heated.
-    tolerance : float
-        Change of columns with backflow in one sweep that ends it, relative to the largest temperature.
     """
     n, k, many = right.shape
     found = np.zeros((n, k, many))
     taken = flux.copy()
-    back = equations.last_back
-    for sweep in range(MOST_SWEEPS):
-        change = largest = 0.0
-        start = first + 1
-        stop = n if back == first else back + 1
-        for f in range(start, stop):
-            _one_column(equations, faces, right, flux, first, f, found, taken)
-        if back == first:
-            return found
-        for f in range(back - 1, first, -1):
-            old = found[f].copy()
-            _one_column(equations, faces, right, flux, first, f, found, taken)
-            for j in range(k):
-                for q in range(many):
-                    change = max(change, abs(found[f, j, q] - old[j, q]))
-                    largest = max(largest, abs(found[f, j, q]))
-        # the columns behind those with backflow, which they see
-        for f in range(back, min(back + 3, n)):
-            _one_column(equations, faces, right, flux, first, f, found, taken)
-        if change <= tolerance * largest or not math.isfinite(change):
-            break
-    for f in range(first + 1, n):
-        _one_column(equations, faces, right, flux, first, f, found, taken)
+    start = first + 1
+    if equations.last_back > first:
+        # columns with backflow and the two that these see, at once
+        end = min(equations.last_back + 3, n)
+        _together(equations, faces, right, flux, start, end, found)
+        for f in range(start, end):
+            taken[0, f] += (SLOPE[0] @ found[f]) / faces[f]
+            taken[1, f] -= (SLOPE[k - 1] @ found[f]) / faces[f]
+        start = end
+    for f in range(start, n):
+        _one_column(equations, faces, right, first, f, found, taken)
     return found
+
+
+@njit(cache=True)
+def _together(
+    equations: EnergyEquations,
+    faces: FloatArray,
+    right: FloatArray,
+    flux: FloatArray,
+    start: int,
+    end: int,
+    found: FloatArray,
+) -> None:
+    """Temperatures of the columns from `start` to before `end` by elimination."""
+    _, k, many = right.shape
+    size = (end - start) * k
+    matrix, side = np.zeros((size, size)), np.empty((size, many))
+    for f in range(start, end):
+        at = (f - start) * k
+        for i in range(k):
+            for j in range(k):
+                matrix[at + i, at + j] = equations.itself[f, i, j]
+                if f - 1 >= start:
+                    matrix[at + i, at - k + j] = equations.before[f, i, j]
+                if f - 2 >= start:
+                    matrix[at + i, at - 2 * k + j] = equations.before_that[f, i, j]
+            if f + 1 < end:
+                matrix[at + i, at + k + i] += equations.behind[f, i]
+            if f + 2 < end:
+                matrix[at + i, at + 2 * k + i] += equations.behind_that[f, i]
+            for q in range(many):
+                side[at + i, q] = right[f, i, q]
+        for g in range(start, f):
+            there = (g - start) * k
+            low, high = equations.walls[0, f, g], equations.walls[1, f, g]
+            for j in range(k):
+                matrix[at, there + j] -= low * SLOPE[0, j] / faces[g]
+                matrix[at + k - 1, there + j] += high * SLOPE[k - 1, j] / faces[g]
+            for q in range(many):
+                side[at, q] += low * flux[0, g, q]
+                side[at + k - 1, q] += high * flux[1, g, q]
+    solved = np.linalg.solve(matrix, side)
+    for f in range(start, end):
+        for i in range(k):
+            for q in range(many):
+                found[f, i, q] = solved[(f - start) * k + i, q]
 
 
 @njit(cache=True)
@@ -328,35 +372,24 @@ def _one_column(
     equations: EnergyEquations,
     faces: FloatArray,
     right: FloatArray,
-    flux: FloatArray,
     first: int,
     f: int,
     found: FloatArray,
     taken: FloatArray,
 ) -> None:
-    """Temperatures of one column from those of the others; its fluxes into the walls."""
-    n, k, many = right.shape
+    """Temperatures of one column from those before it; its fluxes into the walls."""
+    k = right.shape[1]
     side = right[f].copy()
     if f - 1 > first:
         side -= equations.before[f] @ found[f - 1]
-    if f - 2 > first:
-        side -= equations.before_that[f] @ found[f - 2]
-    if f <= equations.last_back:
-        for j in range(1, k - 1):
-            one, two = equations.behind[f, j], equations.behind_that[f, j]
-            if one != 0.0 and f + 1 < n:
-                for q in range(many):
-                    side[j, q] -= one * found[f + 1, j, q]
-            if two != 0.0 and f + 2 < n:
-                for q in range(many):
-                    side[j, q] -= two * found[f + 2, j, q]
-    if f - 1 > first:
         for wall in range(2):
             row = 0 if wall == 0 else k - 1
             side[row] += equations.walls[wall, f, first + 1 : f] @ taken[wall, first + 1 : f]
+    if f - 2 > first:
+        side -= equations.before_that[f] @ found[f - 2]
     found[f] = equations.inverse[f] @ side
-    taken[0, f] = flux[0, f] + (SLOPE[0] @ found[f]) / faces[f]
-    taken[1, f] = flux[1, f] - (SLOPE[k - 1] @ found[f]) / faces[f]
+    taken[0, f] += (SLOPE[0] @ found[f]) / faces[f]
+    taken[1, f] -= (SLOPE[k - 1] @ found[f]) / faces[f]
 
 
 @njit(cache=True)
@@ -368,7 +401,7 @@ def followed(
     kernel: FloatArray,
     unknowns: FloatArray,
     first: int,
-    tolerance: float,
+    frozen: bool,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Derivatives of temperatures, shape (n, k, n + 2), mobilities and carriages, shape (n, n + 2), by all unknowns.
 
@@ -382,8 +415,8 @@ def followed(
         The arguments of `reynolds.residual`.
     first : int
         Last column that is not heated.
-    tolerance : float
-        Tolerance of `marched`.
+    frozen : bool
+        Whether the temperatures stay as they are.
     """
     n, k = face_step.size, POINTS
     size = n + 2
@@ -399,7 +432,7 @@ def followed(
         for f in range(n):
             films[f, j] = column[f]
     right, flux = np.zeros((n, k, size)), np.zeros((2, n, size))
-    for f in range(first + 1, n):
+    for f in range(n if frozen else first + 1, n):
         for g in range(3):
             slope, i = equations.slopes[f, g], f - g
             for j in range(k):
@@ -416,7 +449,7 @@ def followed(
             part = -equations.flux[wall, f] / faces[f]
             for q in range(size):
                 flux[wall, f, q] = part * films[f, q]
-    found = marched(equations, faces, right, flux, first, tolerance)
+    found = right if frozen else marched(equations, faces, right, flux, first)
     mobility, carriage = np.empty((n, size)), np.empty((n, size))
     for f in range(n):
         for which in range(2):
@@ -432,7 +465,6 @@ def followed(
     return found, mobility, carriage
 
 
-@njit(cache=True)
 def warm_temperatures(
     problem: LineProblem,
     x: FloatArray,
@@ -459,7 +491,7 @@ def warm_temperatures(
     rises : ndarray, shape (n, k)
         Temperatures [K above T_0].
     columns : Columns
-        Columns; on return those at the temperatures.
+        Columns of the film, on return those at its temperatures.
     tolerance : float
         Largest last step [K].
     most_steps : int
@@ -472,12 +504,15 @@ def warm_temperatures(
     while True:
         fill_columns(problem, x, face_step, kernel, unknowns, rises, columns)
         equations = energy(problem, columns, face_step, walls, rises, first)
-        if last <= tolerance or count >= most_steps or not np.all(np.isfinite(equations.residual)):
+        if not np.all(np.isfinite(equations.residual)):
+            return equations, math.inf, count
+        if last <= tolerance or count >= most_steps:
             return equations, last, count
-        move = marched(
-            equations, columns.place[:, 1].copy(), -equations.residual.reshape((n, k, 1)), nothing, first, 1e-3
-        )[:, :, 0]
+        right = -equations.residual.reshape((n, k, 1))
+        move = marched(equations, columns.place[:, 1].copy(), right, nothing, first)[:, :, 0]
         last = np.max(np.abs(move))
+        if not math.isfinite(last):
+            return equations, math.inf, count
         part = min(1.0, LARGEST_RISE / max(last, 1e-300))
         rises += part * move
         count += 1

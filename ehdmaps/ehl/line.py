@@ -35,7 +35,7 @@ from ehdmaps.physics.films import moes_central
 from ehdmaps.physics.isotherm import log_viscosity
 from ehdmaps.physics.moes import valley_load_number
 from ehdmaps.physics.peak import peak_sampling_error
-from ehdmaps.physics.rheology import NEWTONIAN
+from ehdmaps.physics.rheology import LIMITING, NEWTONIAN
 
 LOAD = 0.5 * math.pi
 """Int P dX of a pressure in units of p_H over lengths in units of b."""
@@ -55,6 +55,9 @@ LEAST_SPAN = 8.0
 
 MOST_MOVES = 6
 """Coarse grids laid in search of the spike."""
+
+MOST_WARM_STEPS = 30
+"""The same for a film with temperatures, whose steps take longer."""
 
 LOOSE_TOLERANCE = 1e-2
 """Newton tolerance while the place of the spike is still being looked for."""
@@ -85,7 +88,7 @@ LADDER_FEET = 1.0, 0.2
 """Starts of such a ladder, over the load `COLD_START_BELOW`/2 or a lighter one: the second where the first fails."""
 
 
-FIRST_HEAT, LEAST_HEAT = 0.1, 0.01
+FIRST_HEAT, LEAST_HEAT = 0.25, 0.1
 """First part of the heat that is let in on the way to a film with temperatures, and the least part at once."""
 
 STRONGEST, LEAST_STRONG = 64.0, 1.5
@@ -217,6 +220,8 @@ def solve_groups(
             break
         if again == resolution:
             continue
+        if problem.heat.log_eta.size > 0:  # minutes where an oil yields, for few points
+            break
         # a front that is narrower than Newton finds its way to; a grid too coarse for the inlet of a heavily loaded
         # contact, which does not converge either, or shows a negative loss
         trial = _solve_once(problem, M, L, again, solution.profile)
@@ -319,15 +324,25 @@ def _converged_warm(
 ) -> tuple[Profile | None, int, int]:
     """Newton on one grid for a film with its temperatures."""
     rises = warm_start(near, grid)
-    at = (problem, grid.x, grid.step, grid.face, grid.face_step, kernel, start, rises, LOAD, tolerance, MOST_STEPS)
+    metric = (grid.x, grid.step, grid.face, grid.face_step, kernel)
+    steps = 0
     try:
-        result = warm_newton(*at)
+        result = warm_newton(problem, *metric, start, rises, LOAD, tolerance, MOST_WARM_STEPS)
+        steps = result.steps
+        if result.outcome != CONVERGED and problem.shear.form == LIMITING:
+            # a start from another grid asks for more stress than the oil bears: the isothermal film has soft tangents
+            cold = problem._replace(heat=NO_HEAT)
+            iso = newton(cold, *metric[:2], *metric[3:], start, LOAD, LOOSE_TOLERANCE, MOST_STEPS)
+            steps += iso.steps
+            if iso.outcome == CONVERGED:
+                result = warm_newton(problem, *metric, iso.unknowns, rises, LOAD, tolerance, MOST_WARM_STEPS)
+                steps += result.steps
     except np.linalg.LinAlgError:
-        return None, 0, DIVERGED
+        return None, steps, DIVERGED
     if result.outcome != CONVERGED:
-        return None, result.steps, result.outcome
+        return None, steps, result.outcome
     warmth = Warmth(result.rises, result.first)
-    return Profile(problem, layout, grid, kernel, result.unknowns, spike, warmth), result.steps, CONVERGED
+    return Profile(problem, layout, grid, kernel, result.unknowns, spike, warmth), steps, CONVERGED
 
 
 def _coarse(
@@ -393,6 +408,8 @@ def _heated(
     total += steps
     if found is not None:
         return found, total, outcome
+    if problem.shear.form == LIMITING:  # each step takes seconds there, and seldom helps
+        return None, total, outcome
     reached, part, found = 0.0, FIRST_HEAT, cold
     while reached < 1.0 and part > LEAST_HEAT:
         share = min(1.0, reached + part)

@@ -83,7 +83,7 @@ def step_size(unknowns: FloatArray, move: FloatArray) -> float:
     for i in range(n - 1):
         peak = max(peak, unknowns[i])
     outflow = abs(unknowns[n - 1])
-    size = max(
+    size: float = max(
         abs(move[n - 1]) / outflow,
         abs(move[n]) / (1.0 + abs(unknowns[n])),
         abs(move[n + 1]) / (outflow + 1e-3),
@@ -119,7 +119,7 @@ def step_length(
         Part to take at most.
     """
     n = unknowns.size - 2
-    length = most
+    length: float = most
     thickening = steepest_viscosity_step(problem, unknowns, move)
     if thickening * length > LOG_VISCOSITY_STEP:
         length = LOG_VISCOSITY_STEP / thickening
@@ -134,7 +134,13 @@ def step_length(
 
 @njit(cache=True)
 def lifted(x: FloatArray, kernel: FloatArray, start: FloatArray) -> FloatArray:
-    """A start, clear of contact: one that is interpolated from another grid can touch."""
+    """A start, clear of contact: one that is interpolated from another grid can touch.
+
+    Parameters
+    ----------
+    x, kernel, start
+        The arguments of `newton`.
+    """
     unknowns = start.copy()
     n = start.size - 2
     clearance = np.min(film(x, kernel, unknowns)) - LEAST_LEFT * unknowns[n - 1]

@@ -24,7 +24,7 @@ class Warmth:
     Attributes
     ----------
     rises : ndarray, shape (n, k)
-        At the Chebyshev points across the film, from the lower to the upper wall [K above T_0].
+        Temperatures at the Chebyshev points across the film, from the lower to the upper wall [K above T_0].
     first : int
         Last face before which nothing is heated.
     """

@@ -8,10 +8,11 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.line import Resolution, solve_groups
 from ehdmaps.ehl.newton import CONVERGED
 from ehdmaps.ehl.profile import films_of
-from ehdmaps.ehl.solver import _beyond_reach, line_problem
+from ehdmaps.ehl.solver import NEWTONIAN_LAW, _beyond_reach, line_problem
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.rheology import ShearLaw
 
 
 @dataclass(frozen=True)
@@ -42,9 +43,17 @@ class ReynoldsStart:
 
 
 def reynolds_start(
-    contact: LineContact, lubricant: Lubricant, load: float, entrainment_speed: float, temperature: float
+    contact: LineContact,
+    lubricant: Lubricant,
+    load: float,
+    entrainment_speed: float,
+    temperature: float,
+    shear: ShearLaw = NEWTONIAN_LAW,
+    slide_to_roll: float = 0.0,
 ) -> ReynoldsStart | None:
     """Solve a point for the start of another solver.
+
+    Where the film has no solution with a law of shear, the start is that of a Newtonian oil.
 
     Parameters
     ----------
@@ -56,6 +65,10 @@ def reynolds_start(
         > 0 [m/s].
     temperature : float
         [K].
+    shear : ShearLaw
+        Law of shear in SI.
+    slide_to_roll : float
+        (u_upper - u_lower)/u.
 
     Returns
     -------
@@ -63,12 +76,16 @@ def reynolds_start(
         None where the Reynolds equation has no converged solution.
     """
     peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
-    problem, M, L = line_problem(contact, lubricant.at(temperature), load, entrainment_speed)
-    if _beyond_reach(peak, M, L):
-        return None
-    solution = solve_groups(problem, M, L, Resolution())
-    profile = solution.profile
-    if solution.outcome != CONVERGED or profile is None:
+    profile = None
+    for law in dict.fromkeys((shear, NEWTONIAN_LAW)):
+        problem, M, L = line_problem(contact, lubricant.at(temperature), load, entrainment_speed, law, slide_to_roll)
+        if _beyond_reach(peak, M, L):
+            return None
+        solution = solve_groups(problem, M, L, Resolution())
+        if solution.outcome == CONVERGED and solution.profile is not None:
+            profile = solution.profile
+            break
+    if profile is None:
         return None
     half = float(half_width(load, contact.radius, contact.reduced_modulus))
     spike = profile.spike

@@ -26,7 +26,8 @@ from ehdmaps.physics.isotherm import density
 from ehdmaps.physics.rheology import LIMITING, NEWTONIAN, ShearLaw, thinning, yielding
 
 POINTS = 11
-"""Chebyshev points across the film, both walls included; see the module's tests for what fewer do."""
+"""Chebyshev points across the film, both walls included: 9 change the film of a light contact by 0.4 %, of others by
+0.01 %."""
 
 MOST_STEPS = 200
 """Steps towards the stress of a column."""
@@ -125,7 +126,7 @@ def lower_stress(law: ShearLaw, pressure: float, rise: float, rate: float, fluid
     law : ShearLaw
         The law.
     pressure : float
-        P.
+        Pressure P of the column.
     rise : float
         Stress at the upper wall less that at the lower one.
     rate : float

@@ -1,4 +1,7 @@
-"""Full Newton for a film with its temperatures, which follow the film's unknowns by their own equations."""
+"""Full Newton for a film with its temperatures, which follow the film's unknowns by their own equations.
+
+Nothing here is compiled: numba compiles what a function calls once more with it, and these call all that is large.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.energy import LARGEST_RISE, first_column, followed, wall_weights, warm_temperatures
@@ -18,11 +20,14 @@ from ehdmaps.ehl.warm_column import POINTS, Columns, empty_columns
 LOOSE, TIGHT = 0.1, 1e-7
 """Last step of the temperatures for a film that is far from its solution, and for one that is there [K]."""
 
-MOST_STEPS = 25
+MOST_STEPS = 15
 """Steps of the temperatures of one film."""
 
-SWEPT = 1e-5
-"""What the derivatives of temperatures may lack where oil flows back, relative: Newton does not see it."""
+SMOOTH, MOST_FROZEN = 0.05, 12
+"""Size of the last step from which on temperatures follow, and the steps after which they do at all events."""
+
+MOST_RETURNS = 4
+"""Halvings of a step after which the film has no temperatures."""
 
 
 class WarmResult(NamedTuple):
@@ -50,7 +55,6 @@ class WarmResult(NamedTuple):
     last_step: float
 
 
-@njit(cache=True)
 def warm_factors(
     columns: Columns, unknowns: FloatArray, mobility_rows: FloatArray, carriage_rows: FloatArray
 ) -> Factors:
@@ -61,7 +65,7 @@ def warm_factors(
     columns : Columns
         Columns of the film.
     unknowns : ndarray, shape (n + 2,)
-        Its unknowns.
+        Unknowns of the film.
     mobility_rows, carriage_rows : ndarray, shape (n, n + 2)
         Derivatives by all unknowns; of no length for the residual alone.
     """
@@ -71,7 +75,6 @@ def warm_factors(
     return Factors(mobility, np.zeros(drop.size), drop, carriage, none, none, mobility_rows, carriage_rows)
 
 
-@njit(cache=True)
 def warm_newton(
     problem: LineProblem,
     x: FloatArray,
@@ -93,10 +96,12 @@ def warm_newton(
         Dimensionless groups, those of heat among them.
     x, step, face, face_step : ndarray
         The grid, see `Grid`.
-    kernel, start, load, tolerance, most_steps
+    kernel, start
         The arguments of `newton`.
     warm_start : ndarray, shape (n, k)
         Temperatures to start from [K above T_0].
+    load, tolerance, most_steps
+        The other arguments of `newton`.
     """
     size = start.size
     n = size - 2
@@ -109,14 +114,27 @@ def warm_newton(
     out, jacobian = np.empty(size), np.empty((size, size))
     last, relaxation = math.inf, 1.0
     old = np.zeros(n - 1)
+    before, warm_before, taken, warming = unknowns, rises, np.zeros(size), np.zeros((n, POINTS))
+    frozen, known = True, False
     for count in range(most_steps):
         close = max(TIGHT, min(LOOSE, 0.1 * last))
+        # from another grid pressures are too rough to heat anything: first with the temperatures as they are
         equations, left, _ = warm_temperatures(
-            problem, x, face_step, kernel, unknowns, walls, first, rises, columns, close, MOST_STEPS
+            problem, x, face_step, kernel, unknowns, walls, first, rises, columns, close, 0 if frozen else MOST_STEPS
         )
-        if not left <= close:
+        for _ in range(MOST_RETURNS):
+            if frozen or left <= close or not known:
+                break
+            # too far: an oil that yields too much is heated without bound
+            taken, warming = 0.5 * taken, 0.5 * warming
+            unknowns, rises = before + taken, warm_before + warming
+            equations, left, _ = warm_temperatures(
+                problem, x, face_step, kernel, unknowns, walls, first, rises, columns, close, MOST_STEPS
+            )
+        if not (frozen or left <= close):
             return WarmResult(unknowns, rises, first, DIVERGED, count, last)
-        by_unknowns, mobility, carriage = followed(equations, columns, x, face_step, kernel, unknowns, first, SWEPT)
+        by_unknowns, mobility, carriage = followed(equations, columns, x, face_step, kernel, unknowns, first, frozen)
+        known = not frozen
         factors = warm_factors(columns, unknowns, mobility, carriage)
         lowest = residual_with(problem, factors, x, step, face_step, kernel, unknowns, load, out, jacobian)
         if not np.all(np.isfinite(out)):
@@ -127,11 +145,13 @@ def warm_newton(
             return WarmResult(unknowns, rises, first, DIVERGED, count, last)
         relaxation = relaxed(move, old, relaxation) if last > SOFT_ABOVE else 1.0
         length = step_length(problem, x, kernel, unknowns, move, lowest, relaxation)
-        unknowns = unknowns + length * move
-        change = by_unknowns.reshape((n * POINTS, size)) @ (length * move)
-        largest = np.max(np.abs(change))
-        rises += min(1.0, LARGEST_RISE / max(largest, 1e-300)) * change.reshape((n, POINTS))
-        if length == 1.0 and last < tolerance:
+        before, warm_before, taken = unknowns, rises, length * move
+        warming = (by_unknowns.reshape((n * POINTS, size)) @ taken).reshape((n, POINTS))
+        warming *= min(1.0, LARGEST_RISE / max(np.max(np.abs(warming)), 1e-300))
+        unknowns, rises = before + taken, warm_before + warming
+        if frozen and (last < SMOOTH or count == MOST_FROZEN):
+            frozen = False
+        elif length == 1.0 and last < tolerance:
             _, left, _ = warm_temperatures(
                 problem, x, face_step, kernel, unknowns, walls, first, rises, columns, TIGHT, MOST_STEPS
             )

@@ -23,9 +23,9 @@ from ehdmaps.physics.lubricant import Lubricant
 STEP = 4.0
 """Distance of the temperatures at which the oil's laws are taken [K]."""
 
-COLDEST, HOTTEST = -24.0, 400.0
-"""Reach of these temperatures about that of the surfaces [K]; oil behind the contact is colder than its surroundings by
-few kelvin, since it expands."""
+COLDEST, HOTTEST = -120.0, 400.0
+"""Reach of these temperatures about that of the surfaces [K], as far as the laws go: oil that expands behind a pressure
+spike cools by tens of kelvin."""
 
 FLOW_AT_REST = 1.0
 """Least Peclet number of a surface, rho c u b/(2 k): the conduction along a slower one is not modelled."""

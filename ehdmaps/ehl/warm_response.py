@@ -1,9 +1,9 @@
 """Linear response of a film with temperatures to slow motion: they follow, and oil and surfaces store heat.
 
-As in `linearisation` the spike's place is an unknown besides. In the order of the frequency the film moves as if it were
-steady at each instant; what that misses is stored: mass between each face and the exit, heat in the oil, and heat in the
-surfaces, which carry what they took up at S to X in the time (X - S)/U. All three add to the equations of the next order,
-whose solution gives the loss.
+As in `linearisation` the spike's place is an unknown besides. In the order of the frequency the film moves as if it
+were steady at each instant; what that misses is stored: mass between each face and the exit, heat in the oil, and heat
+in the surfaces, which carry what they took up at S to X in the time (X - S)/U. All three add to the equations of the
+next order, whose solution gives the loss.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ from ehdmaps.ehl.warm_newton import MOST_STEPS, warm_factors
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from ehdmaps.physics.isotherm import density
 
-EXACT, SWEPT = 1e-8, 1e-9
-"""Last step of temperatures that are differenced [K], and what their derivatives may lack where oil flows back."""
+EXACT = 1e-8
+"""Last step of temperatures that are differenced [K]."""
 
 SLOWEST_WALL = 1e-3
 """Speed of a wall, in that of the entrainment, below which it does not store what it took up elsewhere."""
@@ -143,7 +143,7 @@ def warm_linearised(
     here = _state(problem, grid, unknowns, rises, first, load)
     n, columns, x, kernel = grid.face.size, here.columns, grid.x, here.kernel
     by_unknowns, mobility_rows, carriage_rows = followed(
-        here.equations, columns, x, grid.face_step, kernel, unknowns, first, SWEPT
+        here.equations, columns, x, grid.face_step, kernel, unknowns, first, False
     )
     factors = warm_factors(columns, unknowns, mobility_rows, carriage_rows)
     size = n + 2
@@ -195,7 +195,7 @@ def warm_linearised(
     moving = static[n] + face_move * shift
     stored_heat = _stored_heat(problem, here, first, rate, pressure_rate, film_rate, moving, added[:n])
     right, none = -stored_heat[:, :, None], np.zeros((2, n, 1))
-    extra = marched(here.equations, columns.place[:, 1].copy(), right, none, first, SWEPT)[:, :, 0]
+    extra = marched(here.equations, columns.place[:, 1].copy(), right, none, first)[:, :, 0]
     changed = _with(factors, columns, extra)
     other, scratch = np.empty(size), np.empty((1, size))
     residual_with(problem, changed, x, grid.step, grid.face_step, kernel, unknowns, load, other, scratch)
@@ -276,11 +276,9 @@ def _balance(problem: LineProblem, here: _State, first: int) -> float:
     warm = (heat.temperature + rises) * columns.density_warm[:, None] / columns.density**2 * columns.flow
     pressed = -heat.compression * (columns.place[:, 2] * step * (warm @ WEIGHTS))[on].sum()
     walls = float(np.sum(here.equations.flux[:, on] * step[on]))
-    # upwind differences sum up to the flow extrapolated from the last two columns
-    held = (columns.flow * rises) @ WEIGHTS
-    carried = heat.convection * (1.5 * held[-1] - 0.5 * held[-2])
-    # the same with what flows back out of the first heated column
-    start = first + 1
-    back = np.where(columns.flow[start] < 0.0, columns.flow * rises, 0.0)[start : start + 2] @ WEIGHTS
-    carried -= heat.convection * (1.5 * back[0] - 0.5 * back[1])
+    leaves = (1.5 * columns.flow[-1] - 0.5 * columns.flow[-2]) * (1.5 * rises[-1] - 0.5 * rises[-2])
+    # what flows back out of the first heated column
+    enters = np.minimum(1.5 * columns.flow[first] - 0.5 * columns.flow[first - 1], 0.0)
+    enters = enters * (1.5 * rises[first + 1] - 0.5 * rises[first + 2])
+    carried = heat.convection * float((leaves - enters) @ WEIGHTS)
     return float((walls + carried - shear - pressed) / shear)

@@ -49,6 +49,7 @@ answers      what is asked of a contact and answered, and what errors are relati
 rough_solved load sharing of film and asperities with solved films
 contact_ways ways of computing a contact: solvers, oil layers, rough surfaces, frequencies
 contestants  the table of the ways that are measured
+length_text  load and pressure over the length of a roller in words; `length_plot` draws them
 tradeoff     speed against accuracy of contacts, measured
 trade_frame  what a reader of that must know besides
 tradeoff_map speed against accuracy of whole maps: their contact laws against fresh solves

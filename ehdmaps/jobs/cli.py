@@ -122,6 +122,14 @@ def parser() -> argparse.ArgumentParser:
         help="with --frequencies: complex stiffness; else openfoam: pressure, film and velocity; also .pdf, .svg",
     )
 
+    length = commands.add_parser("length", help="load and pressure over the length of a roller, and finite elements")
+    length.add_argument("job", metavar="JOB", help="with [bearing]; finite elements are shipped for NU308 and N1014")
+    length.add_argument("--plot", metavar="FIG.png", help="all cases on one page; also .pdf, .svg")
+    length.add_argument("--reference", metavar="FILE.json", help="finite elements of another bearing, made by --solve")
+    length.add_argument(
+        "--solve", metavar="FILE.json", help="solve the finite elements anew and write them; needs CalculiX (ccx)"
+    )
+
     export = commands.add_parser("export", help="curves over load as a table (csv)")
     export.add_argument("map", metavar="MAP.nc")
     export.add_argument("-o", "--output", metavar="CURVES.csv", help="default: the map's name with .csv")

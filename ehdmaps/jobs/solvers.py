@@ -11,7 +11,7 @@ from typing import Any
 from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
-from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL
+from ehdmaps.physics.heat import ISOTHERMAL, PHYSICS
 from ehdmaps.physics.rheology import SHEAR_LIMITS, SHEARS
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.units import Display, short
@@ -174,7 +174,7 @@ SOLVERS: Mapping[str, SolverEntry] = {
             ),
             Number("inlet_length", *SETTING_LIMITS["inlet_length"], "length of the inlet over sqrt(2 h R)"),
             Number("tolerance", *SETTING_LIMITS["tolerance"], "Newton tolerance on the last step"),
-            physics_option(ISOTHERMAL, INLET_HEAT),
+            physics_option(*PHYSICS),
             *SHEAR_OPTIONS,
         ),
         _reynolds,

@@ -39,6 +39,7 @@ from ehdmaps.jobs.stability_judges import (
 from ehdmaps.jobs.stability_points import DECADE, WildPoint, refusals, wild_point
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.heat import INLET_HEAT, THERMAL
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, contact_solution
@@ -49,6 +50,9 @@ MOST_SECONDS = 20.0
 
 LINES_PER_POINT, PAIRS_PER_POINT, REFINED_PER_POINT = 1.0 / 500.0, 1.0 / 20.0, 1.0 / 250.0
 """Lines of loads, pairs a hair apart and refined solves for each point of a search."""
+
+PHYSICS_PER_POINT, THERMAL_PER_POINT = 1.0 / 10.0, 1.0 / 1000.0
+"""Points by solvers with shear laws or heat in the inlet, and with temperatures, for each point of a search."""
 
 LOADS_OF_A_LINE = 41
 
@@ -85,6 +89,11 @@ def contact_checks(
     for name, solver in quick.items():
         tell(f"{points} points by {name}")
         checks.append(value_check(name, solver, JUDGES[name], (_drawn(job, seed, n) for n in range(points))))
+    for name, (solver, share) in solvers_with_physics().items():
+        others = round(points * share)
+        if others:
+            tell(f"{others} points by {name}")
+            checks.append(value_check(name, solver, JUDGES[name], (_drawn(job, seed, n) for n in range(others))))
     lines = max(2, round(points * LINES_PER_POINT))
     tell(f"{lines} lines of {LOADS_OF_A_LINE} loads, by each solver")
     checks += [line_check(name, solver, job, lines, seed) for name, solver in quick.items()]
@@ -105,6 +114,18 @@ def quick_solvers() -> Mapping[str, ContactSolver]:
     """Return the solvers of which a point takes milliseconds, by what they are called in a check."""
     formulas = {f"formula {name}": FormulaSolver(name) for name in ("moes", "dowson-toyoda", "pan-hamrock")}
     return {"hertz": HertzSolver(), **formulas, "reynolds": ReynoldsSolver()}
+
+
+def solvers_with_physics() -> Mapping[str, tuple[ContactSolver, float]]:
+    """Return solvers whose films have a limiting stress, or heat, by their names in a check, and their share of points.
+
+    The one with temperatures takes minutes to be compiled, and is no part of a small search.
+    """
+    return {
+        "reynolds, limiting": (ReynoldsSolver(shear="limiting"), PHYSICS_PER_POINT),
+        "reynolds, inlet-heat": (ReynoldsSolver(physics=INLET_HEAT), PHYSICS_PER_POINT),
+        "reynolds, thermal": (ReynoldsSolver(physics=THERMAL), THERMAL_PER_POINT),
+    }
 
 
 def value_check(name: str, solver: ContactSolver, judge: Judge, drawn: Iterable[WildPoint | str]) -> Check:

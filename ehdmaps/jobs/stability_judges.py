@@ -175,6 +175,35 @@ def film_problem(wild: WildPoint, film: FilmSolution, whole: ContactSolution) ->
     return "", share
 
 
+def warm_film_problem(wild: WildPoint, film: FilmSolution, whole: ContactSolution) -> tuple[str, float]:
+    """A film with heat in its inlet beside those of Moes, thinner by a third at most.
+
+    Parameters
+    ----------
+    wild : WildPoint
+        The point.
+    film, whole
+        Film and contact of the point.
+    """
+    wrong = _whole_problem(film, whole)
+    if wrong or film.film_offset == 0.0:
+        return wrong, 0.0
+    return _gross_problem(film, groups_of(wild), isinstance(wild.oil.pressure_viscosity, Barus))
+
+
+def hot_film_problem(wild: WildPoint, film: FilmSolution, whole: ContactSolution) -> tuple[str, float]:
+    """A film with temperatures: numbers that fit together.
+
+    Parameters
+    ----------
+    wild : WildPoint
+        The point.
+    film, whole
+        Film and contact of the point.
+    """
+    return _whole_problem(film, whole), 0.0
+
+
 def _speed_root(groups: Groups, wild: WildPoint) -> float:
     """(eta us/(E'R))^(1/4), from the unit of the film number."""
     return math.sqrt(groups.unit / wild.point.contact.radius)
@@ -262,6 +291,9 @@ RULES: Mapping[str, str] = {
     "or without; Martin's to 0.2 % and three times the "
     "stated error where M < 0.01 and alpha p < 0.001; 0.9 of the pressure of Hertz at least where M > 100; thick films "
     "said to be so",
+    "reynolds, limiting": "the same as of reynolds: in pure rolling a bound of the stress takes nothing of a film",
+    "reynolds, inlet-heat": "film within a factor of 3 of what the asymptotes of Moes allow, with pressure or without",
+    "reynolds, thermal": "a status with its reason, or numbers that fit together; no bound of the film is known",
 }
 """When a value counts as right, by what the solver is called."""
 
@@ -271,5 +303,8 @@ JUDGES: Mapping[str, Judge] = {
     "formula dowson-toyoda": _formula_problem,
     "formula pan-hamrock": _formula_problem,
     "reynolds": film_problem,
+    "reynolds, limiting": film_problem,
+    "reynolds, inlet-heat": warm_film_problem,
+    "reynolds, thermal": hot_film_problem,
 }
 """What judges a value, by the same names."""

@@ -32,7 +32,8 @@ BEYOND = 36.0
 
 _LENGTHS, _MODULI = (1e-5, 100.0), (1e8, 2e12)
 _VISCOSITIES, _COEFFICIENTS, _DENSITIES = (1e-5, 1e3), (1e-10, 1e-7), (300.0, 3000.0)
-"""What a job file may state of contacts [m], solids [Pa] and oils [Pa s, 1/Pa, kg/m3]."""
+_CONDUCTIVITIES = (1e-2, 10.0)
+"""What a job file may state of contacts [m], solids [Pa] and oils [Pa s, 1/Pa, kg/m3, W/(m K)]."""
 
 
 class WildPoint(NamedTuple):
@@ -119,6 +120,7 @@ def own_oil(rng: np.random.Generator) -> Lubricant:
         density_slope=float(rng.uniform(-5.0, 0.0)) if rng.random() < 0.2 else 0.0,
         density_law=DENSITY_LAWS[int(rng.integers(len(DENSITY_LAWS)))],
         name=word,
+        thermal_conductivity=log_uniform(rng, *_CONDUCTIVITIES),
         **({} if alpha is None else {"pressure_viscosity": alpha}),
     )
 

@@ -12,6 +12,7 @@ from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.rheology import LIMITING_STRESS_AT_REST
 from ehdmaps.physics.solution import FilmSolution
 from ehdmaps.physics.traction import eyring_stress, limiting_stress, newtonian_stress, traction_coefficients
 from ehdmaps.units import Display
@@ -36,7 +37,7 @@ class TractionRequest:
     eyring : float
         Eyring stress [Pa].
     limiting : float
-        Limiting stress over pressure.
+        Rise of the limiting stress with pressure.
     """
 
     slide_to_roll: FloatArray
@@ -65,7 +66,7 @@ def solve_traction(
     film, profile = solver.film_profile(contact, oil, point)
     if profile is None:
         return film, {law: np.full(request.slide_to_roll.shape, np.nan) for law in LAWS}
-    laws = (newtonian_stress, eyring_stress(request.eyring), limiting_stress(request.limiting * profile.pressure))
+    laws = (newtonian_stress, eyring_stress(request.eyring), limiting_stress(profile.pressure, request.limiting))
     at = oil.at(point.temperature), point.load, point.entrainment_speed
     found = (traction_coefficients(profile, *at, request.slide_to_roll, law) for law in laws)
     return film, dict(zip(LAWS, found, strict=True))
@@ -102,8 +103,8 @@ def traction_table(request: TractionRequest, found: dict[str, dict[str, FloatArr
     """
     lines = [
         "traction coefficient on the film of pure rolling, isothermal: too high where slip heats it, above 0.1 or so",
-        f"  eyring: {STRESS.text(request.eyring)}; limiting: {request.limiting:g} p; newtonian oil has no bound: of no "
-        "use above 0.6 GPa",
+        f"  eyring: {STRESS.text(request.eyring)}; limiting: {STRESS.text(LIMITING_STRESS_AT_REST)} + {request.limiting:g} p; "
+        "newtonian oil has no bound: of no use above 0.6 GPa",
         f"  {'slide to roll':>13s}" + "".join(f"{contact:>12s}{'':24s}" for contact in found),
         f"  {'':13s}" + "".join(f"{law:>12s}" for law in LAWS) * len(found),
     ]

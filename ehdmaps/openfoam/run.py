@@ -23,6 +23,7 @@ SHORTEST = 0.1
 """Seconds that a run has at least."""
 
 _FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+_FRAME = re.compile(r"#\d+\s")
 _FATAL = re.compile(r"FOAM FATAL (?:IO )?ERROR")
 
 
@@ -108,10 +109,14 @@ def run(program: Path, case: Path, environment: Mapping[str, str], end: float) -
 
 
 def log_tail(log: Path) -> str:
-    """Return the last lines of a log, from the fatal error on if it has one, and its path, on one line."""
+    """Return the last lines of a log, from the fatal error on if it has one, and its path, on one line.
+
+    The calls that a crash lists say nothing to a reader; what stands before them does.
+    """
     with log.open("rb") as file:
         file.seek(max(log.stat().st_size - 20_000, 0), os.SEEK_SET)
         lines = [line.strip() for line in file.read().decode("utf-8", "replace").splitlines() if line.strip()]
+    lines = [line for line in lines if not _FRAME.match(line)]
     fatal = next((i for i, line in enumerate(lines) if _FATAL.search(line)), None)
     chosen = lines[-LOG_LINES:] if fatal is None else lines[fatal + 1 : fatal + 1 + LOG_LINES]
     quote = " | ".join(line[:LONGEST_QUOTE] for line in chosen) or "none"

@@ -90,8 +90,9 @@ class Guess(Protocol):
         ...
 
 
-Starter = Callable[[LineContact, Lubricant, float, float, float], Guess | None]
-"""From contact, lubricant, load [N/m], entrainment speed [m/s], temperature [K] to a start; None where it has none."""
+Starter = Callable[[LineContact, Lubricant, float, float, float, ShearLaw, float], Guess | None]
+"""From contact, lubricant, load [N/m], entrainment speed [m/s], temperature [K], law of shear and slide-to-roll ratio to
+a start; None where it has none."""
 
 
 @dataclass(frozen=True)
@@ -356,7 +357,13 @@ class OpenFoamSolver(ContactSolverDefaults):
         """
         state = lubricant.at(point.temperature)
         guess = self.starter and self.starter(
-            contact, lubricant, point.load, point.entrainment_speed, point.temperature
+            contact,
+            lubricant,
+            point.load,
+            point.entrainment_speed,
+            point.temperature,
+            self.shear_law(),
+            self.slide_to_roll,
         )
         mesh = Mesh(film=_expected_film(contact, state, point), inlet_length=self.inlet_length)
         start = None

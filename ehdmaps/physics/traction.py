@@ -10,8 +10,8 @@ Behind the exit of the film, where it ruptures, nothing is counted.
 
 References
 ----------
-H. Eyring, Journal of Chemical Physics 4, 1936, 283-291. S. Bair, W. O. Winer, Journal of Lubrication Technology 101,
-1979, 258-265.
+H. Eyring, Journal of Chemical Physics 4, 1936, 283-291. R.-T. Lee, B. J. Hamrock, Journal of Tribology 112, 1990,
+486-496.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.lubricant import LubricantState
+from ehdmaps.physics.rheology import LIMITING, LIMITING_STRESS_AT_REST, ShearLaw, yielding
 
 _LARGEST = 300.0
 
@@ -72,22 +73,24 @@ def eyring_stress(stress: float) -> StressLaw:
     return law
 
 
-def limiting_stress(bound: FloatArray) -> StressLaw:
-    """Law with a limiting stress, tau = tau_L (1 - exp(-eta du/(h tau_L))), as `ehlFoam` has it.
+def limiting_stress(pressure: FloatArray, ratio: float, stress: float = LIMITING_STRESS_AT_REST) -> StressLaw:
+    """Law with a limiting stress that rises with pressure, that of `ehdmaps.physics.rheology`.
 
     The shear of the pressure gradient is left out: where the bound acts, it is far below it.
 
     Parameters
     ----------
-    bound : ndarray, shape (n,)
-        tau_L along the film [Pa], > 0 where there is pressure.
+    pressure : ndarray, shape (n,)
+        p along the film [Pa].
+    ratio, stress : float
+        Lambda, and tau0 [Pa].
     """
+    shear = ShearLaw(LIMITING, stress, ratio)
 
     def law(viscosity: FloatArray, rate: FloatArray, gradient_stress: FloatArray) -> FloatArray:
         newton = viscosity * rate
-        held = np.maximum(bound, np.finfo(float).tiny)
-        with np.errstate(over="ignore"):
-            return np.asarray(-held * np.expm1(-newton / held))
+        factors = [yielding(shear, y, p)[0] for y, p in zip(newton.tolist(), pressure.tolist(), strict=True)]
+        return np.asarray(newton * np.array(factors))
 
     return law
 

@@ -21,6 +21,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.approach import half_space, half_space_compliance
 from ehdmaps.solids.three_d import FiniteLine, Profile, depth_term, mirror_factor
 
 SliceLaw = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
@@ -31,6 +32,7 @@ _GAUSS = 8
 _FAR_DEPTHS = 20.0
 _MOST_STEPS = 60
 _CLOSE = 1e-11
+_TABLE = 600
 
 
 def slice_coupling(line: FiniteLine, slices: int, half_width: float, mirrored: float | None = None) -> FloatArray:
@@ -237,3 +239,30 @@ def balanced_loads(
             w, _ = coupled_loads(rigid @ motion - depths, law, coupling)
             return places, w, float(motion[0]), float(motion[1]) / line.length
     raise AnalysisError(f"slices: no balance after {_MOST_STEPS} steps; the load may lie outside the roller")
+
+
+def plane_law(line: FiniteLine) -> SliceLaw:
+    """The law `half_space` that belongs to the bodies of a line, as loads by approaches.
+
+    Parameters
+    ----------
+    line : FiniteLine
+        Roller and raceway.
+    """
+    depth, modulus = plane_depth(line), 1.0 / (math.pi * line.body_compliance)
+    # Up to where the contact is as wide as the depth allows.
+    widest = math.pi * modulus * depth**2 / (8.0 * line.radius)
+    loads = np.concatenate([[0.0], np.geomspace(1e-9 * widest, 0.99 * widest, _TABLE)])
+    approaches = half_space(loads, depth, line.radius, modulus)
+
+    def law(approach: FloatArray) -> tuple[FloatArray, FloatArray]:
+        loaded = approach > 0.0
+        found = np.maximum(np.interp(approach, approaches, loads), loads[1])
+        for _ in range(2):  # from the table to round-off
+            missing = approach - half_space(found, depth, line.radius, modulus)
+            found += missing / half_space_compliance(found, depth, line.radius, modulus)
+            found = np.clip(found, loads[1], loads[-1])
+        slope = 1.0 / half_space_compliance(found, depth, line.radius, modulus)
+        return np.where(loaded, found, 0.0), np.where(loaded, slope, 0.0)
+
+    return law

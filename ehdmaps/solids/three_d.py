@@ -83,6 +83,10 @@ class FiniteLine:
         """Half-width of Hertz [m] at a load per length [N/m]."""
         return math.sqrt(8.0 * load * self.radius * self.body_compliance)
 
+    def half_width_of(self, pressure: float) -> float:
+        """Half-width of Hertz [m] at a largest pressure [Pa]."""
+        return 4.0 * math.pi * self.radius * self.body_compliance * pressure
+
 
 @dataclass(frozen=True, eq=False)
 class LengthSolution:

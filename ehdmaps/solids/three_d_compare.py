@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.solids.slices import balanced_loads, plane_law, slice_coupling
 from ehdmaps.solids.three_d import FiniteLine, LengthSolution, solve_length
 from ehdmaps.solids.three_d_make import profile_depths
 from ehdmaps.solids.three_d_reference import LengthCase, LengthReference
@@ -16,7 +18,29 @@ from ehdmaps.solids.three_d_reference import LengthCase, LengthReference
 CELLS = (12, 80)
 """Cells of the solution over half the width and along the roller."""
 
+SLICES = 41
+
+WIDEST_PRESSURE = 4e9
+"""Hertz pressure for whose contact the coupling of slices is made: the static limit of bearings [Pa]."""
+
 _POINTS = 20001
+
+
+class SliceLoads(NamedTuple):
+    """Slices of a roller under a load.
+
+    Attributes
+    ----------
+    places, load_per_length : array (slices,)
+        Middles of the slices [m], loads [N/m].
+    approach, tilt : float
+        Approach in the middle [m], tilt.
+    """
+
+    places: FloatArray
+    load_per_length: FloatArray
+    approach: float
+    tilt: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +57,8 @@ class LengthComparison:
         The solution at the nodes of the case, averaged as nodes average [N/m], [Pa].
     inside : array of bool (n,)
         Places at least a half-width of the contact away from the end faces.
+    coupled, alone : SliceLoads
+        Solution by `SLICES` slices that know of their neighbours, and by as many that do not, with the same plane law.
     """
 
     case: LengthCase
@@ -40,6 +66,8 @@ class LengthComparison:
     load_per_length: FloatArray
     peak_pressure: FloatArray
     inside: BoolArray
+    coupled: SliceLoads
+    alone: SliceLoads
 
     @property
     def load_error(self) -> float:
@@ -78,6 +106,8 @@ def compare_lengths(
     """
     model = reference.model
     line = FiniteLine(model.reduced_radius, model.roller_length, 0.5 * model.roller_diameter, model.race_depth)
+    law = plane_law(line)
+    coupling = slice_coupling(line, SLICES, line.half_width_of(WIDEST_PRESSURE))
     found = []
     for case in reference.finest:
         profile = partial(profile_depths, case.profile, bearing)
@@ -91,6 +121,8 @@ def compare_lengths(
                 at_nodes(solution, solution.load_per_length, case.places),
                 at_nodes(solution, solution.peak_pressure, case.places),
                 inside,
+                SliceLoads(*balanced_loads(line, law, coupling, profile, case.load, case.moment)),
+                SliceLoads(*balanced_loads(line, law, np.zeros_like(coupling), profile, case.load, case.moment)),
             )
         )
     return found

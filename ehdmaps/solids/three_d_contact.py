@@ -7,7 +7,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError
 
-_MOST_CHANGES = 100
+_MOST_CHANGES = 200
 
 
 def touching(
@@ -15,7 +15,7 @@ def touching(
 ) -> tuple[FloatArray, FloatArray]:
     """Forces >= 0 where gaps are closed, zero where they are open, under given loads.
 
-    The set of touching places is changed at once wherever it pulls or overlaps, until nothing changes.
+    Places that pull leave the set of those that touch; once none pulls, those that overlap join it, until none does.
 
     Parameters
     ----------
@@ -41,32 +41,40 @@ def touching(
     ------
     AnalysisError
         If the set does not settle.
+
+    References
+    ----------
+    J. J. Kalker, Three-Dimensional Elastic Bodies in Rolling Contact, Kluwer, 1990: the algorithm NORM.
     """
     active = gap <= np.quantile(gap, 0.5)
     count = wanted.size
+    unit, largest, spans = float(np.abs(compliance).max()), float(shares.max()), np.abs(rigid).max(axis=0)
     for _ in range(_MOST_CHANGES):
         inside = np.flatnonzero(active)
         size = inside.size
+        # Forces are measured by what they yield, motions by themselves, loads by the largest share: all near one.
         system = np.zeros((size + count, size + count))
-        system[:size, :size] = compliance[np.ix_(inside, inside)]
-        system[:size, size:] = -rigid[inside]
-        system[size:, :size] = (rigid[inside] * shares[inside, None]).T
-        # Rows of loads and of gaps, and columns of forces and of motions, differ by many powers of ten.
-        rows, columns = np.abs(system).max(axis=1), np.abs(system).max(axis=0)
-        if not (np.all(rows > 0.0) and np.all(columns > 0.0)):
-            break
-        right = np.concatenate([-gap[inside], wanted]) / rows
+        system[:size, :size] = compliance[np.ix_(inside, inside)] / unit
+        system[:size, size:] = -rigid[inside] / spans
+        system[size:, :size] = (rigid[inside] / spans * (shares[inside, None] / largest)).T
+        right = np.concatenate([-gap[inside], wanted / spans * (unit / largest)])
         try:
-            found = np.linalg.solve(system / rows[:, None] / columns, right) / columns
-        except np.linalg.LinAlgError:  # a row of places cannot bear a moment
+            found = np.linalg.solve(system, right)
+        except np.linalg.LinAlgError:  # places in a row bear no moment
             break
+        motions = found[size:] / spans
         forces = np.zeros(gap.size)
-        forces[inside] = found[:size]
-        left = gap - rigid @ found[size:] + compliance @ forces
-        new = np.where(active, forces > 0.0, left < 0.0)
-        if np.array_equal(new, active):
-            return forces, found[size:]
-        active = new
+        forces[inside] = found[:size] / unit
+        pulling = active & (forces <= 0.0)
+        # New places only where none pulls: both at once may go round in circles.
+        if np.any(pulling):
+            active = active & ~pulling
+            continue
+        left = gap - rigid @ motions + compliance @ forces
+        overlapping = ~active & (left < 0.0)
+        if not np.any(overlapping):
+            return forces, motions
+        active = active | overlapping
     raise AnalysisError(
         f"contact: the places that touch did not settle in {_MOST_CHANGES} changes; the load may lie outside the "
         "roller, or be no load"

@@ -17,11 +17,14 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.inputs import read_text
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.solids import STEEL, Material, reduced_modulus
 from ehdmaps.solids.three_d_compliance import surface_compliance
 from ehdmaps.solids.three_d_contact import touching
 from ehdmaps.solids.three_d_mesh import QuarterModel, quarter_meshes
+
+_LONGEST_FILE = 20_000_000
 
 FORMAT = 1
 """Of the files."""
@@ -270,17 +273,42 @@ def shipped_reference(bearing: str) -> LengthReference:
     if bearing not in names:
         raise InputError(
             f"reference over the length: got {bearing!r:.60}; allowed: {', '.join(names)}; for others run "
-            "`ehdmaps length NAME --solve FILE.json`"
+            "`ehdmaps length JOB --solve FILE.json`"
         )
-    content = json.loads((FOLDER / f"{bearing}.json").read_text("utf-8"))
-    meshes = content["meshes"]
-    return LengthReference(
-        bearing=content["bearing"],
-        model=QuarterModel(**content["model"]),
-        cases={mesh["level"]: [_case(entry) for entry in mesh["cases"]] for mesh in meshes},
-        unknowns={mesh["level"]: mesh["unknowns"] for mesh in meshes},
-        check=content["check"],
-    )
+    return read_reference(FOLDER / f"{bearing}.json")
+
+
+def read_reference(path: str | Path) -> LengthReference:
+    """Cases from a file of `save_reference`.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        If it is no such file.
+    """
+    text = read_text(path, _LONGEST_FILE, "a file made by `ehdmaps length JOB --solve FILE.json`")
+    try:
+        content = json.loads(text)
+        if content["format"] != FORMAT:
+            raise InputError(f"{path}: got format {content['format']!r:.20}; allowed: {FORMAT}; make the file anew")
+        meshes = content["meshes"]
+        return LengthReference(
+            bearing=content["bearing"],
+            model=QuarterModel(**content["model"]),
+            cases={mesh["level"]: [_case(entry) for entry in mesh["cases"]] for mesh in meshes},
+            unknowns={mesh["level"]: mesh["unknowns"] for mesh in meshes},
+            check=content["check"],
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(
+            f"{path}: is no file of contacts over the length ({error!r:.80}); allowed: one made by `ehdmaps length JOB "
+            "--solve FILE.json`"
+        ) from None
 
 
 def _case(entry: dict[str, Any]) -> LengthCase:

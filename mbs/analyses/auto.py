@@ -16,6 +16,7 @@ from types import NoneType
 from typing import Generic, TypeVar
 
 from ehdmaps.errors import InputError
+from ehdmaps.physics.heat import PHYSICS
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from mbs.analyses import film_verdicts, planning
 from mbs.analyses.campbell import CampbellResult
@@ -74,6 +75,8 @@ class AutoSettings:
         Films that are asked for, whatever is required.
     supply : OilSupply or None
         Oil supply of all bearings that is asked for.
+    physics : {"isothermal", "inlet-heat", "thermal"} or None
+        What films are to know of heat, whatever is required.
     workers : int or None
         Processes that make a map; all cores if None.
 
@@ -90,6 +93,7 @@ class AutoSettings:
     clearance: float | None = None
     films: Films | None = None
     supply: OilSupply | None = None
+    physics: str | None = None
     workers: int | None = None
 
     def __post_init__(self) -> None:
@@ -98,6 +102,8 @@ class AutoSettings:
                 f"auto, tolerance: got {self.tolerance!r}; allowed: above 0 up to {MOST_TOLERANCE:g}, a part of a "
                 "stiffness or damping"
             )
+        if self.physics is not None and self.physics not in PHYSICS:
+            raise InputError(f"auto, physics: got {self.physics!r:.60}; allowed: {', '.join(PHYSICS)}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,7 +207,7 @@ def settled(
     maps: list[KeptMap] = []
     margins: list[float] = []
     while True:
-        (job,) = found.jobs()
+        (job,) = found.jobs(solver=verdicts[-1].solver)
         kept = kept_map(scene.name, job, settings.folder, settings.others, settings.workers, progress)
         maps.append(kept)
         margins.append(margin)
@@ -298,7 +304,7 @@ def _verdicts(
         film_verdicts.memory_verdict(there, highest, settings.films, possible),
         film_verdicts.supply_verdict(there, supplies, settings.supply is not None),
         film_verdicts.roughness_verdict(there, scene.surface),
-        film_verdicts.heat_verdict(there),
+        film_verdicts.heat_verdict(there, settings.physics),
     )
 
 

@@ -11,7 +11,7 @@ is the exponent of the film in the speed). c is k^2 times the loss.
 ================  ================================================================================================
 film memory       |dZ/Z| of the dynamic stiffness k + i omega c beside k + i omega c/(1 + i omega theta)
 oil supply        k and c on a layer, by the closed forms of starved rigid surfaces (`ehdmaps.physics.starved`)
-inlet heating     film by the factor of Gupta et al. (`ehdmaps.physics.thermal`), loss by its square: no solver has it
+inlet heating     film by the factor of Gupta et al. (`ehdmaps.physics.thermal`), loss by its square
 roughness         Lambda, the smallest film over the roughness: asperities touch below `TOUCHING`
 ================  ================================================================================================
 """

@@ -9,14 +9,19 @@ that of idle rollers, whose films are the thick ones.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.jobs.job_text import Entry
+from ehdmaps.maps.low_loads import RIGID, load_at
+from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL
+from ehdmaps.physics.inlet_heat import inlet_heat
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, THICKEST, THINNEST, OilSupply
+from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.roughness import FINEST, SMOOTH, Surface
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import SPEED
@@ -37,6 +42,9 @@ SHARES = (0.1, 1.0)
 """Loads of rollers that carry a bearing, over the highest one at rest."""
 
 _LOADS, _SPEEDS = 9, 5
+_ZETA, _ZETAS = (RIGID, 6.0), 41
+"""Places ln(M/M_valley) that the lines of a map reach, and how many of them are looked at."""
+
 _LAYERS = 241
 
 
@@ -55,12 +63,15 @@ class Verdict:
         Lambda. NaN where it was not looked at.
     words : str
         The reason, for people.
+    solver : mapping
+        Keys of [solver] of the map that it takes.
     """
 
     physics: str
     on: bool
     size: float
     words: str
+    solver: Mapping[str, Entry] = field(default_factory=dict)
 
     @property
     def line(self) -> str:
@@ -208,25 +219,45 @@ def roughness_verdict(found: Range, surface: Surface | None) -> Verdict:
     return Verdict(name, size < TOUCHING, size, words)
 
 
-def heat_verdict(found: Range) -> Verdict:
-    """Whether heating of the inlet would matter, which no solver here has.
+def heat_verdict(found: Range, asked: str | None = None) -> Verdict:
+    """Whether heating of the inlet matters, and whether the map has it.
+
+    Where it matters the map has it by its rule (`ehdmaps.physics.inlet_heat`) where that holds all over the map. Films
+    with temperatures take some ten times as long, and are made where they are asked for.
 
     Parameters
     ----------
     found : Range
         Operating points.
+    asked : {"isothermal", "inlet-heat", "thermal"} or None
+        What was asked for.
     """
     name = "inlet heating"
     size, state = found.carrying(lambda entry: heat_effect(entry, found.lubricant))
     if math.isnan(size):
         return Verdict(name, False, size, f"unknown: no thermal conductivity of {found.lubricant.name} is known")
-    at = f"at {SPEED.text(state.speed)}"
+    change = "more than the formula covers" if size >= 1.0 else f"up to {_percent(size)} at {SPEED.text(state.speed)}"
+    words = f"it would lower c by {change} ({_beside(size, found)})"
+    if asked is not None:
+        on = asked != ISOTHERMAL
+        return Verdict(name, on, size, f"as asked, {asked}; {words}", {"physics": asked} if on else {})
     if size <= found.tolerance:
-        return Verdict(name, False, size, f"it would lower c by up to {_percent(size)} {at} ({_beside(size, found)})")
-    change = "more than the formula covers" if size >= 1.0 else f"about {_percent(size)} {at}"
-    return Verdict(
-        name, False, size, f"not modelled here, though it would lower c by {change}: more than {found.percent}"
-    )
+        return Verdict(name, False, size, words)
+    refused = _no_rule(found)
+    if not refused:
+        return Verdict(name, True, size, f"{words}; the map has it by its rule", {"physics": INLET_HEAT})
+    return Verdict(name, False, size, f"{words}; its rule does not hold here ({refused}); --physics thermal has it")
+
+
+def _no_rule(found: Range) -> str:
+    """Why the rule of inlet heat does not hold at all points that a map of this range solves; empty where it does."""
+    for state in found.states:
+        for zeta in np.linspace(*_ZETA, _ZETAS).tolist():
+            load = load_at(state.contact, found.lubricant, zeta, state.speed, state.temperature)
+            heat = inlet_heat(state.contact, found.lubricant, OperatingPoint(load, state.speed, state.temperature))
+            if heat.refused:
+                return heat.refused.removeprefix("inlet heat: ").split("; ")[0]
+    return ""
 
 
 def in_force(supplies: tuple[OilSupply, ...], verdict: Verdict) -> OilSupply | None:

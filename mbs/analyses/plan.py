@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.axes import SPEED_AXIS
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.job_text import Entry
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import RPM, SPEED
@@ -61,13 +62,15 @@ class PlanResult:
     speeds: tuple[float, float]
     needed: tuple[Needed, ...]
 
-    def jobs(self, names: Sequence[str] = ()) -> tuple[Job, ...]:
+    def jobs(self, names: Sequence[str] = (), solver: Mapping[str, Entry] | None = None) -> tuple[Job, ...]:
         """Jobs that cover the ranges, one a geometry, read back by the reader of jobs.
 
         Parameters
         ----------
         names : sequence of str
             One a geometry; "plan" if left out.
+        solver : mapping, optional
+            Further keys of [solver].
 
         Raises
         ------
@@ -78,7 +81,7 @@ class PlanResult:
         jobs = []
         for entry, name in zip(self.needed, names or ["plan"] * len(self.needed), strict=True):
             try:
-                jobs.append(planned_job(self.scene, entry, name))
+                jobs.append(planned_job(self.scene, entry, name, solver))
             except InputError as error:
                 problems += error.problems
         if problems:

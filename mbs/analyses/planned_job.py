@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import math
+from collections.abc import Mapping
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.axes import LOAD_AXIS, SPEED_AXIS, AxisRule
 from ehdmaps.jobs.job import Job, check_oil
-from ehdmaps.jobs.job_text import bearing_keys, lubricant_keys, table_lines
+from ehdmaps.jobs.job_text import Entry, bearing_keys, lubricant_keys, table_lines
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE, Display, quantity
@@ -22,7 +24,7 @@ FEWEST = 4
 LAW_CHECK = 500
 
 
-def planned_job(scene: Scene, needed: Needed, name: str = "plan") -> Job:
+def planned_job(scene: Scene, needed: Needed, name: str = "plan", solver: Mapping[str, Entry] | None = None) -> Job:
     """The job that covers what the bearings of one geometry need, read back by the reader of jobs.
 
     Parameters
@@ -33,19 +35,21 @@ def planned_job(scene: Scene, needed: Needed, name: str = "plan") -> Job:
         The ranges.
     name : str
         Name of the job.
+    solver : mapping, optional
+        Further keys of [solver].
 
     Raises
     ------
     InputError
         With everything that a job does not allow, or cannot say.
     """
-    text = job_text(scene, needed)
+    text = job_text(scene, needed, solver)
     job = parse_job(text, name, f"the job for {', '.join(needed.bearings)}", to_run=True)
     check_oil(_lubricant(scene), job)
     return job
 
 
-def job_text(scene: Scene, needed: Needed) -> str:
+def job_text(scene: Scene, needed: Needed, solver: Mapping[str, Entry] | None = None) -> str:
     """Text of the job that covers what the bearings of one geometry need.
 
     Parameters
@@ -54,6 +58,8 @@ def job_text(scene: Scene, needed: Needed) -> str:
         Scene with a lubricant; geometry, oil and temperature are its own.
     needed : Needed
         The ranges.
+    solver : mapping, optional
+        Further keys of [solver].
 
     Raises
     ------
@@ -79,6 +85,7 @@ def job_text(scene: Scene, needed: Needed) -> str:
         'name = "reynolds"',
         'structural_law = "iso16281"',
         f"law_check = {LAW_CHECK}",
+        *(f"{key} = {json.dumps(value)}" for key, value in (solver or {}).items()),
         "",
     ]
     return "\n".join(lines)

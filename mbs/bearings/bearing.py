@@ -15,9 +15,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.profiles import iso_profile
-from ehdmaps.physics.solids import STEEL, Material, reduced_modulus
-from ehdmaps.solids.slices import slice_coupling
-from ehdmaps.solids.three_d import FiniteLine
+from ehdmaps.physics.solids import STEEL, Material
 
 Profile = str | Callable[[FloatArray], npt.ArrayLike] | tuple[float, ...] | FloatArray
 
@@ -149,12 +147,16 @@ class Bearing:
         end faces of the roller, raceways that go on beyond them, and bodies of the rings as deep as the roller is
         thick.
         """
-        geometry, modulus = self.geometry, reduced_modulus(self.material, self.material)
+        # scipy is loaded for those who want it only: scenes are read without
+        from ehdmaps.solids.slices import slice_coupling
+        from ehdmaps.solids.three_d import FiniteLine
+
+        geometry = self.geometry
         diameter = geometry.roller_diameter
         total = np.zeros((self.slices, self.slices))
         for radius in (geometry.inner_radius, geometry.outer_radius):
             line = FiniteLine(radius, geometry.roller_length, 0.5 * diameter, diameter, self.material)
-            total += slice_coupling(line, self.slices, 4.0 * radius * STATIC_LIMIT / modulus)
+            total += slice_coupling(line, self.slices, line.half_width_of(STATIC_LIMIT))
         return total
 
     @property

@@ -154,6 +154,7 @@ class ForceAtPoint:
             )
         else:
             self._prepare(law)
+        self._apart = self._by_slices or self._coupled
         w = self._work
         self._state = (w.state, w.state[:6], w.state[6:12])
         self._shape = (w.state, np.array(w.sizes), w.slices, w.angles, w.numbers)
@@ -189,14 +190,14 @@ class ForceAtPoint:
             own_velocity[...] = six_numbers("velocity", velocity)
         state[12] = cage_angle
         out: FloatArray = np.empty(_OUT)
-        status = self._from_law(out) if self._by_slices or self._coupled else force_of_arrays(*self.arrays, out)
+        status = self._from_law(out) if self._apart else force_of_arrays(*self.arrays, out)
         outside = self._settle(status, out) if status != 0 or self._outside else False
         return out, outside
 
     @property
     def tabulated(self) -> bool:
         """Whether `arrays` hold the law; else it is called for each slice, or slices are coupled."""
-        return not (self._by_slices or self._coupled)
+        return not self._apart
 
     @property
     def outside(self) -> bool:
@@ -293,7 +294,7 @@ class ForceAtPoint:
             raise_state(work.state, work.sizes, status == NOT_FINITE)
         if not isinstance(law, ContactLaw):
             return False
-        if status > 0 and not (self._by_slices or self._coupled):
+        if status > 0 and not self._apart:
             numbers = work.numbers.copy()
             status = self._from_slices(law, out)
             work.numbers[:] = numbers

@@ -12,8 +12,9 @@ from typing import Any, Generic, TypeVar
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import progress
 from ehdmaps.jobs.store import store_path
+from ehdmaps.physics.heat import PHYSICS
 from ehdmaps.program import tell
-from ehdmaps.units import LOAD, SPEED, TEMPERATURE
+from ehdmaps.units import LOAD, SPEED, TEMPERATURE, closest
 from mbs.analyses.auto import MOST_TOLERANCE, TOLERANCE, Automatic, AutoSettings, settled
 from mbs.analyses.kept_map import KeptMap
 from mbs.analyses.varied import LawChoice, Subject
@@ -168,6 +169,9 @@ def _asked(
     films = getattr(arguments, "films", None) or []
     problems += [f"--films: got {text!r:.60}; allowed: {', '.join(FILMS)}" for text in films if text not in FILMS]
     read_supplies(getattr(arguments, "supply", None) or (), problems)
+    physics = getattr(arguments, "physics", None)
+    if physics is not None and physics not in PHYSICS:
+        problems.append(f"--physics: got {physics!r:.60}{closest(physics, PHYSICS)}; allowed: {', '.join(PHYSICS)}")
     if problems or scene is None or looked is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     return scene, looked, _settings(arguments, tolerance, folder, looked.highest)
@@ -197,12 +201,13 @@ def _settings(arguments: argparse.Namespace, tolerance: float, folder: Path, hig
         clearance=clearances[0] if clearances else None,
         films=kinds.get(films[0]) if films else None,
         supply=supplies[0] if supplies else None,
+        physics=getattr(arguments, "physics", None),
     )
 
 
 def _only_with_auto(arguments: argparse.Namespace, own_tolerance: bool) -> list[str]:
     """What is wrong about options that belong to `--auto`."""
-    options = ("maps",) if own_tolerance else ("maps", "tolerance")
+    options = ("maps", "physics") if own_tolerance else ("maps", "physics", "tolerance")
     given = [option for option in options if getattr(arguments, option, None) is not None]
     return [f"--{option}: stands without --auto; allowed: with it" for option in given]
 

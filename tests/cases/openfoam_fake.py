@@ -32,6 +32,7 @@ if mode[0] == "fatal":
     print("--> FOAM FATAL IO ERROR:\\nviscosity is negative\\n\\nfile: constant/ehlProperties at line 7.", flush=True)
     sys.exit(1)
 if mode[0] == "segv":
+    print("Newton step 3\\n#0  Foam::error::printStack\\n#1  ? in libc.so.6", flush=True)
     os.kill(os.getpid(), signal.SIGSEGV)
 if mode[0] == "killed" or (mode[0] == "killed_once" and not (folder / "marker").exists()):
     (folder / "marker").touch()

@@ -263,7 +263,7 @@ def test_solve_over_the_slide_to_roll_ratio(capsys):
     asked = ["solve", "nu308", "--load", "50 N/mm", "--temperature", "60 degC", "--speed", "2 m/s"]
     asked += ["--slide-to-roll", "0.001", "1", "4"]
     status, out, _ = run(capsys, *asked)
-    assert status == 0 and "eyring: 6 MPa; limiting: 0.05 p" in out
+    assert status == 0 and "eyring: 6 MPa; limiting: 2 MPa + 0.05 p" in out
     assert "  rolling force          N/m " in out and "  mass flow              g/(m s) " in out
     status, out, _ = run(capsys, *asked, "--eyring-stress", "4 MPa", "--limiting-ratio", "0.04", "--json")
     inner, _ = json.loads(out)

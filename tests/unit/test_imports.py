@@ -48,7 +48,13 @@ ALLOWED = {
         "ehdmaps.units",
         "ehdmaps.physics",
     },
-    "ehdmaps.solids": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.extras", "ehdmaps.physics"},
+    "ehdmaps.solids": {
+        "ehdmaps.arrays",
+        "ehdmaps.errors",
+        "ehdmaps.extras",
+        "ehdmaps.inputs",
+        "ehdmaps.physics",
+    },
     "ehdmaps.trade": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.figures", "ehdmaps.outputs", "ehdmaps.units"},
     "ehdmaps.stability": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.inputs", "ehdmaps.outputs", "ehdmaps.units"},
     "ehdmaps.jobs": {

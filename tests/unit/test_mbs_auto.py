@@ -28,6 +28,8 @@ from mbs.analyses.film_criteria import (
     memory_effect,
     supply_effect,
 )
+from mbs.analyses.film_verdicts import heat_verdict, visited
+from mbs.analyses.planning import Needed
 from mbs.commands.auto import read_tolerance
 from mbs.scene.changes import with_loads
 from tests.cases.commands import run
@@ -264,3 +266,45 @@ def test_heat_and_roughness_go_with_their_numbers():
     assert np.isnan(heat_effect(contact([5e4]), unknown)).all()
     rough = film_over_roughness(contact([5e4]), 2e-7)
     np.testing.assert_allclose(film_over_roughness(contact([5e4]), 4e-7), 0.5 * rough)
+
+
+def there(speed, temperature, load=(1e3, 2e5)):
+    geometry = BearingGeometry.named("NU308")
+    needed = Needed(geometry, ("a",), load, (0.5 * speed, speed), temperature, load[1], 0.0)
+    return visited(needed, Lubricant.named("FVA3"), 0.05)
+
+
+def test_heat_is_in_the_map_where_its_rule_holds_and_told_where_it_does_not():
+    slow, hot, cold = there(1.0, 373.15), there(9.0, 383.15), there(4.0, 313.15)
+    assert not heat_verdict(slow).on and "not more than 5 %" in heat_verdict(slow).words
+    found = heat_verdict(hot)
+    assert found.on and found.solver == {"physics": "inlet-heat"} and "the map has it by its rule" in found.line
+    beyond = heat_verdict(cold)
+    assert not beyond.on and not beyond.solver
+    assert "its rule does not hold here (M = " in beyond.words and beyond.words.endswith("--physics thermal has it")
+    asked = heat_verdict(cold, "thermal")
+    assert asked.on and asked.solver == {"physics": "thermal"} and asked.words.startswith("as asked, thermal; ")
+    assert not heat_verdict(hot, "isothermal").on
+    with pytest.raises(InputError, match="auto, physics: got 'warm'; allowed: isothermal, inlet-heat, thermal"):
+        AutoSettings(physics="warm")
+
+
+def test_the_planned_map_has_the_physics_that_is_asked_for(folder, monkeypatch):
+    planned = []
+
+    def kept(name, job, *rest):
+        planned.append(job.solver_options)
+        raise AnalysisError("enough")
+
+    monkeypatch.setattr(auto, "kept_map", kept)
+    for physics, options in (("thermal", {"physics": "thermal"}), (None, {})):
+        with pytest.raises(AnalysisError, match="enough"):
+            automatic(scene(), statics, AutoSettings(folder=folder, physics=physics))
+        assert planned[-1] == options
+
+
+def test_physics_belong_to_auto(file, capsys):
+    status, _, err = run(capsys, "statics", file, "--physics", "thermal", "--map", "a.nc")
+    assert status == 2 and "--physics: stands without --auto; allowed: with it" in err
+    status, _, err = run(capsys, "statics", file, "--auto", "--physics", "therma")
+    assert status == 2 and "--physics: got 'therma' (did you mean 'thermal'?); allowed: isothermal" in err

@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 import dataclasses
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import mbs
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.solids.slices import coupled_loads, without_ends
+from mbs import cli
 from mbs.bearings import laws
 from mbs.bearings.bearing import MOST_COUPLED, Bearing
+from mbs.bearings.bearing_block import BEARINGS
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import parse_scene
+
+SCENE = Path(mbs.__file__).parent / "systems" / "nu308_rigid.toml"
 
 PLAIN = Bearing.named("NU308", clearance=20e-6, slices=21)
 COUPLED = dataclasses.replace(PLAIN, coupled=True)
@@ -110,3 +120,38 @@ def test_what_cannot_be_coupled_is_refused(film):
     narrow = dataclasses.replace(COUPLED, slices=MOST_COUPLED)
     with pytest.raises(AnalysisError, match=r"bearing force, coupled slices: no loads of a roller at the pose"):
         BearingForce(narrow, DRY)(far)
+
+
+def test_a_scene_couples_slices_of_slow_films():
+    """The key of [[bearings]], what goes with it, and the run of a scene: its element has no compiled block."""
+    text = re.sub(r"slices = 41.*", "slices = 11", SCENE.read_text("utf-8"))
+    changed = text.replace("slices = 11", "slices = 11\nslices_coupled = true")
+    scene, plain = (parse_scene(given, "scene", "scene.toml") for given in (changed, text))
+    assert [entry.slices_coupled for entry in (*scene.bearings, *plain.bearings)] == [True, True, False, False]
+    models = [assemble(given, "hertz") for given in (scene, plain)]
+    found = [equilibrium(model.system, Operation(50.0)).element_stiffness[0][1, 1] for model in models]
+    # 141 N between both rings: the short contacts of a light load are stiffer
+    assert 1.05 < found[0] / found[1] < 1.3
+    assert [BEARINGS.takes(model.bearings[0]) for model in models] == [False, True]
+    for change, words in (
+        ("slices_coupled = 1", "slices_coupled: got 1; allowed: true, false"),
+        ("slices_coupled = true\nrollers = 'bodies'", "slices_coupled: got true with rollers = 'bodies'"),
+    ):
+        with pytest.raises(InputError, match=re.escape(words)):
+            parse_scene(text.replace("slices = 11", f"slices = 11\n{change}", 1), "scene", "scene.toml")
+    with pytest.raises(InputError, match=r"slices: got 300 with slices_coupled; allowed: at most 100"):
+        parse_scene(changed.replace("slices = 11", "slices = 300"), "scene", "scene.toml")
+    with pytest.raises(InputError, match=r"--films: got coupled slices with films .*; so has bearing_left"):
+        assemble(scene, "formula", films="memory")
+
+
+def test_one_bearing_prints_what_is_along_its_roller(capsys):
+    """The command `mbs bearing --coupled`; more slices than can be coupled are refused."""
+    arguments = ["bearing", "NU308", "--load", "5 kN", "--speed", "0 rpm", "--profile", "straight", "--slices", "11"]
+    assert cli.main([*arguments, "--coupled"]) == 0
+    text = capsys.readouterr().out
+    assert "11 coupled slices" in text and "along the most loaded roller" in text
+    loads = [float(part) for part in next(line for line in text.splitlines() if "N/mm  " in line).split()[4:]]
+    assert loads == pytest.approx(loads[::-1]) and loads[0] > 1.02 * loads[5]
+    assert cli.main([*arguments[:-1], "200", "--coupled"]) == 2
+    assert "--slices" in capsys.readouterr().err

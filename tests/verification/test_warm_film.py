@@ -1,0 +1,130 @@
+"""Films with temperatures: parts against closed forms, whole films against a prototype with another coupling."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from ehdmaps.ehl.energy import wall_weights
+from ehdmaps.ehl.line import GroupSolution, Resolution, solve_groups
+from ehdmaps.ehl.solver import ReynoldsSolver
+from ehdmaps.ehl.warm_column import BEND, HEIGHTS, WEIGHTS, empty_columns, fill_column
+from ehdmaps.ehl.warm_oil import STEP, heat_groups, warm_viscosity
+from ehdmaps.ehl.warm_response import WarmLinearisation
+from ehdmaps.errors import InputError
+from ehdmaps.physics.heat import HeatData
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solution import FilmSolution, Status
+from tests.cases.laws import CONTACTS, OIL
+
+INNER = CONTACTS[0]
+THERMAL = ReynoldsSolver(physics="thermal")
+
+
+def film(load: float, speed: float, celsius: float, solver: ReynoldsSolver = THERMAL) -> FilmSolution:
+    """Film of the inner contact of NU308."""
+    return solver.solve_line(INNER, OIL, (load,), speed, celsius + 273.15)[0]
+
+
+def groups(load: float, speed: float, celsius: float) -> GroupSolution:
+    """The same in groups."""
+    problem, M, L = THERMAL._problem(INNER, OIL, OperatingPoint(load, speed, celsius + 273.15))
+    return solve_groups(problem, M, L, Resolution())
+
+
+def test_strip_of_heat_on_a_moving_solid() -> None:
+    """Jaeger: 2 sqrt(X) below a strip of constant flux, 2 sqrt(X) - 2 sqrt(X - 1) behind it; exact but for its end."""
+    x = np.concatenate([np.linspace(0.0, 1.0, 60) ** 1.5, [1.0 + 1e-9], np.linspace(1.02, 3.0, 40)])
+    flux = (x <= 1.0).astype(float)
+    slow, late = wall_weights(x, 0)
+    behind = np.sqrt(np.maximum(x - 1.0, 0.0))
+    assert slow @ flux == pytest.approx(2.0 * np.sqrt(x) - 2.0 * behind, abs=1e-4)
+    assert late @ flux == pytest.approx(2.0 / 3.0 * (x**1.5 - behind**3), abs=1e-7)
+
+
+@pytest.mark.parametrize("nahme", [0.1, 1.0, 10.0])
+def test_nahme_couette(nahme: float) -> None:
+    """An oil that thins by exp(-theta) between cold walls is warmest by ln(1 + Na/8): the matrices across the film.
+
+    theta'' + Na tau^2 exp(theta) = 0 with a stress tau that the difference of the walls' speeds gives, by Picard steps.
+    """
+    theta = np.zeros_like(HEIGHTS)
+    for _ in range(200):
+        stress = 1.0 / (WEIGHTS @ np.exp(theta))
+        inside = np.linalg.solve(BEND[1:-1, 1:-1], -nahme * stress**2 * np.exp(theta[1:-1]))
+        theta[1:-1] += 0.5 * (inside - theta[1:-1])
+    middle = theta[HEIGHTS.size // 2]
+    assert middle == pytest.approx(math.log1p(nahme / 8.0), rel=1e-6)
+
+
+def test_viscosity_between_its_temperatures() -> None:
+    """The cubic over temperature against `Lubricant.at`, at two pressures: exact at T_0, 1e-4 in ln eta elsewhere."""
+    kelvin, peak = 313.15, 1e9
+    heat = heat_groups(OIL, HeatData(), kelvin, 1e-4, 5e-3, peak, np.array([1.0, 1.0]))
+    state = OIL.at(kelvin)
+    rises = np.array([0.0, 0.37 * STEP, 31.0, 98.7, -11.0])
+    for pressure in (0.0, 0.8):
+        found, by_rise, by_pressure = np.empty(5), np.empty(5), np.empty(5)
+        warm_viscosity(state.isotherm(peak), heat, pressure, rises, found, by_rise, by_pressure)
+        wanted = [math.log(OIL.at(kelvin + rise).viscosity_at(pressure * peak) / state.viscosity) for rise in rises]
+        assert found == pytest.approx(np.array(wanted), abs=1e-4)
+        assert found[0] == pytest.approx(wanted[0], abs=1e-12)
+
+
+def test_column_of_one_temperature() -> None:
+    """Mobility and carriage of a Newtonian column are 1 at T_0, and its flow is the one asked for."""
+    problem, _, _ = THERMAL._problem(INNER, OIL, OperatingPoint(5e4, 2.0, 333.15))
+    columns = empty_columns(1)
+    fill_column(problem, 0, 0.01, 0.5, 0.02, 0.45, np.zeros(HEIGHTS.size), columns)
+    assert columns.mobility[0, 0] == pytest.approx(1.0, abs=1e-12)
+    assert WEIGHTS @ columns.flow[0] == pytest.approx(0.45, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("load", "speed", "celsius", "film_factor", "loss_factor"),
+    [(2e5, 10.0, 100.0, 0.939, 0.874), (5e4, 2.0, 60.0, 0.982, 0.965)],
+)
+def test_against_a_prototype(load: float, speed: float, celsius: float, film_factor: float, loss_factor: float) -> None:
+    """Thermal over isothermal film and loss of a prototype of the same equations, another scheme, mixing and GMRES.
+
+    It differs from grid to grid by 0.3 % in the film and 1 % in the loss.
+    """
+    warm, cold = film(load, speed, celsius), film(load, speed, celsius, ReynoldsSolver())
+    assert warm.central_film / cold.central_film == pytest.approx(film_factor, rel=3e-3)
+    assert warm.loss_compliance / cold.loss_compliance == pytest.approx(loss_factor, rel=1e-2)
+    assert warm.film_temperature > warm.surface_temperature > celsius + 273.15
+
+
+def test_energy_balance() -> None:
+    """Heat into the walls and out with the oil is the heat that shear and compression make, within 0.1 % of shear."""
+    for load, speed, celsius in ((5e4, 2.0, 60.0), (2e5, 10.0, 100.0)):
+        linear = groups(load, speed, celsius).linear
+        assert isinstance(linear, WarmLinearisation)
+        assert abs(linear.balance) < 1e-3
+
+
+def test_film_compliance_is_the_slope_of_the_film() -> None:
+    """Against the difference quotient over 2 % of the load: both carry the error of the grid, 1 % here."""
+    films = [film(5e4 * factor, 2.0, 60.0) for factor in (0.99, 1.0, 1.01)]
+    quotient = (films[0].film_offset - films[2].film_offset) / 1e3
+    assert films[1].film_compliance == pytest.approx(quotient, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("load", "speed", "celsius"), [(5e4, 0.0, 60.0), (5e4, 1e-3, 150.0), (1e-3, 20.0, 80.0), (1e6, 20.0, 150.0)]
+)
+def test_any_point_has_an_answer(load: float, speed: float, celsius: float) -> None:
+    """A status for whatever is asked, and a film that is finite where it is usable."""
+    found = film(load, speed, celsius)
+    assert found.status.usable == math.isfinite(found.film_offset)
+    assert found.status is not Status.FAILED
+
+
+def test_frequencies_are_refused() -> None:
+    """The response of a film with temperatures is that of slow motion."""
+    with pytest.raises(InputError, match="slow motion only"):
+        THERMAL.film_spectrum(INNER, OIL, OperatingPoint(5e4, 2.0, 333.15), np.array([100.0]))
+    assert THERMAL.natural_frequencies == ()
+    assert THERMAL.settings()["physics"] == "thermal"
