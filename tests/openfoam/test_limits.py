@@ -123,6 +123,6 @@ def test_martin_limit_with_all_stresses() -> None:
     # h/R is 4e-5; films are of second order
     for name in ("film", "offset"):
         assert full[name] == pytest.approx(thin[name], abs=2e-3), name
-    # responses of first order: the envelope 3 % x 100/columns of the place of rupture among the columns, of each
+    # responses are of first order: each has an envelope of 3 % x 100/columns, of the place of rupture among the columns
     for name in ("stiffness", "damping"):
-        assert full[name] == pytest.approx(thin[name], abs=1.5e-2), name
+        assert full[name] == pytest.approx(thin[name], abs=2 * 1.5e-2), name
