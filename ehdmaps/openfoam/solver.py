@@ -85,8 +85,8 @@ class Guess(Protocol):
 
 
 Starter = Callable[[LineContact, Lubricant, float, float, float, ShearLaw, float], Guess | None]
-"""From contact, lubricant, load [N/m], entrainment speed [m/s], temperature [K], law of shear and slide-to-roll ratio to
-a start; None where it has none."""
+"""From contact, lubricant, load [N/m], entrainment speed [m/s], temperature [K], law of shear and slide-to-roll ratio
+to a start; None where it has none."""
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ def test_the_file_says_what_the_parameters_say(tmp_path):
     assert dict(found["shear"]) == {"type": "Newtonian"}
     assert dict(found["mesh"]) == {
         "film": 0.2,
-        "inletLength": 100.0,
+        "inletLength": 20.0,
         "outletLength": 3.0,
         "spikePosition": 0.8,
         "spikeWidth": 0.05,
