@@ -6,6 +6,7 @@ The groups of a point go to `line`, which knows no units; what comes back is sca
 from __future__ import annotations
 
 import math
+import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -468,7 +469,8 @@ def line_problem(
     peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
     M, L = moes_groups(load, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
     half = float(half_width(load, contact.radius, contact.reduced_modulus))
-    stress = state.viscosity * speed * contact.radius / half**2
+    # an absurd point has none, and is refused for its groups
+    stress = max(state.viscosity * speed * contact.radius / half**2, sys.float_info.min)
     wedge = 3.0 * math.pi**2 / (8.0 * M * M)
     return LineProblem(wedge, state.isotherm(peak), shear.scaled(stress, peak), slide_to_roll), float(M), L
 

@@ -1,4 +1,4 @@
-"""Films of one operating point on one page: pressure, film, and velocity across the film, a row a contact."""
+"""Films of one operating point on one page, a row a contact: pressure, film, velocity and temperature in the film."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.figures import COLOURS, WARNING, typeset
 from ehdmaps.openfoam.grid_solver import GridSolution
+from ehdmaps.openfoam.results import FilmTable
 from ehdmaps.outputs import write_figure
-from ehdmaps.units import FILM, PRESSURE
+from ehdmaps.units import FILM, PRESSURE, TEMPERATURE
 
 ROW = (11.69, 3.6)
 """Size of a row [inch]."""
@@ -69,9 +70,12 @@ def plot_films(rows: Sequence[FilmRow], heading: str, output: Path) -> None:
     with mpl.rc_context(_FONT):
         figure = Figure(figsize=(ROW[0], ROW[1] * len(rows) + 0.4), layout="constrained")
         figure.suptitle(heading, fontsize=10, fontweight="bold")
-        panels = figure.subplots(len(rows), 3, squeeze=False)
+        warm = any(row.grid.fields is not None and row.grid.fields.T is not None for row in rows)
+        panels = figure.subplots(len(rows), 4 if warm else 3, squeeze=False)
         for row, axes in zip(rows, panels, strict=True):
-            _row(row, *axes)
+            _row(row, *axes[:3])
+            if warm:
+                _temperatures(row, axes[3], figure)
         write_figure(figure, output, RESOLUTION)
 
 
@@ -92,9 +96,7 @@ def _row(row: FilmRow, pressures: Axes, films: Axes, velocities: Axes) -> None:
     table, fields = row.grid.film, row.grid.fields
     x = table.x / row.half_width
     shown = places(table.x, table.pressure)
-    loaded = x[table.pressure > 1e-2 * table.pressure.max()]
-    margin = 0.25 * (loaded[-1] - loaded[0])
-    window = (x >= loaded[0] - margin) & (x <= loaded[-1] + margin)
+    window = _window(table, x)
     pressures.plot(x[window], PRESSURE.factor * table.pressure[window], color="black", lw=1.0)
     films.plot(x[window], FILM.factor * table.film[window], color="black", lw=1.0)
     films.set_ylim(bottom=0.0)
@@ -109,7 +111,7 @@ def _row(row: FilmRow, pressures: Axes, films: Axes, velocities: Axes) -> None:
         rows = fields.quads.shape[0] // x.size
         lower, upper = row.surface_speeds
         for name, colour in _PLACES:
-            height, velocity = fields.velocity_profile(shown[name], rows)
+            height, velocity = fields.profile(fields.U[:, 0], shown[name], rows)
             label = f"{name}, x/b = {shown[name] / row.half_width:.3g}"
             across, along = np.r_[0.0, height, 1.0], np.r_[lower, velocity, upper]
             velocities.plot(along, across, color=colour, lw=1.0, marker=".", ms=3, label=label)
@@ -117,3 +119,26 @@ def _row(row: FilmRow, pressures: Axes, films: Axes, velocities: Axes) -> None:
     velocities.set_xlabel("velocity along the film, m/s")
     velocities.set_ylabel("y/h, from the lower surface")
     velocities.grid(color="0.88", lw=0.4)
+
+
+def _window(table: FilmTable, x: FloatArray) -> BoolArray:
+    """Columns that are shown: those under load, and some beside."""
+    loaded = x[table.pressure > 1e-2 * table.pressure.max()]
+    margin = 0.25 * (loaded[-1] - loaded[0])
+    return np.asarray((x >= loaded[0] - margin) & (x <= loaded[-1] + margin))
+
+
+def _temperatures(row: FilmRow, axes: Axes, figure: Figure) -> None:
+    """Draw the temperature in the film of a contact."""
+    table, fields = row.grid.film, row.grid.fields
+    if fields is None or fields.T is None:
+        axes.set_axis_off()
+        return
+    x = table.x / row.half_width
+    window = _window(table, x)
+    shown = TEMPERATURE.factor * fields.T.reshape(x.size, -1)[window].T + TEMPERATURE.offset
+    heights = (np.arange(shown.shape[0]) + 0.5) / shown.shape[0]
+    image = axes.pcolormesh(x[window], heights, shown, shading="nearest", cmap="inferno", rasterized=True)
+    figure.colorbar(image, ax=axes, label=f"temperature, {TEMPERATURE.unit}")
+    axes.set_xlabel("x/b, from the contact centre")
+    axes.set_ylabel("y/h, from the lower surface")

@@ -11,7 +11,7 @@ from typing import Any
 from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
-from ehdmaps.physics.heat import ISOTHERMAL, PHYSICS
+from ehdmaps.physics.heat import ISOTHERMAL, PHYSICS, THERMAL
 from ehdmaps.physics.rheology import SHEAR_LIMITS, SHEARS
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.units import Display, short
@@ -56,18 +56,6 @@ class Whole:
     def read(self, table: Table) -> Any:
         """Return the number, or None if absent or wrong."""
         return table.integer(self.key, self.low, self.high)
-
-
-@dataclass(frozen=True)
-class Switch:
-    """A key that takes true or false."""
-
-    key: str
-    meaning: str
-
-    def read(self, table: Table) -> Any:
-        """Return the switch, or None if absent or wrong."""
-        return table.switch(self.key)
 
 
 @dataclass(frozen=True)
@@ -137,7 +125,7 @@ class SolverEntry:
         Whether it works in case folders, which it can keep, and has fields of the film.
     """
 
-    options: tuple[Number | Whole | Word | Switch | Quantity, ...]
+    options: tuple[Number | Whole | Word | Quantity, ...]
     build: Callable[..., ContactSolver]
     missing: Callable[[], tuple[str, ...]] = _nothing
     keeps_cases: bool = False
@@ -196,8 +184,9 @@ SOLVERS: Mapping[str, SolverEntry] = {
             Word("flow", ("thin_film", "full_stress"), "stress of thin films, or all of it"),
             Whole("columns", 40, 4000, "cells along the film"),
             Whole("rows", 4, 64, "cells across the film"),
+            physics_option(ISOTHERMAL, THERMAL),
             *SHEAR_OPTIONS,
-            Switch("inertia", "whether the momentum equation has its inertia"),
+            Number("inlet_length", 5.0, 1e5, "length of the inlet over sqrt(2 h R)"),
             Word("start", ("reynolds", "hertz"), "what a point starts from"),
             Number("timeout", 1.0, 1e6, "seconds after which a point is stopped"),
         ),

@@ -103,8 +103,8 @@ def traction_table(request: TractionRequest, found: dict[str, dict[str, FloatArr
     """
     lines = [
         "traction coefficient on the film of pure rolling, isothermal: too high where slip heats it, above 0.1 or so",
-        f"  eyring: {STRESS.text(request.eyring)}; limiting: {STRESS.text(LIMITING_STRESS_AT_REST)} + {request.limiting:g} p; "
-        "newtonian oil has no bound: of no use above 0.6 GPa",
+        f"  eyring: {STRESS.text(request.eyring)}; limiting: {STRESS.text(LIMITING_STRESS_AT_REST)} + "
+        f"{request.limiting:g} p; newtonian oil has no bound: of no use above 0.6 GPa",
         f"  {'slide to roll':>13s}" + "".join(f"{contact:>12s}{'':24s}" for contact in found),
         f"  {'':13s}" + "".join(f"{law:>12s}" for law in LAWS) * len(found),
     ]

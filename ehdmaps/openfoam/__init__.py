@@ -3,6 +3,7 @@
 | module | one idea |
 |---|---|
 | `installation` | where OpenFOAM and `ehlFoam` are, what is missing, and the command that builds it |
+| `isotherms` | an oil over temperature: its isotherms at equal steps |
 | `parameters` | the one file that Python writes into a case: checked numbers and known words only |
 | `case` | a working folder: copied from the template, removed when its run succeeded |
 | `leftovers` | folders of runs that were killed, told from those in work and those that are kept |

@@ -44,6 +44,8 @@ class FilmFields:
         Density [kg/m3].
     liquid_fraction : ndarray, shape (cells,)
         1 where there is oil only.
+    T : ndarray, shape (cells,), optional
+        Temperature [K]; None of an isothermal film.
     """
 
     points: FloatArray
@@ -53,12 +55,15 @@ class FilmFields:
     mu: FloatArray
     rho: FloatArray
     liquid_fraction: FloatArray
+    T: FloatArray | None = None
 
-    def velocity_profile(self, x: float, rows: int) -> tuple[FloatArray, FloatArray]:
-        """Velocity along the film in the column of cells nearest to a place.
+    def profile(self, values: FloatArray, x: float, rows: int) -> tuple[FloatArray, FloatArray]:
+        """Values in the column of cells nearest to a place.
 
         Parameters
         ----------
+        values : ndarray, shape (cells,)
+            Values in the cells.
         x : float
             Distance from the contact centre [m].
         rows : int
@@ -68,8 +73,8 @@ class FilmFields:
         -------
         height : ndarray, shape (rows,)
             y/h of the cell centres, rising from the lower surface.
-        velocity : ndarray, shape (rows,)
-            [m/s].
+        values : ndarray, shape (rows,)
+            Values there.
         """
         corners = self.points[self.quads]
         centres = corners.mean(axis=1)
@@ -78,7 +83,7 @@ class FilmFields:
         column = column[np.argsort(centres[column, 1])]
         heights = np.sort(corners[column, :, 1], axis=1)
         low, high = heights[0, :2].mean(), heights[-1, 2:].mean()
-        return (centres[column, 1] - low) / (high - low), self.U[column, 0]
+        return (centres[column, 1] - low) / (high - low), values[column]
 
 
 def read_fields(case: Path) -> FilmFields:
@@ -119,6 +124,7 @@ def read_fields(case: Path) -> FilmFields:
         mu=_field(last / "mu", cells, 1),
         rho=_field(last / "rho", cells, 1),
         liquid_fraction=_field(last / "liquidFraction", cells, 1),
+        T=_field(last / "T", cells, 1) if (last / "T").exists() else None,
     )
 
 
@@ -137,10 +143,9 @@ def write_fields(fields: FilmFields, path: Path) -> None:
     with needs("openfoam", "meshio", "fields of the film"):
         import meshio
 
+    names = [name for name in ("p", "U", "mu", "rho", "liquid_fraction", "T") if getattr(fields, name) is not None]
     mesh = meshio.Mesh(
-        fields.points,
-        [("quad", fields.quads)],
-        cell_data={name: [getattr(fields, name)] for name in ("p", "U", "mu", "rho", "liquid_fraction")},
+        fields.points, [("quad", fields.quads)], cell_data={name: [getattr(fields, name)] for name in names}
     )
     # XML keeps an XDMF file in one piece, without HDF5
     options: dict[str, Any] = {"data_format": "XML"} if path.suffix == ".xdmf" else {}

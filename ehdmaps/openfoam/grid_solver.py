@@ -101,7 +101,9 @@ class GridSolver:
         tries: list[tuple[Parameters, ...]] = [(parameters,), (moved,)]
         if start is not None:
             begun = replace(parameters, start=start)
-            tries = [(begun,), (_resized(begun, BETWEEN, BETWEEN), parameters), *tries]
+            # all stresses start from the thin film of the same grid in any case: whatever that was started from
+            through = [(_resized(begun, BETWEEN, BETWEEN), parameters), *tries]
+            tries = [(begun,), *(through if parameters.flow == "thin_film" else tries[1:])]
         for attempt in tries:
             try:
                 grid = self._in_turn(attempt, name, with_fields, end)

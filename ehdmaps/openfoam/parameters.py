@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from numbers import Real
 from typing import Any, Literal
 
@@ -16,6 +16,8 @@ from numpy.typing import ArrayLike
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.openfoam.isotherms import STEP, Isotherms
+from ehdmaps.physics.heat import HeatData
 from ehdmaps.physics.lubricant import LubricantState
 from ehdmaps.physics.rheology import CARREAU, EYRING, LIMITING, NEWTONIAN, ShearLaw
 
@@ -76,6 +78,25 @@ class Mesh:
 
 
 @dataclass(frozen=True)
+class Heat:
+    """What the energy of a film is solved with.
+
+    Attributes
+    ----------
+    temperature : float
+        Temperature of the surfaces far from the contact and of the oil that comes in [K].
+    data : HeatData
+        How oil and surfaces take and lead heat.
+    oil : Isotherms
+        The oil over temperature.
+    """
+
+    temperature: float
+    data: HeatData
+    oil: Isotherms
+
+
+@dataclass(frozen=True)
 class Oscillation:
     """A small oscillation of the approach, integrated in time.
 
@@ -121,8 +142,8 @@ class Parameters:
         Stress of thin films, or all of it with the pressure across the film.
     shear : ShearLaw
         Law of the shear stress, in Pa.
-    inertia : bool
-        Whether the momentum equation has its inertia.
+    heat : Heat, optional
+        None for an isothermal film.
     start : Start, optional
         None starts from the dry contact.
     frequencies : tuple of float
@@ -149,7 +170,7 @@ class Parameters:
     rows: int
     flow: Flow = "thin_film"
     shear: ShearLaw = NEWTON
-    inertia: bool = False
+    heat: Heat | None = None
     start: Start | None = None
     frequencies: tuple[float, ...] = (0.0,)
     oscillation: Oscillation | None = None
@@ -174,12 +195,10 @@ class Parameters:
         yield _entry("lowerSpeed", self.lower_speed)
         yield _entry("upperSpeed", self.upper_speed)
         yield from _block("viscosity", _viscosity(self.oil))
-        density = "DowsonHigginson" if self.oil.compressible else "incompressible"
-        yield from _block("density", [f"type {density};", _entry("density", self.oil.density)])
+        yield from _block("density", [f"type {_density(self.oil)};", _entry("density", self.oil.density)])
         yield from _block("shear", _shear(self.shear))
         yield from _block("cavitation", [_entry("pressureRange", self.cavitation_range)])
         yield f"flow {_word('flow', self.flow, FLOWS)};"
-        yield _switch("inertia", self.inertia)
         yield _count("columns", self.columns)
         yield _count("rows", self.rows)
         mesh = [
@@ -190,6 +209,8 @@ class Parameters:
             _entry("spikeWidth", self.mesh.spike_width),
         ]
         yield from _block("mesh", mesh)
+        if self.heat is not None:
+            yield from _block("heat", _heat(self.heat))
         if self.start is not None:
             start = [
                 _list("x", self.start.x),
@@ -213,13 +234,39 @@ class Parameters:
 
 def _viscosity(oil: LubricantState) -> list[str]:
     """The isotherm under the name of its law, with its numbers."""
-    law = oil.pressure_viscosity
+    entries = [_entry(key, value) for key, value in _numbers(oil).items()]
+    return [f"type {oil.pressure_viscosity.case_name};", *entries]
+
+
+def _heat(heat: Heat) -> list[str]:
+    """Data of the heat, and the isotherms of the oil, their numbers as lists."""
+    states = heat.oil.states
+    numbers = [_numbers(state) for state in states]
+    lists = [_list(key, [each[key] for each in numbers]) for key in numbers[0]]
+    viscosity = [f"type {states[0].pressure_viscosity.case_name};", *lists]
+    density = [f"type {_density(states[0])};", _list("density", [state.density for state in states])]
+    oil = [_entry("first", heat.oil.first), _entry("step", STEP)]
+    oil += [*_block("viscosity", viscosity), *_block("density", density)]
+    data = {_camel(field.name): getattr(heat.data, field.name) for field in fields(heat.data)}
+    return [
+        _entry("temperature", heat.temperature),
+        *(_entry(key, value) for key, value in data.items()),
+        *_block("isotherms", oil),
+    ]
+
+
+def _numbers(oil: LubricantState) -> dict[str, float]:
+    """Numbers of an isotherm, in the dictionary's spelling."""
     try:
-        numbers = law.case_numbers()
+        numbers = oil.pressure_viscosity.case_numbers()
     except InputError as error:
         raise InputError([f"ehlProperties, {problem}" for problem in error.problems]) from None
-    entries = [_entry(_camel(key), value) for key, value in numbers.items()]
-    return [f"type {law.case_name};", _entry("viscosity", oil.viscosity), *entries]
+    return {"viscosity": oil.viscosity} | {_camel(key): value for key, value in numbers.items()}
+
+
+def _density(oil: LubricantState) -> str:
+    """Name of the law of density."""
+    return "DowsonHigginson" if oil.compressible else "incompressible"
 
 
 def _shear(law: ShearLaw) -> list[str]:

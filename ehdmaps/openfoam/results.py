@@ -23,6 +23,16 @@ STATUSES: Mapping[str, Status] = {
 }
 """Words of `ehlFoam` for how a run ended."""
 
+HEAT: Mapping[str, str] = {
+    "film_temperature": "filmTemperature",
+    "surface_temperature": "surfaceTemperature",
+    "dissipated_heat": "dissipatedHeat",
+    "compression_heat": "compressionHeat",
+    "carried_heat": "carriedHeat",
+    "wall_heat": "wallHeat",
+}
+"""Numbers of a film with heat, and their words there."""
+
 FILM, THIN_FILM = "film.dat", "thinFilm.dat"
 """Tables of the film as it is, and, of a run with all stresses, of the thin film from which it starts."""
 
@@ -59,6 +69,11 @@ class Results:
         What the Krylov space leaves of the equations at each frequency, relative to the response at rest.
     load_defect, flux_defect, outlet_defect, cell_continuity : float
         Relative defects of the balances: load, mass flux before and behind the rupture of the film, mass of the cells.
+    film_temperature, surface_temperature : float
+        Highest temperature in the film and of its surfaces [K]; NaN of an isothermal film.
+    dissipated_heat, compression_heat, carried_heat, wall_heat : float
+        Heat that shear and compression make, that the oil carries out, and that goes into the surfaces [W/m]; NaN of an
+        isothermal film.
     seconds : float
         Time of the run as it says itself.
     oscillation_film_compliance, oscillation_loss_compliance : float or None
@@ -83,6 +98,12 @@ class Results:
     flux_defect: float = math.nan
     outlet_defect: float = math.nan
     cell_continuity: float = math.nan
+    film_temperature: float = math.nan
+    surface_temperature: float = math.nan
+    dissipated_heat: float = math.nan
+    compression_heat: float = math.nan
+    carried_heat: float = math.nan
+    wall_heat: float = math.nan
     seconds: float = math.nan
     oscillation_film_compliance: float | None = None
     oscillation_loss_compliance: float | None = None
@@ -161,6 +182,7 @@ def read_results(case: Path) -> Results:
         flux_defect=_number(path, entries, "fluxDefect"),
         outlet_defect=_number(path, entries, "outletDefect"),
         cell_continuity=_number(path, entries, "cellContinuity"),
+        **({key: _number(path, entries, word) for key, word in HEAT.items()} if "filmTemperature" in entries else {}),
         seconds=_number(path, entries, "seconds"),
         oscillation_film_compliance=_number(path, entries, "oscillationFilmCompliance") if oscillated else None,
         oscillation_loss_compliance=_number(path, entries, "oscillationLossCompliance") if oscillated else None,

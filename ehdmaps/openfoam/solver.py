@@ -16,13 +16,15 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
 from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
-from ehdmaps.openfoam.parameters import FLOWS, Flow, Mesh, Parameters, Start
+from ehdmaps.openfoam.isotherms import isotherms
+from ehdmaps.openfoam.parameters import FLOWS, Flow, Heat, Mesh, Parameters, Start
 from ehdmaps.openfoam.results import FilmTable
 from ehdmaps.openfoam.run import RunError
 from ehdmaps.physics.closed_form import HertzSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.film_limits import THIN_FILM_LIMIT, too_thick
 from ehdmaps.physics.films import moes_central
+from ehdmaps.physics.heat import ISOTHERMAL, THERMAL, heat_data
 from ehdmaps.physics.hertz import DRY_COMPLIANCE, LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import film_from_moes, moes_groups
@@ -44,8 +46,17 @@ from ehdmaps.physics.wall_stress import wall_stress_note
 CAVITATION_RANGE = 1e-6
 """Pressure over which liquid turns into the cavitated mixture, over the largest of the film (about)."""
 
-PARAMETER_VERSION = 4
+LONGEST_INLET, LEAST_LENGTHS = 0.5, 3.0
+"""Inlet with all stresses: where `ehlFoam` cuts it, over the radius, and its least length over sqrt(2 h R)."""
+
+INLET_LIMITS = (5.0, 1e5)
+"""Least and longest inlet over sqrt(2 h R); the film upstream of it is known in closed form."""
+
+PARAMETER_VERSION = 5
 """Raised when a change of this package changes numbers: results of another version are not taken over."""
+
+PHYSICS = (ISOTHERMAL, THERMAL)
+"""What the solver may know of heat."""
 
 StartWord = Literal["reynolds", "hertz"]
 
@@ -102,12 +113,13 @@ class OpenFoamSolver(ContactSolverDefaults):
         Stress of thin films, or all of it with the pressure across the film.
     columns, rows : int
         Cells along and across the film.
+    physics : {"isothermal", "thermal"}
+        Whether the film has the temperature of the surfaces, or the energy of the film is solved with the flow; the
+        latter with the flow thin_film.
     shear : {"newtonian", "eyring", "carreau", "limiting"}
         Law of the shear stress, see `ehdmaps.physics.rheology`.
     shear_stress, limiting_ratio, carreau_exponent : float, optional
         tau0 [Pa], Lambda and n of that law; its defaults if left out.
-    inertia : bool
-        Whether the momentum equation has its inertia.
     slide_to_roll : float
         (u_upper - u_lower)/u.
     inlet_length : float
@@ -134,11 +146,11 @@ class OpenFoamSolver(ContactSolverDefaults):
     flow: Flow = "thin_film"
     columns: int = 400
     rows: int = 6
+    physics: str = ISOTHERMAL
     shear: str = "newtonian"
     shear_stress: float | None = None
     limiting_ratio: float | None = None
     carreau_exponent: float | None = None
-    inertia: bool = False
     slide_to_roll: float = 0.0
     inlet_length: float = 20.0
     tolerance: float = 1e-9
@@ -155,7 +167,7 @@ class OpenFoamSolver(ContactSolverDefaults):
             "columns": (40, 4000),
             "rows": (4, 64),
             "slide_to_roll": (-2.0, 2.0),
-            "inlet_length": (20.0, 1e5),
+            "inlet_length": INLET_LIMITS,
             "tolerance": (1e-13, 1e-3),
             "max_iterations": (1, 100_000),
             "timeout": (0.1, 1e6),
@@ -171,8 +183,20 @@ class OpenFoamSolver(ContactSolverDefaults):
             for name in ("columns", "rows")
             if getattr(self, name) % 2
         ]
-        if self.flow not in FLOWS:
-            problems.append(f"openfoam solver, flow: got {self.flow!r:.60}; allowed: {', '.join(FLOWS)}")
+        problems += [
+            f"openfoam solver, {name}: got {getattr(self, name)!r:.60}; allowed: {', '.join(words)}"
+            for name, words in (("flow", FLOWS), ("physics", PHYSICS))
+            if getattr(self, name) not in words
+        ]
+        if self.physics == THERMAL and self.flow != "thin_film":
+            problems.append(
+                f"openfoam solver, physics: got thermal with flow {self.flow!r:.60}; allowed: with flow thin_film"
+            )
+        if self.physics == THERMAL and not abs(self.slide_to_roll) < 2.0:
+            problems.append(
+                f"openfoam solver, slide_to_roll: got {self.slide_to_roll!r} with physics thermal; allowed: between -2 "
+                "and 2 without both, since a surface that stands has no steady temperature"
+            )
         try:
             self.shear_law()
         except InputError as error:
@@ -212,10 +236,10 @@ class OpenFoamSolver(ContactSolverDefaults):
             "flow": self.flow,
             "columns": self.columns,
             "rows": self.rows,
+            **({} if self.physics == ISOTHERMAL else {"physics": self.physics}),
             "shear": self.shear,
             "shear_stress": 0.0 if self.shear == "newtonian" else law.stress,
             **{key: value for key, value in own.items() if value is not None},
-            "inertia": int(self.inertia),
             "slide_to_roll": self.slide_to_roll,
             "inlet_length": self.inlet_length,
             "tolerance": self.tolerance,
@@ -311,6 +335,9 @@ class OpenFoamSolver(ContactSolverDefaults):
         stage, done = "coarse grid", 0
         try:
             fine = self.parameters(contact, lubricant, point, frequencies)
+            short = self._inlet_too_short(contact, point, fine.mesh)
+            if short:
+                return FilmSolution(Status.OUTSIDE_VALIDITY, short), None, None
             halved = replace(fine, columns=fine.columns // 2, rows=fine.rows // 2)
             name = _case_name(contact, point)
             grids = GridSolver(self.installed, self.keep_cases)
@@ -385,11 +412,30 @@ class OpenFoamSolver(ContactSolverDefaults):
             rows=self.rows,
             flow=self.flow,
             shear=self.shear_law(),
-            inertia=self.inertia,
+            heat=self._heat(contact, lubricant, point.temperature),
             start=start,
             frequencies=(0.0, *frequencies),
             max_iterations=self.max_iterations,
             tolerance=self.tolerance,
+        )
+
+    def _heat(self, contact: LineContact, lubricant: Lubricant, temperature: float) -> Heat | None:
+        """What the energy of the film is solved with; None where it is not."""
+        if self.physics == ISOTHERMAL:
+            return None
+        return Heat(temperature, heat_data(lubricant, contact.material), isotherms(lubricant, temperature))
+
+    def _inlet_too_short(self, contact: LineContact, point: OperatingPoint, mesh: Mesh) -> str:
+        """Why a film is too thick for all stresses, whose inlet is cut; empty where it is not."""
+        thickness = (
+            mesh.film * (float(half_width(point.load, contact.radius, contact.reduced_modulus)) / contact.radius) ** 2
+        )
+        if self.flow == "thin_film" or 2.0 * thickness * LEAST_LENGTHS**2 < LONGEST_INLET**2:
+            return ""
+        lengths = LONGEST_INLET / math.sqrt(2.0 * thickness)
+        return (
+            f"film of {thickness:.2g} of the radius: {LONGEST_INLET:g} radii, where full_stress begins, are only "
+            f"{lengths:.2g} lengths sqrt(2 h R) of inlet, below {LEAST_LENGTHS:g}; take flow thin_film"
         )
 
     def surface_speeds(self, entrainment_speed: float) -> tuple[float, float]:
@@ -442,7 +488,7 @@ def _film(
         status = Status.ASYMPTOTE
         notes.append("film thicker than 1 % of the radius: the gap is that of a parabola")
     elif found.loss_compliance[0] < 0.0:
-        notes.append("negative damping at the valley of an isothermal film; a contact law takes zero")
+        notes.append("negative damping at the valley; a contact law takes zero")
     if newtonian:
         notes.append(wall_stress_note(fine.film.x, fine.film.pressure, fine.film.film))
     largest_error = abs(error(found.max_pressure, rough.max_pressure))
@@ -468,6 +514,8 @@ def _film(
         max_pressure_error=largest_error,
         rolling_force_error=abs(error(rolling, rough_rolling)),
         mass_flow_error=abs(error(flow, rough_flow)),
+        film_temperature=found.film_temperature,
+        surface_temperature=found.surface_temperature,
         iterations=rough.iterations + found.iterations,
         solve_seconds=seconds,
         viscosity_extrapolated=found.max_pressure * (1.0 + largest_error) > state.fitted_pressure,

@@ -10,9 +10,11 @@
 
     constant/ehlProperties says what is solved; the answer goes to `results`
     (an OpenFOAM dictionary), film.dat (a table over the columns) and, if asked,
-    to the fields p, U, mu, rho, liquidFraction, wallShear of the time folder 1.
+    to the fields p, U, mu, rho, liquidFraction, wallShear (and T with heat) of the
+    time folder 1.
 
-    ehlFoam -laws FILE solves nothing and writes the oil as a table, laws.dat.
+    ehlFoam -laws FILE solves nothing and writes the oil as a table, laws.dat;
+    ehlFoam -walls FILE the surfaces under sources of heat, walls.dat.
 */
 
 #include "report.H"
@@ -20,6 +22,7 @@
 #include "oscillation.H"
 #include "caseFiles.H"
 #include "lawTable.H"
+#include "wallTable.H"
 #include "columnLayout.H"
 #include "positive.H"
 #include "argList.H"
@@ -71,6 +74,7 @@ int main(int argc, char* argv[])
     argList::addNote("Elastohydrodynamic line contact, film-resolved");
     argList::noParallel();
     argList::addOption("laws", "file", "write the oil at the pressures and rates of a file to laws.dat, solve nothing");
+    argList::addOption("walls", "file", "write surface temperatures under the heat of a file to walls.dat, solve nothing");
     const argList args(argc, argv);
     Time runTime(Time::controlDictName, args);
     // a number that overflows, or a pivot that is zero, ends a solve with a status
@@ -88,6 +92,11 @@ int main(int argc, char* argv[])
         return 0;
     }
     const lineContact contact(dict);
+    if (args.found("walls"))
+    {
+        writeWalls(dict, contact, args["walls"], runTime.path()/"walls.dat");
+        return 0;
+    }
     const label columns = numberOf(dict, "columns", 10), rows = numberOf(dict, "rows", 2);
     const newtonControls controls{positive(dict, "tolerance"), dict.get<label>("maxIterations")};
     dictionary meshDict(dict.subDict("mesh"));
@@ -113,6 +122,7 @@ int main(int argc, char* argv[])
     // what it is
     resultsFile results(runTime);
     reportFilm(results, s, solved);
+    reportHeat(runTime, results, s, solved);
     writeTable(runTime.path()/"film.dat", s, s.film(solved.state));
     if (dict.lookupOrDefault<bool>("writeFields", true))
     {

@@ -9,6 +9,15 @@
 #include "steadyState.H"
 #include "StringStream.H"
 
+namespace Foam
+{
+
+//- Largest defect of the energy, over what shear dissipates
+static constexpr scalar mostEnergyDefect = 1e-4;
+
+} // End namespace Foam
+
+
 Foam::word Foam::wordOf(const outcome end)
 {
     return end == outcome::converged ? "converged"
@@ -18,6 +27,8 @@ Foam::word Foam::wordOf(const outcome end)
 
 void Foam::reportFilm(resultsFile& results, slice& s, newtonResult& solved)
 {
+    // a state that went astray has no numbers
+    if (solved.end == outcome::diverged) return;
     s.residual(solved.state, nullptr);
     const filmState state(s.film(solved.state));
     const scalarField flux(s.flow().columnFlux());
@@ -83,6 +94,54 @@ void Foam::writeTable(const fileName& path, const slice& s, const filmState& sta
             << s.flow().loadPressure(state.column[i]) << ' '
             << 0.5*(state.h[i] + state.h[i + 1]) << ' '
             << flux[i + 1] << ' ' << density[i] << ' ' << fraction[i] << nl;
+    }
+}
+
+
+void Foam::reportHeat(const Time& runTime, resultsFile& results, slice& s, newtonResult& solved)
+{
+    const filmHeat* heat = s.flow().heat();
+    if (!heat) return;
+    const scalar made = heat->dissipated() + heat->compressed();
+    const scalar defect = mag(heat->ledIntoWalls() + heat->carriedOut() - made)/heat->dissipated();
+    results.write("filmTemperature", heat->hottest());
+    results.write("surfaceTemperature", heat->hottestWall());
+    results.write("dissipatedHeat", heat->dissipated());
+    results.write("compressionHeat", heat->compressed());
+    results.write("carriedHeat", heat->carriedOut());
+    results.write("wallHeat", heat->ledIntoWalls());
+    results.write("energyDefect", defect);
+    Info<< "heat per length: " << heat->dissipated() << " W/m of shear, " << heat->compressed()
+        << " W/m of compression; " << heat->ledIntoWalls() << " W/m into the walls, " << heat->carriedOut()
+        << " W/m carried out; defect " << defect << nl
+        << "highest temperature: " << heat->hottest() << " K in the film, " << heat->hottestWall()
+        << " K of a wall" << endl;
+    OStringStream reason;
+    if (solved.end == outcome::converged && !(defect <= mostEnergyDefect))
+    {
+        solved.end = outcome::stagnated;
+        reason << "the energy of the film has a relative defect of " << defect << ", allowed is "
+            << mostEnergyDefect;
+    }
+    if (solved.end == outcome::converged && !(heat->hottest() < heat->oil().hottest()))
+    {
+        solved.end = outcome::stagnated;
+        reason << "the film has " << heat->hottest() << " K, the oil has laws up to " << heat->oil().hottest()
+            << " K";
+    }
+    if (!reason.str().empty()) solved.reason = reason.str();
+
+    const filmState state(s.film(solved.state));
+    const label n = s.columns();
+    OFstream table(runTime.path()/"heat.dat");
+    table.precision(12);
+    table << "# x lower_temperature upper_temperature lower_flux upper_flux" << nl;
+    for (label i = 0; i < n; ++i)
+    {
+        table << 0.5*(state.x[i] + state.x[i + 1]) << ' '
+            << heat->temperature(state.wall[i]) << ' ' << heat->temperature(state.wall[n + i]) << ' '
+            << heat->fluxUnit()*state.local[s.flow().fluxPlace(i, 0)] << ' '
+            << heat->fluxUnit()*state.local[s.flow().fluxPlace(i, 1)] << nl;
     }
 }
 

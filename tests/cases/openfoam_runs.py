@@ -9,6 +9,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.start import reynolds_start
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
 from ehdmaps.openfoam.installation import Installation, installation
@@ -78,3 +81,17 @@ def program(installed: Installation, name: str | Path, case: Path, *options: str
         timeout=120.0,
         check=False,
     )
+
+
+def table(settings: Parameters, case: Path, option: str, **lists: FloatArray) -> FloatArray:
+    """Table that ehlFoam writes of lists with -laws or -walls, in a new folder."""
+    installed = installation()
+    (case / "system").mkdir(parents=True)
+    (case / "constant").mkdir()
+    (case / "system" / "controlDict").write_text((installed.template / "system" / "controlDict").read_text())
+    (case / "constant" / "ehlProperties").write_text(settings.text())
+    text = "".join(f"{name} ({' '.join(map(repr, values.tolist()))});\n" for name, values in lists.items())
+    (case / "points").write_text(text)
+    ended = program(installed, installed.solver, case, f"-{option}", str(case / "points"))
+    assert ended.returncode == 0, ended.stdout
+    return np.loadtxt(case / f"{option}.dat", ndmin=2)

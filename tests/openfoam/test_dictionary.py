@@ -127,6 +127,16 @@ def test_what_would_not_be_read_is_refused(name: str, installed: Installation, t
         path.unlink() if before is None else path.write_text(before)
 
 
+def test_numbers_that_overflow_are_a_status(installed: Installation, template_copy: Path, good: str) -> None:
+    """Not a floating point exception, on which OpenFOAM aborts: a viscosity far beyond the largest number."""
+    (template_copy / "constant" / "ehlProperties").write_text(
+        _replaced(good, r"viscosity \{[^}]*\}", "viscosity { type Barus; viscosity 0.1; pressureViscosity 1e-5; }")
+    )
+    ended = openfoam_runs.program(installed, installed.solver, template_copy)
+    assert ended.returncode == 0, ended.stdout[-500:]
+    assert read_results(template_copy).status in (Status.DIVERGED, Status.STAGNATED)
+
+
 def test_case_by_hand(installed: Installation, tmp_path: Path) -> None:
     case = tmp_path / "lineContact"
     shutil.copytree(TEMPLATE, case, ignore=shutil.ignore_patterns("polyMesh", "1", "results", "film.dat", "log.*"))

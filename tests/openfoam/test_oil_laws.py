@@ -10,7 +10,6 @@ import pytest
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.openfoam.fields import read_fields
-from ehdmaps.openfoam.installation import installation
 from ehdmaps.openfoam.parameters import Parameters
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rheology import CARREAU, EYRING, LIMITING, ShearLaw, yielding
@@ -56,17 +55,7 @@ def settings() -> Parameters:
 
 def _table(case: Path, settings: Parameters) -> FloatArray:
     """Viscosity, density and stress of a case's oil at all pressures and rates, shape (pressures, rates, 3)."""
-    installed = installation()
-    (case / "system").mkdir(parents=True)
-    (case / "constant").mkdir()
-    (case / "system" / "controlDict").write_text((installed.template / "system" / "controlDict").read_text())
-    (case / "constant" / "ehlProperties").write_text(settings.text())
-    lists = {"pressure": PRESSURES, "rate": RATES}
-    text = "".join(f"{name} ({' '.join(map(repr, values.tolist()))});\n" for name, values in lists.items())
-    (case / "points").write_text(text)
-    ended = openfoam_runs.program(installed, installed.solver, case, "-laws", str(case / "points"))
-    assert ended.returncode == 0, ended.stdout
-    table = np.loadtxt(case / "laws.dat", ndmin=2)
+    table = openfoam_runs.table(settings, case, "laws", pressure=PRESSURES, rate=RATES)
     np.testing.assert_array_equal(table[:, 0], np.repeat(PRESSURES, RATES.size))
     np.testing.assert_array_equal(table[:, 1], np.tile(RATES, PRESSURES.size))
     return table[:, 2:].reshape(PRESSURES.size, RATES.size, 3)

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
-from ehdmaps.openfoam.parameters import Mesh, Oscillation, Parameters, Start
+from ehdmaps.openfoam.isotherms import STEP, isotherms
+from ehdmaps.openfoam.parameters import Heat, Mesh, Oscillation, Parameters, Start
 from ehdmaps.openfoam.pyfoam import parse
+from ehdmaps.physics.heat import HeatData
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rheology import ShearLaw, shear_law
 
@@ -38,7 +40,7 @@ def entries(parameters, tmp_path):
 def test_the_file_says_what_the_parameters_say(tmp_path):
     found = entries(GOOD, tmp_path)
     assert (found["reducedRadius"], found["load"], found["upperSpeed"]) == (5.5e-3, 1e4, 1.5)
-    assert (found["flow"], found["inertia"], found["columns"], found["rows"]) == ("thinFilm", False, 400, 6)
+    assert (found["flow"], found["columns"], found["rows"]) == ("thinFilm", 400, 6)
     assert found["viscosity"]["type"] == "FVA3"
     assert found["viscosity"]["viscosity"] == OIL.viscosity
     assert found["viscosity"]["pressureScale"] == OIL.pressure_viscosity.pressure_scale
@@ -62,6 +64,30 @@ def test_what_is_not_asked_for_is_left_out(tmp_path):
     found = entries(replace(GOOD, start=None, frequencies=()), tmp_path)
     assert "start" not in found
     assert list(found["response"]["frequencies"]) == []
+
+
+def test_heat_has_the_oil_over_temperature(tmp_path):
+    oil = isotherms(Lubricant.named("FVA3"), 333.15)
+    found = entries(replace(GOOD, heat=Heat(333.15, HeatData(oil_conductivity=0.15), oil)), tmp_path)["heat"]
+    assert (found["temperature"], found["oilConductivity"], found["solidConductivity"]) == (333.15, 0.15, 46.0)
+    lists = found["isotherms"]
+    place = round((333.15 - lists["first"]) / STEP)
+    assert (lists["viscosity"]["type"], lists["density"]["type"], lists["step"]) == ("FVA3", "DowsonHigginson", STEP)
+    assert lists["viscosity"]["viscosity"][place] == Lubricant.named("FVA3").at(333.15).viscosity
+    assert {len(lists[law][key]) for law, key in (("viscosity", "pressureScale"), ("density", "density"))} == {
+        len(oil.states)
+    }
+    assert "heat" not in entries(GOOD, tmp_path)
+
+
+def test_isotherms_end_where_the_laws_do():
+    oil = isotherms(Lubricant.named("FVA3"), 273.15)
+    assert 273.15 - 14.67 < oil.first < 273.15 - 14.67 + STEP
+    numbers = {"viscosity": 1e-4, "pressure_viscosity": 1e-8, "density": 100.0, "density_slope": -10.0}
+    with pytest.raises(
+        InputError, match=r"got 296.15 K, about which its laws hold over .* K; allowed with heat: at least"
+    ):
+        isotherms(Lubricant.barus(**numbers), 296.15)
 
 
 def test_an_oscillation(tmp_path):
@@ -136,8 +162,8 @@ def test_only_whole_numbers_count(value):
 
 @pytest.mark.parametrize("value", ["yes", 1, None, HOSTILE[0]], ids=repr)
 def test_only_booleans_switch(value):
-    with pytest.raises(InputError, match=r"inertia: got .*; allowed: true or false"):
-        replace(GOOD, inertia=value).text()
+    with pytest.raises(InputError, match=r"writeFields: got .*; allowed: true or false"):
+        replace(GOOD, write_fields=value).text()
 
 
 @pytest.mark.parametrize("value", ["thinFilm; #calc", "thinFilm", None, ["thin_film"], 3], ids=repr)

@@ -52,6 +52,16 @@ def changed(path: Path, old: str, new: str) -> None:
     path.write_text(text.replace(old, new))
 
 
+def test_the_temperature_of_a_film_with_heat(case, tmp_path):
+    assert read_fields(case).T is None
+    text = (case / "1" / "p").read_text()
+    (case / "1" / "T").write_text(text)
+    fields = read_fields(case)
+    np.testing.assert_array_equal(fields.T, fields.p)
+    write_fields(fields, tmp_path / "film.vtu")
+    np.testing.assert_array_equal(meshio.read(tmp_path / "film.vtu").cell_data["T"][0], fields.T)
+
+
 def test_results(case):
     results = read_results(case)
     assert (results.status, results.reason, results.iterations) == (Status.CONVERGED, "", 7)
@@ -175,7 +185,8 @@ def test_fields(case):
 
 
 def test_a_velocity_profile(case):
-    height, velocity = read_fields(case).velocity_profile(0.0, ROWS)
+    fields = read_fields(case)
+    height, velocity = fields.profile(fields.U[:, 0], 0.0, ROWS)
     np.testing.assert_allclose(height, [0.125, 0.375, 0.625, 0.875])
     np.testing.assert_allclose(velocity, 0.5 + height)
 

@@ -397,6 +397,9 @@ OPTIONS = {
     "a ratio": (dict(shear="eyring", limiting_ratio=0.1), "limiting_ratio: got 0.1 with shear eyring, which has none"),
     "slide": (dict(slide_to_roll=3.0), "slide_to_roll: got 3.0; allowed: -2 to 2"),
     "nan": (dict(slide_to_roll=float("nan")), "slide_to_roll: got nan; allowed: -2 to 2"),
+    "physics": (dict(physics="inlet-heat"), "physics: got 'inlet-heat'; allowed: isothermal, thermal"),
+    "all stresses with heat": (dict(physics="thermal", flow="full_stress"), "physics: got thermal with flow 'full_str"),
+    "a wall that stands": (dict(physics="thermal", slide_to_roll=-2.0), "slide_to_roll: got -2.0 with physics thermal"),
     "timeout": (dict(timeout=0.0), "timeout: got 0.0; allowed: 0.1 to"),
     "folder": (dict(keep_cases=Path("/tmp/my cases")), "OpenFOAM takes no spaces or quotes in the path of a case"),
 }
@@ -550,8 +553,9 @@ HOSTILE_KEYS = {
     "shear_stress = nan": "shear_stress: got nan; allowed: 1000 to 1e.10",
     "shear_stress = inf": "shear_stress: got inf",
     'shear_stress = "$load"': r"shear_stress: got '\$load', which does not start with a number",
+    'physics = "inlet-heat"': "physics: got 'inlet-heat'; allowed: 'isothermal', 'thermal'",
     "slide_to_roll = -3": "slide_to_roll: got -3; allowed: -2 to 2",
-    'inertia = "yes"': "inertia: got 'yes'; allowed: true or false, without quotes",
+    "inlet_length = 2": "inlet_length: got 2; allowed: 5 to",
     'start = "zero"': "start: got 'zero'; allowed: 'reynolds', 'hertz'",
     "timeout = 0": "timeout: got 0; allowed: 1 to",
     "density = 6.5": "density: unknown key",
@@ -568,9 +572,9 @@ def test_keys_of_a_job_that_are_refused(line):
 
 
 def test_keys_of_a_job_that_are_taken():
-    text = JOB.text.replace('shear = "newtonian"', 'shear = "limiting"\nlimiting_ratio = 0.07\ninertia = true')
+    text = JOB.text.replace('shear = "newtonian"', 'shear = "limiting"\nlimiting_ratio = 0.07\ninlet_length = 40')
     options = parse_job(text, "job", "job.toml").solver_options
-    assert (options["shear"], options["limiting_ratio"], options["inertia"]) == ("limiting", 0.07, True)
+    assert (options["shear"], options["limiting_ratio"], options["inlet_length"]) == ("limiting", 0.07, 40.0)
 
 
 def test_places_of_velocity_profiles():

@@ -41,6 +41,7 @@ Foam::filmFlow::filmFlow(const dictionary& dict, filmMesh& film, const lineConta
     film_(film),
     contact_(contact),
     oil_(dict, contact.pressure),
+    heat_(dict.found("heat") ? new filmHeat(dict.subDict("heat"), film, contact) : nullptr),
     expectedFilm_(contact.filmUnit()*dict.subDict("mesh").get<scalar>("film")),
     massUnit_(oil_.density(0)*contact.entrainment()*film.depth*expectedFilm_)
 {}

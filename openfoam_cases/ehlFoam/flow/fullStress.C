@@ -66,7 +66,6 @@ Foam::fullStress::fullStress(const dictionary& dict, filmMesh& film, const lineC
         film.mesh(),
         dimensionedScalar("zero", dimMass/dimTime, 0)
     ),
-    inertia_(dict.get<bool>("inertia")),
     continuity_(0)
 {
     flux_.setOriented();
@@ -115,7 +114,6 @@ Foam::List<Foam::scalarField> Foam::fullStress::residual
     film_.move(state.x, state.h);
 
     scalarField densityRate(mesh.nCells(), Zero);
-    vectorField velocityRate(mesh.nCells(), Zero);
     volScalarField shape(film_.field("shape", sqr(dimLength)));
     volScalarField shapeAcross(film_.field("shapeAcross", sqr(dimLength)));
     for (label i = 0; i < film_.columns(); ++i)
@@ -134,7 +132,6 @@ Foam::List<Foam::scalarField> Foam::fullStress::residual
             if (rate)
             {
                 densityRate[c] = densitySlope(v)*rate->local[place + 2];
-                velocityRate[c] = speed*vector(rate->local[place], rate->local[place + 1], 0);
             }
         }
     }
@@ -231,12 +228,6 @@ Foam::List<Foam::scalarField> Foam::fullStress::residual
         )
       - gradient
     );
-    if (inertia_)
-    {
-        force -= fvc::surfaceIntegrate(flux_*linear<vector>(mesh).interpolate(U_))
-          - U_*fvc::surfaceIntegrate(flux_);
-        force.primitiveFieldRef() -= rho_.primitiveField()*velocityRate;
-    }
 
     // normal stress on the surfaces
     scalarField load(mesh.nCells(), Zero);

@@ -17,6 +17,10 @@ namespace Foam
     addToRunTimeSelectionTable(filmFlow, thinFilm, dictionary);
 
 
+//- Change of a temperature [T_b] over which the equations are linear
+static constexpr scalar warmthStep = 1e-7;
+
+
 //- A cell field whose values on the two surfaces are fixed
 static tmp<volScalarField> fixedOnSurfaces
 (
@@ -57,6 +61,7 @@ Foam::thinFilm::thinFilm(const dictionary& dict, filmMesh& film, const lineConta
     )
 {
     flux_.setOriented();
+    if (heat_.valid()) T_.reset(fixedOnSurfaces(film, "T", dimTemperature).ptr());
     couette_.boundaryFieldRef()[film.lower()] == contact.lowerSpeed;
     couette_.boundaryFieldRef()[film.upper()] == contact.upperSpeed;
     forAll(couette_, c)
@@ -83,33 +88,35 @@ Foam::scalarField Foam::thinFilm::start
 Foam::scalar Foam::thinFilm::cellStep
 (
     const filmState& state,
-    const label,
+    const label kind,
     const label column,
     const label row
 ) const
 {
+    if (kind == across) return heat_->acrossStep(massUnit_, column);
+    if (kind == warmth) return warmthStep;
     const scalar slide = (contact_.upperSpeed - contact_.lowerSpeed)/contact_.entrainment();
-    auto velocity = [&](const label j)
+    auto speed = [&](const label j)
     {
-        return state.local[place(column, j, 0)] + slide*film_.middle(j);
+        return state.local[place(column, j, velocity)] + slide*film_.middle(j);
     };
-    const scalar here = velocity(row);
+    const scalar here = speed(row);
     return velocityStep
     (
         state.column[column],
         0.5*(state.h[column] + state.h[column + 1])*film_.share(row),
-        row > 0 ? velocity(row - 1) : -here,
+        row > 0 ? speed(row - 1) : -here,
         here,
-        row + 1 < film_.rows() ? velocity(row + 1) : 2*slide - here
+        row + 1 < film_.rows() ? speed(row + 1) : 2*slide - here
     );
 }
 
 
 Foam::scalarField Foam::thinFilm::addedVelocity(const filmState& state, const label column) const
 {
-    scalarField velocity(film_.rows());
-    forAll(velocity, j) velocity[j] = contact_.entrainment()*state.local[place(column, j, 0)];
-    return velocity;
+    scalarField added(film_.rows());
+    forAll(added, j) added[j] = contact_.entrainment()*state.local[place(column, j, velocity)];
+    return added;
 }
 
 
@@ -122,8 +129,25 @@ Foam::shearedColumn Foam::thinFilm::sheared(const filmState& state, const label 
         0.5*(state.h[column] + state.h[column + 1]),
         max(oil_.pressure(v), scalar(0)),
         contact_.upperSpeed - contact_.lowerSpeed,
-        scalarField(film_.rows() + 1, oil_.viscosity(v))
+        faceViscosity(state, column)
     );
+}
+
+
+Foam::scalarField Foam::thinFilm::faceViscosity(const filmState& state, const label column) const
+{
+    const scalar v = state.column[column];
+    const label rows = film_.rows();
+    scalarField viscosity(rows + 1, oil_.viscosity(v));
+    if (!heat_.valid()) return viscosity;
+    auto row = [&](const label j) { return state.local[place(column, j, warmth)]; };
+    forAll(viscosity, k)
+    {
+        const scalar warm = k == 0 ? state.wall[column]
+          : k == rows ? state.wall[film_.columns() + column] : 0.5*(row(k - 1) + row(k));
+        viscosity[k] = heat_->oil().viscosity(oil_.pressure(v), heat_->temperature(warm));
+    }
+    return viscosity;
 }
 
 
@@ -143,7 +167,7 @@ void Foam::thinFilm::balance(filmState& state) const
     {
         for (label j = 0; j < film_.rows(); ++j)
         {
-            state.local[place(i, j, 0)] = mass(top)/mass(i) - 1;
+            state.local[place(i, j, velocity)] = mass(top)/mass(i) - 1;
         }
     }
 }
@@ -167,10 +191,10 @@ void Foam::thinFilm::settle(const filmState& before, filmState& after)
         const scalar h = 0.5*(before.h[i] + before.h[i + 1]);
         const scalarField rate(shearedColumn::rates(was, h, slide));
         const scalar pressure = max(oil_.pressure(before.column[i]), scalar(0));
-        const scalar viscosity = oil_.viscosity(before.column[i]);
+        const scalarField viscosity(faceViscosity(before, i));
         auto stress = [&](const label k)
         {
-            return viscosity*rate[k]*oil_.shear().yielding(viscosity*rate[k], pressure).factor;
+            return viscosity[k]*rate[k]*oil_.shear().yielding(viscosity[k]*rate[k], pressure).factor;
         };
         const scalar wasGradient = (stress(film_.rows()) - stress(0))/h;
 
@@ -182,11 +206,11 @@ void Foam::thinFilm::settle(const filmState& before, filmState& after)
         {
             return mag(column.gradient() - wasGradient)/unit + mag(column.flow() - average(was))/speed;
         };
-        const scalarField velocity
+        const scalarField settled
         (
             (moved(byGradient) < moved(byFlow) ? byGradient : byFlow).velocity()/speed
         );
-        forAll(velocity, j) after.local[place(i, j, 0)] = velocity[j];
+        forAll(settled, j) after.local[place(i, j, velocity)] = settled[j];
     }
 }
 
@@ -215,10 +239,34 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
             mu_[c] = mu;
             rho_[c] = rho;
             fraction_[c] = fraction;
-            u_[c] = speed*state.local[i*blockSize() + j];
+            u_[c] = speed*state.local[place(i, j, velocity)];
             shape[c] = sqr(film_.film(i))*film_.parabola(j);
             if (rate) densityRate[c] = slope*rate->column[i];
+            if (heat_.valid())
+            {
+                const scalar T = heat_->temperature(state.local[place(i, j, warmth)]);
+                (*T_)[c] = T;
+                mu_[c] = heat_->oil().viscosity(p, T);
+                rho_[c] = heat_->oil().density(p, T);
+                if (rate)
+                {
+                    densityRate[c] = (densityRate[c]/rho - heat_->oil().expansion(p, T)*fraction
+                       *heat_->bulk()*rate->local[place(i, j, warmth)])*rho_[c];
+                }
+            }
         }
+    }
+    if (heat_.valid())
+    {
+        for (const label patch : {film_.lower(), film_.upper()})
+        {
+            const labelUList& cells = mesh.boundary()[patch].faceCells();
+            scalarField wall(cells.size());
+            const label first = patch == film_.upper() ? film_.columns() : 0;
+            forAll(wall, f) wall[f] = heat_->temperature(state.wall[first + cells[f]/film_.rows()]);
+            T_->boundaryFieldRef()[patch] == wall;
+        }
+        T_->correctBoundaryConditions();
     }
     p_.boundaryFieldRef()[film_.inlet()] == inletPressure(state);
     p_.correctBoundaryConditions();
@@ -234,6 +282,7 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
         film_.acrossGradient(u_) + film_.acrossGradient(couette_)
     );
     surfaceScalarField muFace(linear<scalar>(mesh).interpolate(mu_));
+    if (heat_.valid()) warmFaces(muFace);
     forAll(muFace, f)
     {
         muFace[f] = oil_.sheared(muFace[f], shearRate[f], p_[mesh.owner()[f]]);
@@ -287,10 +336,71 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
        *film_.carriedSmooth(rho_, oil_.density(0))*film_.carriedSharp(fraction_, 1);
     rho_ *= fraction_;
 
-    List<scalarField> result(2);
+    List<scalarField> result(heat_.valid() ? 5 : 2);
     result[0] = force*sqr(filmOfCells())/(oilViscosity*speed);
-    result[1] = gathered(flux_, rho_, densityRate, rate)/massUnit_;
+    result[cellSize()] = gathered(flux_, rho_, densityRate, rate)/massUnit_;
+    if (heat_.valid())
+    {
+        addHeat(result, muFace*shearRate, shearRate, gradient.primitiveField(), state, rate);
+    }
     return result;
+}
+
+
+void Foam::thinFilm::warmFaces(surfaceScalarField& muFace) const
+{
+    const fvMesh& mesh = film_.mesh();
+    forAll(muFace, f)
+    {
+        if (film_.columnFace(f) >= 0) continue;
+        const label below = mesh.owner()[f], above = mesh.neighbour()[f];
+        muFace[f] = heat_->oil().viscosity(p_[below], 0.5*(T_()[below] + T_()[above]));
+    }
+    for (const label patch : {film_.lower(), film_.upper()})
+    {
+        const labelUList& cells = mesh.boundary()[patch].faceCells();
+        scalarField& muWall = muFace.boundaryFieldRef()[patch];
+        forAll(cells, f) muWall[f] = heat_->oil().viscosity(p_[cells[f]], T_().boundaryField()[patch][f]);
+    }
+}
+
+
+void Foam::thinFilm::addHeat
+(
+    List<scalarField>& residuals,
+    const surfaceScalarField& stress,
+    const surfaceScalarField& shearRate,
+    const scalarField& gradient,
+    const filmState& state,
+    const filmState* rate
+)
+{
+    const scalarField& lack = residuals[cellSize()];
+    scalarField& continuity = residuals[across];
+    continuity = lack;
+    scalarField flux(lack.size()), compression(lack.size()), temperatureRate(lack.size(), Zero);
+    for (label i = 0; i < film_.columns(); ++i)
+    {
+        // pressure as the oil that passes has it change, on a mesh that moves
+        const scalar pressureRate = rate ? oil_.pressureSlope(state.column[i])*rate->column[i] : 0;
+        const scalar meshSpeed = rate ? 0.5*(rate->x[i] + rate->x[i + 1]) : 0;
+        for (label j = 0; j < film_.rows(); ++j)
+        {
+            const label c = film_.cell(i, j);
+            const scalar leaves = state.local[place(i, j, across)];
+            flux[c] = massUnit_*leaves;
+            continuity[c] += leaves - (j > 0 ? state.local[place(i, j - 1, across)] : 0);
+            compression[c] = heat_->oil().expansion(p_[c], T_()[c])*T_()[c]
+               *((couette_[c] + u_[c] - meshSpeed)*gradient[c] + pressureRate);
+            if (rate) temperatureRate[c] = heat_->bulk()*rate->local[place(i, j, warmth)];
+        }
+    }
+    residuals[warmth] = heat_->residual
+    (
+        T_(),
+        {flux_, flux, rho_, fraction_, heat_->shearHeat(stress, shearRate), compression, temperatureRate}
+    );
+    residuals[cellSize() + 1] = heat_->wallFlux(T_(), fraction_);
 }
 
 
@@ -355,4 +465,5 @@ void Foam::thinFilm::write()
     mu_.write();
     rho_.write();
     fraction_.write();
+    if (heat_.valid()) T_->write();
 }

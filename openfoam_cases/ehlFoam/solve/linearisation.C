@@ -15,8 +15,8 @@ static constexpr label group = 2;
 //- How far column unknowns and films reach, in columns
 static constexpr label columnReach = 2, filmReach = 3;
 
-//- Steps of the difference quotients, of pressures in Hertz pressures, and relative to the film
-static constexpr scalar pressureStep = 1e-7, filmStep = 1e-7;
+//- Steps of the difference quotients, of pressures in Hertz pressures, relative to the film, of walls in T_b
+static constexpr scalar pressureStep = 1e-7, filmStep = 1e-7, wallStep = 1e-7;
 
 } // End namespace Foam
 
@@ -38,7 +38,7 @@ Foam::linearisation::linearisation
         blockTridiagonal::rightSides::Zero
         (
             (s.columns() + group - 1)/group*group*s.flow().blockSize(),
-            s.columns() + 1 + (isobar >= 0)
+            s.columns() + 1 + (isobar >= 0) + s.wallSize()
         )
     )
 {
@@ -57,6 +57,7 @@ Foam::linearisation::linearisation
     addColumnUnknowns(film, base, rateFactor, here);
     addFilms(film, base, rateFactor, here);
     if (isobar >= 0) addShift(here);
+    if (s.wallSize()) addWalls(film, base, here);
     // a last column without a partner
     for (label i = s.columns(); i % group != 0; ++i)
     {
@@ -94,7 +95,14 @@ Eigen::VectorXd Foam::linearisation::difference
         {
             change[j*size + equation] = (there[equation][c] - here[equation][c])/step;
         }
-        change[flow.blockSize() - 1] += (there[size][c] - here[size][c])/step;
+        change[size*flow.film().rows()] += (there[size][c] - here[size][c])/step;
+    }
+    for (label side = 0; side < 2 && flow.heat(); ++side)
+    {
+        // the rows moved belong to this unknown only where they reach the wall
+        if (side == 0 ? firstRow > 0 : lastRow + 1 < flow.film().rows()) continue;
+        const label wall = side*slice_.columns() + column;
+        change[size*flow.film().rows() + 1 + side] = -(there[size + 1][wall] - here[size + 1][wall])/step;
     }
     return change;
 }
@@ -147,7 +155,7 @@ void Foam::linearisation::addCellUnknowns
     }
     for (label i = 0; i < n; ++i)
     {
-        const label source = flow.blockSize() - 1;
+        const label source = size*rows;
         for (label j = 0; j < rows; ++j)
         {
             for (label equation = 0; equation < size; ++equation)
@@ -156,6 +164,7 @@ void Foam::linearisation::addCellUnknowns
             }
         }
         block(i, i)(source, source) = flow.sourceInColumn();
+        for (label flux = source + 1; flux < flow.blockSize(); ++flux) block(i, i)(flux, flux) = 1;
     }
 }
 
@@ -252,6 +261,31 @@ void Foam::linearisation::addShift(const List<scalarField>& here)
 }
 
 
+void Foam::linearisation::addWalls
+(
+    const filmState& film,
+    const filmState* rate,
+    const List<scalarField>& here
+)
+{
+    filmFlow& flow = slice_.flow();
+    const label n = slice_.columns(), size = flow.blockSize();
+    for (label side = 0; side < 2; ++side)
+    {
+        // a wall's temperature is felt by its own column only
+        filmState moved(film);
+        for (label i = 0; i < n; ++i) moved.wall[side*n + i] += wallStep;
+        const List<scalarField> there(flow.residual(moved, rate));
+        for (label i = 0; i < n; ++i)
+        {
+            outer_.block(i*size, firstWall() + side*n + i, size, 1) =
+                difference(there, here, i, 0, flow.film().rows(), wallStep);
+        }
+        wallByFlux_[side] = slice_.wallByFlux(side);
+    }
+}
+
+
 // d(local) = A^-1 (residual - B d(outer)); its rows of the sources have to be what is asked of them
 void Foam::linearisation::reduce(const label isobar)
 {
@@ -265,6 +299,15 @@ void Foam::linearisation::reduce(const label isobar)
     for (label i = 0; i < n; ++i)
     {
         matrix.row(i) = response.row(flow.sourcePlace(i));
+    }
+    for (label side = 0; side < 2 && slice_.wallSize(); ++side)
+    {
+        const label first = firstWall() + side*n;
+        Eigen::MatrixXd flux(n, outer_.cols());
+        for (label i = 0; i < n; ++i) flux.row(i) = response.row(flow.fluxPlace(i, side));
+        matrix.middleRows(first, n) = wallByFlux_[side]*flux;
+        matrix.block(first, first, n, n).diagonal().array() += 1;
+        if (isobar >= 0) matrix.block(first, n + 1, n, 1) -= slice_.wallByShift(state_, side);
     }
     matrix.row(n).head(n) = slice_.loadByColumn(state_)/slice_.contact().load;
     if (isobar >= 0)
@@ -281,7 +324,8 @@ Foam::slice::unknowns Foam::linearisation::solve
 (
     const Eigen::VectorXd& residual,
     const Eigen::VectorXd& source,
-    const scalar load
+    const scalar load,
+    const Eigen::VectorXd& wall
 ) const
 {
     const filmFlow& flow = slice_.flow();
@@ -297,12 +341,19 @@ Foam::slice::unknowns Foam::linearisation::solve
         reduced[i] = inner(flow.sourcePlace(i), 0) - source[i];
     }
     reduced[n] = load;
+    for (label side = 0; side < 2 && slice_.wallSize(); ++side)
+    {
+        Eigen::VectorXd flux(n);
+        for (label i = 0; i < n; ++i) flux[i] = inner(flow.fluxPlace(i, side), 0);
+        reduced.segment(firstWall() + side*n, n) = wall.segment(side*n, n) + wallByFlux_[side]*flux;
+    }
     const Eigen::VectorXd outer = reduced_.solve(rowScale_.cwiseProduct(reduced));
 
     slice::unknowns change;
     change.column = outer.head(n);
     change.offset = outer[n];
-    change.shift = outer.size() > n + 1 ? outer[n + 1] : 0;
+    change.shift = firstWall() > n + 1 ? outer[n + 1] : 0;
+    change.wall = outer.tail(slice_.wallSize());
     inner = right - outer_*outer;
     inner_.solve(inner);
     change.local = inner.col(0).head(residual.size());

@@ -16,6 +16,9 @@ static constexpr scalar slow = 0.3;
 //- Most that one step changes pressures [Hertz pressures] and ln(viscosity), least it leaves of a film
 static constexpr scalar mostPressure = 0.25, mostViscosity = 5, leastFilm = 0.4;
 
+//- Most that one step changes temperatures [T_b]
+static constexpr scalar mostWarmth = 0.08;
+
 //- Defect of the mass flux upstream of rupture that counts as none; that of a cell may be a hundred times as large
 static constexpr scalar mostDefect = 1e-8;
 
@@ -89,6 +92,23 @@ static bool crossed(const slice& s, const slice::unknowns& before, const slice::
 }
 
 
+//- Largest change of a temperature [T_b] by a step; none where the film is isothermal
+static scalar warmed(const slice& s, const slice::unknowns& step)
+{
+    const filmFlow& flow = s.flow();
+    scalar most = 0;
+    if (!flow.heat()) return most;
+    for (label i = 0; i < s.columns(); ++i)
+    {
+        for (label j = 0; j < flow.film().rows(); ++j)
+        {
+            most = max(most, mag(step.local[flow.place(i, j, flow.warmthKind())]));
+        }
+    }
+    return max(most, step.wall.cwiseAbs().maxCoeff());
+}
+
+
 //- Part of a step that may be taken
 static scalar allowedPart(const slice& s, const slice::unknowns& u, const slice::unknowns& step)
 {
@@ -126,7 +146,8 @@ static scalar allowedPart(const slice& s, const slice::unknowns& u, const slice:
             mag(Foam::log(flow.oil().viscosity(v(next.column[i]))/flow.oil().viscosity(v(u.column[i]))))
         );
     }
-    return most > mostViscosity ? part*mostViscosity/most : part;
+    if (most > mostViscosity) part *= mostViscosity/most;
+    return min(part, mostWarmth/max(warmed(s, step), VSMALL));
 }
 
 } // End namespace Foam
@@ -161,12 +182,14 @@ Foam::newtonResult Foam::newton
             (
                 -s.residual(u, rateOf ? &rate : nullptr),
                 source,
-                (load - s.load(u))/s.contact().load
+                (load - s.load(u))/s.contact().load,
+                -s.wallDefect(u, rateOf ? &rate : nullptr)
             );
         };
         auto length = [&](const slice::unknowns& after)
         {
-            return max((after.column - u.column).cwiseAbs().maxCoeff(), mag(after.offset - u.offset));
+            const scalar walls = s.wallSize() ? (after.wall - u.wall).cwiseAbs().maxCoeff() : 0;
+            return max(max((after.column - u.column).cwiseAbs().maxCoeff(), mag(after.offset - u.offset)), walls);
         };
 
         bool fresh = false;

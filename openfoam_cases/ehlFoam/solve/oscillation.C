@@ -25,6 +25,12 @@ Foam::oscillationResult Foam::oscillation
             << "stepsPerCycle, cycles: got " << steps << ", " << cycles
             << ", allowed are at least 8 steps and 1 cycle" << exit(FatalIOError);
     }
+    if (s.flow().heat())
+    {
+        FatalIOErrorInFunction(dict)
+            << "oscillation: got it with heat, allowed without: walls know their past by rates that are small"
+            << exit(FatalIOError);
+    }
     const scalar dt = constant::mathematical::twoPi/omega/steps;
     const scalar load = s.contact().load;
 

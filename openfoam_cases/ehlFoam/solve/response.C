@@ -20,20 +20,21 @@ static constexpr scalar smallResidual = 1e-8;
 //- All unknowns in one vector
 static Eigen::VectorXd packed(const slice::unknowns& u)
 {
-    Eigen::VectorXd v(u.local.size() + u.column.size() + 2);
-    v << u.local, u.column, u.offset, u.shift;
+    Eigen::VectorXd v(u.local.size() + u.column.size() + 2 + u.wall.size());
+    v << u.local, u.column, u.offset, u.shift, u.wall;
     return v;
 }
 
 
-static slice::unknowns unpacked(const Eigen::VectorXd& v, const label locals)
+static slice::unknowns unpacked(const Eigen::VectorXd& v, const slice& s)
 {
     slice::unknowns u;
-    const label n = v.size() - locals - 2;
+    const label locals = s.localSize(), n = s.columns();
     u.local = v.head(locals);
     u.column = v.segment(locals, n);
     u.offset = v[locals + n];
     u.shift = v[locals + n + 1];
+    u.wall = v.tail(s.wallSize());
     return u;
 }
 
@@ -82,14 +83,25 @@ Foam::List<Foam::filmResponse> Foam::response
     // time in b/u, so that the Krylov vectors keep their size
     auto T = [&](const Eigen::VectorXd& z)
     {
-        slice::unknowns rate(unpacked(z, locals));
+        slice::unknowns rate(unpacked(z, s));
         rate.local /= halfWidthTime;
         rate.column /= halfWidthTime;
         rate.offset /= halfWidthTime;
         rate.shift /= halfWidthTime;
-        return packed(linear.solve(s.residual(solution, &rate) - atRest, none, 0));
+        rate.wall /= halfWidthTime;
+        return packed
+        (
+            linear.solve
+            (
+                s.residual(solution, &rate) - atRest, none, 0,
+                s.wallDefect(solution, &rate) - s.wallDefect(solution, nullptr)
+            )
+        );
     };
-    const Eigen::VectorXd first = packed(linear.solve(Eigen::VectorXd::Zero(locals), none, 1));
+    const Eigen::VectorXd first = packed
+    (
+        linear.solve(Eigen::VectorXd::Zero(locals), none, 1, Eigen::VectorXd::Zero(s.wallSize()))
+    );
     const label offset = locals + n;
     const scalar unit = s.filmScale()/s.contact().load;
     const scalar dry = -s.solid().dry().offsetSlope;

@@ -25,6 +25,7 @@ Foam::slice::unknowns Foam::slice::unknowns::plus(const scalar factor, const unk
     unknowns sum(*this);
     sum.local += factor*other.local;
     sum.column += factor*other.column;
+    if (other.wall.size()) sum.wall += factor*other.wall;
     sum.offset += factor*other.offset;
     sum.shift += factor*other.shift;
     return sum;
@@ -53,8 +54,70 @@ Foam::slice::slice
         ).load
     ),
     faceShift_(x.size(), Zero),
-    shiftStep_(0)
-{}
+    shiftStep_(0),
+    wallUnit_(flow.heat() ? flow.heat()->fluxUnit()/flow.heat()->bulk() : 0)
+{
+    if (flow.heat()) wall_ = walls(x);
+}
+
+
+Foam::FixedList<Foam::movingWall, 2> Foam::slice::walls(const scalarField& faces) const
+{
+    const scalar effusivity = flow_.heat()->effusivity();
+    return FixedList<movingWall, 2>
+    ({
+        movingWall(faces, contact_.lowerSpeed, effusivity),
+        movingWall(faces, contact_.upperSpeed, effusivity)
+    });
+}
+
+
+Eigen::VectorXd Foam::slice::wallFlux(const Eigen::VectorXd& local, const label side) const
+{
+    Eigen::VectorXd flux(columns());
+    for (label i = 0; i < columns(); ++i) flux[i] = local[flow_.fluxPlace(i, side)];
+    return flux;
+}
+
+
+Eigen::MatrixXd Foam::slice::wallByFlux(const label side) const
+{
+    return wallUnit_*wall_[side].perFlux();
+}
+
+
+Eigen::VectorXd Foam::slice::wallByShift(const unknowns& u, const label side) const
+{
+    return wallUnit_/shiftStep_
+       *((shiftedWall_[side].perFlux() - wall_[side].perFlux())*wallFlux(u.local, side));
+}
+
+
+Eigen::VectorXd Foam::slice::wallDefect(const unknowns& u, const unknowns* rate) const
+{
+    const label n = columns();
+    Eigen::VectorXd defect(wallSize());
+    for (label side = 0; side < 2 && flow_.heat(); ++side)
+    {
+        const Eigen::VectorXd flux = wallFlux(u.local, side);
+        defect.segment(side*n, n) = u.wall.segment(side*n, n) - wallUnit_*(wall_[side].perFlux()*flux);
+        if (!rate) continue;
+        // what the wall remembers, of its temperature at places that stand, on a mesh that moves
+        const scalar speed = side ? contact_.upperSpeed : contact_.lowerSpeed;
+        auto wall = [&](const label i) { return u.wall[side*n + min(max(i, 0), n - 1)]; };
+        scalar remembered = 0;
+        for (label i = 0; i < n; ++i)
+        {
+            const scalar length = x_[i + 1] - x_[i];
+            const scalar meshSpeed = 0.5*rate->shift*(faceShift_[i] + faceShift_[i + 1]);
+            const scalar apart = 0.5*(x_[min(i + 2, n)] + x_[i + 1] - x_[i] - x_[max(i - 1, 0)]);
+            const scalar wallRate = rate->wall[side*n + i] - meshSpeed*(wall(i + 1) - wall(i - 1))/apart;
+            defect[side*n + i] += (remembered + 0.5*length*wallRate)/(2*speed);
+            remembered += length*wallRate;
+        }
+    }
+    return defect;
+}
 
 
 void Foam::slice::follow(const scalarField& shiftedFaces, const scalar shiftStep)
@@ -62,6 +125,7 @@ void Foam::slice::follow(const scalarField& shiftedFaces, const scalar shiftStep
     shiftStep_ = shiftStep;
     faceShift_ = (shiftedFaces - x_)/shiftStep;
     shifted_.reset(new halfSpace(contact_, shiftedFaces));
+    if (flow_.heat()) shiftedWall_ = walls(shiftedFaces);
 }
 
 
@@ -94,6 +158,7 @@ Foam::slice::unknowns Foam::slice::start
     );
     u.local.resize(local.size());
     forAll(local, i) u.local[i] = local[i];
+    u.wall = Eigen::VectorXd::Zero(wallSize());
     return u;
 }
 
@@ -151,7 +216,8 @@ Foam::filmState Foam::slice::film(const unknowns& u) const
         x_,
         toField(solid_.film(pressure(u), u.offset*filmScale_)),
         toField(u.column),
-        toField(u.local)
+        toField(u.local),
+        toField(u.wall)
     };
 }
 
@@ -163,7 +229,8 @@ Foam::filmState Foam::slice::shiftedFilm(const unknowns& u) const
         x_ + shiftStep_*faceShift_,
         toField(shifted_->film(pressure(u), u.offset*filmScale_)),
         toField(u.column),
-        toField(u.local)
+        toField(u.local),
+        toField(u.wall)
     };
 }
 
@@ -183,7 +250,7 @@ Foam::filmState Foam::slice::filmRate(const unknowns& u, const unknowns& rate) c
         hRate += rate.shift/shiftStep_
            *(shifted_->film(p, u.offset*filmScale_) - solid_.film(p, u.offset*filmScale_));
     }
-    return {rate.shift*faceShift_, toField(hRate), toField(rate.column), toField(rate.local)};
+    return {rate.shift*faceShift_, toField(hRate), toField(rate.column), toField(rate.local), toField(rate.wall)};
 }
 
 
@@ -206,6 +273,11 @@ Eigen::VectorXd Foam::slice::assembled(const List<scalarField>& raw, const unkno
             column += raw[size][c];
         }
         result[flow_.sourcePlace(i)] = column;
+        for (label side = 0; side < 2 && flow_.heat(); ++side)
+        {
+            const label place = flow_.fluxPlace(i, side);
+            result[place] = u.local[place] - raw[size + 1][side*columns() + i];
+        }
     }
     return result;
 }

@@ -44,21 +44,29 @@ Foam::solvedFilm Foam::steadyState
     const scalar filmScale = dict.subDict("mesh").get<scalar>("film")*contact.filmUnit();
 
     // what a stage starts from: the case's own start, or the stage before
-    struct { scalarField pressure; scalar central; Eigen::VectorXd local; } from;
+    struct { scalarField pressure; scalar central; Eigen::VectorXd local, wall, velocity; } from;
     from.pressure = startPressure(dict, contact, x);
     from.central = dict.found("start") ? positive(dict.subDict("start"), "centralFilm") : filmScale;
     label iterations = 0;
     solvedFilm found;
+    if (dict.found("heat") && flow != "thinFilm")
+    {
+        FatalIOErrorInFunction(dict)
+            << "heat: got it with the flow " << flow << ", allowed with thinFilm only" << exit(FatalIOError);
+    }
 
-    auto solve = [&](const word& type, const dictionary& law, const newtonControls& stageControls)
+    auto solve = [&](const word& type, const dictionary& law, const newtonControls& stageControls, const scalar heated = 0)
     {
         dictionary stage(dict);
         stage.set("shear", law);
+        if (heated > 0) stage.subDict("heat").set("share", heated);
+        else stage.remove("heat");
         found.contact.reset();
         found.flow = filmFlow::New(type, stage, film, contact);
         found.contact.reset(new slice(*found.flow, contact, x, filmScale));
         Info<< type << ", " << law.get<word>("type");
         if (law.found("stress")) Info<< " " << law.get<scalar>("stress") << " Pa";
+        if (heated > 0) Info<< ", " << heated << " of the heat";
         Info<< endl;
         std::unique_ptr<linearisation> none;
         slice::unknowns start(found.contact->start(from.pressure, from.central));
@@ -66,7 +74,19 @@ Foam::solvedFilm Foam::steadyState
         {
             slice::unknowns before(start);
             before.local = from.local;
+            before.wall = from.wall;
             start = found.contact->settled(before, before);
+        }
+        else if (heated > 0)
+        {
+            // the velocities of the isothermal film
+            for (label i = 0; i < x.size() - 1; ++i)
+            {
+                for (label j = 0; j < film.rows(); ++j)
+                {
+                    start.local[found.flow->place(i, j, 0)] = from.velocity[film.cell(i, j)];
+                }
+            }
         }
         else
         {
@@ -82,6 +102,12 @@ Foam::solvedFilm Foam::steadyState
             forAll(from.pressure, i) from.pressure[i] = found.flow->loadPressure(state.column[i]);
             from.central = centralFilm(state);
             from.local = found.result.state.local;
+            from.wall = found.result.state.wall;
+            from.velocity.resize(film.columns()*film.rows());
+            for (label c = 0; c < from.velocity.size(); ++c)
+            {
+                from.velocity[c] = from.local[found.flow->place(c/film.rows(), c % film.rows(), 0)];
+            }
         }
         return converged;
     };
@@ -120,7 +146,16 @@ Foam::solvedFilm Foam::steadyState
             }
         }
     }
-    if (found.result.end != outcome::converged || flow == "thinFilm") return found;
+    if (found.result.end != outcome::converged) return found;
+    if (dict.found("heat") && !solve(flow, shear, controls, 1))
+    {
+        // a little heat first: it thins the oil where most of it is made
+        for (scalar share = 1.0/64; share <= 1; share *= 4)
+        {
+            if (!solve(flow, shear, controls, share)) return found;
+        }
+    }
+    if (flow == "thinFilm") return found;
 
     // where all stresses have no solution to be found, the thin film shows whether the law of shear is admissible
     found.contact->residual(found.result.state, nullptr);

@@ -1,0 +1,155 @@
+"""Heat in the film: closed forms, the balance of energy, work that becomes heat, and k as the slope over the load."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehdmaps.ehl.start import reynolds_start
+from ehdmaps.openfoam.fields import read_fields
+from ehdmaps.openfoam.grid_solver import GridSolution
+from ehdmaps.openfoam.isotherms import STEP, Isotherms
+from ehdmaps.openfoam.parameters import Heat, Parameters
+from ehdmaps.openfoam.solver import OpenFoamSolver
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.heat import HeatData
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solids import STEEL
+from tests.cases import openfoam_runs
+
+pytestmark = pytest.mark.openfoam
+
+OIL = Lubricant.named("FVA3")
+CONTACT = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[0]
+DATA = HeatData()
+POINT = OperatingPoint(5e3, 10.0, 333.15)
+"""Light and fast: film and loss follow the heat in the inlet."""
+
+
+@cache
+def _parameters(load: float = POINT.load) -> Parameters:
+    """The point, or another load [N/m]."""
+    solver = OpenFoamSolver(physics="thermal", starter=reynolds_start)
+    return replace(solver.parameters(CONTACT, OIL, replace(POINT, load=load)), columns=100, rows=6)
+
+
+@cache
+def _solved(load: float = POINT.load) -> GridSolution:
+    return openfoam_runs.run(_parameters(load))
+
+
+def test_a_strip_of_heat_on_a_moving_solid(tmp_path: Path) -> None:
+    half, flux = 1e-4, 1e8
+    face = half * np.linspace(-2.0, 3.0, 201)
+    middle = 0.5 * (face[1:] + face[:-1])
+    heated = np.where(np.abs(middle) < half, flux, 0.0)
+    x, warmer = openfoam_runs.table(_parameters(), tmp_path / "strip", "walls", face=face, flux=heated).T
+    effusivity = math.sqrt(DATA.solid_conductivity * DATA.solid_heat_capacity * DATA.solid_density)
+    unit = 2.0 * flux / (effusivity * math.sqrt(math.pi * POINT.entrainment_speed))
+    jaeger = unit * (np.sqrt(np.maximum(x + half, 0.0)) - np.sqrt(np.maximum(x - half, 0.0)))
+    # round-off: flux is constant in columns, and the strip ends between two of them
+    np.testing.assert_allclose(warmer, jaeger, rtol=1e-11, atol=1e-12 * unit)
+    # an elliptic source: the largest Int sqrt(1 - s^2)/sqrt(x - s) ds is 2.1880; 40 columns across the half-width
+    ellipse = flux * np.sqrt(np.maximum(1.0 - (middle / half) ** 2, 0.0))
+    _, warmer = openfoam_runs.table(_parameters(), tmp_path / "ellipse", "walls", face=face, flux=ellipse).T
+    assert warmer.max() == pytest.approx(0.5 * 2.1880 * unit * math.sqrt(half), rel=1e-3)
+
+
+def test_the_isotherms_are_the_oil(tmp_path: Path) -> None:
+    pressures, temperatures = (
+        np.array([0.0, 1e7, 3e8, 1e9]),
+        POINT.temperature + np.array([-31.0, -2.0, 0.0, 1.3, 77.0, 250.5]),
+    )
+    table = openfoam_runs.table(_parameters(), tmp_path / "oil", "laws", pressure=pressures, temperature=temperatures)
+    viscosity, density, expansion = table[:, 2:].T.reshape(3, pressures.size, temperatures.size)
+    for k, temperature in enumerate(temperatures.tolist()):
+        state, warmer = OIL.at(temperature), OIL.at(temperature + 1.0)
+        # the cubic through four isotherms
+        np.testing.assert_allclose(np.log(viscosity[:, k]), np.log(state.viscosity_at(pressures)), atol=1e-4)
+        np.testing.assert_allclose(density[:, k], state.density * state.density_ratio(pressures), rtol=1e-12)
+        np.testing.assert_allclose(expansion[:, k], (state.density - warmer.density) / state.density, rtol=1e-9)
+
+
+@pytest.mark.parametrize("nahme", [0.5, 8.0])
+def test_a_couette_film_between_walls_that_stay_cold(nahme: float, tmp_path: Path) -> None:
+    warming, slide_to_roll, rows = 0.03, 1.8, 16
+    settings = openfoam_runs.parameters(1.0, 0.0, 60, rows, hertz=True)
+    cold = settings.oil
+    sliding = math.sqrt(nahme * DATA.oil_conductivity / (warming * cold.viscosity))
+    speed = sliding / slide_to_roll
+    scale = speed / settings.lower_speed
+    states = tuple(replace(cold, viscosity=cold.viscosity * math.exp(-warming * k * STEP)) for k in range(-3, 40))
+    # nothing is carried, and walls that lead heat perfectly
+    data = HeatData(oil_heat_capacity=1e-6, solid_conductivity=1e15)
+    settings = replace(
+        settings,
+        load=math.sqrt(scale) * settings.load,
+        lower_speed=speed * (1.0 - 0.5 * slide_to_roll),
+        upper_speed=speed * (1.0 + 0.5 * slide_to_roll),
+        heat=Heat(cold.temperature, data, Isotherms(cold.temperature - 3.0 * STEP, states)),
+        write_fields=True,
+    )
+    found = openfoam_runs.run(settings, keep=tmp_path)
+    (case,) = [path.parent for path in tmp_path.rglob("constant") if path.is_dir()]
+    fields = read_fields(case)
+    assert fields.T is not None
+    # where the pressure is largest nothing but the walls drags the oil
+    place = float(found.film.x[np.argmax(found.film.pressure)])
+    height, temperature = fields.profile(fields.T, place, rows)
+    _, velocity = fields.profile(fields.U[:, 0], place, rows)
+    root = math.sqrt(nahme / 8.0)
+    turn = math.asinh(root)
+    expected = np.log((1.0 + nahme / 8.0) / np.cosh(turn * (2.0 * height - 1.0)) ** 2) / warming
+    # the even part of temperatures and the odd one of velocities: the pressure has a small gradient in the column;
+    # second order in the rows
+    even = 0.5 * (temperature + temperature[::-1]) - cold.temperature
+    np.testing.assert_allclose(even, expected, atol=2e-3 * expected.max())
+    moved = 0.5 * sliding * np.tanh(turn * (2.0 * height - 1.0)) / math.tanh(turn)
+    np.testing.assert_allclose(0.5 * (velocity - velocity[::-1]), moved, atol=2e-3 * sliding)
+
+
+def test_the_energy_that_is_made_leaves_the_film() -> None:
+    found = _solved().results
+    made = found.dissipated_heat + found.compression_heat
+    # round-off: the scheme is conservative, so only what Newton's method leaves is missing
+    assert found.wall_heat + found.carried_heat == pytest.approx(made, abs=1e-7 * found.dissipated_heat)
+    assert found.film_temperature > found.surface_temperature + 1.0 > POINT.temperature + 1.1
+
+
+def test_the_work_of_the_walls_becomes_heat_and_pressure() -> None:
+    found = _solved()
+    film = found.film
+    rise = np.diff(film.pressure)
+    between = 0.5 * (film.film[1:] + film.film[:-1])
+    volume = film.flux / film.density
+    work = POINT.entrainment_speed * np.sum(between * rise) - np.sum(0.5 * (volume[1:] + volume[:-1]) * rise)
+    # the scheme: heat of shear by parabolas in a row of 6, and first differences of the pressure along 100 columns
+    assert found.results.dissipated_heat == pytest.approx(float(work), rel=0.02)
+
+
+def test_the_film_compliance_is_the_slope_of_the_film_over_the_load() -> None:
+    load, step = POINT.load, 0.01
+    more, less = (_solved(load * (1.0 + sign * step)).results for sign in (1.0, -1.0))
+    slope = (less.film_offset - more.film_offset) / (2.0 * step * load)
+    # columns move with the load: what that changes of the film is part of the discretisation
+    assert _solved().results.film_compliance[0] == pytest.approx(slope, rel=0.02)
+
+
+def test_no_heat_is_no_change() -> None:
+    settings = _parameters()
+    assert settings.heat is not None
+    # an oil that leads heat away as fast as copper stays cold
+    data = replace(DATA, oil_conductivity=1e9, solid_conductivity=1e12)
+    cold = openfoam_runs.run(replace(settings, heat=replace(settings.heat, data=data))).results
+    plain = openfoam_runs.run(replace(settings, heat=None)).results
+    for name in ("central_film", "minimum_film", "film_offset"):
+        # what is left of the heat, 1e-9 of a kelvin
+        assert getattr(cold, name) == pytest.approx(getattr(plain, name), rel=1e-7)
+    for name in ("film_compliance", "loss_compliance"):
+        assert getattr(cold, name)[0] == pytest.approx(getattr(plain, name)[0], rel=1e-5)
