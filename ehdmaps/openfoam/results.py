@@ -57,8 +57,8 @@ class Results:
     wall_stress : float
         Largest shear stress at a wall [Pa].
     traction, rolling_force : float
-        Integrals of the shear stress along the cells: of the mean of both walls, of the sign of the slide-to-roll
-        ratio, and of their difference [N/m].
+        Integrals of the shear stress along the film up to its exit: of the mean of both walls, of the sign of the
+        slide-to-roll ratio, and of their difference [N/m].
     frequencies : tuple of float
         Frequencies of the responses that follow [Hz].
     film_compliance : tuple of float

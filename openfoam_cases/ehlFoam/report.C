@@ -43,12 +43,15 @@ void Foam::reportFilm(resultsFile& results, slice& s, newtonResult& solved)
     results.write("filmOffset", solved.state.offset*s.filmScale() - s.solid().dry().offset);
     results.write("outletDefect", mag(flux.last()/flux[0] - 1));
 
+    const scalarField fraction(s.flow().columnFraction());
     scalar largest = 0, traction = 0, rolling = 0;
     for (label i = 0; i < s.columns(); ++i)
     {
         const scalar lower = s.flow().wallStress(0)[i], upper = s.flow().wallStress(1)[i];
         const scalar length = state.x[i + 1] - state.x[i];
         largest = max(largest, max(mag(lower), mag(upper)));
+        // behind the exit, as by the Reynolds equation, nothing is counted
+        if (fraction[i] < 1) continue;
         traction += 0.5*(lower + upper)*length;
         rolling += (upper - lower)*length;
     }
