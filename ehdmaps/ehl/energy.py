@@ -23,7 +23,7 @@ import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.ehl.reynolds import LineProblem, face_films, film, node_pressure
+from ehdmaps.ehl.reynolds import YIELDING, LineProblem, cell_means, face_films, film, node_pressure, oil, upwind
 from ehdmaps.ehl.warm_column import (
     BEND,
     INTEGRAL,
@@ -31,6 +31,7 @@ from ehdmaps.ehl.warm_column import (
     SLOPE,
     Columns,
     fill_column,
+    gradient_asked,
 )
 
 HEATED_FROM = 30.0
@@ -131,6 +132,7 @@ def fill_columns(
     kernel: FloatArray,
     unknowns: FloatArray,
     rises: FloatArray,
+    asked: FloatArray,
     columns: Columns,
 ) -> None:
     """Fill all columns of a film.
@@ -143,6 +145,9 @@ def fill_columns(
         The arguments of `reynolds.residual`.
     rises : ndarray, shape (n, k)
         Temperatures [K above T_0].
+    asked : ndarray, shape (n,)
+        Flow that the gradient of a column follows, see `asked_flows`, NaN where it is that of the pressures; of no
+        length where it is so everywhere.
     columns : Columns
         What is filled.
     """
@@ -152,7 +157,69 @@ def fill_columns(
     for f in range(n):
         middle = 0.5 * (pressure[f] + pressure[f + 1])
         gradient = (pressure[f + 1] - pressure[f]) / face_step[f]
+        columns.gradient_warm[f] = 0.0
+        follows = asked.size > 0 and not math.isnan(asked[f])
+        if follows:
+            gradient = gradient_asked(problem, middle, faces[f], rises[f], asked[f], gradient)
         fill_column(problem, f, middle, faces[f], gradient, unknowns[n - 1], rises[f], columns)
+        if follows:
+            steepness = columns.mobility[f, 0] + gradient * columns.mobility[f, 3]
+            columns.gradient_warm[f] = -gradient / steepness * columns.mobility_warm[f]
+            for j in range(POINTS):
+                for q in range(POINTS):
+                    columns.heat_warm[f, j, q] += columns.heat_slopes[f, 2, j] * columns.gradient_warm[f, q]
+                    columns.flow_warm[f, j, q] += columns.flow_slopes[f, 2, j] * columns.gradient_warm[f, q]
+
+
+@njit(cache=True)
+def hold_gradients(problem: LineProblem, outflow: float, rises: FloatArray, columns: Columns) -> None:
+    """Fill all columns at the gradients that they have, which no longer follow the temperatures."""
+    for f in range(columns.place.shape[0]):
+        pressure, film_here, gradient = columns.place[f]
+        columns.gradient_warm[f] = 0.0
+        fill_column(problem, f, pressure, film_here, gradient, outflow, rises[f], columns)
+
+
+@njit(cache=True)
+def asked_flows(
+    problem: LineProblem,
+    x: FloatArray,
+    face_step: FloatArray,
+    kernel: FloatArray,
+    unknowns: FloatArray,
+    rises: FloatArray,
+    columns: Columns,
+) -> FloatArray:
+    """Mobility times dP/dX that the flow through the contact asks of each column that yields, NaN of others.
+
+    Parameters
+    ----------
+    problem, x, face_step, kernel, unknowns
+        The arguments of `reynolds.residual`.
+    rises : ndarray, shape (n, k)
+        Temperatures [K above T_0].
+    columns : Columns
+        Overwritten.
+    """
+    n = face_step.size
+    pressure, gap = node_pressure(unknowns), film(x, kernel, unknowns)
+    log_eta, slope, rho, rho_slope = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
+    oil(problem, pressure, log_eta, slope, rho, rho_slope)
+    means = cell_means(problem, log_eta - np.log(rho), slope - rho_slope / rho, pressure)[0]
+    fill_columns(problem, x, face_step, kernel, unknowns, rises, np.empty(0), columns)
+    asked = np.full(n, np.nan)
+    for f in range(n):
+        film_here, gradient = columns.place[f, 1], columns.place[f, 2]
+        mobility, by_gradient = columns.mobility[f, 0], columns.mobility[f, 3]
+        if not mobility + gradient * by_gradient <= YIELDING * mobility:
+            carried = 0.0
+            weights = upwind(f)
+            for k in range(4):
+                if weights[k] != 0.0:
+                    carried += weights[k] * rho[f - 2 + k] * gap[f - 2 + k]
+            flow = columns.carriage[f, 0] * carried - unknowns[n - 1]
+            asked[f] = flow * problem.wedge / (film_here**3 * means[f])
+    return asked
 
 
 @njit(cache=True)
@@ -247,10 +314,12 @@ def energy(
             slopes[f, 0, 0, j] -= squeezed * columns.density_slope[f, j] / rho
             slopes[f, 0, 1, j] += (along * carried + squeezed) / film_here
             slopes[f, 0, 1, j] -= 2.0 * made / film_here * columns.heat[f, j]
-            slopes[f, 0, 2, j] += heat.compression * film_here * rho_warm / (rho * rho) * warm * y
             for v in range(3):
                 slopes[f, 0, v, j] -= made * columns.heat_slopes[f, v, j]
+            slopes[f, 0, 2, j] += heat.compression * film_here * rho_warm / (rho * rho) * warm * y
+            turned = heat.compression * film_here * rho_warm / (rho * rho) * warm * y
             for q in range(k):
+                matrix[j, q] += turned * columns.gradient_warm[f, q]
                 matrix[j, q] += along * across[j] * SLOPE[j, q] - BEND[j, q] - made * columns.heat_warm[f, j, q]
                 swept = along * lean[j] * INTEGRAL[j, q]
                 own[j, q] -= 1.5 * swept
@@ -402,8 +471,11 @@ def followed(
     unknowns: FloatArray,
     first: int,
     frozen: bool,
+    apart: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Derivatives of temperatures, shape (n, k, n + 2), mobilities and carriages, shape (n, n + 2), by all unknowns.
+    """Derivatives of temperatures, shape (n, k, n + 3), mobilities and carriages, shape (n, n + 3), by all unknowns.
+
+    The last of each is what the gradients are apart from those of the columns changes.
 
     Parameters
     ----------
@@ -417,6 +489,8 @@ def followed(
         Last column that is not heated.
     frozen : bool
         Whether the temperatures stay as they are.
+    apart : ndarray, shape (n,)
+        dP/dX at the faces less that of the columns.
     """
     n, k = face_step.size, POINTS
     size = n + 2
@@ -431,7 +505,7 @@ def followed(
         column = face_films(nodes[:, j].copy())
         for f in range(n):
             films[f, j] = column[f]
-    right, flux = np.zeros((n, k, size)), np.zeros((2, n, size))
+    right, flux = np.zeros((n, k, size + 1)), np.zeros((2, n, size + 1))
     for f in range(n if frozen else first + 1, n):
         for g in range(3):
             slope, i = equations.slopes[f, g], f - g
@@ -445,12 +519,13 @@ def followed(
                 if i + 1 < n:
                     right[f, j, i] -= by_pressure + by_gradient
                 right[f, j, n - 1] -= slope[3, j]
+                right[f, j, size] -= slope[2, j] * apart[i]
         for wall in range(2):
             part = -equations.flux[wall, f] / faces[f]
             for q in range(size):
                 flux[wall, f, q] = part * films[f, q]
     found = right if frozen else marched(equations, faces, right, flux, first)
-    mobility, carriage = np.empty((n, size)), np.empty((n, size))
+    mobility, carriage = np.empty((n, size + 1)), np.empty((n, size + 1))
     for f in range(n):
         for which in range(2):
             rows, slope = (mobility, columns.mobility[f]) if which == 0 else (carriage, columns.carriage[f])
@@ -458,6 +533,7 @@ def followed(
             line = warm @ found[f]
             for q in range(size):
                 rows[f, q] = line[q] + slope[2] * films[f, q]
+            rows[f, size] = line[size] + slope[3] * apart[f]
             if f > 0:
                 rows[f, f - 1] += 0.5 * slope[1] - slope[3] / face_step[f]
             if f + 1 < n:
@@ -475,6 +551,7 @@ def warm_temperatures(
     first: int,
     rises: FloatArray,
     columns: Columns,
+    asked: FloatArray,
     tolerance: float,
     most_steps: int,
 ) -> tuple[EnergyEquations, float, int]:
@@ -492,6 +569,9 @@ def warm_temperatures(
         Temperatures [K above T_0].
     columns : Columns
         Columns of the film, on return those at its temperatures.
+    asked : ndarray, shape (n,)
+        Flow that the gradient of a column follows, see `asked_flows`, NaN where it is that of the pressures; of no
+        length where it is so everywhere.
     tolerance : float
         Largest last step [K].
     most_steps : int
@@ -502,11 +582,14 @@ def warm_temperatures(
     last = math.inf
     count = 0
     while True:
-        fill_columns(problem, x, face_step, kernel, unknowns, rises, columns)
+        fill_columns(problem, x, face_step, kernel, unknowns, rises, asked, columns)
         equations = energy(problem, columns, face_step, walls, rises, first)
         if not np.all(np.isfinite(equations.residual)):
             return equations, math.inf, count
         if last <= tolerance or count >= most_steps:
+            if asked.size > 0:
+                hold_gradients(problem, unknowns[n - 1], rises, columns)
+                equations = energy(problem, columns, face_step, walls, rises, first)
             return equations, last, count
         right = -equations.residual.reshape((n, k, 1))
         move = marched(equations, columns.place[:, 1].copy(), right, nothing, first)[:, :, 0]

@@ -96,8 +96,8 @@ class Profile:
             log_eta = log_viscosity(problem.isotherm, 0.5 * (pressure[1:] + pressure[:-1]))[0]
             return problem.slide * np.exp(np.minimum(log_eta, MOST_LOG_VISCOSITY)) / faces, rise
         if self.warmth is not None:
-            columns = empty_columns(self.cells)
-            fill_columns(problem, grid.x, grid.face_step, self.kernel, self.unknowns, self.warmth.rises, columns)
+            columns, nothing = empty_columns(self.cells), np.empty(0)
+            fill_columns(problem, grid.x, grid.face_step, self.kernel, self.unknowns, self.warmth.rises, nothing, columns)
             return columns.stress + 0.5 * rise, rise
         mean = shear_factors(problem, grid.x, grid.face_step, self.kernel, self.unknowns, False)[1]
         return np.asarray(mean), rise

@@ -279,10 +279,10 @@ def shear_factors(
         growth = 1.0 + drop * found.mobility_by_rise * per_drop / found.mobility
         if soft and problem.shear.form == LIMITING and growth > YIELDING:
             carried = 0.0
-            upwind = _upwind(f)
+            weights = upwind(f)
             for k in range(4):
-                if upwind[k] != 0.0:
-                    carried += upwind[k] * mass[f - 2 + k]
+                if weights[k] != 0.0:
+                    carried += weights[k] * mass[f - 2 + k]
             conductance = film_here**3 / (problem.wedge * face_step[f])
             asked = (found.carriage * carried - unknowns[n - 1]) / (conductance * means[f])
             drop = _drop_asked(problem, middle, per_drop, sliding, asked, drop)
@@ -337,7 +337,7 @@ def _drop_asked(
 
 
 @njit(cache=True)
-def _upwind(f: int) -> tuple[float, float, float, float]:
+def upwind(f: int) -> tuple[float, float, float, float]:
     """Weights of the nodes f-2 .. f+1 in what the walls carry through a face."""
     if f == 0:
         return 0.0, 0.0, 0.5, 0.5
@@ -452,16 +452,16 @@ def residual_with(
         for k in range(4):
             by_film[first + k - f + 3] = 3.0 * flux / gap_face * weights[k]
         # wedge
-        upwind = _upwind(f)
+        ahead = upwind(f)
         carriage = factors.carriage[f] if sheared else 1.0
         carried = 0.0
         for k in range(4):
             i = f - 2 + k
-            if upwind[k] != 0.0:
-                carried += upwind[k] * mass[i]
-                by_film[k + 1] -= carriage * upwind[k] * rho[i]
+            if ahead[k] != 0.0:
+                carried += ahead[k] * mass[i]
+                by_film[k + 1] -= carriage * ahead[k] * rho[i]
                 if 0 < i < n:
-                    row[i - 1] -= carriage * upwind[k] * rho_slope[i] * gap[i]
+                    row[i - 1] -= carriage * ahead[k] * rho_slope[i] * gap[i]
         out[f] = flux - carriage * carried + outflow
         if sheared and wanted:
             if by_rows:

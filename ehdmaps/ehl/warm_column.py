@@ -6,7 +6,8 @@ wall, and rho in units of its value at the surfaces' temperature,
 
     mobility = -12 eta(T_0) Int rho (A_1 - A_1(1)/A_0(1) A_0) dzeta,   carriage = Int rho (U_1 + dU A_0/A_0(1)) dzeta
 
-take the place of those of `column`. For the energy a column says how much oil goes through each height, Y = rho U H,
+take the place of those of `column`. Where an oil yields, flow and heat rise with the gradient as by a hundredth power;
+far from a solution a column then takes the gradient for which it lets a flow pass, which differs little. For the energy a column says how much oil goes through each height, Y = rho U H,
 and what its shear heats, rate tau. Y is corrected by a parabola so that it sums up to the flow through the contact:
 what the discrete Reynolds equation and the column differ by is an error of both, and heat has to go with one flow.
 """
@@ -75,6 +76,8 @@ class Columns(NamedTuple):
         rate tau.
     density, density_slope, density_warm : ndarray, shapes (n, k), (n, k) and (n,)
         rho/rho_0, its derivatives by pressure and by temperature.
+    gradient_warm : ndarray, shape (n, k)
+        Derivatives of dP/dX by the temperatures, 0 where it is given.
     """
 
     place: FloatArray
@@ -92,6 +95,7 @@ class Columns(NamedTuple):
     density: FloatArray
     density_slope: FloatArray
     density_warm: FloatArray
+    gradient_warm: FloatArray
 
 
 @njit(cache=True)
@@ -114,7 +118,81 @@ def empty_columns(n: int) -> Columns:
         np.empty((n, k)),
         np.empty((n, k)),
         np.empty(n),
+        np.zeros((n, k)),
     )
+
+
+@njit(cache=True)
+def gradient_asked(
+    problem: LineProblem, pressure: float, film: float, rises: FloatArray, asked: float, start: float
+) -> float:
+    """dP/dX of a column whose product with its mobility is `asked`: Newton on logarithms, kept in its bracket.
+
+    Parameters
+    ----------
+    problem : LineProblem
+        Dimensionless groups.
+    pressure, film : float
+        P and H.
+    rises : ndarray, shape (k,)
+        Temperatures [K above T_0].
+    asked : float
+        Mobility times dP/dX.
+    start : float
+        dP/dX to start from.
+    """
+    if asked == 0.0:
+        return 0.0
+    law, k, p = problem.shear, POINTS, max(pressure, 0.0)
+    log_eta, by_rise, by_pressure = np.empty(k), np.empty(k), np.empty(k)
+    warm_viscosity(problem.isotherm, problem.heat, p, np.zeros(1), log_eta[:1], by_rise[:1], by_pressure[:1])
+    scale = 12.0 * math.exp(min(log_eta[0], 600.0))
+    warm_viscosity(problem.isotherm, problem.heat, p, rises, log_eta, by_rise, by_pressure)
+    fluid = np.exp(-np.minimum(log_eta, 600.0))
+    weights = WEIGHTS * (1.0 + problem.heat.density_slope * rises)
+    below = weights @ INTEGRAL
+    per_gradient, shear = 12.0 / problem.wedge * film, problem.slide / film
+    secant, bend = fluid.copy(), np.empty(k)
+    sign, wanted = math.copysign(1.0, asked), abs(asked)
+    low = high = trial = tau_0 = 0.0
+    for count in range(MOST_STEPS):
+        by_stress, by_raised = 0.0, 0.0
+        if count > 0:
+            rise = sign * per_gradient * trial
+            tau_0 = lower_stress(law, p, rise, shear, fluid, tau_0)
+            for j in range(k):
+                tau = tau_0 + HEIGHTS[j] * rise
+                factor, steep = _thinning(law, tau, p)
+                secant[j] = fluid[j] * factor
+                bend[j] = fluid[j] * (steep - factor) / tau if tau != 0.0 else 0.0
+                by_stress += WEIGHTS[j] * fluid[j] * steep
+                by_raised += WEIGHTS[j] * fluid[j] * steep * HEIGHTS[j]
+        lever = (WEIGHTS @ (secant * HEIGHTS)) / (WEIGHTS @ secant)
+        held, end = below @ secant, WEIGHTS @ secant
+        mobility = -scale * (below @ (secant * (HEIGHTS - lever)))
+        if count == 0:
+            # an oil that yields lets more pass than one that does not
+            high = wanted / mobility
+            trial = min(sign * start, high) if sign * start > 0.0 else high
+            continue
+        slope = 0.0
+        for j in range(k):
+            by_secant = -scale * (HEIGHTS[j] - lever) * (below[j] - WEIGHTS[j] * held / end)
+            slope += by_secant * bend[j] * (HEIGHTS[j] - by_raised / by_stress) * sign * per_gradient
+        total, steepness = mobility * trial, mobility + trial * slope
+        if total > wanted:
+            high = trial
+        else:
+            low = trial
+        move, quadratic = 0.5 * (low + high) - trial, False
+        if math.isfinite(total) and total > 0.0 and math.isfinite(steepness) and steepness > 0.0:
+            newton = total / steepness * math.log(wanted / total)
+            if low <= trial + newton <= high:
+                move, quadratic = newton, True
+        trial += move
+        if abs(move) <= (1e-7 if quadratic else 1e-12) * trial:
+            break
+    return sign * trial
 
 
 @njit(cache=True)

@@ -11,11 +11,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.ehl.energy import LARGEST_RISE, first_column, followed, wall_weights, warm_temperatures
+from ehdmaps.ehl.energy import LARGEST_RISE, asked_flows, first_column, followed, wall_weights, warm_temperatures
 from ehdmaps.ehl.newton import CONVERGED, DIVERGED, SOFT_ABOVE, STAGNATED, lifted, relaxed, solve_scaled, step_length
 from ehdmaps.ehl.newton import step_size as size_of
 from ehdmaps.ehl.reynolds import Factors, LineProblem, film, node_pressure, residual_with
 from ehdmaps.ehl.warm_column import POINTS, Columns, empty_columns
+from ehdmaps.physics.rheology import LIMITING
 
 LOOSE, TIGHT = 0.1, 1e-7
 """Last step of the temperatures for a film that is far from its solution, and for one that is there [K]."""
@@ -56,9 +57,13 @@ class WarmResult(NamedTuple):
 
 
 def warm_factors(
-    columns: Columns, unknowns: FloatArray, mobility_rows: FloatArray, carriage_rows: FloatArray
+    columns: Columns,
+    unknowns: FloatArray,
+    face_step: FloatArray,
+    mobility_rows: FloatArray,
+    carriage_rows: FloatArray,
 ) -> Factors:
-    """Factors at the faces of a film with temperatures.
+    """Factors at the faces of a film with temperatures: a tangent about the gradients of its columns.
 
     Parameters
     ----------
@@ -66,13 +71,20 @@ def warm_factors(
         Columns of the film.
     unknowns : ndarray, shape (n + 2,)
         Unknowns of the film.
-    mobility_rows, carriage_rows : ndarray, shape (n, n + 2)
-        Derivatives by all unknowns; of no length for the residual alone.
+    face_step : ndarray, shape (n,)
+        dx/ds at the faces.
+    mobility_rows, carriage_rows : ndarray, shape (n, n + 3)
+        Derivatives by all unknowns and what the gradients are apart, see `energy.followed`; of no length for the
+        residual alone, with columns whose gradients are those of the pressures.
     """
-    drop = np.diff(node_pressure(unknowns))
     none = np.empty((0, 0))
     mobility, carriage = columns.mobility[:, 0].copy(), columns.carriage[:, 0].copy()
-    return Factors(mobility, np.zeros(drop.size), drop, carriage, none, none, mobility_rows, carriage_rows)
+    if mobility_rows.size == 0:
+        drop = np.diff(node_pressure(unknowns))
+        return Factors(mobility, np.zeros(drop.size), drop, carriage, none, none, mobility_rows, carriage_rows)
+    drop = columns.place[:, 2] * face_step
+    offset, carriage = drop * mobility_rows[:, -1], carriage + carriage_rows[:, -1]
+    return Factors(mobility, offset, drop, carriage, none, none, mobility_rows, carriage_rows)
 
 
 def warm_newton(
@@ -116,11 +128,18 @@ def warm_newton(
     old = np.zeros(n - 1)
     before, warm_before, taken, warming = unknowns, rises, np.zeros(size), np.zeros((n, POINTS))
     frozen, known = True, False
+
+    def asked() -> FloatArray:
+        """What the columns are asked to let flow: far from a solution, where the stress hardly depends on it."""
+        if problem.shear.form != LIMITING or last <= SOFT_ABOVE:
+            return np.empty(0)
+        return np.asarray(asked_flows(problem, x, face_step, kernel, unknowns, rises, columns))
+
     for count in range(most_steps):
         close = max(TIGHT, min(LOOSE, 0.1 * last))
         # from another grid pressures are too rough to heat anything: first with the temperatures as they are
         equations, left, _ = warm_temperatures(
-            problem, x, face_step, kernel, unknowns, walls, first, rises, columns, close, 0 if frozen else MOST_STEPS
+            problem, x, face_step, kernel, unknowns, walls, first, rises, columns, asked(), close, 0 if frozen else MOST_STEPS
         )
         for _ in range(MOST_RETURNS):
             if frozen or left <= close or not known:
@@ -129,13 +148,16 @@ def warm_newton(
             taken, warming = 0.5 * taken, 0.5 * warming
             unknowns, rises = before + taken, warm_before + warming
             equations, left, _ = warm_temperatures(
-                problem, x, face_step, kernel, unknowns, walls, first, rises, columns, close, MOST_STEPS
+                problem, x, face_step, kernel, unknowns, walls, first, rises, columns, asked(), close, MOST_STEPS
             )
         if not (frozen or left <= close):
             return WarmResult(unknowns, rises, first, DIVERGED, count, last)
-        by_unknowns, mobility, carriage = followed(equations, columns, x, face_step, kernel, unknowns, first, frozen)
+        apart = np.diff(node_pressure(unknowns)) / face_step - columns.place[:, 2]
+        following, mobility, carriage = followed(
+            equations, columns, x, face_step, kernel, unknowns, first, frozen, apart
+        )
         known = not frozen
-        factors = warm_factors(columns, unknowns, mobility, carriage)
+        factors = warm_factors(columns, unknowns, face_step, mobility, carriage)
         lowest = residual_with(problem, factors, x, step, face_step, kernel, unknowns, load, out, jacobian)
         if not np.all(np.isfinite(out)):
             return WarmResult(unknowns, rises, first, DIVERGED, count, last)
@@ -146,14 +168,14 @@ def warm_newton(
         relaxation = relaxed(move, old, relaxation) if last > SOFT_ABOVE else 1.0
         length = step_length(problem, x, kernel, unknowns, move, lowest, relaxation)
         before, warm_before, taken = unknowns, rises, length * move
-        warming = (by_unknowns.reshape((n * POINTS, size)) @ taken).reshape((n, POINTS))
+        warming = following[:, :, :size] @ taken + length * following[:, :, size]
         warming *= min(1.0, LARGEST_RISE / max(np.max(np.abs(warming)), 1e-300))
         unknowns, rises = before + taken, warm_before + warming
         if frozen and (last < SMOOTH or count == MOST_FROZEN):
             frozen = False
         elif length == 1.0 and last < tolerance:
             _, left, _ = warm_temperatures(
-                problem, x, face_step, kernel, unknowns, walls, first, rises, columns, TIGHT, MOST_STEPS
+                problem, x, face_step, kernel, unknowns, walls, first, rises, columns, asked(), TIGHT, MOST_STEPS
             )
             outcome = CONVERGED if left <= TIGHT else DIVERGED
             return WarmResult(unknowns, rises, first, outcome, count + 1, last)
