@@ -408,8 +408,6 @@ def _heated(
     total += steps
     if found is not None:
         return found, total, outcome
-    if problem.shear.form == LIMITING:  # each step takes seconds there, and seldom helps
-        return None, total, outcome
     reached, part, found = 0.0, FIRST_HEAT, cold
     while reached < 1.0 and part > LEAST_HEAT:
         share = min(1.0, reached + part)

@@ -97,7 +97,9 @@ class Profile:
             return problem.slide * np.exp(np.minimum(log_eta, MOST_LOG_VISCOSITY)) / faces, rise
         if self.warmth is not None:
             columns, nothing = empty_columns(self.cells), np.empty(0)
-            fill_columns(problem, grid.x, grid.face_step, self.kernel, self.unknowns, self.warmth.rises, nothing, columns)
+            fill_columns(
+                problem, grid.x, grid.face_step, self.kernel, self.unknowns, self.warmth.rises, nothing, columns
+            )
             return columns.stress + 0.5 * rise, rise
         mean = shear_factors(problem, grid.x, grid.face_step, self.kernel, self.unknowns, False)[1]
         return np.asarray(mean), rise

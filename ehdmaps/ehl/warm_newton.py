@@ -139,7 +139,18 @@ def warm_newton(
         close = max(TIGHT, min(LOOSE, 0.1 * last))
         # from another grid pressures are too rough to heat anything: first with the temperatures as they are
         equations, left, _ = warm_temperatures(
-            problem, x, face_step, kernel, unknowns, walls, first, rises, columns, asked(), close, 0 if frozen else MOST_STEPS
+            problem,
+            x,
+            face_step,
+            kernel,
+            unknowns,
+            walls,
+            first,
+            rises,
+            columns,
+            asked(),
+            close,
+            0 if frozen else MOST_STEPS,
         )
         for _ in range(MOST_RETURNS):
             if frozen or left <= close or not known:
