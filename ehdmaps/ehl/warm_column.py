@@ -6,10 +6,12 @@ wall, and rho in units of its value at the surfaces' temperature,
 
     mobility = -12 eta(T_0) Int rho (A_1 - A_1(1)/A_0(1) A_0) dzeta,   carriage = Int rho (U_1 + dU A_0/A_0(1)) dzeta
 
-take the place of those of `column`. Where an oil yields, flow and heat rise with the gradient as by a hundredth power;
-far from a solution a column then takes the gradient for which it lets a flow pass, which differs little. For the energy a column says how much oil goes through each height, Y = rho U H,
+take the place of those of `column`. For the energy a column says how much oil goes through each height, Y = rho U H,
 and what its shear heats, rate tau. Y is corrected by a parabola so that it sums up to the flow through the contact:
 what the discrete Reynolds equation and the column differ by is an error of both, and heat has to go with one flow.
+
+Where an oil yields, flow and heat rise with the gradient as by a hundredth power. Far from a solution such a column
+takes the gradient for which it lets a given flow pass, from which the solution differs little: `gradient_asked`.
 """
 
 from __future__ import annotations
