@@ -475,9 +475,9 @@ def followed(
     frozen: bool,
     apart: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Derivatives of temperatures, shape (n, k, n + 3), mobilities and carriages, shape (n, n + 3), by all unknowns.
+    """Derivatives of temperatures, shape (n, k, n + 2), mobilities and carriages, shape (n, n + 2), by all unknowns.
 
-    The last of each is what the gradients are apart from those of the columns changes.
+    With `apart` there is one more at the end: what the gradients change that are apart from those of the columns.
 
     Parameters
     ----------
@@ -492,7 +492,7 @@ def followed(
     frozen : bool
         Whether the temperatures stay as they are.
     apart : ndarray, shape (n,)
-        dP/dX at the faces less that of the columns.
+        dP/dX at the faces less that of the columns; of no length where it is the same.
     """
     n, k = face_step.size, POINTS
     size = n + 2
@@ -507,7 +507,8 @@ def followed(
         column = face_films(nodes[:, j].copy())
         for f in range(n):
             films[f, j] = column[f]
-    right, flux = np.zeros((n, k, size + 1)), np.zeros((2, n, size + 1))
+    many = size + (apart.size > 0)
+    right, flux = np.zeros((n, k, many)), np.zeros((2, n, many))
     for f in range(n if frozen else first + 1, n):
         for g in range(3):
             slope, i = equations.slopes[f, g], f - g
@@ -521,13 +522,14 @@ def followed(
                 if i + 1 < n:
                     right[f, j, i] -= by_pressure + by_gradient
                 right[f, j, n - 1] -= slope[3, j]
-                right[f, j, size] -= slope[2, j] * apart[i]
+                if many > size:
+                    right[f, j, size] -= slope[2, j] * apart[i]
         for wall in range(2):
             part = -equations.flux[wall, f] / faces[f]
             for q in range(size):
                 flux[wall, f, q] = part * films[f, q]
     found = right if frozen else marched(equations, faces, right, flux, first)
-    mobility, carriage = np.empty((n, size + 1)), np.empty((n, size + 1))
+    mobility, carriage = np.empty((n, many)), np.empty((n, many))
     for f in range(n):
         for which in range(2):
             rows, slope = (mobility, columns.mobility[f]) if which == 0 else (carriage, columns.carriage[f])
@@ -535,7 +537,8 @@ def followed(
             line = warm @ found[f]
             for q in range(size):
                 rows[f, q] = line[q] + slope[2] * films[f, q]
-            rows[f, size] = line[size] + slope[3] * apart[f]
+            if many > size:
+                rows[f, size] = line[size] + slope[3] * apart[f]
             if f > 0:
                 rows[f, f - 1] += 0.5 * slope[1] - slope[3] / face_step[f]
             if f + 1 < n:

@@ -59,11 +59,11 @@ class WarmResult(NamedTuple):
 def warm_factors(
     columns: Columns,
     unknowns: FloatArray,
-    face_step: FloatArray,
     mobility_rows: FloatArray,
     carriage_rows: FloatArray,
+    drop: FloatArray | None = None,
 ) -> Factors:
-    """Factors at the faces of a film with temperatures: a tangent about the gradients of its columns.
+    """Factors at the faces of a film with temperatures.
 
     Parameters
     ----------
@@ -71,18 +71,16 @@ def warm_factors(
         Columns of the film.
     unknowns : ndarray, shape (n + 2,)
         Unknowns of the film.
-    face_step : ndarray, shape (n,)
-        dx/ds at the faces.
-    mobility_rows, carriage_rows : ndarray, shape (n, n + 3)
-        Derivatives by all unknowns and what the gradients are apart, see `energy.followed`; of no length for the
-        residual alone, with columns whose gradients are those of the pressures.
+    mobility_rows, carriage_rows : ndarray, shape (n, n + 2), or (n, n + 3) with `drop`
+        Derivatives by all unknowns, see `energy.followed`; of no length for the residual alone.
+    drop : ndarray, shape (n,), optional
+        Steps of pressure of the columns, about which the factors are tangents, where those are not the film's.
     """
     none = np.empty((0, 0))
     mobility, carriage = columns.mobility[:, 0].copy(), columns.carriage[:, 0].copy()
-    if mobility_rows.size == 0:
+    if drop is None:
         drop = np.diff(node_pressure(unknowns))
         return Factors(mobility, np.zeros(drop.size), drop, carriage, none, none, mobility_rows, carriage_rows)
-    drop = columns.place[:, 2] * face_step
     offset, carriage = drop * mobility_rows[:, -1], carriage + carriage_rows[:, -1]
     return Factors(mobility, offset, drop, carriage, none, none, mobility_rows, carriage_rows)
 
@@ -136,6 +134,7 @@ def warm_newton(
         return np.asarray(asked_flows(problem, x, face_step, kernel, unknowns, rises, columns))
 
     for count in range(most_steps):
+        follows = problem.shear.form == LIMITING and last > SOFT_ABOVE
         close = max(TIGHT, min(LOOSE, 0.1 * last))
         # from another grid pressures are too rough to heat anything: first with the temperatures as they are
         equations, left, _ = warm_temperatures(
@@ -163,12 +162,15 @@ def warm_newton(
             )
         if not (frozen or left <= close):
             return WarmResult(unknowns, rises, first, DIVERGED, count, last)
-        apart = np.diff(node_pressure(unknowns)) / face_step - columns.place[:, 2]
+        drop, apart = None, np.empty(0)
+        if follows:
+            drop = columns.place[:, 2] * face_step
+            apart = np.diff(node_pressure(unknowns)) / face_step - columns.place[:, 2]
         following, mobility, carriage = followed(
             equations, columns, x, face_step, kernel, unknowns, first, frozen, apart
         )
         known = not frozen
-        factors = warm_factors(columns, unknowns, face_step, mobility, carriage)
+        factors = warm_factors(columns, unknowns, mobility, carriage, drop)
         lowest = residual_with(problem, factors, x, step, face_step, kernel, unknowns, load, out, jacobian)
         if not np.all(np.isfinite(out)):
             return WarmResult(unknowns, rises, first, DIVERGED, count, last)
@@ -179,7 +181,9 @@ def warm_newton(
         relaxation = relaxed(move, old, relaxation) if last > SOFT_ABOVE else 1.0
         length = step_length(problem, x, kernel, unknowns, move, lowest, relaxation)
         before, warm_before, taken = unknowns, rises, length * move
-        warming = following[:, :, :size] @ taken + length * following[:, :, size]
+        warming = (following[:, :, :size].reshape((n * POINTS, size)) @ taken).reshape((n, POINTS))
+        if follows:
+            warming += length * following[:, :, size]
         warming *= min(1.0, LARGEST_RISE / max(np.max(np.abs(warming)), 1e-300))
         unknowns, rises = before + taken, warm_before + warming
         if frozen and (last < SMOOTH or count == MOST_FROZEN):

@@ -67,7 +67,7 @@ def _state(
         problem, grid.x, grid.face_step, kernel, unknowns, walls, first, rises, columns, np.empty(0), EXACT, MOST_STEPS
     )
     none, out = np.empty((0, 0)), np.empty(n + 2)
-    factors = warm_factors(columns, unknowns, grid.face_step, none, none)
+    factors = warm_factors(columns, unknowns, none, none)
     scratch = np.empty((1, n + 2))
     residual_with(problem, factors, grid.x, grid.step, grid.face_step, kernel, unknowns, load, out, scratch)
     gap = np.asarray(film(grid.x, kernel, unknowns))
@@ -143,10 +143,9 @@ def warm_linearised(
     here = _state(problem, grid, unknowns, rises, first, load)
     n, columns, x, kernel = grid.face.size, here.columns, grid.x, here.kernel
     by_unknowns, mobility_rows, carriage_rows = followed(
-        here.equations, columns, x, grid.face_step, kernel, unknowns, first, False, np.zeros(n)
+        here.equations, columns, x, grid.face_step, kernel, unknowns, first, False, np.empty(0)
     )
-    by_unknowns = by_unknowns[:, :, :-1]
-    factors = warm_factors(columns, unknowns, grid.face_step, mobility_rows, carriage_rows)
+    factors = warm_factors(columns, unknowns, mobility_rows, carriage_rows)
     size = n + 2
     total = size + (neighbour is not None)
     matrix, jacobian, out = np.zeros((total, total)), np.empty((size, size)), np.empty(size)

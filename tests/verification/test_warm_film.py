@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,17 +11,20 @@ import pytest
 from ehdmaps.ehl.energy import wall_weights
 from ehdmaps.ehl.line import GroupSolution, Resolution, solve_groups
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.ehl.warm_column import BEND, HEIGHTS, WEIGHTS, empty_columns, fill_column
+from ehdmaps.ehl.warm_column import BEND, HEIGHTS, WEIGHTS, empty_columns, fill_column, gradient_asked
 from ehdmaps.ehl.warm_oil import STEP, heat_groups, warm_viscosity
 from ehdmaps.ehl.warm_response import WarmLinearisation
 from ehdmaps.errors import InputError
 from ehdmaps.physics.heat import HeatData
+from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.rheology import LIMITING_RATIO, LIMITING_STRESS_AT_REST
 from ehdmaps.physics.solution import FilmSolution, Status
 from tests.cases.laws import CONTACTS, OIL
 
 INNER = CONTACTS[0]
 THERMAL = ReynoldsSolver(physics="thermal")
+LIMITING = ReynoldsSolver(physics="thermal", shear="limiting")
 
 
 def film(load: float, speed: float, celsius: float, solver: ReynoldsSolver = THERMAL) -> FilmSolution:
@@ -80,6 +84,40 @@ def test_column_of_one_temperature() -> None:
     fill_column(problem, 0, 0.01, 0.5, 0.02, 0.45, np.zeros(HEIGHTS.size), columns)
     assert columns.mobility[0, 0] == pytest.approx(1.0, abs=1e-12)
     assert WEIGHTS @ columns.flow[0] == pytest.approx(0.45, abs=1e-12)
+
+
+@pytest.mark.parametrize("slide", [0.0, 0.1])
+def test_gradient_that_a_yielding_column_is_asked_for(slide: float) -> None:
+    """The column at the gradient that is found lets the flow pass that was asked for; the gradient is found to 1e-7.
+
+    The flow rises there with the gradient by a power of up to 500: 1e-4.
+    """
+    problem = replace(LIMITING, slide_to_roll=slide)._problem(INNER, OIL, OperatingPoint(2e5, 10.0, 373.15))[0]
+    rises = 20.0 * HEIGHTS * (1.0 - HEIGHTS)
+    columns = empty_columns(1)
+    for asked in (1e-3, -1e3, 1e6):
+        gradient = gradient_asked(problem, 0.8, 0.15, rises, asked, 0.0)
+        fill_column(problem, 0, 0.8, 0.15, gradient, 0.15, rises, columns)
+        assert columns.mobility[0, 0] * gradient == pytest.approx(asked, rel=1e-4)
+
+
+def test_yielding_film() -> None:
+    """An oil that yields in a hot film: heat thins it as it does a Newtonian one, and friction stays below the bound.
+
+    In pure rolling the oil yields at the spike only, and the inlet makes the film: the prototype's factor of the
+    Newtonian film, which differs from grid to grid by 0.3 %. With the walls sliding by
+    a tenth all of the contact is near the bound tau0 + Lambda p, whose integral no friction reaches.
+    """
+    rolling = film(2e5, 10.0, 100.0, LIMITING)
+    cold = film(2e5, 10.0, 100.0, replace(LIMITING, physics="isothermal"))
+    assert rolling.status is Status.CONVERGED
+    assert rolling.central_film / cold.central_film == pytest.approx(0.939, rel=3e-3)
+    sliding = film(2e5, 10.0, 100.0, replace(LIMITING, slide_to_roll=0.1))
+    bound = LIMITING_RATIO * 2e5 + LIMITING_STRESS_AT_REST * 2.2 * float(
+        half_width(2e5, INNER.radius, INNER.reduced_modulus)
+    )
+    assert 0.8 * bound < sliding.traction < bound
+    assert sliding.film_temperature > rolling.film_temperature + 10.0
 
 
 @pytest.mark.parametrize(
