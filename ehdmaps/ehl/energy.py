@@ -173,7 +173,19 @@ def fill_columns(
 
 @njit(cache=True)
 def hold_gradients(problem: LineProblem, outflow: float, rises: FloatArray, columns: Columns) -> None:
-    """Fill all columns at the gradients that they have, which no longer follow the temperatures."""
+    """Fill all columns at the gradients that they have, which no longer follow the temperatures.
+
+    Parameters
+    ----------
+    problem : LineProblem
+        Dimensionless groups.
+    outflow : float
+        Flow through the contact.
+    rises : ndarray, shape (n, k)
+        Temperatures [K above T_0].
+    columns : Columns
+        Columns of the film.
+    """
     for f in range(columns.place.shape[0]):
         pressure, film_here, gradient = columns.place[f]
         columns.gradient_warm[f] = 0.0
