@@ -211,7 +211,7 @@ def asked_flows(
     rises : ndarray, shape (n, k)
         Temperatures [K above T_0].
     columns : Columns
-        Overwritten.
+        Columns that are overwritten with those of the pressures.
     """
     n = face_step.size
     pressure, gap = node_pressure(unknowns), film(x, kernel, unknowns)
