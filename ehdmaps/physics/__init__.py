@@ -8,6 +8,7 @@ bearing             `BearingGeometry`: reduced radii, entrainment speed, the two
 profiles            profiles of rollers: ISO 16281
 catalogue           `BearingGeometry` estimated from what a catalogue says
 approach            the structural part of the approach: ISO 16281, Palmgren, half space
+fe_shipped          approaches by finite elements of the shipped bearings
 contact             `LineContact`: one contact, and its structural approach and compliance
 isotherm            viscosity and density over pressure at one temperature; what solvers compile
 pressure_viscosity  isotherms over temperature: Barus, Roelands, the law of FVA 3, Tait-Doolittle
