@@ -574,8 +574,9 @@ def _in_si(
         max_pressure_error=groups.max_pressure_error,
         rolling_force_error=groups.rolling_force_error,
         mass_flow_error=groups.mass_flow_error,
-        film_temperature=heat.temperature + groups.film_rise,
-        surface_temperature=heat.temperature + groups.surface_rise,
+        # isothermal films have the NaN of the others: films without temperatures are equal
+        film_temperature=math.nan if math.isnan(groups.film_rise) else heat.temperature + groups.film_rise,
+        surface_temperature=math.nan if math.isnan(groups.surface_rise) else heat.temperature + groups.surface_rise,
         traction=profile.traction * stress * half,
         wall_stress=profile.wall_stress * stress,
         iterations=groups.steps,

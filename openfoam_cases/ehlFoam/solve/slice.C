@@ -319,10 +319,12 @@ Foam::slice::unknowns Foam::slice::settled(const unknowns& before, const unknown
 Foam::scalar Foam::slice::fluxDefect() const
 {
     const scalarField flux(flow_.columnFlux()), fraction(flow_.columnFraction());
-    // up to the last full column: mass is conserved in mixture as well
-    label last = columns() - 1;
-    while (last >= 0 && fraction[last] < 1) --last;
-    if (last < 0) return 1;
+    // up to where the film behind the contact's centre ruptures, islands of mixture before it too; what is farther down
+    // has no say in the film, and a start far away can leave a full column there
+    label last = 0;
+    while (last + 1 < columns() && x_[last + 1] <= 0) ++last;
+    if (fraction[last] < 1) return 1;
+    while (last + 1 < columns() && fraction[last + 1] >= 1) ++last;
     scalar defect = 0;
     for (label i = 1; i <= last; ++i) defect = max(defect, mag(flux[i]/flux[0] - 1));
     return defect;
