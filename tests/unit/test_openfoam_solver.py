@@ -572,7 +572,7 @@ def test_keys_of_a_job_that_are_refused(line):
 
 
 def test_keys_of_a_job_that_are_taken():
-    text = JOB.text.replace('shear = "limiting"', 'shear = "limiting"\nlimiting_ratio = 0.07\ninlet_length = 40')
+    text = JOB.text + "limiting_ratio = 0.07\ninlet_length = 40\n"
     options = parse_job(text, "job", "job.toml").solver_options
     assert (options["shear"], options["limiting_ratio"], options["inlet_length"]) == ("limiting", 0.07, 40.0)
 
