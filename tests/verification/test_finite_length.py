@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import shutil
 
 import numpy as np
 import pytest
@@ -34,6 +33,7 @@ from ehdmaps.solids.three_d_reference import (
     save_reference,
     shipped_reference,
 )
+from tests.cases.calculix import needed_calculix
 
 NU308 = BearingGeometry.named("NU308")
 LINE = FiniteLine(NU308.inner_radius, NU308.roller_length, 7e-3, 14e-3)
@@ -257,9 +257,9 @@ def test_a_coarse_mesh_gives_the_contact_of_the_fine_one(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed")
 def test_calculix_finds_the_load_of_the_same_bricks(tmp_path):
     """CalculiX' own contact yields by its penalty: 0.5 % of the load."""
+    needed_calculix()
     contact = MeshedContact(quarter_model(NU308), 4.0)
     case = contact.solve("straight", np.zeros(contact.places.size), LOAD, 0.0)
     layers = contact.roller.positions.shape[0]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import subprocess
 
 import numpy as np
@@ -20,6 +18,7 @@ from mbs.flexible.mesh import read_mesh_nodes
 from mbs.flexible.reduced_body import to_body
 from mbs.flexible.reduction import reduce
 from mbs.flexible.spiders import Interface, nodes_in_plane, nodes_on_cylinder, spider
+from tests.cases.calculix import needed_calculix
 from tests.cases.flexible import DENSITY, SIZE, block, ends, rigid_motion
 
 ROUND_OFF = 1e-8
@@ -304,11 +303,7 @@ def deck(matrices):
 
 
 def test_matrices_of_calculix_have_its_frequencies(tmp_path):
-    ccx = shutil.which("ccx")
-    if ccx is None:
-        if os.environ.get("CI"):
-            pytest.fail("ccx is not on the PATH (in CI no test of CalculiX may be skipped)", pytrace=False)
-        pytest.skip("ccx is not on the PATH: install CalculiX")
+    ccx = needed_calculix()
     for name, matrices in (("stored", True), ("solved", False)):
         (tmp_path / f"{name}.inp").write_text(deck(matrices))
         subprocess.run([ccx, name], cwd=tmp_path, check=True, capture_output=True, timeout=60)
