@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import importlib
+import signal
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import ModuleType
@@ -55,6 +57,7 @@ def gmsh_session(purpose: str) -> Iterator[ModuleType]:
         raise InputError(f"gmsh is already in use in this process; allowed: gmsh.finalize() before {purpose}")
     # No configuration files of the user, and Ctrl-C stays Python's.
     gmsh.initialize(readConfigFiles=False, interruptible=False)
+    _keep_broken_pipes_errors()
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("General.NumThreads", 1)
@@ -62,3 +65,12 @@ def gmsh_session(purpose: str) -> Iterator[ModuleType]:
         yield gmsh
     finally:
         gmsh.finalize()
+
+
+def _keep_broken_pipes_errors() -> None:
+    """Take SIGPIPE back from gmsh, with which a worker that dies would take its parent along."""
+    # Only the main thread may; Python itself sets the signal there.
+    if hasattr(signal, "SIGPIPE") and threading.current_thread() is threading.main_thread():
+        before = signal.getsignal(signal.SIGPIPE)
+        if before is not None:
+            signal.signal(signal.SIGPIPE, before)

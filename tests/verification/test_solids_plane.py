@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import subprocess
 import sys
 
 import numpy as np
@@ -157,3 +158,17 @@ def test_impossible_sections():
         sections_of(nu308, shaft_bore=-1.0)
     with pytest.raises(InputError, match="no bore and outside_diameter of the bearing 'own', whose designation"):
         sections_of(BearingGeometry("own", 52e-3, 80e-3, 14e-3, 15e-3, 12, 0.0))
+
+
+def test_a_pipe_that_breaks_after_meshing_is_an_error_and_not_the_end():
+    """gmsh lets SIGPIPE end its process; a sweep with a dead worker writes into a broken pipe."""
+    script = (
+        "import os\n"
+        "from ehdmaps.solids.mesh import gmsh_session\n"
+        "with gmsh_session('a test'): pass\n"
+        "read, write = os.pipe(); os.close(read)\n"
+        "try: os.write(write, b'x')\n"
+        "except BrokenPipeError: print('an error')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "an error\n"), done.stderr
