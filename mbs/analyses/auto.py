@@ -16,8 +16,10 @@ from types import NoneType
 from typing import Generic, TypeVar
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.job_text import Entry
 from ehdmaps.physics.heat import PHYSICS
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.rheology import SHEARS
 from mbs.analyses import film_verdicts, planning
 from mbs.analyses.campbell import CampbellResult
 from mbs.analyses.film_errors import film_errors
@@ -77,6 +79,8 @@ class AutoSettings:
         Oil supply of all bearings that is asked for.
     physics : {"isothermal", "inlet-heat", "thermal"} or None
         What films are to know of heat, whatever is required.
+    shear : {"newtonian", "eyring", "carreau", "limiting"} or None
+        Law of the shear stress that is asked for, whatever is required.
     workers : int or None
         Processes that make a map; all cores if None.
 
@@ -94,6 +98,7 @@ class AutoSettings:
     films: Films | None = None
     supply: OilSupply | None = None
     physics: str | None = None
+    shear: str | None = None
     workers: int | None = None
 
     def __post_init__(self) -> None:
@@ -104,6 +109,8 @@ class AutoSettings:
             )
         if self.physics is not None and self.physics not in PHYSICS:
             raise InputError(f"auto, physics: got {self.physics!r:.60}; allowed: {', '.join(PHYSICS)}")
+        if self.shear is not None and self.shear not in SHEARS:
+            raise InputError(f"auto, shear: got {self.shear!r:.60}; allowed: {', '.join(SHEARS)}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,7 +214,7 @@ def settled(
     maps: list[KeptMap] = []
     margins: list[float] = []
     while True:
-        (job,) = found.jobs(solver=verdicts[-1].solver)
+        (job,) = found.jobs(solver=_solver_keys(verdicts))
         kept = kept_map(scene.name, job, settings.folder, settings.others, settings.workers, progress)
         maps.append(kept)
         margins.append(margin)
@@ -296,7 +303,7 @@ def _supplies(scene: Scene, asked: OilSupply | None) -> tuple[OilSupply, ...]:
 def _verdicts(
     scene: Scene, found: PlanResult, settings: AutoSettings, supplies: tuple[OilSupply, ...], highest: float
 ) -> tuple[Verdict, ...]:
-    """Which physics is required, each in its place: memory, supply, roughness, heat."""
+    """Which physics is required, each in its place: memory, supply, roughness, heat, shear."""
     assert scene.lubricant is not None  # the plan saw to it
     there = film_verdicts.visited(found.needed[0], scene.lubricant, settings.tolerance)
     possible = not any(entry.centrifugal and not entry.rollers_as_bodies for entry in scene.bearings)
@@ -305,7 +312,13 @@ def _verdicts(
         film_verdicts.supply_verdict(there, supplies, settings.supply is not None),
         film_verdicts.roughness_verdict(there, scene.surface),
         film_verdicts.heat_verdict(there, settings.physics),
+        film_verdicts.shear_verdict(there, settings.shear),
     )
+
+
+def _solver_keys(verdicts: tuple[Verdict, ...]) -> dict[str, Entry]:
+    """Keys of [solver] of the map that has what the verdicts ask for."""
+    return {key: value for verdict in verdicts for key, value in verdict.solver.items()}
 
 
 def _subject(
@@ -316,7 +329,7 @@ def _subject(
     settings: AutoSettings,
 ) -> Subject:
     """Scene and law with what is switched on."""
-    memory, supply, rough, _ = verdicts
+    memory, supply, rough, *_ = verdicts
     surface = film_verdicts.surface_in_force(scene.surface, rough)
     law = LawChoice(
         law_label("map", kept.emap),
