@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Protocol
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.profiles import CrownedProfile, TabulatedProfile
 from mbs.bearings.fits import Mounting
 from mbs.bearings.heat import GivenTemperatures, HeatPaths
 from mbs.flexible.attached import Attached
@@ -197,7 +198,7 @@ class BearingSpec:
         Places of its rings.
     geometry : BearingGeometry
         Raceways, rollers and the clearance of the scene.
-    profile : {"iso", "straight"}
+    profile : {"iso", "straight"}, CrownedProfile or TabulatedProfile
         Profile of the rollers.
     slices : int
         Slices of a roller.
@@ -222,7 +223,7 @@ class BearingSpec:
     inner: str
     outer: str
     geometry: BearingGeometry
-    profile: str = "iso"
+    profile: str | CrownedProfile | TabulatedProfile = "iso"
     slices: int = 41
     start_angle: float = 0.0
     rollers_as_bodies: bool = False
