@@ -23,6 +23,7 @@ from mbs.model.places import Places
 from mbs.model.relaxation import Films
 from mbs.model.system import System
 from mbs.scene import kinds
+from mbs.scene.axial import axial_problems
 from mbs.scene.bodies import build_bodies
 from mbs.scene.contact_laws import ContactLaws, choose_law, supply_words, surface_label
 from mbs.scene.kinds import ElementKind
@@ -159,6 +160,7 @@ def assemble(
     try:
         system = System((*bodies, *own_bodies), scene.springs, scene.loads, [part.element for part in parts])
         problems += _place_problems(places, scene) or _idle_problems(system, scene)
+        problems += axial_problems(system, scene.gears, Operation(scene.speed))
     except InputError as error:
         problems += [*error.problems, *_place_problems(places, scene)]
     if problems:
