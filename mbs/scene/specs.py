@@ -18,6 +18,7 @@ from ehdmaps.physics.profiles import CrownedProfile, TabulatedProfile
 from mbs.bearings.fits import Mounting
 from mbs.bearings.heat import GivenTemperatures, HeatPaths
 from mbs.flexible.attached import Attached
+from mbs.flexible.orientation import Turn
 from mbs.flexible.plan import ReductionPlan
 from mbs.flexible.shaft_layout import shaft_problems
 from mbs.flexible.shaft_parts import Disc, Section
@@ -148,7 +149,9 @@ class FlexibleSpec:
     damping_ratio : float
         Damping ratio of every mode of the free body.
     attached : tuple of Attached
-        Rigid parts on its frames.
+        Rigid parts on its frames, along the x of the system.
+    rotation : tuple of Turn
+        How it is turned about its origin, the first turn first.
     """
 
     name: str
@@ -156,9 +159,10 @@ class FlexibleSpec:
     position: Triple = ORIGIN
     damping_ratio: float = 0.0
     attached: Sequence[Attached] = ()
+    rotation: Sequence[Turn] = ()
 
     def __post_init__(self) -> None:
-        _freeze(self, "attached")
+        _freeze(self, "attached", "rotation")
 
     @property
     def spin(self) -> float:
