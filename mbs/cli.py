@@ -279,13 +279,20 @@ def _plan(commands: Any) -> None:
     words = "which ranges a scene needs of a contact map, and the job that covers just these"
     command: argparse.ArgumentParser = commands.add_parser("plan", help=words, description=words)
     command.add_argument("scene", metavar="SCENE")
-    command.add_argument("--map", metavar="MAP.nc", help="say whether this map covers the scene, instead of a job")
+    command.add_argument(
+        "--map",
+        metavar="MAP.nc",
+        action="append",
+        help="say whether this map covers the scene, instead of a job; with several types of bearing one for each",
+    )
     command.add_argument("--law", metavar="LAW", default="hertz", help="hertz | constant:NAME, for the loads at rest")
     command.add_argument("--clearance", metavar="LENGTH", help='diametral clearance of all bearings, such as "20 um"')
     command.add_argument(
         "--margin", metavar="FACTOR", help="highest load of the map over the largest one at rest, for what moves (3)"
     )
-    command.add_argument("-o", "--output", metavar="JOB.toml", help="job for `ehdmaps generate`")
+    command.add_argument(
+        "-o", "--output", metavar="JOB.toml", help="job for `ehdmaps generate`; one for each type of bearing"
+    )
 
 
 def _reduce(commands: Any) -> None:
@@ -339,7 +346,10 @@ def _scene_command(
     # What comes twice is an error of the command, in words, where it does not compare.
     more = _MORE if compares else ""
     command.add_argument(
-        "--map", metavar="MAP.nc", action="append", help=f"made by `ehdmaps generate` for the same bearing{more}"
+        "--map",
+        metavar="MAP.nc",
+        action="append",
+        help=f"made by `ehdmaps generate` for the same bearing; more than once for other types of bearing{more}",
     )
     command.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
     command.add_argument("--law", metavar="LAW", action="append", help=f"{_LAW}{more}")
@@ -397,7 +407,12 @@ def _run(commands: Any, top: argparse.ArgumentParser) -> None:
     words = "every analysis for which the scene has a table: statics, modes, lsa, sweep, and campbell or runup"
     command: argparse.ArgumentParser = commands.add_parser("run", help=words, description=words)
     command.add_argument("scene", metavar="SCENE")
-    command.add_argument("--map", metavar="MAP.nc", help="made by `ehdmaps generate` for the same bearing; or --auto")
+    command.add_argument(
+        "--map",
+        metavar="MAP.nc",
+        action="append",
+        help="made by `ehdmaps generate` for the same bearing; more than once for other types of bearing; or --auto",
+    )
     command.add_argument("--clearance", metavar="LENGTH", help='diametral clearance of all bearings, such as "20 um"')
     command.add_argument("-o", "--output", metavar="FOLDER", help="results, figures and texts of all analyses")
     _auto(command)

@@ -1,4 +1,4 @@
-"""What `--auto` does for a command: a map and the physics that the scene requires, and lines that say so."""
+"""What `--auto` does for a command: maps and the physics that the scene requires, and lines that say so."""
 
 from __future__ import annotations
 
@@ -110,7 +110,9 @@ def analysed(
         if stores:
             tell(f"\nstopped; what is solved of a map is kept ({stores}): the same command goes on from there")
         raise
-    return Done(found.result, (*_lines(found, settings),), 1 if found.left or found.maps[-1].unmet else 0)
+    return Done(
+        found.result, (*_lines(found, settings),), 1 if found.left or any(one.unmet for one in found.kept) else 0
+    )
 
 
 def read_tolerance(text: str | None, problems: list[str]) -> float:
@@ -226,19 +228,20 @@ def _lines(found: Automatic[Any], settings: AutoSettings) -> list[str]:
     """What was planned and made, what is on, and what is not met."""
     lines = []
     for kept, margin in zip(found.maps, found.margins, strict=True):
-        lines += [*_map_lines(kept, margin)]
+        lines += [line for line in _map_lines(kept, margin) if line not in lines]
     lines += [f"auto: {verdict.line}" for verdict in found.verdicts]
-    last = found.maps[-1]
-    lines += [f"warning: auto: {last.path}: {line}" for line in last.unmet]
+    lines += [f"warning: auto: {one.path}: {line}" for one in found.kept for line in one.unmet]
     if found.left:
         names = ", ".join(f"{name} {count} times" for name, count in found.left.items())
+        plans = len(found.maps) // len(found.kept)
         lines.append(
-            f"warning: auto: after {len(found.maps)} plans the analysis still left its map ({names}); the loads grow "
+            f"warning: auto: after {plans} plans the analysis still left its map ({names}); the loads grow "
             "beyond what the plan allows for: check clearance, loads and speeds of the scene, or make a map by "
             "`mbs plan --margin` and `ehdmaps generate`"
         )
     else:
-        lines.append("auto: all loads, speeds and temperatures of the analysis lie inside the map")
+        inside = "the map" if len(found.kept) == 1 else "the maps"
+        lines.append(f"auto: all loads, speeds and temperatures of the analysis lie inside {inside}")
     return lines
 
 

@@ -155,11 +155,22 @@ def test_stated_physics_is_off_where_it_does_not_matter(folder):
     assert found.subject.model().supplies["bearing_left"] == supply
 
 
-def test_bearings_of_two_geometries_are_refused(folder):
+def test_bearings_of_two_types_have_a_map_each_and_one_alone_is_widened(folder, monkeypatch):
     first, _, second = SHORT.rpartition('{ name = "NU308"')
     two = scene(f'{first}{{ name = "N1014"{second}')
-    with pytest.raises(InputError, match=r"got bearings of 2 geometries \(.*\); allowed with --auto: one"):
-        automatic(two, statics, AutoSettings(folder=folder))
+    outside = iter([{"bearing_right": 1}, {}])
+    monkeypatch.setattr(auto, "outside_calls", lambda result: next(outside))
+    found = automatic(two, statics, AutoSettings(folder=folder, highest=0.0))
+    assert [kept.emap.bearing.name for kept in found.maps] == ["NU308", "N1014", "NU308", "N1014"]
+    assert found.margins == (3.0, 3.0, 3.0, 9.0)
+    assert found.maps[2].reused
+    assert [kept.emap.bearing.name for kept in found.kept] == ["NU308", "N1014"]
+    assert "map of NU308" in found.subject.model().law
+    assert "; map of N1014" in found.subject.model().law
+    supply, *heats = found.verdicts[1], *found.verdicts[3:]
+    # the layer that matters is the thicker film's, told with its bearing
+    assert supply.words.startswith(("NU308: none is stated", "N1014: none is stated"))
+    assert [verdict.words[:7] for verdict in heats] == ["NU308: ", "N1014: "]
 
 
 def test_options_that_do_not_go_together_are_refused_before_a_map_is_made(file, capsys, by_formula):
