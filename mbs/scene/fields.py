@@ -18,6 +18,7 @@ from mbs.model.elements import GROUND
 
 FORCE = Display("N")
 MOMENT = Display("N m")
+ACCELERATION = Display("m/s^2")
 MICROMETRE = Display("um", 1e6)
 MILLISECOND = Display("ms", 1e3)
 HERTZ = Display("Hz")
@@ -135,7 +136,9 @@ def lengths(section: Table, key: str, value: Any) -> tuple[float, float, float] 
     return x, y, z
 
 
-def vector(section: Table, key: str, unit: str, display: Display) -> tuple[float, ...] | None:
+def vector(
+    section: Table, key: str, unit: str, display: Display, largest: float = 1e9
+) -> tuple[float, float, float] | None:
     """Read three forces or moments; zeros if absent, None if wrong.
 
     Parameters
@@ -148,6 +151,8 @@ def vector(section: Table, key: str, unit: str, display: Display) -> tuple[float
         SI unit of the result.
     display : Display
         How messages show the limits.
+    largest : float
+        Largest size of each.
     """
     value = section.get(key)
     if key not in section:
@@ -157,8 +162,11 @@ def vector(section: Table, key: str, unit: str, display: Display) -> tuple[float
             key, f'got {short(value)}; allowed: three values, x y z, such as ["0 {unit}", "1 {unit}", "0 {unit}"]'
         )
         return None
-    read = [section.quantity_of(part, f"{key}[{index}]", unit, -1e9, 1e9, display) for index, part in enumerate(value)]
-    return None if None in read else tuple(part for part in read if part is not None)
+    x, y, z = (
+        section.quantity_of(part, f"{key}[{index}]", unit, -largest, largest, display)
+        for index, part in enumerate(value)
+    )
+    return None if x is None or y is None or z is None else (x, y, z)
 
 
 def diagonal(section: Table, key: str, along: str, about: str, *, required: bool = False) -> FloatArray | None:

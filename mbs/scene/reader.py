@@ -31,6 +31,7 @@ from mbs.scene.scene import Scene
 from mbs.scene.shaft import read_shaft
 from mbs.scene.specs import ORIGIN, BodySpec, FlexibleSpec, RigidSpec
 from mbs.scene.sweep import read_sweep
+from mbs.scene.turning import read_excitation, read_unbalance
 from mbs.settings import CampbellSettings, RunUp, Settings
 
 LONGEST_FILE = 1_000_000
@@ -112,11 +113,12 @@ class _Reader:
         if "schema" in top and (isinstance(schema, bool) or schema != 1):
             top.note("schema", f"got {short(schema)}; allowed: 1; this version of mbs reads no other")
         title = fields.text(top, "title") or name
-        speed = temperature = None
+        speed = temperature = gravity = None
         operation = top.table("operation", "[operation]", required="a table with speed and temperature")
         if operation:
             speed = operation.quantity("speed", "rad/s", 0.0, 1e5, RPM, required=True)
             temperature = operation.quantity("temperature", "K", *OIL_TEMPERATURES, TEMPERATURE, required=True)
+            gravity = fields.vector(operation, "gravity", "m/s^2", fields.ACCELERATION, 1e4)
             self._close(operation)
         section = top.table("lubricant", "[lubricant]")
         lubricant = read_lubricant(section) if section else None
@@ -129,6 +131,8 @@ class _Reader:
         ]
         springs = self._all("springs", self._spring)
         loads = self._all("loads", self._load)
+        unbalances = self._all("unbalances", read_unbalance)
+        excitations = self._all("excitations", read_excitation)
         elements = [entry for kind in kinds.KINDS for entry in self._all(kind.key, kind.read)]
         inputs = self._all("inputs", self._input)
         sensors = self._all("sensors", self._sensor)
@@ -157,6 +161,9 @@ class _Reader:
             bodies=bodies,
             springs=springs,
             loads=loads,
+            unbalances=unbalances,
+            excitations=excitations,
+            gravity=gravity or ORIGIN,
             elements=elements,
             inputs=inputs,
             sensors=sensors,
