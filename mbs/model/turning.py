@@ -118,11 +118,14 @@ class Turning(NamedTuple):
         How often for each turn of the system.
     coefficients : tuple of complex
         Coefficients at any speed, by its square, by its rate.
+    names : tuple of str
+        Names of the loads.
     """
 
     vector: ComplexArray
     order: float
     coefficients: tuple[complex, complex, complex]
+    names: tuple[str, ...]
 
     def amplitude(self, speed: float) -> ComplexArray:
         """Generalised load F at a steady speed [rad/s], shape (n,): it is Re[F exp(i |order speed| t)].
@@ -171,8 +174,10 @@ def put_together(loads: Sequence[tuple[TurningLoad, ComplexArray]]) -> tuple[Tur
     loads : sequence of (TurningLoad, array (n,))
         Each with its vector by the coordinates of the system.
     """
-    found: dict[tuple[float, tuple[complex, complex, complex]], ComplexArray] = {}
+    found: dict[tuple[float, tuple[complex, complex, complex]], list[tuple[str, ComplexArray]]] = {}
     for load, vector in loads:
-        key = load.order, load.coefficients
-        found[key] = vector + found[key] if key in found else vector
-    return tuple(Turning(vector, *key) for key, vector in found.items())
+        found.setdefault((load.order, load.coefficients), []).append((load.name, vector))
+    return tuple(
+        Turning(np.sum([vector for _, vector in parts], axis=0), *key, tuple(name for name, _ in parts))
+        for key, parts in found.items()
+    )
