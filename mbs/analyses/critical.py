@@ -70,7 +70,7 @@ def critical(model: Model, settings: SweepSettings | None = None) -> CriticalRes
     model : Model
         Scene with its law.
     settings : SweepSettings, optional
-        Speeds; those of [sweep] of the scene if left out.
+        Settings with the speeds; those of [sweep] of the scene if left out.
 
     Raises
     ------

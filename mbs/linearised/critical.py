@@ -97,14 +97,14 @@ def critical_speeds(
     speeds : array, shape (speeds,)
         Speeds of the sweep, rising [rad/s].
     damped : ComplexSweep
-        Its complex modes.
+        Complex modes of the sweep.
     orders : sequence of float
         Positive orders.
 
     Returns
     -------
     tuple of CriticalSpeed
-        In the order of the speeds, for each order in turn. A mode that is overdamped at an end of a step of the sweep
+        Critical speeds in rising order, for each order in turn. A mode that is overdamped at an end of a step of the sweep
         has none in it.
 
     Raises

@@ -52,7 +52,7 @@ def orbits(system: System, response: OrderResponse) -> tuple[tuple[str, ...], Fl
     Returns
     -------
     places, axes : tuple of str, array (speeds, places, 2)
-        Names; semi-axes [m], the minor one negative where a place goes from z to y.
+        Names of the places; semi-axes [m], the minor one negative where a place goes from z to y.
     """
     places = [place for place, _ in turning_places(system)]
     axes = [orbit(*(response.motion @ system.relative(place)[1:3].T).T) for place in places]
