@@ -104,8 +104,8 @@ def critical_speeds(
     Returns
     -------
     tuple of CriticalSpeed
-        Critical speeds in rising order, for each order in turn. A mode that is overdamped at an end of a step of the sweep
-        has none in it.
+        Critical speeds in rising order, for each order in turn. A mode that is overdamped at an end of a step of the
+        sweep has none in it.
 
     Raises
     ------

@@ -125,7 +125,7 @@ class MatrixElement(ElementDefaults):
         Parameters
         ----------
         states
-            Nothing; not looked at.
+            States of the element; there are none.
         displacement : array, shape (6,)
             Displacement of `on` against `against` [m or rad].
         operation : Operation

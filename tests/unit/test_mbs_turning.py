@@ -57,13 +57,13 @@ class TestRunUps:
         duration = self.DURATION if compiled else 0.03
         system = assemble(scene(more, spin)).system
         speed = SpeedProfile.ramp(0.0, self.RATE * self.DURATION, self.DURATION)
-        record = run(system, speed, self.DURATION, Settings(2e-5, 1e-3, 1.0), options=Options(states=True, **options))
+        record = run(system, speed, duration, Settings(2e-5, 1e-3, 1.0), options=Options(True, compiled))
 
         def slope(time, state):
             w, angle = self.RATE * time, 0.5 * self.RATE * time**2
             return [*state[2:], *((load(w, angle) - STIFFNESS * state[:2] - DAMPING * state[2:]) / MASS)]
 
-        exact = solve_ivp(slope, (0.0, self.DURATION), np.zeros(4), "DOP853", record.time, rtol=1e-10, atol=1e-16)
+        exact = solve_ivp(slope, (0.0, duration), np.zeros(4), "DOP853", record.time, rtol=1e-10, atol=1e-16)
         return record.states.displacement, exact.y[:2].T
 
     @pytest.mark.parametrize(("spin", "compiled"), [(1.0, True), (-1.5, True), (-1.5, False)])
@@ -75,7 +75,7 @@ class TestRunUps:
             outwards, along = np.array([np.cos(here), np.sin(here)]), np.array([-np.sin(here), np.cos(here)])
             return moment * ((spin * w) ** 2 * outwards - spin * self.RATE * along)
 
-        found, exact = self.both(UNBALANCE, spin, load, compiled=compiled)
+        found, exact = self.both(UNBALANCE, spin, load, compiled)
         # The trapezoidal rule lengthens periods by (w h)^2/12, 3e-6 at 50 Hz; up to 2.5 orders of it 1e-4.
         np.testing.assert_allclose(found, exact, atol=3e-4 * np.abs(exact).max())
 
