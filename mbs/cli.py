@@ -53,6 +53,11 @@ def parser() -> argparse.ArgumentParser:
     sweep = _scene_command(commands, "sweep", "modes, bearings and frequency responses over speed", compares=True)
     _films(sweep, compares=True)
     _sweep(sweep)
+    critical = _scene_command(
+        commands, "critical", "critical speeds, and the response to unbalances and orders over speed", compares=False
+    )
+    _films(critical, compares=False)
+    _speeds(critical)
     campbell = _scene_command(commands, "campbell", "run-up in time as levels over speed and frequency", compares=True)
     _films(campbell, compares=True)
     _campbell(campbell)
@@ -127,16 +132,21 @@ def _supply(command: argparse.ArgumentParser, of: str, compares: bool) -> None:
 def _sweep(command: argparse.ArgumentParser) -> None:
     """Add the options of a sweep."""
     _load_and_angle(command)
+    _speeds(command)
+    command.add_argument(
+        "--cage-angles",
+        metavar="COUNT",
+        help="angles within one pitch of the rollers over which k and c of the bearings are averaged (1)",
+    )
+
+
+def _speeds(command: argparse.ArgumentParser) -> None:
+    """Add the speeds of a sweep."""
     command.add_argument(
         "--speeds",
         nargs=3,
         metavar=("FROM", "TO", "POINTS"),
         help='such as "500 rpm" "2500 rpm" 40, in place of [sweep] of the scene',
-    )
-    command.add_argument(
-        "--cage-angles",
-        metavar="COUNT",
-        help="angles within one pitch of the rollers over which k and c of the bearings are averaged (1)",
     )
 
 
