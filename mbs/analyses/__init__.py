@@ -28,6 +28,7 @@ film_verdicts  which physics of the films a scene requires
 film_criteria  such criteria at a contact, in closed form
 case           the models that an analysis compares, with their labels
 varied         what comparisons vary, one row a key
+recorded       runs that are recorded, measured or simulated before: signals, levels, amplitudes
 progress       how an analysis tells how far it is
 operating      a model as it is in operation: temperatures, heat and clearances of its bearings at a speed
 rings          how the rings of the bearings move

@@ -13,8 +13,8 @@ from mbs.spectral.levels import Reference
 from mbs.spectral.run_signal import RunSignal
 from mbs.timedata.quantities import Recorded, motion
 
-FEWEST, MOST = 64, 5_000_000
-"""Samples of a record: as many as a spectrum needs, and as a run may have."""
+FEWEST, MOST = 2, 5_000_000
+"""Samples of a record: those that make a step, and as many as a run may have."""
 
 MOST_CHANNELS = 256
 

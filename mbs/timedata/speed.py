@@ -23,7 +23,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.units import RPM
 from mbs.timedata.csv_file import read_table
 from mbs.timedata.quantities import SPEED_UNITS
-from mbs.timedata.records import FEWEST, TimeRecord, chosen
+from mbs.timedata.records import TimeRecord, chosen
 
 MOST_PULSES = 100_000
 """A turn."""
@@ -38,6 +38,9 @@ _LOW, _HIGH = 0.4, 0.6
 """Where pulses begin and end, as parts of their height: noise between counts none twice."""
 
 _FEWEST_PULSES = 8
+_FEWEST = 64
+"""Samples that a spectrum needs."""
+
 _HELD = 1e-12
 
 
@@ -82,6 +85,10 @@ class SpeedSource:
             raise InputError(problems)
 
 
+AS_IT_IS = SpeedSource()
+"""The speed that a record has, else its only channel of a speed."""
+
+
 @dataclass(frozen=True, eq=False)
 class Turned:
     """A record with its speed.
@@ -113,7 +120,7 @@ def with_speed(record: TimeRecord, source: SpeedSource) -> Turned:
     InputError
         If there is no speed, or it is no ramp.
     """
-    if record.speed is not None and source == SpeedSource():
+    if record.speed is not None and source == AS_IT_IS:
         return Turned(record, ())
     if source.tacho is not None:
         turned = _by_tacho(record, source.tacho, source.pulses)
@@ -161,7 +168,7 @@ def _by_table(record: TimeRecord, path: Path) -> Turned:
     if not (np.all(np.isfinite(time)) and np.all(np.isfinite(speed)) and time.size >= 2 and np.all(np.diff(time) > 0)):
         raise InputError(f"{path}: got times or speeds that are not finite, or times that do not rise; sort the rows")
     inside = np.flatnonzero((record.time >= time[0]) & (record.time <= time[-1]))
-    if inside.size < FEWEST:
+    if inside.size < _FEWEST:
         raise InputError(
             f"{path}: got speeds from {time[0]:.6g} to {time[-1]:.6g} s for a record from {record.time[0]:.6g} to "
             f"{record.time[-1]:.6g} s; allowed: a table on the clock of the record"
@@ -198,8 +205,8 @@ def _by_tacho(record: TimeRecord, name: str, pulses: float) -> Turned:
         )
     turns = PchipInterpolator(times, np.arange(times.size) / pulses)
     inside = np.flatnonzero((record.time >= times[0]) & (record.time <= times[-1]))
-    if inside.size < FEWEST:
-        raise InputError(f"{record.label}, tacho: got {inside.size} samples between its pulses; allowed: {FEWEST}")
+    if inside.size < _FEWEST:
+        raise InputError(f"{record.label}, tacho: got {inside.size} samples between its pulses; allowed: {_FEWEST}")
     part = record.part(int(inside[0]), int(inside[-1]) + 1)
     angle = 2.0 * np.pi * np.asarray(turns(part.time))
     speed = 2.0 * np.pi * np.asarray(turns.derivative()(part.time))
@@ -241,7 +248,7 @@ def _ramp(record: TimeRecord) -> Turned:
         whole = float(np.ptp(smooth))
     assert record.speed is not None
     covered = abs(float(record.speed[end] - record.speed[begin]))
-    if covered < _LEAST_RANGE * whole or end + 1 - begin < FEWEST:
+    if covered < _LEAST_RANGE * whole or end + 1 - begin < _FEWEST:
         raise InputError(
             f"{record.label}: got a speed that turns round: of {RPM.text(float(record.speed.min()))} to "
             f"{RPM.text(float(record.speed.max()))} its longest ramp, from {record.time[begin]:.6g} to "
