@@ -398,7 +398,6 @@ def _scene_command(
     )
     command.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
     command.add_argument("--law", metavar="LAW", action="append", help=f"{_LAW}{more}")
-    # Films stand side by side in lsa, too.
     _supply(command, "[supply] of the scene, else of the job of the map, else flooded", compares)
     command.add_argument(
         "--clearance",

@@ -124,7 +124,7 @@ def recorded_campbell(
     Parameters
     ----------
     data : TimeData
-        Of `mbs.timedata.files.read_time_data`, or of `simulated`.
+        Of `mbs.output.time_files.read_time_data`, or of `simulated`.
     settings : CampbellSettings
         What is looked at; orders that it does not name are those of the data.
     sensors : sequence of str

@@ -32,11 +32,11 @@ from mbs.output.campbell_plot import MOST_LAWS, Overlay, Reach, campbell_figure
 from mbs.output.campbell_text import PEAKS, highest_line, peak_line, peak_lines, resolution_lines, sensor_line
 from mbs.output.energy_text import energy_lines
 from mbs.output.sensors_plot import sensors_figure
+from mbs.output.time_files import is_time_data, write_time_data
 from mbs.scene.assembly import Model
 from mbs.settings import CampbellSettings
 from mbs.spectral.levels import Reference, difference_text
 from mbs.spectral.orders import OrderPeak
-from mbs.timedata.files import is_time_data, write_time_data
 
 _LEAST_SHARE = 0.05
 """Of the strain energy in bearings, of a mode that is drawn in."""

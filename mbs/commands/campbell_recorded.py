@@ -27,13 +27,13 @@ from mbs.output.campbell_plot import MOST_LAWS, campbell_figure
 from mbs.output.campbell_text import highest_line, peak_lines, resolution_lines, sensor_line
 from mbs.output.results import RESULT
 from mbs.output.sensors_plot import sensors_figure
+from mbs.output.time_files import is_time_data, read_time_data, signal_outputs, write_time_data
 from mbs.scene.assembly import Model
 from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.settings import CampbellSettings
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, difference_text
-from mbs.timedata.files import is_time_data, read_time_data, signal_outputs, write_time_data
 from mbs.timedata.records import TimeChannel, TimeData
 from mbs.timedata.speed import AS_IT_IS, SpeedSource, with_speed
 

@@ -29,12 +29,12 @@ from mbs.output.results import described
 from mbs.output.run_plot import run_figure, signals_figure
 from mbs.output.signal_text import signal_lines
 from mbs.output.spectrum_data import with_spectra
+from mbs.output.time_files import is_time_data, read_time_data, write_time_data
 from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.scene import Scene
 from mbs.settings import HIGHEST
 from mbs.spectral.spectra import AmplitudeSpectrum
-from mbs.timedata.files import is_time_data, read_time_data, write_time_data
 from mbs.timedata.netcdf_file import signal_variables
 from mbs.timedata.records import TimeChannel, TimeData, TimeRecord
 from mbs.timedata.speed import SpeedSource, with_speed
