@@ -10,7 +10,10 @@ from collections.abc import Sequence
 from ehdmaps.program import Parser, run
 
 _KEEP = "openfoam: keep the case folders of all runs; default folder: ehdmaps-cases"
-_SOLVER = "hertz | formula | reynolds | openfoam; instead of the job's, with its default settings"
+_SOLVER = (
+    "hertz | formula | reynolds | openfoam; instead of the job's, with the physics and shear of the "
+    "job where it knows them, and default settings"
+)
 
 _STRUCTURE = "law of the solids in approach, k and c: iso16281 | palmgren | half_space | fe; default: that of the job"
 
