@@ -1,6 +1,6 @@
 """A run in compiled code: what `run_kernel` needs, prepared for a batch of steps, and the steps between.
 
-Steps that an element has no compiled answer for (speeds below the map, where films fade; loads above it) are made by
+Steps that an element has no compiled answer for (such as loads above a map whose law refuses them) are made by
 `mbs.transient.stepping`, from the same state: motion, and what elements have of their own.
 """
 
