@@ -8,6 +8,7 @@ bearing_point  one bearing without a scene: its equilibrium under a load, pressu
 modes          complex modes at the equilibrium
 lsa            state space and frequency responses at the equilibrium
 sweep          modes, bearings and responses over speed, of one or more models
+critical       critical speeds, and the response to unbalances and orders over speed
 runup          the nonlinear system in time over its speed profile
 campbell       run-ups with one or more laws as levels over speed, frequency and order
 changed_laws   models whose laws are wrong by the errors that their map states
