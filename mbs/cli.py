@@ -10,6 +10,7 @@ from typing import Any
 
 from ehdmaps.errors import AnalysisError
 from ehdmaps.program import Parser, run
+from ehdmaps.workers import processes
 from mbs.model.relaxation import DEFAULT_FILMS
 
 VARIED_KEYS = (
@@ -124,9 +125,17 @@ def _supply(command: argparse.ArgumentParser, of: str, compares: bool) -> None:
     )
 
 
+def _parallel(command: argparse.ArgumentParser) -> None:
+    """Add the number of processes."""
+    command.add_argument(
+        "--workers", metavar="N", type=processes, help="processes that compute cases side by side; default: all cores"
+    )
+
+
 def _sweep(command: argparse.ArgumentParser) -> None:
     """Add the options of a sweep."""
     _load_and_angle(command)
+    _parallel(command)
     command.add_argument(
         "--speeds",
         nargs=3,
@@ -186,6 +195,7 @@ def _tradeoff(commands: Any) -> None:
 
 def _variants(command: argparse.ArgumentParser) -> None:
     """Add the options of single changes."""
+    _parallel(command)
     command.add_argument(
         "--vary",
         nargs="+",
