@@ -11,7 +11,10 @@ from ehdmaps.program import Parser, run
 from ehdmaps.workers import processes
 
 _KEEP = "openfoam: keep the case folders of all runs; default folder: ehdmaps-cases"
-_SOLVER = "hertz | formula | reynolds | openfoam; instead of the job's, with its default settings"
+_SOLVER = (
+    "hertz | formula | reynolds | openfoam; instead of the job's, with the physics and shear of the "
+    "job where it knows them, and default settings"
+)
 
 _STRUCTURE = "law of the solids in approach, k and c: iso16281 | palmgren | half_space | fe; default: that of the job"
 
@@ -32,8 +35,10 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     generate = commands.add_parser("generate", help="make a map; the same command goes on after an interruption")
-    generate.add_argument("job", metavar="JOB")
-    generate.add_argument("-o", "--output", metavar="MAP.nc", help="default: the job's name with .nc, in this folder")
+    generate.add_argument("jobs", metavar="JOB", nargs="+", help="of several, one map after the other")
+    generate.add_argument(
+        "-o", "--output", metavar="MAP.nc", help="of one job; default: the job's name with .nc, in this folder"
+    )
     generate.add_argument("--solver", metavar="NAME", help=_SOLVER)
     generate.add_argument(
         "--tolerance",
