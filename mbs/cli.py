@@ -118,6 +118,7 @@ def _modes(command: argparse.ArgumentParser) -> None:
 
 def _runup(command: argparse.ArgumentParser) -> None:
     """Add the options of runs in time."""
+    _parallel(command)
     command.add_argument(
         "--spectrum-at",
         metavar="SPEED",
@@ -183,6 +184,7 @@ def _speeds(command: argparse.ArgumentParser) -> None:
 
 def _campbell(command: argparse.ArgumentParser) -> None:
     """Add the options of a Campbell diagram."""
+    _parallel(command)
     _load_and_angle(command)
     command.add_argument(
         "--sensor",

@@ -9,7 +9,7 @@ from __future__ import annotations
 import multiprocessing
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from typing import Any, Generic, TypeVar
@@ -49,7 +49,7 @@ class _Bug:
 
 
 def side_by_side(
-    work: Work[Result], count: int, workers: int, told: Callable[[int], None], label: Callable[[int], str]
+    work: Work[Result], sizes: Sequence[int], workers: int, told: Callable[[int], None], label: Callable[[int], str]
 ) -> Iterator[Result | Failed]:
     """Compute all cases; results come in the order of the cases.
 
@@ -57,8 +57,8 @@ def side_by_side(
     ----------
     work : callable
         Computes a case; what it returns has to be picklable.
-    count : int
-        How many cases there are.
+    sizes : sequence of int
+        How much there is to do of each case; one that has ended counts as done.
     workers : int
         How many processes at most.
     told : callable
@@ -76,45 +76,53 @@ def side_by_side(
     KeyboardInterrupt
         On Ctrl-C, after all processes have been ended.
     """
-    if min(workers, count) <= 1 or "fork" not in multiprocessing.get_all_start_methods():
-        yield from _one_by_one(work, count, told)
+    if min(workers, len(sizes)) <= 1 or "fork" not in multiprocessing.get_all_start_methods():
+        yield from _one_by_one(work, sizes, told)
         return
-    yield from _Forks(work, count, workers, told, label).results()
+    yield from _Forks(work, sizes, workers, told, label).results()
 
 
-def _one_by_one(work: Work[Result], count: int, told: Callable[[int], None]) -> Iterator[Result | Failed]:
+def _one_by_one(work: Work[Result], sizes: Sequence[int], told: Callable[[int], None]) -> Iterator[Result | Failed]:
     """Compute all cases in this process."""
-    done = [0] * count
+    before = 0
 
-    def tell(index: int, amount: int) -> None:
-        done[index] = amount
-        told(sum(done))
+    def tell(amount: int) -> None:
+        told(before + amount)
 
-    for index in range(count):
+    found: Result | Failed
+    for index, size in enumerate(sizes):
         try:
-            yield work(index, lambda amount, index=index: tell(index, amount))  # type: ignore[misc]
+            found = work(index, tell)
         except EhdmapsError as error:
-            yield Failed(error)
+            found = Failed(error)
+        before += size
+        told(before)
+        yield found
 
 
 class _Forks(Generic[Result]):
     """Processes that compute cases."""
 
     def __init__(
-        self, work: Work[Result], count: int, workers: int, told: Callable[[int], None], label: Callable[[int], str]
+        self,
+        work: Work[Result],
+        sizes: Sequence[int],
+        workers: int,
+        told: Callable[[int], None],
+        label: Callable[[int], str],
     ) -> None:
-        self._work, self._count, self._workers, self._told, self._label = work, count, workers, told, label
+        self._work, self._sizes, self._workers, self._told, self._label = work, sizes, workers, told, label
         self._context = multiprocessing.get_context("fork")
         self._said = self._context.Value("b", False)
         self._running: dict[int, _Running] = {}
         self._found: dict[int, Any] = {}
-        self._done = [0] * count
+        self._done = [0] * len(sizes)
         self._next = 0
 
     def results(self) -> Iterator[Result | Failed]:
         """Results in the order of the cases."""
         try:
-            for index in range(self._count):
+            for index in range(len(self._sizes)):
                 while index not in self._found:
                     self._begin()
                     self._listen()
@@ -130,7 +138,7 @@ class _Forks(Generic[Result]):
 
     def _begin(self) -> None:
         """Begin as many cases as there is room for."""
-        while self._next < self._count and len(self._running) < self._workers:
+        while self._next < len(self._sizes) and len(self._running) < self._workers:
             ours, theirs = self._context.Pipe(duplex=False)
             process = self._context.Process(
                 target=_compute, args=(self._work, self._next, theirs, self._said), daemon=True
@@ -158,8 +166,7 @@ class _Forks(Generic[Result]):
                 )))  # fmt: skip
                 continue
             if isinstance(said, int):
-                self._done[index] = said
-                self._told(sum(self._done))
+                self._tell(index, said)
             else:
                 self._end(index, said[0])
 
@@ -169,6 +176,12 @@ class _Forks(Generic[Result]):
         entry.process.join()
         entry.pipe.close()
         self._found[index] = found
+        self._tell(index, self._sizes[index])
+
+    def _tell(self, index: int, done: int) -> None:
+        """Tell how much is done of all cases."""
+        self._done[index] = done
+        self._told(sum(self._done))
 
 
 def _compute(work: Work[Result], index: int, pipe: Connection, said: Any) -> None:

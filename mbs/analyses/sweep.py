@@ -109,15 +109,14 @@ def sweep(
     found: list[Sweep] = []
     for entry in side_by_side(
         lambda index, _: _one(cases[index], speeds, settings.cage_angles),
-        len(cases),
+        [1] * len(cases),
         workers,
-        lambda _: None,
+        lambda done: tell(done, len(cases)),
         lambda index: cases[index].label,
     ):
         if isinstance(entry, Failed):
             raise entry.error
         found.append(entry)
-        tell(len(found), len(cases))
     outside = tuple({name: int(np.count_nonzero(there)) for name, there in entry.outside.items()} for entry in found)
     return SweepResult(cases, tuple(found), outside, _dataset(cases, found))
 

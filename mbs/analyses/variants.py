@@ -307,7 +307,7 @@ def _made(
     found: list[_Outcome] = []
     outcomes = side_by_side(
         lambda index, told: _outcome(runs[index], sensors, settings, told),
-        len(runs),
+        [run.samples for run in runs],
         workers,
         lambda done: tell(done, total),
         lambda index: f"run {index + 1} of {len(runs)}",
@@ -319,8 +319,6 @@ def _made(
     except KeyboardInterrupt:
         if not (keep_partial and len(found) > 1):
             raise
-    else:
-        tell(total, total)
     return found
 
 
