@@ -12,7 +12,17 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.energy import ROWS, EnergyEquations, energy
-from ehdmaps.ehl.newton import CONVERGED, DIVERGED, SOFT_ABOVE, STAGNATED, YIELDING_STEP, lifted, relaxed, solve_scaled, step_length
+from ehdmaps.ehl.newton import (
+    CONVERGED,
+    DIVERGED,
+    SOFT_ABOVE,
+    STAGNATED,
+    YIELDING_STEP,
+    lifted,
+    relaxed,
+    solve_scaled,
+    step_length,
+)
 from ehdmaps.ehl.newton import step_size as size_of
 from ehdmaps.ehl.reynolds import Factors, LineProblem, film, node_pressure, residual_with
 from ehdmaps.ehl.wall_heat import wall_weights
