@@ -17,6 +17,7 @@ from mbs.output.energy_data import with_energy
 from mbs.output.results import described, run_dataset
 from mbs.output.state_data import with_states
 from mbs.scene.assembly import Model, law_attributes
+from mbs.scene.scene import Scene
 from mbs.settings import RunUp
 from mbs.transient.run import WITH_STATES, Recording
 from mbs.transient.run import run as run_system
@@ -45,6 +46,17 @@ class RunUpResult:
     record: Recording
     seconds: float
     dataset: xr.Dataset
+
+
+def runup_problems(scene: Scene) -> list[str]:
+    """What a scene lacks for a run-up.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    """
+    return [] if scene.run_up else [f"{scene.name}: [runup] missing; a run needs from, to, duration and step"]
 
 
 def runup(model: Model, settings: RunUp | None = None, progress: Progress | None = None) -> RunUpResult:
@@ -77,7 +89,7 @@ def runup(model: Model, settings: RunUp | None = None, progress: Progress | None
     """
     course = settings or model.scene.run_up
     if course is None:
-        raise InputError(f"{model.scene.name}: [runup] missing; a run needs from, to, duration and step")
+        raise InputError(runup_problems(model.scene))
     tell, model = progress or silent, held(model)
     start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
     steps = course.settings.steps_per_sample

@@ -17,11 +17,12 @@ from ehdmaps.units import RPM
 from mbs.analyses.campbell import MODE_SPEEDS, MOST_BANDS, CampbellResult, LawRun, campbell, campbell_problems
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import notable_from
-from mbs.analyses.reach import axes_outside, fade_of
+from mbs.analyses.reach import axes_outside, fade_of, source_of
+from mbs.analyses.resolution import resolution
 from mbs.analyses.tolerance import Tolerated, read_tolerance, within
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Told, band_lines, film_course, heading, held_lines, read_option, write
+from mbs.commands.common import Told, band_lines, film_course, heading, held_lines, read_option, resolution_lines, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
@@ -30,6 +31,7 @@ from mbs.output.energy_text import energy_lines
 from mbs.scene.assembly import Model
 from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.fields import HERTZ, MILLISECOND
+from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, difference_text
@@ -53,6 +55,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"{RPM.text(course.speed.at(course.duration)[0])} in {course.duration:.4g} s; "
         f"sensor {found.sensor.name}, {Reference.of(found.sensor).text}",
         *_resolution(runs[0].spectra, settings),
+        *resolution_lines(resolution(runs[0].case.model, course)),
         *(tolerated.lines if tolerated else ()),
     ]
     for entry in runs:
@@ -113,8 +116,17 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
             problems.append(f"--tolerance: {error.problems[0]}")
     highest = read_option("--highest", arguments.highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
     window = read_option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems)
+
+    def looked_at(scene: Scene) -> CampbellSettings:
+        return dataclasses.replace(
+            scene.campbell,
+            sensor=arguments.sensor or scene.campbell.sensor,
+            highest=scene.campbell.highest if highest is None else highest,
+            window=scene.campbell.window if window is None else window,
+        )
+
     try:
-        cases = load_cases(arguments)
+        cases = load_cases(arguments, needs=lambda scene: campbell_problems(scene, looked_at(scene)))
     except InputError as error:
         raise InputError((*problems, *error.problems)) from error
     if len(cases) > MOST_LAWS:
@@ -127,14 +139,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
             f"--tolerance: got {len(cases)} combinations of laws, films and the like; allowed: one, for which step, "
             "slices and cut-off are chosen"
         )
-    scene = cases[0].model.scene
-    settings = dataclasses.replace(
-        scene.campbell,
-        sensor=arguments.sensor or scene.campbell.sensor,
-        highest=scene.campbell.highest if highest is None else highest,
-        window=scene.campbell.window if window is None else window,
-    )
-    problems += campbell_problems(scene, settings)
+    settings = looked_at(cases[0].model.scene)
     if problems:
         raise InputError(tuple(dict.fromkeys(problems)))
     return _Asked(cases, settings, bands, tolerance)
@@ -216,6 +221,7 @@ def _report(entry: LawRun) -> list[str]:
         "{} calls outside the map",
         axes_outside(entry.case.model, float(np.abs(record.speed).max())),
         entry.case.label,
+        source_of(entry.case.model),
     )
     lines += [f"  {line}" for line in energy_lines(record.energy)]
     ends = (float(found.speeds[0]), float(found.speeds[-1]))

@@ -11,7 +11,7 @@ from scipy.signal import find_peaks
 
 from ehdmaps.errors import InputError
 from mbs.analyses.case import Case
-from mbs.analyses.lsa import LsaResult, lsa
+from mbs.analyses.lsa import LsaResult, lsa, lsa_problems
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import band_lines, film_lines, heading, outside_at, write
@@ -60,7 +60,7 @@ def _asked(arguments: argparse.Namespace) -> list[Case]:
     problems: tuple[str, ...] = ()
     cases: list[Case] = []
     try:
-        cases = load_cases(arguments, several=False, several_films=True)
+        cases = load_cases(arguments, several=False, several_films=True, needs=lsa_problems)
     except InputError as error:
         problems = error.problems
     asked = (("films", "kinds of films"), ("supply", "oil supplies"))

@@ -9,11 +9,12 @@ from matplotlib.figure import Figure
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.units import RPM
-from mbs.analyses.reach import Fade, axes_outside, fade_of
-from mbs.analyses.runup import runup
+from mbs.analyses.reach import Fade, axes_outside, fade_of, source_of
+from mbs.analyses.resolution import resolution
+from mbs.analyses.runup import runup, runup_problems
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_model
-from mbs.commands.common import Told, film_course, heading, held_lines, write
+from mbs.commands.common import Told, film_course, heading, held_lines, resolution_lines, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.output.energy_text import energy_lines
 from mbs.output.run_plot import run_figure
@@ -23,7 +24,7 @@ from mbs.transient.run import Recording
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run, and say what was found."""
-    done = analysed(arguments, load_model, lambda model: runup(model, progress=Told("step")), _looks_at)
+    done = analysed(arguments, _asked, lambda model: runup(model, progress=Told("step")), _looks_at)
     found = done.result
     model, result, outside = found.model, found.record, found.record.outside
     fade = fade_of(model)
@@ -36,6 +37,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"from {first} to {last} in {found.course.duration:.4g} s: {result.steps} steps, {result.halved} taken back, "
         f"{result.iterations / max(result.steps, 1):.3g} Newton iterations a step, "
         f"{1e6 * found.seconds / max(result.steps, 1):.0f} us a step",
+        *resolution_lines(resolution(model, found.course)),
         *(f"note: {line}" for line in result.notes),
     ]
     for bearing, force in zip(model.bearings, result.forces, strict=False):
@@ -48,11 +50,16 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines += energy_lines(result.energy)
     lines += fade_lines(model, result.speed, "the run")
     fastest = float(np.abs(result.speed).max())
-    lines += outside_lines(outside, "{} calls outside the map", axes_outside(model, fastest))
+    lines += outside_lines(outside, "{} calls outside the map", axes_outside(model, fastest), source=source_of(model))
     # The equilibria of this line are no part of the run, whose calls were counted above.
     lines += film_course(model, (float(result.speed[0]), float(result.speed[-1])))
     lines += write(arguments, found.dataset, figure)
     return "\n".join(lines), 1 if any(outside.values()) else done.status
+
+
+def _asked(arguments: argparse.Namespace) -> Model:
+    """The model, whose scene has a run-up."""
+    return load_model(arguments, needs=runup_problems)
 
 
 def _looks_at(model: Model) -> Looked:

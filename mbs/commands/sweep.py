@@ -16,13 +16,14 @@ from ehdmaps.units import RPM, quantity
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import film_errors, notable_from
 from mbs.analyses.operating import operating
-from mbs.analyses.reach import axes_outside, fade_of
-from mbs.analyses.sweep import SweepSettings, sweep
+from mbs.analyses.reach import axes_outside, fade_of, source_of
+from mbs.analyses.sweep import SweepSettings, sweep, sweep_problems
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import band_lines, film_lines, heading, write
+from mbs.commands.common import ROUND_OFF, band_lines, clean, film_lines, free_words, heading, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.crossings import exchanged
+from mbs.linearised.modes import free_motions
 from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Operation
@@ -34,7 +35,6 @@ from mbs.settings import MOST_SPEEDS, SweepRange
 
 _LEAST_SHARE = 0.05
 _LEAST_ASSURANCE = 0.5
-_ROUND_OFF = 1e-12
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -125,7 +125,7 @@ def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
             f"--cage-angles: got {arguments.cage_angles!r:.40}; allowed: a whole number from 1 to {MOST_ANGLES}"
         )
     try:
-        cases = load_cases(arguments)
+        cases = load_cases(arguments, needs=None if speeds else sweep_problems, speeds=speeds)
     except InputError as error:
         problems += error.problems
     if problems:
@@ -217,8 +217,9 @@ def _largest(torque: FloatArray) -> float:
 def _undamped(result: Sweep) -> list[str]:
     """Lines on how the undamped modes with strain energy in the bearings change."""
     found = result.undamped
-    shown = np.nonzero(found.bearing_share.max(axis=0) >= _least(result))[0]
-    if not shown.size:
+    free = free_motions(found.frequency.max(axis=0))
+    shown = np.nonzero((found.bearing_share.max(axis=0) >= _least(result)) & ~free)[0]
+    if not shown.size and not free.any():
         return ["  no undamped mode with strain energy in the bearings"]
     lines = [
         "  undamped modes      frequency/Hz        change  by energy: summed, one step   damping ratio   "
@@ -228,17 +229,19 @@ def _undamped(result: Sweep) -> list[str]:
         f, z, s = (values[[0, -1], k] for values in (found.frequency, found.damping_ratio, found.bearing_share))
         lines.append(
             f"  {k + 1:4d} {f[0]:12.5g} to {f[1]:9.5g} {_change(*f):>11} {_percent(found.summed_shift[-1, k]):>16}, "
-            f"{_percent(found.direct_shift[k]):>10} {_clean(z[0]):9.3g} to {_clean(z[1]):.3g} "
+            f"{_percent(found.direct_shift[k]):>10} {clean(z[0]):9.3g} to {clean(z[1]):.3g} "
             f"{s[0]:12.2f} to {s[1]:.2f}" + _band("; frequency", found.frequency_error[:, k], found.frequency[:, k])
         )
-    return lines
+    return [*lines, f"  {free_words(int(np.count_nonzero(free)))}"] if free.any() else lines
 
 
 def _complex(result: Sweep) -> list[str]:
     """Lines on the complex modes with strain energy in the bearings."""
     found = result.damped
-    shown = [k for k in range(found.eigenvalues.shape[1]) if np.nanmax(found.bearing_share[:, k]) >= _least(result)]
-    if not shown:
+    free = free_motions(np.nanmax(found.frequency, axis=0, initial=0.0))
+    shares = np.nanmax(found.bearing_share, axis=0, initial=0.0)
+    shown = np.nonzero((shares >= _least(result)) & ~free)[0].tolist()
+    if not len(shown):
         return ["  no oscillating complex mode with strain energy in the bearings"]
     lines = [
         "  complex modes       frequency/Hz        change   damping ratio   whirl d omega/d Omega   oscillates"
@@ -251,8 +254,8 @@ def _complex(result: Sweep) -> list[str]:
         whole = there[0] == 0 and there[1] == result.speeds.size - 1
         lines.append(
             f"  {found.number[k] + 1:4d} {f[0]:12.5g} to {f[1]:9.5g} {_change(*f):>11} "
-            f"{_clean(z[0]):10.3g} to {_clean(z[1]):.3g} "
-            f"{_clean(w[1]):+14.2g}           {'everywhere' if whole else f'{begin} to {end}'}"
+            f"{clean(z[0]):10.3g} to {clean(z[1]):.3g} "
+            f"{clean(w[1]):+14.2g}           {'everywhere' if whole else f'{begin} to {end}'}"
             + _band("; frequency", found.frequency_error[:, k], found.frequency[:, k])
             + _band(", damping ratio", found.damping_ratio_error[:, k], found.damping_ratio[:, k])
         )
@@ -301,7 +304,9 @@ def _outside(case: Case, result: Sweep, calls: Mapping[str, int]) -> list[str]:
     """Lines on bearings whose equilibria lie outside the map."""
     words = f"lies outside the map at {{}} of {result.speeds.size} speeds"
     fastest = float(np.abs(result.speeds).max())
-    return outside_lines(calls, words, axes_outside(operating(case.model, fastest), fastest), case.label)
+    return outside_lines(
+        calls, words, axes_outside(operating(case.model, fastest), fastest), case.label, source_of(case.model)
+    )
 
 
 def _film_errors(model: Model, result: Sweep) -> list[str]:
@@ -332,7 +337,7 @@ def _lost(result: Sweep) -> list[str]:
 
 def _band(words: str, errors: FloatArray, values: FloatArray) -> str:
     """The largest band over the speeds, in per cent of the value there; nothing where none is stated."""
-    there = np.isfinite(errors) & (np.abs(values) > _ROUND_OFF)
+    there = np.isfinite(errors) & (np.abs(values) > ROUND_OFF)
     if not there.any():
         return ""
     return f"{words} +- {100.0 * float(np.max(errors[there] / np.abs(values[there]))):.2g} %"
@@ -343,14 +348,9 @@ def _change(begin: float, end: float) -> str:
     return _percent(end / begin - 1.0) if begin > 0.0 else "-"
 
 
-def _clean(value: float) -> float:
-    """The value, or 0 if it is round-off."""
-    return value if abs(value) > _ROUND_OFF else 0.0
-
-
 def _percent(part: float) -> str:
     """A part in per cent, with its sign."""
-    return f"{100.0 * _clean(part):+.2f} %"
+    return f"{100.0 * clean(part):+.2f} %"
 
 
 def _first(result: Sweep) -> str:

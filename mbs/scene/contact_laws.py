@@ -29,6 +29,9 @@ from mbs.scene.specs import BearingSpec
 FILM_WORDS: dict[Films, str] = {"memory": "films with memory", "slow": "slow films"}
 """How people are told that films relax, or that they have stiffness and damping of slow motion at any frequency."""
 
+_FORMULA_SPEEDS, _BEYOND = (0.05, 10.0), 1.05
+"""Entrainment speeds of the table of the film formula [m/s], and how far it goes beyond a scene that is faster."""
+
 _SAME = 1e-9
 _COMPARED = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
 _HERTZ, _CONSTANT = "hertz:", "constant:"
@@ -367,8 +370,24 @@ class BearingLaws:
         surface = self.given.surface
         if self.given.chosen == "map" and self.given.emap is not None:
             return self.given.emap.law(kind, outside="clamp", supply=self.supply, surface=surface)
-        oil = self.given.lubricant
-        return laws.formula(self.bearing, oil, kind=kind, outside="clamp", supply=self.supply, surface=surface)
+        fastest = max(_FORMULA_SPEEDS[1], _BEYOND * self._highest_speed)
+        return laws.formula(
+            self.bearing,
+            self.given.lubricant,
+            entrainment_speed=(_FORMULA_SPEEDS[0], fastest),
+            kind=kind,
+            outside="clamp",
+            supply=self.supply,
+            surface=surface,
+        )
+
+    @property
+    def _highest_speed(self) -> float:
+        """Entrainment speed that no bearing of this geometry exceeds in the scene [m/s]."""
+        scene = self.given.scene
+        spin = max((abs(body.spin) for body in scene.bodies), default=0.0)
+        # Rings turn against each other at most.
+        return abs(self.bearing.geometry.entrainment_speed(spin * scene.fastest, -spin * scene.fastest))
 
 
 def geometry_problems(where: str, geometry: BearingGeometry, emap: EHDMap) -> list[str]:
