@@ -32,8 +32,8 @@ class SweepSettings:
     speeds : SweepRange or None
         None for [sweep] of the scene.
     cage_angles : int
-        Angles within one pitch of the rollers over which stiffness and damping of the bearings are averaged; modes
-        and responses are those of the first.
+        Angles within one pitch of the rollers over which stiffness and damping of the bearings are averaged, for
+        modes and responses too.
     """
 
     speeds: SweepRange | None = None

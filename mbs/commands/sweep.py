@@ -96,7 +96,7 @@ def _figure(cases: Sequence[Case], found: Sequence[Sweep]) -> Figure:
         temperature_text(cases[0].model),
         *([f"clearance {clearance_text(cases[0].model)}"] if len(clearances) == 1 else []),
         *([f"{cases[0].load_factor:g} x load"] if len(cases) == 1 and cases[0].load_factor != 1.0 else []),
-        "cages held",
+        f"mean of {found[0].bearings.angles} cage angles" if found[0].bearings.angles > 1 else "cages held",
     ]
     fades = [fade for case in cases if (fade := fade_of(case.model)) is not None]
     return sweep_figure(
@@ -125,7 +125,7 @@ def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
             f"--cage-angles: got {arguments.cage_angles!r:.40}; allowed: a whole number from 1 to {MOST_ANGLES}"
         )
     try:
-        cases = load_cases(arguments, needs=None if speeds else sweep_problems, speeds=speeds)
+        cases = load_cases(arguments, needs=None if arguments.speeds else sweep_problems, speeds=speeds)
     except InputError as error:
         problems += error.problems
     if problems:
@@ -230,7 +230,9 @@ def _undamped(result: Sweep) -> list[str]:
         lines.append(
             f"  {k + 1:4d} {f[0]:12.5g} to {f[1]:9.5g} {_change(*f):>11} {_percent(found.summed_shift[-1, k]):>16}, "
             f"{_percent(found.direct_shift[k]):>10} {clean(z[0]):9.3g} to {clean(z[1]):.3g} "
-            f"{s[0]:12.2f} to {s[1]:.2f}" + _band("; frequency", found.frequency_error[:, k], found.frequency[:, k])
+            f"{s[0]:12.2f} to {s[1]:.2f}"
+            + _band("; frequency", found.frequency_error[:, k], found.frequency[:, k])
+            + _over_pitch(result, found.frequency_spread[:, k], found.frequency[:, k], "frequency")
         )
     return [*lines, f"  {free_words(int(np.count_nonzero(free)))}"] if free.any() else lines
 
@@ -258,6 +260,8 @@ def _complex(result: Sweep) -> list[str]:
             f"{clean(w[1]):+14.2g}           {'everywhere' if whole else f'{begin} to {end}'}"
             + _band("; frequency", found.frequency_error[:, k], found.frequency[:, k])
             + _band(", damping ratio", found.damping_ratio_error[:, k], found.damping_ratio[:, k])
+            + _over_pitch(result, found.frequency_spread[:, k], found.frequency[:, k], "frequency")
+            + _over_pitch(result, found.damping_ratio_spread[:, k], found.damping_ratio[:, k], "damping ratio")
         )
     return lines
 
@@ -335,12 +339,18 @@ def _lost(result: Sweep) -> list[str]:
     ]
 
 
+def _over_pitch(result: Sweep, spread: FloatArray, values: FloatArray, words: str) -> str:
+    """How much a value varies over the angles of the cage; nothing for one angle."""
+    return _band(f"; over the pitch {words}", spread, values) if result.bearings.angles > 1 else ""
+
+
 def _band(words: str, errors: FloatArray, values: FloatArray) -> str:
     """The largest band over the speeds, in per cent of the value there; nothing where none is stated."""
     there = np.isfinite(errors) & (np.abs(values) > ROUND_OFF)
     if not there.any():
         return ""
-    return f"{words} +- {100.0 * float(np.max(errors[there] / np.abs(values[there]))):.2g} %"
+    part = 100.0 * float(np.max(errors[there] / np.abs(values[there])))
+    return f"{words} +- {part:.2g} %" if part < 99.5 else f"{words} +- {part:.0f} %"
 
 
 def _change(begin: float, end: float) -> str:
