@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
+from scipy.signal import find_peaks
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
@@ -23,6 +24,7 @@ from mbs.commands.cases import load_cases
 from mbs.commands.common import ROUND_OFF, band_lines, clean, film_lines, free_words, heading, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.crossings import exchanged
+from mbs.linearised.linear import response_unit
 from mbs.linearised.modes import free_motions
 from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.sweep_result import Sweep
@@ -34,6 +36,10 @@ from mbs.scene.assembly import Model
 from mbs.settings import MOST_SPEEDS, SweepRange
 
 _LEAST_SHARE = 0.05
+_PROMINENCE = 0.05
+"""How far a peak stands out of both valleys beside it, as a logarithm."""
+
+_PEAKS = 5
 _LEAST_ASSURANCE = 0.5
 
 
@@ -59,6 +65,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *(f"  {line}" for line in flooded_note(_largest(torque), case.model.supplies.values())),
             *_undamped(entry),
             *_complex(entry),
+            *_responses(entry),
             *band_lines(case.model),
             *_exchanged(entry),
             *_unsure(entry),
@@ -264,6 +271,30 @@ def _complex(result: Sweep) -> list[str]:
             + _over_pitch(result, found.damping_ratio_spread[:, k], found.damping_ratio[:, k], "damping ratio")
         )
     return lines
+
+
+def _responses(result: Sweep) -> list[str]:
+    """Lines on the highest peaks of each response at the first and last speed, by the frequencies of [linear]."""
+    found = result.responses
+    lines = []
+    for s, i in np.ndindex(found.values.shape[2:]) if found.frequencies.size else ():
+        ends = [_peaks(found.frequencies, np.abs(found.values[k, :, s, i])) for k in (0, -1)]
+        if not any(ends):
+            continue
+        at = [
+            f"{', '.join(words) or 'none'} at {RPM.text(float(result.speeds[k]))}"
+            for k, words in zip((0, -1), ends, strict=True)
+        ]
+        sensor, entry = found.sensors[s], found.inputs[i]
+        lines.append(f"  {sensor.name} by {entry.name}, peaks [{response_unit(sensor, entry)}]: {'; '.join(at)}")
+    return lines
+
+
+def _peaks(frequencies: FloatArray, size: FloatArray) -> list[str]:
+    """The highest peaks of a response, each with its frequency, in the order of these."""
+    places, _ = find_peaks(np.log(np.maximum(size, 1e-300)), prominence=_PROMINENCE)
+    highest = np.sort(places[np.argsort(-size[places], kind="stable")][:_PEAKS])
+    return [f"{size[k]:.3g} ({frequencies[k]:.5g} Hz)" for k in highest]
 
 
 def _exchanged(result: Sweep) -> list[str]:
