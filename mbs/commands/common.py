@@ -73,6 +73,11 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
         f"{model.scene.title}: law {model.law}",
         f"  {at}{temperature_text(model)}, clearance {clearance_text(model) or 'none'}; assumed: "
         + (f"{len(model.scene.assumed)} keys of the scene, marked there" if model.scene.assumed else "nothing"),
+        *(
+            f"  the weight of {name} is left out: its finite elements are held themselves, so that it bears on no "
+            "other body"
+            for name in model.system.weightless
+        ),
         *state_lines(model.states),
     ]
 
@@ -162,7 +167,7 @@ def _film_line(entry: FilmError, frequency: float, words: str) -> str:
     return more + ("; with --films memory films follow at their own frequency" if entry.films == "slow" else "")
 
 
-def resolution_lines(found: Resolution) -> list[str]:
+def step_lines(found: Resolution) -> list[str]:
     """Lines on what the steps of a run resolve, and on what the method takes from oscillations.
 
     Parameters
