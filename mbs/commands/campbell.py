@@ -62,8 +62,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"{runs[0].case.model.scene.title}: run-up from {RPM.text(course.speed.at(0.0)[0])} to "
         f"{RPM.text(course.speed.at(course.duration)[0])} in {course.duration:.4g} s; {_sensor_words(found.sensors)}",
         *resolution_lines(runs[0].spectra[0], settings.highest),
-        *step_lines(resolution(runs[0].case.model, course)),
         *(tolerated.lines if tolerated else ()),
+        *step_lines(resolution(runs[0].case.model, course)),
     ]
     for entry in runs:
         lines += [*_report(entry, found.sensors), *_band(entry, bands, found.sensors)]
