@@ -23,7 +23,10 @@ LONGEST_QUANTITY = 80
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
 # One power a unit, of one digit: pint evaluates powers, and "m^9^9^9" would keep it busy for ever.
-_ATOM = r"[A-Za-zµμ°%]+(?:(?:\^|\*\*)-?[1-9]|[²³])?"
+_ATOM = r"[A-Za-zµμ°%]+(?:(?:(?:\^|\*\*)-?)?[1-9]|[²³])?"
+_PLAIN_POWER = re.compile(r"(?<=[A-Za-zµμ])([1-9])")
+"""As all output writes it: "kg m2", "m/s2"."""
+
 _UNIT = re.compile(rf"(?:1 ?/ ?)?\(?{_ATOM}(?:(?: ?[*/·] ?| )\(?{_ATOM}\)?)*")
 
 _EXAMPLES = {
@@ -164,7 +167,7 @@ def _conversion(unit_text: str, unit: str) -> tuple[float, float]:
         raise InputError(f"{wrong}; C is the coulomb, write degC")
     target = registry.parse_units(unit)
     try:
-        given = registry.parse_units(unit_text.replace("·", "*"))
+        given = registry.parse_units(_PLAIN_POWER.sub(r"^\1", unit_text.replace("·", "*")))
         if given.dimensionality != target.dimensionality:
             raise InputError(wrong)
         if _turns(given) != _turns(target) and target.dimensionality == registry.Unit("Hz").dimensionality:

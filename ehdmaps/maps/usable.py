@@ -22,6 +22,13 @@ from ehdmaps.physics.solution import Status
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 _SHOWN = 3
+_SLOWEST = 1.0
+"""Longest time c/k in which a contact answers that a map may state [s]. Films of real oils take up to 10 ms."""
+
+_CONTRADICTS = 0.3, 0.2
+"""Change of the logarithm of the film over all loads, as its compliance gives it, may differ by this part of it, and by
+this much, from what it is: coarse axes of loads differ by 0.08 and 0.2 of it."""
+
 _ROUND_OFF = 1e-9
 """Relative: what an axis of the backbone differs by from the axis of the map that it was laid for."""
 
@@ -136,6 +143,15 @@ def check_backbone(
             f"{np.count_nonzero(usable & ~solved)} solved points without a number or with no positive film, "
             f"{_lines(group, usable & ~solved)}"
         )
+    slow = solved & (
+        group["loss_compliance"].values
+        > _SLOWEST * (np.abs(group["film_compliance"].values) + 1.0 / reference.reduced_modulus)
+    )
+    if np.any(slow):
+        problems.append(
+            f"{np.count_nonzero(slow)} points whose loss compliance is more than {_SLOWEST:g} s times their "
+            f"compliance, {_lines(group, slow)}"
+        )
     between = np.logical_or.accumulate(solved, 0) & np.logical_or.accumulate(solved[::-1], 0)[::-1]
     missing = ~solved & (between | _within(group, reference, contacts, lubricant, loads, speeds))
     clusters = missing & (status == NOT_NEEDED)
@@ -211,7 +227,38 @@ def _unphysical(chosen: xr.Dataset, contacts: Sequence[LineContact]) -> list[str
                 f"{np.count_nonzero(wrong)} points whose {word} is not positive, {_places(chosen, wrong)}; "
                 "a law needs it positive; solve them again with a finer grid"
             )
-    return problems
+    if problems:
+        return problems
+    slow = moving & ~(chosen["loss_compliance"].values <= _SLOWEST * compliance)
+    if np.any(slow):
+        problems.append(
+            f"{np.count_nonzero(slow)} points whose damping is more than {_SLOWEST:g} s times the stiffness, "
+            f"{_places(chosen, slow)}; look at loss_compliance, or damping, there: the unit is m2 s/N, or N s/m2"
+        )
+    return problems + _contradicting(chosen, moving)
+
+
+def _contradicting(chosen: xr.Dataset, moving: BoolArray) -> list[str]:
+    """Lines over the loads whose film compliance is not the slope of their film offset."""
+    loads, offset = chosen["load"].values[:, None, None], np.where(moving, chosen["film_offset"].values, 1.0)
+    steps = np.diff(np.log(loads), axis=0)
+    slope = np.where(moving, chosen["film_compliance"].values * loads / offset, 0.0)
+    by_compliance = np.sum(0.5 * (slope[:, 1:] + slope[:, :-1]) * steps, axis=1)
+    found = np.log(offset[:, 0] / offset[:, -1])
+    part, least = _CONTRADICTS
+    wrong = np.abs(by_compliance - found) > part * np.maximum(np.abs(found), np.abs(by_compliance)) + least
+    if not np.any(wrong):
+        return []
+    i, k, m = np.argwhere(wrong)[0]
+    place = f"{SPEED.text(float(chosen['entrainment_speed'].values[k]))}, " + TEMPERATURE.text(
+        float(chosen["temperature"].values[m])
+    )
+    return [
+        f"{np.count_nonzero(wrong)} lines over the load whose film_offset contradicts film_compliance, or stiffness: "
+        f"of {chosen['contact'].values[i]} at {place} the film offset falls by a factor of "
+        f"{np.exp(found[i, k, m]):.4g}, and by its compliance, which is minus its slope, by one of "
+        f"{np.exp(min(by_compliance[i, k, m], 700.0)):.4g}; generate the map again, or correct the one or the other"
+    ]
 
 
 def _places(chosen: xr.Dataset, where: BoolArray) -> str:

@@ -10,6 +10,7 @@ lsa            state space and frequency responses at the equilibrium
 sweep          modes, bearings and responses over speed, of one or more models
 critical       critical speeds, and the response to unbalances and orders over speed
 runup          the nonlinear system in time over its speed profile
+resolution     what the steps of a run resolve, and what the method of integration takes from oscillations
 campbell       run-ups with one or more laws as levels over speed, frequency and order
 changed_laws   models whose laws are wrong by the errors that their map states
 variants       how a difference between two laws in a run-up depends on clearance, temperature and the like

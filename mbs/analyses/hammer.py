@@ -15,6 +15,7 @@ from mbs.linearised.validity import FilmError
 from mbs.modal.records import Hits
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.scene.assembly import Model
+from mbs.scene.scene import Scene
 from mbs.transient.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
 
 HIGHEST = 5000.0
@@ -109,14 +110,7 @@ def hammer(model: Model, settings: HammerSettings | None = None, progress: Progr
     """
     settings = settings or HammerSettings()
     scene = model.scene
-    missing = [
-        f"{scene.name}: [[{key}]] missing; a hammer test needs {words}"
-        for key, there, words in (
-            ("inputs", scene.inputs, "places to hit"),
-            ("sensors", scene.sensors, "at least one sensor"),
-        )
-        if not there
-    ]
+    missing = hammer_problems(scene)
     if missing:
         raise InputError(missing)
     model = operating(model, model.operation.speed)
@@ -135,6 +129,24 @@ def hammer(model: Model, settings: HammerSettings | None = None, progress: Progr
         errors=tuple(film_errors(model, balance.displacement, balance.operation)),
         outside_hits=outside,
     )
+
+
+def hammer_problems(scene: Scene) -> list[str]:
+    """What a scene lacks for a hammer test.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    """
+    return [
+        f"{scene.name}: [[{key}]] missing; a hammer test needs {words}"
+        for key, there, words in (
+            ("inputs", scene.inputs, "places to hit"),
+            ("sensors", scene.sensors, "at least one sensor"),
+        )
+        if not there
+    ]
 
 
 def _hit(

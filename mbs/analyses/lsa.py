@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -24,6 +25,7 @@ from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import described, linear_dataset
 from mbs.output.state_data import with_states
 from mbs.scene.assembly import Model, law_attributes, supply_attributes
+from mbs.scene.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -82,6 +84,25 @@ class LsaResult:
     errors: tuple[FilmError, ...]
     lifting: tuple[DynamicLoad, ...]
     dataset: xr.Dataset
+
+
+def lsa_problems(scene: Scene) -> list[str]:
+    """What a scene lacks for a linear analysis.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    """
+    return [
+        f"{scene.name}: {key} missing; a linear analysis needs {words}"
+        for key, there, words in (
+            ("[[inputs]]", scene.inputs, "at least one input"),
+            ("[[sensors]]", scene.sensors, "at least one sensor"),
+            ("[linear] frequencies", scene.frequencies, "frequencies"),
+        )
+        if not there
+    ]
 
 
 def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
@@ -147,15 +168,7 @@ def _linearised(model: Model, settings: LsaSettings) -> _Linearised:
     """Linearise one model."""
     scene = model.scene
     asked = scene.frequencies if settings.frequencies is None else settings.frequencies
-    missing = [
-        f"{scene.name}: {key} missing; a linear analysis needs {words}"
-        for key, there, words in (
-            ("[[inputs]]", scene.inputs, "at least one input"),
-            ("[[sensors]]", scene.sensors, "at least one sensor"),
-            ("[linear] frequencies", asked, "frequencies"),
-        )
-        if not there
-    ]
+    missing = lsa_problems(dataclasses.replace(scene, frequencies=tuple(asked)))
     if missing:
         raise InputError(missing)
     operation = settings.operation or model.operation

@@ -40,6 +40,17 @@ class Fade:
         return np.asarray(np.abs(np.asarray(speeds, dtype=np.float64)) < self.speed)
 
 
+def source_of(model: Model) -> str:
+    """Where a law has its films from, in words: "the map", or "the table of the film formula".
+
+    Parameters
+    ----------
+    model : Model
+        Model with its law.
+    """
+    return "the map" if model.law.startswith("map ") else "the table of the film formula"
+
+
 def fade_of(model: Model) -> Fade | None:
     """Where the films of the model begin; None for laws without films, and for bearings that do not turn."""
     found: list[Fade] = []
@@ -48,8 +59,7 @@ def fade_of(model: Model) -> Fade | None:
         if not isinstance(law, ContactLaw) or not bearing.rates[1] > 0.0 or not law.speed_range[0] > 0.0:
             continue
         lowest = law.speed_range[0]
-        source = "the map" if model.law.startswith("map ") else "the table of the film formula"
-        found.append(Fade(lowest / bearing.rates[1], lowest, source))
+        found.append(Fade(lowest / bearing.rates[1], lowest, source_of(model)))
     return max(found, key=lambda fade: fade.speed, default=None)
 
 
@@ -78,5 +88,6 @@ def axes_outside(model: Model, speed: float, loads: Mapping[str, float] | None =
             continue
         load = (loads or {}).get(bearing.name, 0.0)
         axes = axes_left(law, load, bearing.entrainment_speed(Operation(speed)), bearing.temperature)
-        found[bearing.name] = "; ".join(axes) or f"a load above {LOAD.text(law.load_range[1])}, where the map ends"
+        words = "; ".join(axes) or f"a load above {LOAD.text(law.load_range[1])}, where the map ends"
+        found[bearing.name] = words.replace("the map", source_of(model))
     return found

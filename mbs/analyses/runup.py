@@ -23,6 +23,7 @@ from mbs.output.energy_data import with_energy
 from mbs.output.results import described, run_dataset
 from mbs.output.state_data import with_states
 from mbs.scene.assembly import Model, law_attributes, supply_attributes
+from mbs.scene.scene import Scene
 from mbs.settings import RunUp
 from mbs.timedata.netcdf_file import signal_variables
 from mbs.transient.run import Options, Recording
@@ -55,6 +56,17 @@ class RunUpResult:
     record: Recording
     seconds: float
     dataset: xr.Dataset
+
+
+def runup_problems(scene: Scene) -> list[str]:
+    """What a scene lacks for a run-up.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    """
+    return [] if scene.run_up else [f"{scene.name}: [runup] missing; a run needs from, to, duration and step"]
 
 
 def runup(model: Model, settings: RunUp | None = None, progress: Progress | None = None) -> RunUpResult:
@@ -104,7 +116,7 @@ def _course(model: Model, settings: RunUp | None = None) -> RunUp:
     """What is run: that of the scene if nothing else is given."""
     course = settings or model.scene.run_up
     if course is None:
-        raise InputError(f"{model.scene.name}: [runup] missing; a run needs from, to, duration and step")
+        raise InputError(runup_problems(model.scene))
     return course
 
 

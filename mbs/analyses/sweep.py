@@ -20,6 +20,7 @@ from mbs.output.results import described
 from mbs.output.state_data import with_states
 from mbs.output.sweep_data import sweep_dataset
 from mbs.scene.assembly import Model, law_attributes, supply_attributes
+from mbs.scene.scene import Scene
 from mbs.settings import SweepRange
 
 
@@ -32,8 +33,8 @@ class SweepSettings:
     speeds : SweepRange or None
         None for [sweep] of the scene.
     cage_angles : int
-        Angles within one pitch of the rollers over which stiffness and damping of the bearings are averaged; modes
-        and responses are those of the first.
+        Angles within one pitch of the rollers over which stiffness and damping of the bearings are averaged, for
+        modes and responses too.
     """
 
     speeds: SweepRange | None = None
@@ -100,10 +101,7 @@ def sweep(
     settings = settings or SweepSettings()
     speeds = settings.speeds or cases[0].model.scene.sweep
     if speeds is None:
-        raise InputError(
-            f'{cases[0].model.scene.name}: no speeds; allowed: --speeds "500 rpm" "2500 rpm" 40, or a table [sweep] in '
-            "the scene with from, to and points"
-        )
+        raise InputError(sweep_problems(cases[0].model.scene))
     tell = progress or silent
     tell(0, len(cases))
     found: list[Sweep] = []
@@ -119,6 +117,22 @@ def sweep(
         found.append(entry)
     outside = tuple({name: int(np.count_nonzero(there)) for name, there in entry.outside.items()} for entry in found)
     return SweepResult(cases, tuple(found), outside, _dataset(cases, found))
+
+
+def sweep_problems(scene: Scene) -> list[str]:
+    """What a scene lacks for a sweep without speeds of its own.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    """
+    if scene.sweep is not None:
+        return []
+    return [
+        f'{scene.name}: no speeds; allowed: --speeds "500 rpm" "2500 rpm" 40, or a table [sweep] in the scene with '
+        "from, to and points"
+    ]
 
 
 def _one(case: Case, speeds: SweepRange, cage_angles: int) -> Sweep:

@@ -31,7 +31,7 @@ from mbs.analyses.operating import held
 from mbs.analyses.progress import Progress, silent
 from mbs.analyses.ramp_parts import PartRun, Ramp, RampPart, ramp_of, run_part
 from mbs.analyses.varied import VARIED, LawChoice, Subject
-from mbs.linearised.sweep_point import pitch
+from mbs.linearised.averaged import pitch
 from mbs.scene import changes
 from mbs.scene.contact_laws import law_label
 from mbs.scene.fields import HERTZ, MILLISECOND

@@ -18,13 +18,14 @@ from ehdmaps.workers import available_cores
 from mbs.analyses.campbell import MODE_SPEEDS, MOST_BANDS, CampbellResult, LawRun, campbell, campbell_problems
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import notable_from
-from mbs.analyses.reach import axes_outside, fade_of
+from mbs.analyses.reach import axes_outside, fade_of, source_of
 from mbs.analyses.recorded import RecordedRun, simulated_campbell
+from mbs.analyses.resolution import resolution
 from mbs.analyses.tolerance import Tolerated, read_tolerance, within
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.campbell_recorded import measured_lines, measured_run, read_look, recorded_runs, signal_problems
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Told, band_lines, film_course, heading, held_lines, write
+from mbs.commands.common import Told, band_lines, film_course, heading, held_lines, step_lines, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
@@ -62,6 +63,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"{RPM.text(course.speed.at(course.duration)[0])} in {course.duration:.4g} s; {_sensor_words(found.sensors)}",
         *resolution_lines(runs[0].spectra[0], settings.highest),
         *(tolerated.lines if tolerated else ()),
+        *step_lines(resolution(runs[0].case.model, course)),
     ]
     for entry in runs:
         lines += [*_report(entry, found.sensors), *_band(entry, bands, found.sensors)]
@@ -137,7 +139,10 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
             problems.append(f"--tolerance: {error.problems[0]}")
     looked = read_look(arguments, problems)
     try:
-        cases = load_cases(arguments)
+        cases = load_cases(
+            arguments,
+            needs=lambda scene: campbell_problems(scene, looked.settings(scene.campbell), looked.sensors),
+        )
     except InputError as error:
         raise InputError((*problems, *error.problems)) from error
     if len(cases) > MOST_LAWS:
@@ -152,7 +157,6 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
         )
     scene = cases[0].model.scene
     settings = looked.settings(scene.campbell)
-    problems += campbell_problems(scene, settings, looked.sensors)
     read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *scene.files, *looked.files]
     problems += signal_problems(arguments, read, len(cases))
     measured = None
@@ -243,6 +247,7 @@ def _report(entry: LawRun, sensors: Sequence[Sensor]) -> list[str]:
         "{} calls outside the map",
         axes_outside(entry.case.model, float(np.abs(record.speed).max())),
         entry.case.label,
+        source_of(entry.case.model),
     )
     lines += [f"  {line}" for line in energy_lines(record.energy)]
     ends = (float(found.speeds[0]), float(found.speeds[-1]))

@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from ehdmaps.errors import EhdmapsError, InputError
@@ -31,6 +31,7 @@ from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.map_set import MapSet, map_sets
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
+from mbs.settings import SweepRange
 
 NO_MAP = "--structure: got {!r:.60} without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`"
 """What is said where a structural law is given for no map."""
@@ -40,19 +41,38 @@ FILMS = ("memory", "slow", "dry")
 
 MOST_CASES = 24
 
+Needs = Callable[[Scene], Iterable[str]]
+"""Tells what a scene lacks for an analysis."""
 
-def load_model(arguments: argparse.Namespace, kind: Kind = RESULT) -> Model:
+
+def load_model(arguments: argparse.Namespace, kind: Kind = RESULT, needs: Needs | None = None) -> Model:
     """Read scene, law or map, and clearance of a command that takes one of each; all problems at once.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        The same as for `load_cases`.
+    kind : Kind
+        Kind of file that -o writes.
+    needs : callable, optional
+        The same as for `load_cases`.
 
     Raises
     ------
     InputError
         With every problem.
     """
-    return load_cases(arguments, several=False, kind=kind)[0].model
+    return load_cases(arguments, several=False, kind=kind, needs=needs)[0].model
 
 
-def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind = RESULT) -> list[Case]:
+def load_cases(
+    arguments: argparse.Namespace,
+    several: bool = True,
+    kind: Kind = RESULT,
+    *,
+    needs: Needs | None = None,
+    speeds: SweepRange | None = None,
+) -> list[Case]:
     """Read scene, laws, maps, clearances and load factors into models; all problems at once.
 
     Parameters
@@ -64,6 +84,10 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
         Whether laws and maps stand side by side; else a law goes before a map.
     kind : Kind
         Kind of file that -o writes.
+    needs : callable, optional
+        What a scene lacks for the analysis, by sentences; it is said before laws are made, which takes time.
+    speeds : SweepRange, optional
+        Speeds that are looked at instead of [sweep] of the scene.
 
     Raises
     ------
@@ -103,8 +127,11 @@ def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind =
             f"--law, --map, --films, --supply, --clearance, --load-factor, --start-angle: got {count} combinations; "
             f"allowed: at most {MOST_CASES}"
         )
-    if scene is None or count > MOST_CASES:
+    lacking = list(needs(scene)) if scene is not None and needs is not None else []
+    problems += lacking
+    if scene is None or count > MOST_CASES or lacking:
         raise InputError(tuple(dict.fromkeys(problems)))
+    scene = scene if speeds is None else dataclasses.replace(scene, sweep=speeds)
     cases = []
     for law, clearance, factor, angle in itertools.product(laws, clearances, factors, angles):
         try:

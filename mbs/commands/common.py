@@ -18,7 +18,8 @@ from ehdmaps.outputs import write_figure
 from ehdmaps.units import RPM, Display, quantity
 from mbs.analyses.case import clearance_text, temperature_text
 from mbs.analyses.film_errors import notable_from
-from mbs.analyses.reach import axes_outside
+from mbs.analyses.reach import axes_outside, source_of
+from mbs.analyses.resolution import Resolution
 from mbs.analyses.rings import ring_motions
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.heat import HeatPaths
@@ -30,8 +31,15 @@ from mbs.output.results import write_dataset
 from mbs.output.state_text import state_lines
 from mbs.scene.assembly import Model
 from mbs.scene.contact_laws import FILM_WORDS
+from mbs.scene.fields import HERTZ, MILLISECOND
+from mbs.transient.numerical_damping import RESOLVED
 
 RESOLUTION = 150
+
+MICROSECOND = Display("us", 1e6)
+
+ROUND_OFF = 1e-12
+"""Size of a part or ratio that is none."""
 
 
 class Told:
@@ -99,6 +107,29 @@ def band_lines(model: Model) -> list[str]:
     return [f"  bands (+-): {words}"] if words else []
 
 
+def clean(value: float) -> float:
+    """The value, or 0 where it is round-off: of parts and ratios.
+
+    Parameters
+    ----------
+    value : float
+        A damping ratio, or a relative change.
+    """
+    return float(value) if abs(value) > ROUND_OFF else 0.0
+
+
+def free_words(count: int) -> str:
+    """How free motions are told, which have no frequency and no damping ratio.
+
+    Parameters
+    ----------
+    count : int
+        How many there are.
+    """
+    what = "1 free motion" if count == 1 else f"{count} free motions"
+    return f"{what} at 0 Hz without strain energy, such as unloaded rollers"
+
+
 def film_lines(errors: Sequence[FilmError], frequencies: Iterable[float], words: str = "") -> list[str]:
     """Lines on the estimated error of the films of each bearing at the highest frequency; none where there is none.
 
@@ -134,6 +165,40 @@ def _film_line(entry: FilmError, frequency: float, words: str) -> str:
         return line
     more = f"warning: {line}, from {entry.frequency:.4g} Hz on more than {100.0 * NOTABLE:g} %"
     return more + ("; with --films memory films follow at their own frequency" if entry.films == "slow" else "")
+
+
+def step_lines(found: Resolution) -> list[str]:
+    """Lines on what the steps of a run resolve, and on what the method takes from oscillations.
+
+    Parameters
+    ----------
+    found : Resolution
+        What they resolve.
+    """
+    high = min(found.highest, found.looked_at)
+    losses = " and ".join(_lost(found, part * high) for part in (0.5, 1.0))
+    taken = (
+        "the method of integration takes no energy (spectral radius 1)"
+        if found.spectral_radius == 1.0
+        else f"numerical damping (spectral radius {found.spectral_radius:g}) takes {losses} of the energy of an "
+        "oscillation in 1 s"
+    )
+    step = MICROSECOND.text(found.step) if found.step < 1e-3 else MILLISECOND.text(found.step)
+    lines = [f"steps of {step}: {RESOLVED:g} a period at {HERTZ.text(found.highest)}; {taken}"]
+    if found.unresolved:
+        needed = MICROSECOND.text(found.needed, 3) if found.needed < 1e-3 else MILLISECOND.text(found.needed, 3)
+        lines.append(
+            f"warning: steps of {step} do not resolve what moves here: {', and '.join(found.unresolved)}; this run "
+            f"is a row of equilibria at best; take steps of {needed} or less in [runup]"
+        )
+    return lines
+
+
+def _lost(found: Resolution, frequency: float) -> str:
+    """What an oscillation loses in a second, and the damping ratio that takes as much."""
+    part = found.lost(frequency)
+    words = f"{100.0 * part:.3g} %" if 1e-6 < part < 0.9995 else "less than 0.0001 %" if part < 0.5 else "all"
+    return f"{words} at {HERTZ.text(frequency)} (a damping ratio of {found.ratio(frequency):.2g})"
 
 
 def film_course(model: Model, speeds: Iterable[float]) -> list[str]:
@@ -204,7 +269,8 @@ def outside_at(model: Model, balance: Equilibrium) -> list[str]:
         for bearing, motion in ring_motions(model, balance.displacement)
         if isinstance(bearing.force, BearingForce)
     }
-    return outside_lines(balance.outside, "lies outside the map", axes_outside(model, balance.operation.speed, loads))
+    axes = axes_outside(model, balance.operation.speed, loads)
+    return outside_lines(balance.outside, "lies outside the map", axes, source=source_of(model))
 
 
 def write(arguments: argparse.Namespace, dataset: xr.Dataset, figure: Figure | None) -> list[str]:

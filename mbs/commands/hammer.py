@@ -11,10 +11,10 @@ from ehdmaps.errors import InputError
 from ehdmaps.extras import lacking
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.units import quantity
-from mbs.analyses.hammer import HIGHEST, HammerSettings, hammer
+from mbs.analyses.hammer import HIGHEST, HammerSettings, hammer, hammer_problems
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_model
-from mbs.commands.common import Told, film_lines, heading, outside_at
+from mbs.commands.common import Told, clean, film_lines, free_words, heading, outside_at
 from mbs.linearised.modes import Modes
 from mbs.modal.uff import UFF, Measurement
 from mbs.modal.uff_writing import write_uff
@@ -29,7 +29,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     settings = HammerSettings(highest, duration, arguments.hits, arguments.noise, arguments.seed, arguments.nonlinear)
     done = analysed(
         arguments,
-        lambda given: load_model(given, UFF),
+        lambda given: load_model(given, UFF, hammer_problems),
         lambda model: hammer(model, settings, Told("hit")),
         lambda model: Looked(model.scene, highest or max(model.scene.frequencies, default=HIGHEST)),
     )
@@ -91,6 +91,9 @@ def _options(arguments: argparse.Namespace) -> tuple[float | None, float | None]
 def _expected(found: Modes, test: HammerTest) -> list[str]:
     """Lines of the eigenvalues that the test should find."""
     lines = ["  eigenvalues of the same linearised system up to there (a test shows those that are hit and sensed):"]
-    seen = np.nonzero((found.eigenvalues.imag > 0.0) & (found.frequency <= test.highest))[0]
-    lines += [f"  {k + 1:4d} {found.frequency[k]:14.6g} Hz   damping ratio {found.damping_ratio[k]:.4g}" for k in seen]
-    return lines
+    seen = np.nonzero((found.eigenvalues.imag > 0.0) & ~found.free & (found.frequency <= test.highest))[0]
+    lines += [
+        f"  {k + 1:4d} {found.frequency[k]:14.6g} Hz   damping ratio {clean(found.damping_ratio[k]):.4g}" for k in seen
+    ]
+    free = int(np.count_nonzero(found.free))
+    return [*lines, f"  {free_words(free)}"] if free else lines

@@ -11,7 +11,7 @@ from scipy.signal import find_peaks
 
 from ehdmaps.errors import InputError
 from mbs.analyses.case import Case
-from mbs.analyses.lsa import LsaResult, lsa_dataset, lsa_of
+from mbs.analyses.lsa import LsaResult, lsa_dataset, lsa_of, lsa_problems
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import band_lines, film_lines, heading, outside_at, write
@@ -61,7 +61,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
 def _asked(arguments: argparse.Namespace) -> list[Case]:
     """A case for each law, map, kind of films, oil supply and clearance."""
-    cases = load_cases(arguments)
+    cases = load_cases(arguments, needs=lsa_problems)
     if len(cases) > MOST_COMPARED_CASES:
         raise InputError(
             f"--law, --map, --films, --supply, --clearance: got {len(cases)} cases; allowed: up to "

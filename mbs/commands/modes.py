@@ -12,7 +12,7 @@ from ehdmaps.errors import InputError
 from mbs.analyses.modes import modes
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_model
-from mbs.commands.common import band_lines, film_lines, heading, outside_at, read_option, write
+from mbs.commands.common import band_lines, clean, film_lines, free_words, heading, outside_at, read_option, write
 from mbs.commands.reach import fade_lines
 from mbs.linearised.modes import Modes
 from mbs.output.modes_plot import modes_figure
@@ -25,10 +25,6 @@ HIGHEST = 10e3
 """Highest frequency shown of a scene that asks for no responses [Hz]."""
 
 _LEAST_SHARE = 0.05
-_FREE, _ZERO = 1e-6, 1e-8
-"""Parts of the highest frequency below which a motion without strain energy is free, and below which any is."""
-
-_ROUND_OFF = 1e-12
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -84,11 +80,8 @@ def _highest(arguments: argparse.Namespace, scene: Scene | None, problems: list[
 
 def _kinds(found: Modes) -> tuple[IntArray, IntArray, IntArray]:
     """Which modes are free, which creep back without oscillating, and which oscillate."""
-    still = found.eigenvalues.imag <= 0.0
-    strained = found.shares.sum(axis=0) > 0.0
-    part = found.frequency / max(float(found.frequency.max(initial=0.0)), 1e-300)
-    free = (part <= _ZERO) | (~strained & (part <= _FREE))
-    creeping = still & ~free
+    free = found.free
+    creeping = (found.eigenvalues.imag <= 0.0) & ~free
     return np.flatnonzero(free), np.flatnonzero(creeping), np.flatnonzero(~free & ~creeping)
 
 
@@ -100,8 +93,7 @@ def _table(found: Modes, shown: IntArray) -> list[str]:
         f"  mode   frequency/Hz{wide}   damping ratio{wide}   strain energy        (frequency: |eigenvalue|/(2 pi))"
     ]
     for k in shown:
-        ratio = float(found.damping_ratio[k])
-        ratio = ratio if abs(ratio) > _ROUND_OFF else 0.0
+        ratio = clean(found.damping_ratio[k])
         by = ("", "") if bands is None else (f"{bands.frequency[k]:10.2g}", f"{bands.damping_ratio[k]:10.2g}")
         lines.append(f"  {k + 1:4d} {found.frequency[k]:14.6g}{by[0]} {ratio:15.4g}{by[1]}   {_shares(found, k)}")
     return lines
@@ -137,7 +129,7 @@ def _overdamped_count(which: IntArray) -> list[str]:
 
 def _free(which: IntArray) -> list[str]:
     """A line for all free motions."""
-    return [f"{which.size} free motions at 0 Hz without strain energy, such as unloaded rollers"] if which.size else []
+    return [free_words(which.size)] if which.size else []
 
 
 def _lost(found: Modes) -> list[str]:

@@ -38,7 +38,9 @@ def fade_lines(model: Model, speeds: FloatArray, of: str = "the speeds") -> list
     ]
 
 
-def outside_lines(calls: Mapping[str, int], words: str, axes: Mapping[str, str], case: str = "") -> list[str]:
+def outside_lines(
+    calls: Mapping[str, int], words: str, axes: Mapping[str, str], case: str = "", source: str = "the map"
+) -> list[str]:
     """A line for each bearing whose law was called outside its map: every command says it by this function.
 
     Parameters
@@ -51,12 +53,17 @@ def outside_lines(calls: Mapping[str, int], words: str, axes: Mapping[str, str],
         How it is left, as `axes_outside` says it.
     case : str
         Begins the line, where several are compared.
+    source : str
+        What is left, as `mbs.analyses.reach.source_of` calls it.
     """
     begin = f"{case}: " if case else ""
+    advice = (
+        "make a map that reaches there" if source == "the map" else "a map may reach there, `mbs plan` writes its job"
+    )
     return [
-        f"warning: {begin}{name}: {words.format(count)}"
+        f"warning: {begin}{name}: {words.format(count)}".replace("the map", source)
         + (f" ({axes[name]})" if name in axes else "")
-        + ", where the law is held at its edge; make a map that reaches there"
+        + f", where the law is held at its edge; {advice}"
         for name, count in calls.items()
         if count
     ]

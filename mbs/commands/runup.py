@@ -17,13 +17,14 @@ from ehdmaps.units import RPM
 from ehdmaps.workers import available_cores
 from mbs.analyses.campbell import silent_run
 from mbs.analyses.case import Case
-from mbs.analyses.reach import Fade, axes_outside, fade_of
+from mbs.analyses.reach import Fade, axes_outside, fade_of, source_of
 from mbs.analyses.recorded import amplitudes_at, simulated
-from mbs.analyses.runup import RunUpResult, RunUps, runups
+from mbs.analyses.resolution import resolution
+from mbs.analyses.runup import RunUpResult, RunUps, runup_problems, runups
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.campbell_recorded import read_source, signal_problems
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Told, film_course, heading, held_lines, read_option, write
+from mbs.commands.common import Told, film_course, heading, held_lines, read_option, step_lines, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.output.energy_text import energy_lines
 from mbs.output.results import described
@@ -105,7 +106,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
         if getattr(arguments, name, None)
     ]
     try:
-        cases = load_cases(arguments)
+        cases = load_cases(arguments, needs=runup_problems)
     except InputError as error:
         raise InputError((*problems, *error.problems)) from error
     scene = cases[0].model.scene
@@ -224,6 +225,7 @@ def _report(found: RunUpResult) -> list[str]:
         f"from {first} to {last} in {found.course.duration:.4g} s: {result.steps} steps, {result.halved} taken back, "
         f"{result.iterations / max(result.steps, 1):.3g} Newton iterations a step, "
         f"{1e6 * found.seconds / max(result.steps, 1):.0f} us a step",
+        *step_lines(resolution(model, found.course)),
         *(f"note: {line}" for line in result.notes),
     ]
     for bearing, force in zip(model.bearings, result.forces, strict=False):
@@ -236,7 +238,7 @@ def _report(found: RunUpResult) -> list[str]:
     lines += energy_lines(result.energy)
     lines += fade_lines(model, result.speed, "the run")
     fastest = float(np.abs(result.speed).max())
-    lines += outside_lines(outside, "{} calls outside the map", axes_outside(model, fastest))
+    lines += outside_lines(outside, "{} calls outside the map", axes_outside(model, fastest), source=source_of(model))
     # The equilibria of this line are no part of the run, whose calls were counted above.
     return lines + film_course(model, (float(result.speed[0]), float(result.speed[-1])))
 

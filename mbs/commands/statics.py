@@ -15,6 +15,7 @@ from mbs.analyses.rings import ring_motions
 from mbs.analyses.statics import statics
 from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.roller_element import ring_matrices
+from mbs.bearings.roller_loads import RollerLoads
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_model
 from mbs.commands.common import heading, outside_at, write
@@ -28,6 +29,7 @@ from mbs.scene.assembly import Model
 
 _SHOWN = (1, 2, 4, 5)
 _ROUND_OFF = 1e-9
+_IN_A_ROW = 6
 _NAMES = ("y", "z", "theta_y", "theta_z")
 
 
@@ -56,6 +58,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             f"  entrainment speed {bearing.entrainment_speed(balance.operation):.4g} m/s; "
             f"{np.count_nonzero(rollers.load > 0.0)} of {rollers.load.size} rollers loaded, the most with "
             f"{float(rollers.load.max()):.5g} N",
+            *_loads(rollers),
             f"  {_contact_words(contacts[index])}",
             f"  {loss_words(found.losses[index])}",
             *_matrix("K [N/m, N/rad; N m/m, N m/rad]", stiffness),
@@ -82,6 +85,15 @@ def _asked(arguments: argparse.Namespace) -> Model:
     if arguments.plot and not model.bearings:
         raise InputError(f"--plot: {model.scene.name} has no bearing whose rollers could be drawn; leave it out")
     return model
+
+
+def _loads(rollers: RollerLoads) -> list[str]:
+    """Lines of the loads of all loaded rollers, each with its angle."""
+    loaded = np.flatnonzero(rollers.load > 0.0)
+    order = loaded[np.argsort(-rollers.load[loaded], kind="stable")]
+    shown = [f"{rollers.load[k]:.4g} N at {_clean(math.degrees(rollers.angle[k])):.4g} deg" for k in order]
+    rows = [", ".join(shown[first : first + _IN_A_ROW]) for first in range(0, len(shown), _IN_A_ROW)]
+    return [f"  {'rollers, from y towards z: ' if not row else '  '}{words}" for row, words in enumerate(rows)]
 
 
 def _contact_words(contacts: BearingContacts) -> str:

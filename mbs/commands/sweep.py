@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
+from scipy.signal import find_peaks
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
@@ -17,13 +18,15 @@ from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import film_errors, notable_from
 from mbs.analyses.operating import operating
-from mbs.analyses.reach import axes_outside, fade_of
-from mbs.analyses.sweep import SweepSettings, sweep
+from mbs.analyses.reach import axes_outside, fade_of, source_of
+from mbs.analyses.sweep import SweepSettings, sweep, sweep_problems
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import band_lines, film_lines, heading, write
+from mbs.commands.common import ROUND_OFF, band_lines, clean, film_lines, free_words, heading, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.crossings import exchanged
+from mbs.linearised.linear import response_unit
+from mbs.linearised.modes import free_motions
 from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Operation
@@ -34,8 +37,11 @@ from mbs.scene.assembly import Model
 from mbs.settings import MOST_SPEEDS, SweepRange
 
 _LEAST_SHARE = 0.05
+_PROMINENCE = 0.05
+"""How far a peak stands out of both valleys beside it, as a logarithm."""
+
+_PEAKS = 5
 _LEAST_ASSURANCE = 0.5
-_ROUND_OFF = 1e-12
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -64,6 +70,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *(f"  {line}" for line in flooded_note(_largest(torque), case.model.supplies.values())),
             *_undamped(entry),
             *_complex(entry),
+            *_responses(entry),
             *band_lines(case.model),
             *_exchanged(entry),
             *_unsure(entry),
@@ -101,7 +108,7 @@ def _figure(cases: Sequence[Case], found: Sequence[Sweep]) -> Figure:
         temperature_text(cases[0].model),
         *([f"clearance {clearance_text(cases[0].model)}"] if len(clearances) == 1 else []),
         *([f"{cases[0].load_factor:g} x load"] if len(cases) == 1 and cases[0].load_factor != 1.0 else []),
-        "cages held",
+        f"mean of {found[0].bearings.angles} cage angles" if found[0].bearings.angles > 1 else "cages held",
     ]
     fades = [fade for case in cases if (fade := fade_of(case.model)) is not None]
     return sweep_figure(
@@ -130,7 +137,7 @@ def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
             f"--cage-angles: got {arguments.cage_angles!r:.40}; allowed: a whole number from 1 to {MOST_ANGLES}"
         )
     try:
-        cases = load_cases(arguments)
+        cases = load_cases(arguments, needs=None if arguments.speeds else sweep_problems, speeds=speeds)
     except InputError as error:
         problems += error.problems
     if problems:
@@ -233,8 +240,9 @@ def _largest(torque: FloatArray) -> float:
 def _undamped(result: Sweep) -> list[str]:
     """Lines on how the undamped modes with strain energy in the bearings change."""
     found = result.undamped
-    shown = np.nonzero(found.bearing_share.max(axis=0) >= _least(result))[0]
-    if not shown.size:
+    free = free_motions(found.frequency.max(axis=0))
+    shown = np.nonzero((found.bearing_share.max(axis=0) >= _least(result)) & ~free)[0]
+    if not shown.size and not free.any():
         return ["  no undamped mode with strain energy in the bearings"]
     lines = [
         "  undamped modes      frequency/Hz        change  by energy: summed, one step   damping ratio   "
@@ -244,17 +252,21 @@ def _undamped(result: Sweep) -> list[str]:
         f, z, s = (values[[0, -1], k] for values in (found.frequency, found.damping_ratio, found.bearing_share))
         lines.append(
             f"  {k + 1:4d} {f[0]:12.5g} to {f[1]:9.5g} {_change(*f):>11} {_percent(found.summed_shift[-1, k]):>16}, "
-            f"{_percent(found.direct_shift[k]):>10} {_clean(z[0]):9.3g} to {_clean(z[1]):.3g} "
-            f"{s[0]:12.2f} to {s[1]:.2f}" + _band("; frequency", found.frequency_error[:, k], found.frequency[:, k])
+            f"{_percent(found.direct_shift[k]):>10} {clean(z[0]):9.3g} to {clean(z[1]):.3g} "
+            f"{s[0]:12.2f} to {s[1]:.2f}"
+            + _band("; frequency", found.frequency_error[:, k], found.frequency[:, k])
+            + _over_pitch(result, found.frequency_spread[:, k], found.frequency[:, k], "frequency")
         )
-    return lines
+    return [*lines, f"  {free_words(int(np.count_nonzero(free)))}"] if free.any() else lines
 
 
 def _complex(result: Sweep) -> list[str]:
     """Lines on the complex modes with strain energy in the bearings."""
     found = result.damped
-    shown = [k for k in range(found.eigenvalues.shape[1]) if np.nanmax(found.bearing_share[:, k]) >= _least(result)]
-    if not shown:
+    free = free_motions(np.nanmax(found.frequency, axis=0, initial=0.0))
+    shares = np.nanmax(found.bearing_share, axis=0, initial=0.0)
+    shown = np.nonzero((shares >= _least(result)) & ~free)[0].tolist()
+    if not len(shown):
         return ["  no oscillating complex mode with strain energy in the bearings"]
     lines = [
         "  complex modes       frequency/Hz        change   damping ratio   whirl d omega/d Omega   oscillates"
@@ -267,12 +279,38 @@ def _complex(result: Sweep) -> list[str]:
         whole = there[0] == 0 and there[1] == result.speeds.size - 1
         lines.append(
             f"  {found.number[k] + 1:4d} {f[0]:12.5g} to {f[1]:9.5g} {_change(*f):>11} "
-            f"{_clean(z[0]):10.3g} to {_clean(z[1]):.3g} "
-            f"{_clean(w[1]):+14.2g}           {'everywhere' if whole else f'{begin} to {end}'}"
+            f"{clean(z[0]):10.3g} to {clean(z[1]):.3g} "
+            f"{clean(w[1]):+14.2g}           {'everywhere' if whole else f'{begin} to {end}'}"
             + _band("; frequency", found.frequency_error[:, k], found.frequency[:, k])
             + _band(", damping ratio", found.damping_ratio_error[:, k], found.damping_ratio[:, k])
+            + _over_pitch(result, found.frequency_spread[:, k], found.frequency[:, k], "frequency")
+            + _over_pitch(result, found.damping_ratio_spread[:, k], found.damping_ratio[:, k], "damping ratio")
         )
     return lines
+
+
+def _responses(result: Sweep) -> list[str]:
+    """Lines on the highest peaks of each response at the first and last speed, by the frequencies of [linear]."""
+    found = result.responses
+    lines = []
+    for s, i in np.ndindex(found.values.shape[2:]) if found.frequencies.size else ():
+        ends = [_peaks(found.frequencies, np.abs(found.values[k, :, s, i])) for k in (0, -1)]
+        if not any(ends):
+            continue
+        at = [
+            f"{', '.join(words) or 'none'} at {RPM.text(float(result.speeds[k]))}"
+            for k, words in zip((0, -1), ends, strict=True)
+        ]
+        sensor, entry = found.sensors[s], found.inputs[i]
+        lines.append(f"  {sensor.name} by {entry.name}, peaks [{response_unit(sensor, entry)}]: {'; '.join(at)}")
+    return lines
+
+
+def _peaks(frequencies: FloatArray, size: FloatArray) -> list[str]:
+    """The highest peaks of a response, each with its frequency, in the order of these."""
+    places, _ = find_peaks(np.log(np.maximum(size, 1e-300)), prominence=_PROMINENCE)
+    highest = np.sort(places[np.argsort(-size[places], kind="stable")][:_PEAKS])
+    return [f"{size[k]:.3g} ({frequencies[k]:.5g} Hz)" for k in highest]
 
 
 def _exchanged(result: Sweep) -> list[str]:
@@ -317,7 +355,9 @@ def _outside(case: Case, result: Sweep, calls: Mapping[str, int]) -> list[str]:
     """Lines on bearings whose equilibria lie outside the map."""
     words = f"lies outside the map at {{}} of {result.speeds.size} speeds"
     fastest = float(np.abs(result.speeds).max())
-    return outside_lines(calls, words, axes_outside(operating(case.model, fastest), fastest), case.label)
+    return outside_lines(
+        calls, words, axes_outside(operating(case.model, fastest), fastest), case.label, source_of(case.model)
+    )
 
 
 def _film_errors(model: Model, result: Sweep) -> list[str]:
@@ -346,12 +386,18 @@ def _lost(result: Sweep) -> list[str]:
     ]
 
 
+def _over_pitch(result: Sweep, spread: FloatArray, values: FloatArray, words: str) -> str:
+    """How much a value varies over the angles of the cage; nothing for one angle."""
+    return _band(f"; over the pitch {words}", spread, values) if result.bearings.angles > 1 else ""
+
+
 def _band(words: str, errors: FloatArray, values: FloatArray) -> str:
     """The largest band over the speeds, in per cent of the value there; nothing where none is stated."""
-    there = np.isfinite(errors) & (np.abs(values) > _ROUND_OFF)
+    there = np.isfinite(errors) & (np.abs(values) > ROUND_OFF)
     if not there.any():
         return ""
-    return f"{words} +- {100.0 * float(np.max(errors[there] / np.abs(values[there]))):.2g} %"
+    part = 100.0 * float(np.max(errors[there] / np.abs(values[there])))
+    return f"{words} +- {part:.2g} %" if part < 99.5 else f"{words} +- {part:.0f} %"
 
 
 def _change(begin: float, end: float) -> str:
@@ -359,14 +405,9 @@ def _change(begin: float, end: float) -> str:
     return _percent(end / begin - 1.0) if begin > 0.0 else "-"
 
 
-def _clean(value: float) -> float:
-    """The value, or 0 if it is round-off."""
-    return value if abs(value) > _ROUND_OFF else 0.0
-
-
 def _percent(part: float) -> str:
     """A part in per cent, with its sign."""
-    return f"{100.0 * _clean(part):+.2f} %"
+    return f"{100.0 * clean(part):+.2f} %"
 
 
 def _first(result: Sweep) -> str:

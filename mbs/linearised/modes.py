@@ -29,6 +29,9 @@ FREE = 1e-6
 
 _REAL = 1e-6
 
+_FREE_ALONE, _NO_FREQUENCY = 1e-6, 1e-8
+"""Parts of the highest frequency below which a motion without strain energy is free, and below which any is."""
+
 
 @dataclass(frozen=True, eq=False)
 class Modes:
@@ -68,9 +71,14 @@ class Modes:
         return np.asarray(np.abs(self.eigenvalues) / (2.0 * np.pi))
 
     @property
+    def free(self) -> BoolArray:
+        """Which are free motions, as of unloaded rollers, whose eigenvalues are round-off, shape (modes,)."""
+        return free_motions(self.frequency, self.shares.sum(axis=0) > 0.0)
+
+    @property
     def damping_ratio(self) -> FloatArray:
         """-real part over magnitude; 0 for a free motion, 1 for one that creeps back."""
-        return damping_ratio(self.eigenvalues)
+        return np.where(self.free, 0.0, damping_ratio(self.eigenvalues))
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,6 +160,20 @@ class StateModes:
         return at_own_frequency(
             balance, self.films, self.eigenvalues[which], self.right[:n, which], self.left[which, n : 2 * n]
         )
+
+
+def free_motions(frequency: FloatArray, strained: BoolArray | bool = True) -> BoolArray:
+    """Which motions nothing holds: their frequency is 0 but for round-off, of any sign of their damping.
+
+    Parameters
+    ----------
+    frequency : array, shape (modes,)
+        |eigenvalue|/(2 pi) [Hz].
+    strained : array of bool, shape (modes,), or bool
+        Which have strain energy; those without any are free at higher frequencies already.
+    """
+    part = frequency / max(float(np.nanmax(frequency, initial=0.0)), 1e-300)
+    return np.asarray((part <= _NO_FREQUENCY) | (~np.asarray(strained) & (part <= _FREE_ALONE)))
 
 
 def damping_ratio(eigenvalues: ComplexArray) -> FloatArray:

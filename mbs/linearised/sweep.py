@@ -17,12 +17,13 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError, InputError
+from mbs.linearised.averaged import AveragedEquilibrium, PitchSpread, averaged, over_pitch, pitch_spread
 from mbs.linearised.bands import law_bands
 from mbs.linearised.crossings import straightened
 from mbs.linearised.modal_response import checked_response
 from mbs.linearised.own_frequency import LostMode
 from mbs.linearised.steady import steady_system
-from mbs.linearised.sweep_point import Along, Point, bearing_parts, bridge, first_order_shift, over_pitch, solve_modes
+from mbs.linearised.sweep_point import Along, Point, along_load, bearing_parts, bridge, first_order_shift, solve_modes
 from mbs.linearised.sweep_result import BearingSweep, ComplexSweep, ResponseSweep, Sweep, UndampedSweep
 from mbs.linearised.tracking import match, numbers, tracks
 from mbs.model.elements import Input, Operation, Sensor
@@ -65,8 +66,8 @@ def sweep(
     frequencies : array, shape (frequencies,)
         Frequencies of the responses [Hz].
     cage_angles : int
-        Angles within one pitch of the rollers over which stiffness and damping of the bearings are averaged; modes
-        and responses are those of the first.
+        Angles within one pitch of the rollers over which stiffness and damping of the bearings are averaged, for
+        modes and responses too; the displacement is that of the first.
 
     Raises
     ------
@@ -84,7 +85,8 @@ def sweep(
         there = fixed if isinstance(system, System) else steady_system(system(speed))
         assert there is not None
         try:
-            return solve_modes(equilibrium(there, Operation(speed, angle), start))
+            found = equilibrium(there, Operation(speed, angle), start)
+            return solve_modes(averaged(over_pitch(found, cage_angles)))
         except AnalysisError as error:
             raise AnalysisError(f"at {speed:.6g} rad/s: {error}") from error
 
@@ -101,7 +103,7 @@ def sweep(
             links.append(bridge(before, point, at, spare))
             spare -= links[-1].between
         values[index], errors[index] = checked_response(point.balance, point.states, inputs, sensors, frequencies)
-        points.append(_record(point, cage_angles))
+        points.append(_record(point))
         before = point
     return Sweep(
         speeds=speeds,
@@ -136,10 +138,13 @@ class _Recorded:
     frequency_error: FloatArray
     complex_errors: FloatArray
     bearing_errors: FloatArray
+    spread: PitchSpread
 
 
-def _record(point: Point, cage_angles: int) -> _Recorded:
+def _record(point: Point) -> _Recorded:
     """Keep the light part of a point."""
+    over = point.balance.over if isinstance(point.balance, AveragedEquilibrium) else (point.balance,)
+    n, kept, states = point.balance.system.size, point.kept, point.states
     return _Recorded(
         point.balance.displacement,
         point.balance.forces,
@@ -150,10 +155,18 @@ def _record(point: Point, cage_angles: int) -> _Recorded:
         point.damped.eigenvalues,
         point.complex_shares,
         point.whirl,
-        over_pitch(point.balance, cage_angles),
+        np.array([along_load(balance) for balance in over]),
         point.kinship,
         point.lost,
         *_errors(point),
+        pitch_spread(
+            point.balance,
+            point.undamped.frequency,
+            point.undamped.shapes,
+            point.damped.eigenvalues,
+            states.right[:n, kept],
+            states.left[kept, n : 2 * n],
+        ),
     )
 
 
@@ -203,6 +216,7 @@ def _undamped(points: Sequence[_Recorded], links: Sequence[Along], first: Point,
         shares=shares,
         bearing_share=shares[bearing_parts(first.balance)].sum(axis=0),
         frequency_error=np.array([point.frequency_error[row] for point, row in zip(points, order, strict=True)]),
+        frequency_spread=np.array([point.spread.frequency[row] for point, row in zip(points, order, strict=True)]),
         assurance=sure,
         summed_shift=np.expm1(logarithm),
         direct_shift=first_order_shift(first, last)[0],
@@ -219,19 +233,33 @@ def _damped(points: Sequence[_Recorded], links: Sequence[Along], here: IntArray)
     values = np.full(shape, complex(np.nan, np.nan))
     whirl, sure = np.full(shape, np.nan), np.full(shape, np.nan)
     shares = np.full((points[0].complex_shares.shape[0], *shape), np.nan)
-    errors = np.full((2, *shape), np.nan)
+    errors, spreads = np.full((2, *shape), np.nan), np.full((2, *shape), np.nan)
     for index, (point, row) in enumerate(zip(points, order, strict=True)):
         there = np.nonzero(row >= 0)[0]
         values[index, there] = point.eigenvalues[row[there]]
         whirl[index, there] = point.whirl[row[there]]
         shares[:, index, there] = point.complex_shares[:, row[there]]
         errors[:, index, there] = point.complex_errors[:, row[there]]
+        spreads[0, index, there] = point.spread.complex_frequency[row[there]]
+        spreads[1, index, there] = point.spread.complex_damping_ratio[row[there]]
         sure[index, there] = 1.0
         if index:
             old = there[order[index - 1, there] >= 0]
             sure[index, old] = links[index - 1].damped.assurance[order[index - 1, old]]
     lost = tuple(point.lost for point in points)
-    return ComplexSweep(values, shares, shares[here].sum(axis=0), whirl, sure, number, errors[0], errors[1], lost)
+    return ComplexSweep(
+        values,
+        shares,
+        shares[here].sum(axis=0),
+        whirl,
+        sure,
+        number,
+        errors[0],
+        errors[1],
+        spreads[0],
+        spreads[1],
+        lost,
+    )
 
 
 def _bearings(points: Sequence[_Recorded], first: Point) -> BearingSweep:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -14,8 +13,7 @@ from mbs.bearings.roller_element import ring_matrices
 from mbs.linearised.modes import StateModes, UndampedModes, energy_shares, state_modes, undamped_modes
 from mbs.linearised.own_frequency import LostMode
 from mbs.linearised.tracking import Match, ModeSet, compose, match
-from mbs.model.elements import Element
-from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.equilibrium import Equilibrium
 
 SURE = 0.8
 """Assurance below which speeds are put in between."""
@@ -185,43 +183,10 @@ def along_load(balance: Equilibrium) -> FloatArray:
     return np.array(found).reshape(-1, 3).T
 
 
-def over_pitch(balance: Equilibrium, count: int) -> FloatArray:
-    """What `along_load` finds at several angles within one pitch of the rollers, shape (count, 3, bearings).
-
-    The angles are equally far apart; where cages turn at different speeds it is the pitch of the slowest one.
-
-    Parameters
-    ----------
-    balance : Equilibrium
-        Equilibrium at the first angle.
-    count : int
-        How many angles; 1 for that of `balance` alone.
-
-    Raises
-    ------
-    AnalysisError
-        If there is no equilibrium at an angle.
-    """
-    found = [along_load(balance)]
-    operation = balance.operation
-    bearings = [balance.system.elements[index].element for index in balance.system.select(RingElement)]
-    turn = max(map(pitch, bearings), default=0.0)
-    for part in range(1, count):
-        at = operation._replace(angle=operation.angle + turn * part / count)
-        found.append(along_load(equilibrium(balance.system, at, balance.displacement)))
-    return np.array(found)
-
-
 def _kinship(parts: ComplexArray) -> FloatArray:
     """Squares of the parts (n, complex modes) that undamped modes have in complex ones, in rows that sum to 1."""
     squares = np.abs(parts.T) ** 2
     return np.asarray(squares / np.maximum(squares.sum(axis=1, keepdims=True), 1e-300), dtype=np.float64)
-
-
-def pitch(element: Element) -> float:
-    """Angle that the system turns while the cage goes on by one roller [rad]; 0 for a cage that stands."""
-    excitation = element.excitation
-    return 2.0 * math.pi / excitation.order if excitation is not None else 0.0
 
 
 def first_order_shift(first: Point, last: Point) -> tuple[FloatArray, FloatArray]:

@@ -27,6 +27,8 @@ class UndampedSweep:
         That of all bearings.
     frequency_error : array, shape (speeds, n)
         Band of the frequency, either way, from the errors that the map states [Hz]; NaN for laws that state none.
+    frequency_spread : array, shape (speeds, n)
+        Half of what the frequency varies over the angles of the cage, to first order [Hz]; 0 for one angle.
     assurance : array, shape (speeds, n)
         Least assurance on the way from the speed before, 1 at the first.
     summed_shift : array, shape (speeds, n)
@@ -44,6 +46,7 @@ class UndampedSweep:
     shares: FloatArray
     bearing_share: FloatArray
     frequency_error: FloatArray
+    frequency_spread: FloatArray
     assurance: FloatArray
     summed_shift: FloatArray
     direct_shift: FloatArray
@@ -79,6 +82,8 @@ class ComplexSweep:
         Undamped mode, from 0 on, that it is nearest to where it begins; two that are never there together may share it.
     frequency_error, damping_ratio_error : array, shape (speeds, modes)
         Bands of both, either way, from the errors that the map states [Hz], [1]; NaN for laws that state none.
+    frequency_spread, damping_ratio_spread : array, shape (speeds, modes)
+        Half of what both vary over the angles of the cage, to first order [Hz], [1]; 0 for one angle.
     lost : tuple of tuple of LostMode
         Modes that could not be brought to the films of their own frequency, at each speed.
     """
@@ -91,6 +96,8 @@ class ComplexSweep:
     number: IntArray
     frequency_error: FloatArray
     damping_ratio_error: FloatArray
+    frequency_spread: FloatArray
+    damping_ratio_spread: FloatArray
     lost: tuple[tuple[LostMode, ...], ...] = ()
 
     @property

@@ -14,16 +14,22 @@ G. H. Golub, V. Pereyra, Inverse Problems 19 (2003) R1-R26 (variable projection;
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 from scipy.optimize import least_squares
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 
 TERMS = 2
 """Residual terms, L and U."""
+
+_NEIGHBOURS = 5
+"""Independent lines over which the error that remains is averaged: about as many as a resonance has, which noise may
+follow."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,8 +124,9 @@ def refine(
     poles : array of complex, shape (modes,)
         The refined ones.
     deviation : array, shape (modes, 2)
-        Standard deviations of real and imaginary part [1/s], by the remaining error, for noise that is white in time
-        before an exponential window. What else is wrong, such as a record cut off, is not in them.
+        Standard deviations of real and imaginary part [1/s], by the error that remains around each line, so that noise
+        may grow with the response; with an exponential window by the mean error, for noise that is white in time before
+        it. What else is wrong, such as a record cut off, is not in them.
     strayed : array, shape (modes,)
         How far each moved, over the larger of its half widths before and after. Above about 1 it went elsewhere: it
         was no mode.
@@ -163,14 +170,25 @@ def refine(
     degrees = max(found.fun.size - 2 * modes - response.shape[0] * 2 * (modes + 1), 1)
     jacobian = np.asarray(found.jac, dtype=np.float64)
     inverse = np.linalg.pinv(jacobian.T @ jacobian)
-    covariance = inverse @ _information(jacobian, s) @ inverse * (2.0 * found.cost / degrees)
+    sized = jacobian * (math.sqrt(found.fun.size / degrees) * _local(found.fun, s))[:, None]
+    covariance = inverse @ _information(sized, s) @ inverse
     deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0)).reshape(2, modes).T * unit[:, None]
     strayed = np.abs(refined - poles) / np.maximum(unit, np.abs(refined.real - s[0].real))
     return refined, deviation, np.where(refined.imag > 0.0, strayed, np.inf)
 
 
+def _local(error: FloatArray, s: ComplexArray) -> FloatArray:
+    """Rms of the error over neighbouring lines of a row, of real and imaginary parts together, of the same shape."""
+    lines = s.size
+    squares = error.reshape(-1, 2, lines) ** 2
+    if s[0].real > 0.0:  # of a window: few lines are independent of each other, and their mean is what is known
+        return np.full(error.shape, math.sqrt(float(squares.mean())))
+    smooth = uniform_filter1d(squares.mean(axis=1), min(_NEIGHBOURS, lines), axis=1, mode="nearest")
+    return np.asarray(np.sqrt(np.repeat(smooth[:, None], 2, axis=1)).ravel(), dtype=np.float64)
+
+
 def _information(jacobian: FloatArray, s: ComplexArray) -> FloatArray:
-    """J' R J for errors of correlation R, shape (parameters, parameters).
+    """J' R J for errors of correlation R, the rows of J in units of their size, shape (parameters, parameters).
 
     An exponential window w(t) makes the errors of neighbouring lines alike: R is the transform of w^2. So the columns
     are transformed back to time and weighted there. Without a window it is J' J.

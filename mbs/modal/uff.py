@@ -20,7 +20,7 @@ from ehdmaps.extras import needs
 from ehdmaps.outputs import Kind, has_mark
 from mbs.modal.records import Hits, Measured, Responses
 
-UFF = Kind("a universal file of mbs", (), has_mark)
+UFF = Kind("a universal file of mbs", (".uff", ".unv", ".uf", ".58"), has_mark)
 
 TIME, RESPONSE, COHERENCE = 1, 4, 6
 """Function types of datasets 58 that are read and written."""

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import AnalysisError
+from ehdmaps.errors import AnalysisError, InputError
 from mbs.model.elements import Operation
 from mbs.model.relaxation import Relaxation
 from mbs.model.system import System
@@ -104,9 +104,19 @@ def equilibrium(
     Raises
     ------
     AnalysisError
-        If there is no equilibrium: a load on something that moves freely.
+        If there is no equilibrium: a load on something that moves freely, or one that an element cannot hold.
     """
-    operation = operation or Operation()
+    try:
+        return _found(system, operation or Operation(), start, tolerance)
+    except InputError as error:
+        raise AnalysisError(
+            f"no equilibrium: on the way to it an element is moved farther than it can be ({error}); check units and "
+            "size of the loads, and whether springs hold what they push"
+        ) from error
+
+
+def _found(system: System, operation: Operation, start: FloatArray | None, tolerance: float) -> Equilibrium:
+    """The equilibrium; elements refuse what they cannot take."""
     loads = system.loads(operation.time)
     rest = np.zeros(system.size)
     weight = 1.0 / np.sqrt(np.diag(system.mass))

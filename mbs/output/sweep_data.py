@@ -61,6 +61,13 @@ VARIABLES = (
         lambda found: found.undamped.frequency,
     ),
     Variable("frequency_error", "Hz", f"{BAND} the frequency", UNDAMPED, lambda found: found.undamped.frequency_error),
+    Variable(
+        "frequency_spread",
+        "Hz",
+        "half of what the frequency varies over the cage angles, to first order",
+        UNDAMPED,
+        lambda found: found.undamped.frequency_spread,
+    ),
     Variable("damping_ratio", "1", "modal damping ratio", UNDAMPED, lambda found: found.undamped.damping_ratio),
     Variable(
         "energy_share",
@@ -124,6 +131,20 @@ VARIABLES = (
         f"{BAND} the damping ratio of the complex mode",
         DAMPED,
         lambda found: found.damped.damping_ratio_error,
+    ),
+    Variable(
+        "complex_frequency_spread",
+        "Hz",
+        "half of what the frequency of the complex mode varies over the cage angles, to first order",
+        DAMPED,
+        lambda found: found.damped.frequency_spread,
+    ),
+    Variable(
+        "complex_damping_ratio_spread",
+        "1",
+        "half of what the damping ratio of the complex mode varies over the cage angles, to first order",
+        DAMPED,
+        lambda found: found.damped.damping_ratio_spread,
     ),
     Variable("eigenvalue_real", "1/s", "decay", DAMPED, lambda found: found.damped.eigenvalues.real),
     Variable(

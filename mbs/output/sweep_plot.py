@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 
@@ -20,7 +21,7 @@ from mbs.linearised.sweep_result import Sweep, UndampedSweep
 from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, shade, shade_handle, whole_numbers
 
 _LEAST_SHARE = 0.05
-_MOST_MAPS = 4
+_MAPS_IN_A_ROW = 4
 _MARKS = 16
 _LEVELS_SHOWN = 50.0
 _NOTHING = 1e-4
@@ -69,14 +70,15 @@ def sweep_figure(
     """
     relaxing = relaxing or [False] * len(sweeps)
     limits = limits or [np.full(entry.speeds.size, np.nan) for entry in sweeps]
-    maps = [entry for entry in sweeps if entry.responses.values.size][:_MOST_MAPS]
-    rows = 3 if maps else 2
-    figure = Figure(figsize=(_WIDTH, _ROW * rows + 0.4), layout="constrained")
+    mapped = [index for index, entry in enumerate(sweeps) if entry.responses.values.size]
+    maps = [sweeps[index] for index in mapped]
+    heights = [1.0, 1.0, *([float(math.ceil(len(maps) / _MAPS_IN_A_ROW))] if maps else [])]
+    figure = Figure(figsize=(_WIDTH, _ROW * sum(heights) + 0.4), layout="constrained")
     figure.suptitle(f"{title}\n{typeset(words)}", fontsize=10)
-    parts = figure.subfigures(rows, 1, squeeze=False)[:, 0]
+    parts = figure.subfigures(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0]
     top, middle = parts[0].subplots(1, 2), parts[1].subplots(1, 3)
     handles = []
-    for index, (entry, label, colour) in enumerate(zip(sweeps, labels, COLOURS * 6, strict=False)):
+    for index, (entry, label, colour) in enumerate(zip(sweeps, labels, itertools.cycle(COLOURS), strict=False)):
         _modes((*top, middle[0]), entry, colour, relaxing[index])
         _bearings(middle[1:], entry, colour)
         top[0].plot(entry.speeds * RPM.factor, limits[index], color=colour, lw=1.2, ls=_LIMIT)
@@ -126,8 +128,7 @@ def sweep_figure(
         styles.append(shade_handle(f"below {below * RPM.factor:.4g} rpm: {_BELOW}"))
     parts[1].legend(handles=styles, loc="outside lower center", ncols=3, fontsize=7.5, frameon=False)
     if maps:
-        kept = [limit for limit, entry in zip(limits, sweeps, strict=True) if entry.responses.values.size]
-        _maps(parts[2], maps, labels, kept)
+        _maps(parts[2], maps, [labels[index] for index in mapped], [limits[index] for index in mapped])
     if below > sweeps[0].speeds[0]:
         for panel in (*top, *middle):
             low, high = panel.get_xlim()
@@ -226,7 +227,9 @@ def _room(panel: Axes) -> None:
 
 def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits: Sequence[FloatArray]) -> None:
     """The first response of each case as a level over speed and frequency, with one scale for all."""
-    axes = part.subplots(1, len(maps), sharey=True, squeeze=False)[0]
+    rows = math.ceil(len(maps) / _MAPS_IN_A_ROW)
+    grid = part.subplots(rows, math.ceil(len(maps) / rows), sharex=True, sharey=True, squeeze=False)
+    axes = grid.ravel()
     found = maps[0].responses
     unit = response_unit(found.sensors[0], found.inputs[0]).replace("s2", "s²")
     levels = [20.0 * np.log10(np.maximum(np.abs(entry.responses.values[:, :, 0, 0]), 1e-300)) for entry in maps]
@@ -249,7 +252,6 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits:
             shading="nearest",
             rasterized=True,
         )
-        panel.set_xlabel("speed, rpm", fontsize=9)
         panel.set_xlim(entry.speeds[0] * RPM.factor, entry.speeds[-1] * RPM.factor)
         panel.set_yscale(scale)
         panel.plot(entry.speeds * RPM.factor, limit, color="w", lw=1.2, ls=_LIMIT)
@@ -257,9 +259,16 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits:
             panel.set_ylim(found.frequencies[0], found.frequencies[-1])
         panel.set_title(typeset(label), fontsize=8.5)
         panel.tick_params(labelsize=8)
-    axes[0].set_ylabel("frequency, Hz", fontsize=9)
+    for panel in axes[len(maps) :]:
+        panel.remove()
+    for panel in grid[:, 0]:
+        panel.set_ylabel("frequency, Hz", fontsize=9)
+    for column in grid.T:
+        lowest_panel = [panel for panel in column if panel in axes[: len(maps)]][-1]
+        lowest_panel.set_xlabel("speed, rpm", fontsize=9)
+        lowest_panel.tick_params(labelbottom=True)
     if image is not None:
-        bar = part.colorbar(image, ax=list(axes), pad=0.01, extend="both")
+        bar = part.colorbar(image, ax=list(axes[: len(maps)]), pad=0.01, extend="both")
         bar.set_label(f"{found.sensors[0].name} by {found.inputs[0].name}, dB re 1 {unit}", fontsize=8)
         bar.ax.tick_params(labelsize=8)
 

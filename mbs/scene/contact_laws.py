@@ -30,6 +30,9 @@ from mbs.scene.specs import BearingSpec
 FILM_WORDS: dict[Films, str] = {"memory": "films with memory", "slow": "slow films"}
 """How people are told that films relax, or that they have stiffness and damping of slow motion at any frequency."""
 
+_FORMULA_SPEEDS, _BEYOND = (0.05, 10.0), 1.05
+"""Entrainment speeds of the table of the film formula [m/s], and how far it goes beyond a scene that is faster."""
+
 _HERTZ, _CONSTANT = "hertz:", "constant:"
 _LONGEST_TIME, _STRONGEST = 1e-2, 1e9
 """Largest damper of a dry contact: by its ratio to the stiffness [s], and as a constant [N s/m], as in [laws.NAME]."""
@@ -365,5 +368,21 @@ class BearingLaws:
         surface = self.given.surface
         if (emap := self.given.map_of(self.bearing.geometry)) is not None:
             return emap.law(kind, outside="clamp", supply=self.supply, surface=surface)
-        oil = self.given.lubricant
-        return laws.formula(self.bearing, oil, kind=kind, outside="clamp", supply=self.supply, surface=surface)
+        fastest = max(_FORMULA_SPEEDS[1], _BEYOND * self._highest_speed)
+        return laws.formula(
+            self.bearing,
+            self.given.lubricant,
+            entrainment_speed=(_FORMULA_SPEEDS[0], fastest),
+            kind=kind,
+            outside="clamp",
+            supply=self.supply,
+            surface=surface,
+        )
+
+    @property
+    def _highest_speed(self) -> float:
+        """Entrainment speed that no bearing of this geometry exceeds in the scene [m/s]."""
+        scene = self.given.scene
+        spin = max((abs(body.spin) for body in scene.bodies), default=0.0)
+        # Rings turn against each other at most.
+        return abs(self.bearing.geometry.entrainment_speed(spin * scene.fastest, -spin * scene.fastest))

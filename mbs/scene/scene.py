@@ -146,6 +146,13 @@ class Scene:
         return tuple(entry for entry in self.elements if isinstance(entry, GearPair))
 
     @property
+    def fastest(self) -> float:
+        """Highest speed of operation, sweep and run-up [rad/s]."""
+        swept = self.sweep.speeds.tolist() if self.sweep else []
+        run = self.run_up.speed.course.values if self.run_up else ()
+        return max(abs(float(speed)) for speed in (self.speed, *swept, *run))
+
+    @property
     def files(self) -> tuple[Path, ...]:
         """All files that are read for it: the scene file where there is one, reduced bodies, matrices, meshes."""
         own = () if self.file is None else (self.file,)

@@ -126,7 +126,68 @@ def energy_theorem(outputs: Sequence[Output]) -> list[Figure]:
     return [*given("1 2 30"), *wrong]
 
 
+def widths_of_resonances(outputs: Sequence[Output]) -> list[Figure]:
+    """Widths 2 zeta f of the modes along the load at the first and last speed [Hz]; falls of damping ratios [%]."""
+    modes = one_case([outputs[0].text], "Reynolds map, 30 um").bearing_modes()
+    widths = [(2.0 * m.damping_ratio * m.first, 2.0 * m.last_ratio * m.last) for m in modes]
+    falls = [100.0 * (1.0 - m.last_ratio / m.damping_ratio) for m in modes]
+    return [*given("2 500 2500 30"), *(round(width) for pair in widths for width in pair), min(falls), max(falls)]
+
+
+def contact_over_speed(outputs: Sequence[Output]) -> list[Figure]:
+    """Changes of k and c of the inner and outer contact from the first to the last point [%]."""
+    first, last = (json.loads(output.text) for output in outputs)
+    return [
+        *given("520 500 2500"),
+        *(
+            100.0 * (there[name] / here[name] - 1.0)
+            for name in ("stiffness", "damping")
+            for here, there in zip(first, last, strict=True)
+        ),
+    ]
+
+
 # --- other machines, linear
+
+
+def highest_peaks(text: str, last: bool) -> list[tuple[float, float]]:
+    """Height and frequency of the peaks of S1 that a case of `mbs sweep` prints, at its first or last speed."""
+    line = re.search(r"(?m)^  S1 by .*\]: (.*)$", text)
+    assert line is not None
+    part = line[1].split(";")[-1 if last else 0]
+    return [(float(height), float(at)) for height, at in re.findall(rf"{NUMBER} \({NUMBER} Hz\)", part)]
+
+
+def rigid_over_speed_and_load(outputs: Sequence[Output]) -> list[Figure]:
+    """Shaft mode of nu308_rigid along the load, frequency and height of S1, at three loads and two speeds."""
+    found: list[Figure] = [*given("20 141 212 283")]
+    for clearance in ("20 um", "0 um"):
+        titles = [f"{clearance}, {factor} x load" for factor in ("1", "1.5", "2")]
+        cases = [case for case in sweep_cases(outputs[0].text) if case.title in titles]
+        peaks = [[highest_peaks(case.text, last)[-1] for case in cases] for last in (False, True)]
+        for column, speed in ((1, "500"), (1, "2000"), (0, "500"), (0, "2000")):
+            row = peaks[speed == "2000"]
+            found += [*(peak[column] for peak in row), *given(speed)]
+    return found
+
+
+def rig_over_speed_and_clearance(outputs: Sequence[Output]) -> list[Figure]:
+    """Highest peak of S1 of n1014_testrig at the first and last speed, by clearance."""
+    found: list[Figure] = []
+    for clearance, case in zip(("0", "10", "20"), sweep_cases(outputs[0].text), strict=True):
+        both = [max(highest_peaks(case.text, last)) for last in (False, True)]
+        found += [*given(clearance), both[0][1], both[1][1], both[0][0], both[1][0]]
+    return [*given("300 2000"), *found]
+
+
+def stiffness_of_the_flexible(outputs: Sequence[Output]) -> list[Figure]:
+    """k of a bearing of nu308_flexible dry, and with the map at the first and last speed; fall of c over the speeds."""
+    found: list[Figure] = []
+    for factor, load in (("1", "141"), ("2", "283")):
+        dry, film = (one_case([outputs[0].text], f"{law}, {factor} x").along for law in ("dry Hertz", "Reynolds map"))
+        changes = [100.0 * (value / dry.k[0] - 1.0) for value in film.k]
+        found += [*given(load), *changes, film.changes[1]]
+    return [*given("200 2000 20"), *found]
 
 
 def mode_rows(text: str) -> list[tuple[float, float, str]]:
@@ -211,6 +272,29 @@ def constants_of_the_rigid(outputs: Sequence[Output]) -> list[Figure]:
 def shaft_mode_of_the_rigid(outputs: Sequence[Output]) -> list[Figure]:
     """Mode of nu308_rigid nearest to the thesis' 4771 Hz among those along the load: the seventh."""
     return [mode_rows(outputs[0].text)[6][0]]
+
+
+def own_laws_of_the_rigid(outputs: Sequence[Output]) -> list[Figure]:
+    """Radial mode of the ring, and highest mode below 10 kHz, of n1014_rigid: dry, formula, map."""
+    found: list[Figure] = []
+    for output in outputs:
+        held = [float(row[0]) for row in re.findall(rf"(?m)^ +\d+ +{NUMBER} +{NUMBER} .* %", output.text)]
+        found += [min(held, key=lambda frequency: abs(frequency - 400.0)), max(held)]
+    return [found[0], found[2], found[4], found[1], found[3], found[5]]
+
+
+def bushings_of_the_rigid(outputs: Sequence[Output]) -> list[Figure]:
+    """Stiffness of bilateral rollers [N/um]; how many unilateral ones are loaded; theirs, along and across the load."""
+    rows = [
+        [float(value) for value in re.findall(NUMBER, line)]
+        for line in re.findall(r"(?m)^    [yz]  (.*)$", outputs[0].text.partition("C [the same")[0])
+    ]
+    loaded = re.search(r"; (\d+) of (\d+) rollers loaded", outputs[0].text)
+    assert loaded is not None
+    rollers, constant = float(loaded[2]), re.search(rf"{NUMBER} N/m and", outputs[0].text)
+    assert constant is not None
+    bilateral = 1e-6 * 0.5 * rollers * 0.5 * float(constant[1])
+    return [*given("24"), bilateral, float(loaded[1]), *given("24"), 1e-6 * rows[0][0], 1e-6 * rows[1][1]]
 
 
 def hammer_test(outputs: Sequence[Output]) -> list[Figure]:
@@ -495,6 +579,13 @@ RECIPES: dict[str, Callable[[Sequence[Output]], list[Figure]]] = {
         amplitudes_of_the_rig,
         constants_of_the_rigid,
         shaft_mode_of_the_rigid,
+        own_laws_of_the_rigid,
+        bushings_of_the_rigid,
+        rigid_over_speed_and_load,
+        rig_over_speed_and_clearance,
+        stiffness_of_the_flexible,
+        widths_of_resonances,
+        contact_over_speed,
         hammer_test,
         films_beside_dry,
         levels_of_laws,

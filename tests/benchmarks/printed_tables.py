@@ -11,13 +11,13 @@ NUMBER = r"([-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?)"
 
 @dataclass(frozen=True)
 class Mode:
-    """A row of a mode in a sweep: frequency at the first and last speed [Hz], its damping ratio at the first; energy in
-    the bearings if undamped."""
+    """A row of a mode in a sweep: frequency [Hz], damping ratio, energy in the bearings at the first and last speed."""
 
     first: float
     last: float
     energy: tuple[float, float] = (0.0, 0.0)
     damping_ratio: float = 0.0
+    last_ratio: float = 0.0
 
     @property
     def change(self) -> float:
@@ -80,12 +80,12 @@ def sweep_cases(text: str) -> list[Case]:
         undamped = {
             int(number): Mode(float(first), float(last), (float(low), float(high)))
             for number, first, last, low, high in re.findall(
-                row + rf" .*%.*%.* {NUMBER} to {NUMBER}$", tables[0].rstrip()
+                row + rf" .*%.*%.* {NUMBER} to {NUMBER}(?:; .*)?$", tables[0].rstrip()
             )
         }
         modes = {
-            int(number): Mode(float(first), float(last), damping_ratio=float(ratio))
-            for number, first, last, ratio in re.findall(row + rf" +{NUMBER} to ", tables[1])
+            int(number): Mode(float(first), float(last), (0.0, 0.0), float(ratio), float(last_ratio))
+            for number, first, last, ratio, last_ratio in re.findall(row + rf" +{NUMBER} to {NUMBER}", tables[1])
         }
         case = re.search(r"(?m)^  case: (.*)$", part)
         found.append(

@@ -247,6 +247,63 @@ def test_scenes_without_what_an_analysis_needs(here, capsys):
     assert "[runup] missing" in err
 
 
+def test_what_a_scene_lacks_is_said_before_laws_are_made(here, capsys, monkeypatch):
+    monkeypatch.setattr("mbs.bearings.laws.formula", lambda *_, **__: pytest.fail("a law was made"))
+    text = read_scene("nu308_rigid").text.replace('"acceleration"', '"velocity"')
+    (here / "a.toml").write_text(text[: text.index("[[inputs]]")])
+    (here / "b.toml").write_text(text)
+    for *command, words in (
+        ("lsa", "a.toml", "[[inputs]] missing"),
+        ("runup", "a.toml", "[runup] missing"),
+        ("sweep", "a.toml", "no speeds; allowed: --speeds"),
+        ("hammer", "a.toml", "-o", "h.uff", "[[sensors]] missing"),
+        ("campbell", "b.toml", "has no sensor of an acceleration"),
+    ):
+        status, out, err = run(capsys, *command, "--law", "formula")
+        assert (status, out) == (2, "")
+        assert words in err
+
+
+def test_steps_that_resolve_nothing_are_said_and_what_the_method_takes(here, capsys):
+    text = read_scene("nu308_rigid").text.replace('duration = "0.2 s"', 'duration = "10 ms"')
+    (here / "fine.toml").write_text(text)
+    (here / "long.toml").write_text(text.replace('"20 us"', '"5 ms"').replace('sample = "0.1 ms"', 'sample = "5 ms"'))
+    _, out, _ = run(capsys, "runup", "long.toml")
+    assert "warning: steps of 5 ms do not resolve what moves here: the lowest mode of the system is at 41.6 Hz" in out
+    assert "it is excited with up to 157.6 Hz" in out and "take steps of 635 us or less" in out
+    _, out, _ = run(capsys, "runup", "fine.toml")
+    assert "warning: steps" not in out
+    assert "steps of 20 us: 10 a period at 5000 Hz; numerical damping (spectral radius 0.8) takes 47.7 % at 2500" in out
+
+
+def test_a_load_beyond_what_a_bearing_can_hold_is_status_1(here, capsys):
+    (here / "a.toml").write_text(read_scene("nu308_rigid").text.replace('"100 N", "100 N"', '"1e9 N", "100 N"'))
+    status, out, err = run(capsys, "statics", "a.toml")
+    assert (status, out) == (1, "")
+    assert "no equilibrium: on the way to it an element is moved farther than it can be (bearing force, pose" in err
+    assert "check units and size of the loads" in err
+
+
+def test_free_motions_have_no_frequency_and_no_damping_ratio(here, capsys):
+    text = read_scene("n1014_rigid").text.replace("points = 2000", "points = 5")
+    (here / "a.toml").write_text(text)
+    options = ("a.toml", "--clearance", "20 um")
+    for command in (
+        ("sweep", *options, "--speeds", "500 rpm", "600 rpm", "2"),
+        ("hammer", *options, "--hits", "2", "-o", "hits.uff"),
+    ):
+        status, out, _ = run(capsys, *command)
+        assert status == 0
+        assert re.search(r"\d\d free motions at 0 Hz without strain energy, such as unloaded rollers", out)
+        assert not re.search(r"\de-(0[7-9]|[1-9]\d) +(to|Hz)|ratio -", out)
+
+
+def test_records_of_hits_are_no_netcdf(here, capsys):
+    status, _, err = run(capsys, "hammer", "nu308_rigid", "-o", "hits.nc")
+    assert status == 2
+    assert "-o: got hits.nc; allowed: a file that ends in .uff, .unv, .uf, .58" in err
+
+
 def test_no_equilibrium_is_status_1(here, capsys):
     text = read_scene("nu308_rigid").text.replace('against = "ring_left"\nforce', "force")
     text = text.replace('stiffness = { y = "1e5 N/m", z = "1e5 N/m" }', 'stiffness = { x = "1e5 N/m" }')

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -52,6 +53,17 @@ def test_dry_contacts_have_a_pressure_and_no_film(here, capsys):
         assert found[0] / found[1] == pytest.approx(math.sqrt(geometry.outer_radius / geometry.inner_radius))
 
 
+def test_the_loads_of_all_loaded_rollers_are_listed(here, capsys):
+    _, out, _ = run(capsys, "statics", "nu308_rigid")
+    line = next(line for line in out.splitlines() if line.startswith("  rollers, from y towards z: "))
+    found = np.array(re.findall(r"([0-9.e+-]+) N at ([0-9.e+-]+) deg", line), dtype=float)
+    assert np.all(np.diff(found[:, 0]) <= 0.0)
+    angles = np.radians(found[:, 1])
+    # Equilibrium with the preload; four digits are printed.
+    assert found[:, 0] @ np.cos(angles) == pytest.approx(100.0, rel=1e-3)
+    assert found[:, 0] @ np.sin(angles) == pytest.approx(100.0, rel=1e-3)
+
+
 @pytest.mark.parametrize("law", ["map", "formula"])
 def test_films_where_the_law_knows_them(here, capsys, formula_map, law):
     options = ("--map", formula_map) if law == "map" else ("--law", "formula")
@@ -76,7 +88,8 @@ def test_temperatures_without_a_viscosity_have_no_films(here, capsys, formula_ma
     options = ("--map", formula_map) if law == "map" else ("--law", "formula")
     status, out, _ = run(capsys, "statics", name, *options)
     assert status == 1
-    assert "warning: bearing_left: lies outside the map" in out
+    source = "the map" if law == "map" else "the table of the film formula"
+    assert f"warning: bearing_left: lies outside {source} (temperature of -30 degC is outside {source} (" in out
     # The map's films are those of its edge, as its law is.
     assert ("film down to" in out) == (law == "map")
 

@@ -462,6 +462,43 @@ def test_a_map_changed_since_it_was_made_is_refused_until_its_owner_says_so(made
     open_map(path).law("series")
 
 
+@pytest.fixture(scope="module")
+def own(made):
+    """A map of one's own: films of the grid alone, from which the rest is derived."""
+    path = made.with_name("own.nc")
+    now = open_map(made)
+    dataset = now.dataset.drop_vars([name for name in DERIVED if name in now.dataset])
+    del dataset.attrs[schema.CHECKSUM]
+    dataset.to_netcdf(path)
+    open_map(path).law("series")
+    return path
+
+
+@pytest.mark.parametrize(
+    "name, factor, words",
+    [
+        ("film_offset", 3.0, "12 lines over the load whose film_offset contradicts film_compliance, or stiffness: of"),
+        ("film_compliance", 0.3, "the film offset falls by a factor of .*, and by its compliance, which is minus its"),
+        ("loss_compliance", 1e25, "points whose damping is more than 1 s times the stiffness, inner at 1 N/mm, 0.5 m"),
+    ],
+)
+def test_films_that_contradict_each_other_are_told(own, tmp_path, name, factor, words):
+    path = tmp_path / "contradicting.nc"
+    shutil.copy(own, path)
+    with netCDF4.Dataset(path, "a") as file:
+        file[name][:] = factor * file[name][:]
+    with pytest.raises(MapError, match=words):
+        open_map(path).law("series")
+
+
+def test_a_backbone_with_absurd_damping_is_told(unsealed, tmp_path):
+    path = tmp_path / "stiff.nc"
+    shutil.copy(unsealed, path)
+    set_value("backbone/loss_compliance", (30, 0, 0), 1e10)(path)
+    with pytest.raises(MapError, match="1 points whose loss compliance is more than 1 s times their compliance, at"):
+        open_map(path).law("series")
+
+
 def test_a_changed_film_takes_along_what_is_derived_from_it(made, tmp_path):
     """Also where the owner says that the change is meant: stiffness cannot stay what it was."""
     path = tmp_path / "changed.nc"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import subprocess
 import sys
@@ -12,11 +13,14 @@ from numba import njit
 
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.maps.emap import EHDMap
+from ehdmaps.physics.oil_supply import FLOODED
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.bearing_kernel import force_of_arrays
 from mbs.bearings.roller_contacts import RollerContacts
+from mbs.scene.contact_laws import ContactLaws
+from mbs.scene.reader import read_scene
 from tests.cases.bearings import AT, LAWS, PLANE, bearing, central_difference, force, map_law, single_law
 from tests.cases.laws import OIL, dataset_of
 
@@ -389,3 +393,16 @@ def test_roller_contacts_have_exact_derivatives(inner, outer):
     ):
         scale = np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))
         assert np.all(np.abs(matrix - found) <= 1e-6 * scale + 1e-300)
+
+
+@pytest.mark.parametrize("rpm, highest", [(500.0, 10.0), (15000.0, 1.05 * 2.0 * 24.7525)])
+def test_a_film_formula_reaches_as_far_as_the_scene(monkeypatch, rpm, highest):
+    """Its table ends at 10 m/s, or 5 % above the speed that rings of the scene can have against each other."""
+    asked = []
+    monkeypatch.setattr(laws, "formula", lambda *_, entrainment_speed, **__: asked.append(entrainment_speed))
+    scene = read_scene("nu308_rigid")
+    given = dataclasses.replace(scene, run_up=None, speed=rpm * math.pi / 30.0)
+    made = ContactLaws("formula", given, None).of(bearing(clearance=20e-6), FLOODED)
+    assert made.series is None
+    # Entrainment speed of an NU308: 0.82508 m/s at 500 rpm.
+    assert asked == [(0.05, pytest.approx(highest, rel=1e-4))]

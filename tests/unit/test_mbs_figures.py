@@ -133,6 +133,11 @@ class TestReach:
             "(0.3 to 4 m/s)), where the law is held at its edge; make a map that reaches there"
         ]
 
+    def test_the_table_of_a_film_formula_is_no_map(self):
+        (line,) = outside_lines({"a": 1}, "lies outside the map", {}, source="the table of the film formula")
+        assert line.startswith("warning: a: lies outside the table of the film formula, where the law is held at its")
+        assert line.endswith("; a map may reach there, `mbs plan` writes its job")
+
     def test_the_axis_that_is_left_is_named_with_its_value(self, films):
         bearing = films.bearings[0]
         law = bearing.force.law
@@ -447,3 +452,12 @@ def test_a_mode_that_comes_back_has_its_number_again():
     order = np.array([[0, 1, -1], [0, -1, -1], [0, -1, 1]])
     plain = np.array([[0, 1], [0, 1], [0, 1]])
     np.testing.assert_array_equal(numbers(order, plain, [near, near, near]), [1, 0, 0])
+
+
+def test_a_sweep_draws_the_responses_of_all_cases():
+    model = assemble(read_scene("nu308_rigid"))
+    ports, frequencies = (model.scene.inputs, model.scene.sensors), np.array([100.0, 1000.0, 2000.0])
+    entry = sweep(model.system, np.array([100.0, 200.0]), 0.0, *ports, frequencies)
+    labels = [f"case {number}" for number in range(10)]
+    figure = sweep_figure("a machine", "side by side", [entry] * 10, labels)
+    assert [panel.get_title() for panel in figure.axes if panel.get_title()] == labels

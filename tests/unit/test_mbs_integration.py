@@ -13,6 +13,7 @@ from mbs.model.elements import ElementDefaults, Forces, Load, Spring
 from mbs.model.profiles import Harmonic, SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
+from mbs.transient.numerical_damping import energy_lost, numerical_damping_ratio, principal_root
 from tests.cases.bearings import integrate
 from tests.cases.elements import MASS, OneSided, force, stiff
 
@@ -41,6 +42,32 @@ def test_spectral_radius_one_keeps_the_energy_of_a_linear_system():
     run = integrate(oscillator(), REST, 0.5, Settings(1e-3, 1e-3, 1.0), np.array([1e-3]))
     energy = 25e3 * run.states.displacement[:, 0] ** 2 + run.states.velocity[:, 0] ** 2
     np.testing.assert_allclose(energy, energy[0], rtol=1e-9)  # what Newton leaves over, times 500 steps
+
+
+@pytest.mark.parametrize("radius", [0.0, 0.5, 0.8, 0.9, 1.0])
+def test_numerical_damping_is_that_of_a_run(radius):
+    """Decay and period of a free oscillation, from the complex motion q + i v/omega at two times a whole run apart."""
+    step, steps = 1e-3, 200
+    run = integrate(oscillator(), REST, steps * step, Settings(step, step, radius), np.array([1e-3]))
+    # A recursion of third order has three roots; the third one is gone after some steps.
+    q = run.states.displacement[-41:, 0]
+    columns = np.column_stack([q[2:-1], q[1:-2], q[:-3]])
+    roots = np.roots([1.0, *(-np.linalg.lstsq(columns, q[3:], rcond=1e-9)[0])])
+    frequency = OMEGA / (2.0 * math.pi)
+    expected = principal_root(radius, step, frequency)
+    found = roots[np.argmin(np.abs(roots - expected))]
+    # Newton's remainder: 1e-10 of the motion in each of 40 steps.
+    assert abs(found - expected) < 1e-7
+    size = abs(expected)
+    assert energy_lost(radius, step, frequency) == pytest.approx(1.0 - size ** (2.0 / step), abs=1e-12)
+    assert numerical_damping_ratio(radius, step, frequency) == pytest.approx(-math.log(size) / abs(np.log(expected)))
+
+
+def test_numerical_damping_rises_by_the_third_power_of_frequency_and_step():
+    small, twice, finer = (numerical_damping_ratio(0.8, *given) for given in ((1e-5, 1e3), (1e-5, 2e3), (2e-5, 1e3)))
+    # The next term is smaller by (omega h)^2, 0.4 and 1.6 %.
+    assert twice / small == pytest.approx(8.0, rel=0.02)
+    assert finer / small == pytest.approx(8.0, rel=0.02)
 
 
 def test_spectral_radius_dissipates_what_the_step_does_not_resolve():

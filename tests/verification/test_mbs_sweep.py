@@ -11,12 +11,16 @@ import math
 
 import numpy as np
 import pytest
+import scipy.linalg
 
 from mbs.bearings.bearing_element import RingElement
 from mbs.linearised import crossings
+from mbs.linearised.averaged import averaged, over_pitch
+from mbs.linearised.dynamic import dynamic_stiffness
 from mbs.linearised.linear import frequency_response, state_space
 from mbs.linearised.modal_response import TOLERANCE, checked_response, modal_response
 from mbs.linearised.modes import state_modes, undamped_modes
+from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep import sweep
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Forces, Input, Operation, Port, Sensor, Spring
@@ -294,6 +298,44 @@ class TestDryHertz:
         np.testing.assert_allclose(mean.stiffness, np.mean(one_by_one, axis=0), rtol=1e-7)
         spread = 0.5 * np.ptp(one_by_one, axis=0) / np.mean(one_by_one, axis=0)
         np.testing.assert_allclose(mean.stiffness_spread, spread, rtol=1e-5)
+
+
+@pytest.fixture(scope="module")
+def over(formula_map):
+    """Equilibria of nu308_rigid with films of a map and 20 um at four angles of a pitch, and their mean."""
+    model = assemble(read_scene("nu308_rigid"), "map", formula_map, 20e-6)
+    found = over_pitch(equilibrium(steady_system(model.system), Operation(1500.0 * RPM)), 4)
+    return model, found, averaged(found)
+
+
+class TestMeanOverAPitch:
+    def test_is_the_mean_at_any_frequency(self, over):
+        """With films that relax too; the sums over slices round differently."""
+        _, found, mean = over
+        s = np.array([1j * 1e3, -2e3 + 2e4j, 1j * 1e5])
+        expected = np.mean([dynamic_stiffness(each, s) for each in found], axis=0)
+        assert mean.relaxations[0] is not None
+        np.testing.assert_allclose(dynamic_stiffness(mean, s), expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+
+    def test_modes_and_responses_have_it(self, over):
+        model, found, mean = over
+        ports, at = (model.scene.inputs, model.scene.sensors), np.array([300.0, 1500.0, 3000.0])
+        speeds = np.array([1500.0 * RPM])
+        many, one = (sweep(model.system, speeds, 0.0, *ports, at, cage_angles=count) for count in (4, 1))
+        direct = frequency_response(mean, *ports, at)
+        np.testing.assert_allclose(many.responses.values[0], direct, rtol=1e-6)  # by modes beside a direct solution
+        assert np.abs(many.responses.values / one.responses.values - 1.0).max() > 1e-3
+        stiffness = np.mean([each.stiffness for each in found], axis=0)
+        squares = scipy.linalg.eigvalsh(0.5 * (stiffness + stiffness.T), model.system.mass)
+        np.testing.assert_allclose(many.undamped.frequency[0], np.sqrt(squares) / (2.0 * math.pi), rtol=1e-9)
+        value = many.damped.eigenvalues[0, 0]
+        own = dynamic_stiffness(mean, np.array([value]))[0]
+        assert np.abs(np.linalg.eigvals(own)).min() < 1e-7 * np.abs(np.linalg.eigvals(own)).max()
+        assert not one.undamped.frequency_spread.any() and not one.damped.damping_ratio_spread.any()
+        # To first order; what frequencies vary by is 0.1 to 3 %, so that its square is 0.1 % and less.
+        each = np.array([undamped_modes(entry).frequency for entry in found])
+        exact = 0.5 * np.ptp(each, axis=0)
+        np.testing.assert_allclose(many.undamped.frequency_spread[0], exact, atol=2e-3 * each.mean(axis=0).min())
 
 
 def damped_mass(damping, stiffness=8e4):
