@@ -385,6 +385,12 @@ def _auto(command: argparse.ArgumentParser, tolerance: bool = True) -> None:
         help="heat in the films of the map of --auto: isothermal | inlet-heat | thermal; default: by the rule of the "
         "inlet where that matters and holds",
     )
+    command.add_argument(
+        "--shear",
+        metavar="LAW",
+        help="law of the shear stress in the films of the map of --auto: newtonian | eyring | carreau | limiting; "
+        "default: limiting where that matters",
+    )
     if not tolerance:
         return
     command.add_argument(

@@ -17,8 +17,10 @@ from types import NoneType
 from typing import Generic, TypeVar
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.job_text import Entry
 from ehdmaps.physics.heat import PHYSICS
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.rheology import SHEARS
 from mbs.analyses import film_verdicts, planning
 from mbs.analyses.campbell import CampbellResult
 from mbs.analyses.film_errors import film_errors
@@ -79,6 +81,8 @@ class AutoSettings:
         Oil supply of all bearings that is asked for.
     physics : {"isothermal", "inlet-heat", "thermal"} or None
         What films are to know of heat, whatever is required.
+    shear : {"newtonian", "eyring", "carreau", "limiting"} or None
+        Law of the shear stress that is asked for, whatever is required.
     workers : int or None
         Processes that make a map; all cores if None.
 
@@ -96,6 +100,7 @@ class AutoSettings:
     films: Films | None = None
     supply: OilSupply | None = None
     physics: str | None = None
+    shear: str | None = None
     workers: int | None = None
 
     def __post_init__(self) -> None:
@@ -106,6 +111,8 @@ class AutoSettings:
             )
         if self.physics is not None and self.physics not in PHYSICS:
             raise InputError(f"auto, physics: got {self.physics!r:.60}; allowed: {', '.join(PHYSICS)}")
+        if self.shear is not None and self.shear not in SHEARS:
+            raise InputError(f"auto, shear: got {self.shear!r:.60}; allowed: {', '.join(SHEARS)}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,8 +219,8 @@ def settled(
     verdicts = _verdicts(scene, found, settings, supplies, highest)
     tried: list[tuple[KeptMap, float]] = []
     for attempt in range(1, MOST_MAPS + 1):
-        heats = [verdict.solver for verdict in verdicts[3:]]
-        jobs = [one.jobs(solvers=heats)[index] for index, one in enumerate(plans)]
+        keys = _solver_keys(verdicts, len(plans))
+        jobs = [one.jobs(solvers=keys)[index] for index, one in enumerate(plans)]
         kept = tuple(
             kept_map(scene.name, job, settings.folder, settings.others, settings.workers, progress) for job in jobs
         )
@@ -301,10 +308,10 @@ def _supplies(scene: Scene, asked: OilSupply | None) -> tuple[OilSupply, ...]:
 def _verdicts(
     scene: Scene, found: PlanResult, settings: AutoSettings, supplies: tuple[OilSupply, ...], highest: float
 ) -> tuple[Verdict, ...]:
-    """Which physics is required: memory, supply and roughness, each where it matters most, and heat by type."""
+    """Which physics is required: memory, supply and roughness, each where it matters most; heat and shear by type."""
     assert scene.lubricant is not None  # the plan saw to it
     possible = not any(entry.centrifugal and not entry.rollers_as_bodies for entry in scene.bearings)
-    memory, supply, rough, heat = (list[Verdict]() for _ in range(4))
+    memory, supply, rough, heat, shear = (list[Verdict]() for _ in range(5))
     for entry in found.needed:
         there = film_verdicts.visited(entry, scene.lubricant, settings.tolerance)
         theirs = tuple(
@@ -315,11 +322,12 @@ def _verdicts(
             film_verdicts.supply_verdict(there, theirs, settings.supply is not None),
             film_verdicts.roughness_verdict(there, scene.surface),
             film_verdicts.heat_verdict(there, settings.physics),
+            film_verdicts.shear_verdict(there, settings.shear),
         )
-        for group, verdict in zip((memory, supply, rough, heat), verdicts, strict=True):
+        for group, verdict in zip((memory, supply, rough, heat, shear), verdicts, strict=True):
             named = f"{entry.geometry.name}: {verdict.words}" if len(found.needed) > 1 else verdict.words
             group.append(dataclasses.replace(verdict, words=named))
-    return _worst(memory), _worst(supply), _worst(rough, least=True), *heat
+    return _worst(memory), _worst(supply), _worst(rough, least=True), *heat, *shear
 
 
 def _worst(verdicts: list[Verdict], least: bool = False) -> Verdict:
@@ -330,6 +338,12 @@ def _worst(verdicts: list[Verdict], least: bool = False) -> Verdict:
         return verdict.on, -math.inf if math.isnan(size) else size
 
     return max(verdicts, key=weight)
+
+
+def _solver_keys(verdicts: tuple[Verdict, ...], types: int) -> list[dict[str, Entry]]:
+    """Keys of [solver] of the map of each bearing type: what its verdicts on heat and shear ask for."""
+    heat, shear = verdicts[3 : 3 + types], verdicts[3 + types :]
+    return [{**warm.solver, **limited.solver} for warm, limited in zip(heat, shear, strict=True)]
 
 
 def _subject(

@@ -13,6 +13,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import progress
 from ehdmaps.jobs.store import store_path
 from ehdmaps.physics.heat import PHYSICS
+from ehdmaps.physics.rheology import SHEARS
 from ehdmaps.program import tell
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE, closest
 from mbs.analyses.auto import MOST_TOLERANCE, TOLERANCE, Automatic, AutoSettings, settled
@@ -174,6 +175,9 @@ def _asked(
     physics = getattr(arguments, "physics", None)
     if physics is not None and physics not in PHYSICS:
         problems.append(f"--physics: got {physics!r:.60}{closest(physics, PHYSICS)}; allowed: {', '.join(PHYSICS)}")
+    shear = getattr(arguments, "shear", None)
+    if shear is not None and shear not in SHEARS:
+        problems.append(f"--shear: got {shear!r:.60}{closest(shear, tuple(SHEARS))}; allowed: {', '.join(SHEARS)}")
     if problems or scene is None or looked is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     return scene, looked, _settings(arguments, tolerance, folder, looked.highest)
@@ -204,12 +208,13 @@ def _settings(arguments: argparse.Namespace, tolerance: float, folder: Path, hig
         films=kinds.get(films[0]) if films else None,
         supply=supplies[0] if supplies else None,
         physics=getattr(arguments, "physics", None),
+        shear=getattr(arguments, "shear", None),
     )
 
 
 def _only_with_auto(arguments: argparse.Namespace, own_tolerance: bool) -> list[str]:
     """What is wrong about options that belong to `--auto`."""
-    options = ("maps", "physics") if own_tolerance else ("maps", "physics", "tolerance")
+    options = ("maps", "physics", "shear") if own_tolerance else ("maps", "physics", "shear", "tolerance")
     given = [option for option in options if getattr(arguments, option, None) is not None]
     return [f"--{option}: stands without --auto; allowed: with it" for option in given]
 

@@ -28,7 +28,7 @@ from mbs.analyses.film_criteria import (
     memory_effect,
     supply_effect,
 )
-from mbs.analyses.film_verdicts import heat_verdict, visited
+from mbs.analyses.film_verdicts import heat_verdict, shear_verdict, visited
 from mbs.analyses.planning import Needed
 from mbs.commands.auto import read_tolerance
 from mbs.scene.changes import with_loads
@@ -318,3 +318,14 @@ def test_physics_belong_to_auto(file, capsys):
     assert status == 2 and "--physics: stands without --auto; allowed: with it" in err
     status, _, err = run(capsys, "statics", file, "--auto", "--physics", "therma")
     assert status == 2 and "--physics: got 'therma' (did you mean 'thermal'?); allowed: isothermal" in err
+
+
+def test_a_limiting_stress_is_in_the_map_where_it_matters():
+    hot, cold = there(1.0, 373.15, (1e3, 1e4)), there(4.0, 313.15, (1e3, 3.5e4))
+    assert not shear_verdict(hot).on and "not more than 5 %" in shear_verdict(hot).words
+    assert shear_verdict(cold).solver == {"shear": "limiting"}
+    asked = shear_verdict(hot, "eyring")
+    assert asked.on and asked.solver == {"shear": "eyring"} and asked.words.startswith("as asked, eyring; ")
+    assert not shear_verdict(cold, "newtonian").on
+    with pytest.raises(InputError, match="auto, shear: got 'thin'; allowed: newtonian, eyring, carreau, limiting"):
+        AutoSettings(shear="thin")
