@@ -29,6 +29,7 @@ film_criteria  such criteria at a contact, in closed form
 shear_effect   what a limiting shear stress changes there, by solving
 case           the models that an analysis compares, with their labels
 varied         what comparisons vary, one row a key
+recorded       runs that are recorded, measured or simulated before: signals, levels, amplitudes
 progress       how an analysis tells how far it is
 operating      a model as it is in operation: temperatures, heat and clearances of its bearings at a speed
 rings          how the rings of the bearings move

@@ -23,6 +23,7 @@ from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rheology import SHEARS
 from mbs.analyses import film_verdicts, planning
 from mbs.analyses.campbell import CampbellResult
+from mbs.analyses.critical import CriticalResult
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.film_verdicts import Verdict
 from mbs.analyses.hammer import HammerResult
@@ -159,7 +160,8 @@ def automatic(
     scene : Scene
         Scene with bearings and a lubricant.
     analysis : callable
-        One of `mbs.statics`, `modes`, `lsa`, `sweep`, `runup`, `campbell`, `hammer`, or a function that calls one.
+        One of `mbs.statics`, `modes`, `lsa`, `sweep`, `critical`, `runup`, `campbell`, `hammer`, or a function that
+        calls one.
     settings : AutoSettings, optional
         Tolerance, frequencies, folder of the maps.
     progress : callable, optional
@@ -264,6 +266,8 @@ def outside_calls(result: object) -> dict[str, int]:
         counts = [result.balance.outside]
     elif isinstance(result, HammerResult):
         counts = [result.balance.outside, result.outside_hits]
+    elif isinstance(result, CriticalResult):
+        counts = [result.outside]
     elif isinstance(result, SweepResult):
         counts = list(result.outside)
     elif isinstance(result, RunUpResult):
@@ -273,7 +277,7 @@ def outside_calls(result: object) -> dict[str, int]:
     else:
         raise InputError(
             f"auto, analysis: got a result of the type {type(result).__name__}; allowed: what statics, modes, lsa, "
-            "sweep, runup, campbell and hammer give"
+            "sweep, critical, runup, campbell and hammer give"
         )
     total: dict[str, int] = {}
     for entry in counts:

@@ -52,9 +52,7 @@ def load_model(arguments: argparse.Namespace, kind: Kind = RESULT) -> Model:
     return load_cases(arguments, several=False, kind=kind)[0].model
 
 
-def load_cases(
-    arguments: argparse.Namespace, several: bool = True, kind: Kind = RESULT, *, several_films: bool = False
-) -> list[Case]:
+def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind = RESULT) -> list[Case]:
     """Read scene, laws, maps, clearances and load factors into models; all problems at once.
 
     Parameters
@@ -66,8 +64,6 @@ def load_cases(
         Whether laws and maps stand side by side; else a law goes before a map.
     kind : Kind
         Kind of file that -o writes.
-    several_films : bool
-        Whether kinds of films, and oil supplies, stand side by side where laws and maps do not.
 
     Raises
     ------
@@ -79,14 +75,14 @@ def load_cases(
     laws = _named_laws(arguments, scene, problems)
     if not several:
         problems += [
-            f"--{option}: got {len(given)} of them; allowed: one; `mbs sweep` and `mbs campbell` compare more"
+            f"--{option}: got {len(given)} of them; allowed: one; lsa, sweep, runup and campbell compare more"
             for option in ("law", "clearance", "films", "supply")
-            if len(given := _given(arguments, option)) > 1 and not (option in ("films", "supply") and several_films)
+            if len(given := _given(arguments, option)) > 1
         ]
         if sum(law.maps is not None for law in laws) > 1:
             problems.append(
                 f"--map: got {len(_given(arguments, 'map'))} of them, several for one type of bearing; allowed: one "
-                "for each type of bearing; `mbs sweep` and `mbs campbell` compare more"
+                "for each type of bearing; lsa, sweep, runup and campbell compare more"
             )
         if _ready(arguments) is not None and _given(arguments, "law"):
             problems.append("--law: stands beside --auto, whose law is that of a map; leave one of them out")

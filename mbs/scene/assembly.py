@@ -22,6 +22,7 @@ from mbs.model.elements import Operation
 from mbs.model.places import Places
 from mbs.model.relaxation import Films
 from mbs.model.system import System
+from mbs.model.turning import TurningLoad
 from mbs.scene import kinds
 from mbs.scene.axial import axial_problems
 from mbs.scene.bodies import build_bodies
@@ -30,6 +31,7 @@ from mbs.scene.kinds import ElementKind
 from mbs.scene.map_set import MapSet
 from mbs.scene.scene import Scene
 from mbs.scene.surroundings import Built, Surroundings
+from mbs.scene.turning import turning_loads, with_places
 
 GivenMaps = EHDMap | str | Path | Sequence[EHDMap | str | Path] | MapSet | None
 """What `assemble` takes as maps."""
@@ -149,17 +151,20 @@ def assemble(
     wrong_law = laws.problems()
     problems = [*wrong_law, *problems]
     try:
-        bodies = build_bodies(scene.bodies)
+        bodies = build_bodies(with_places(scene.bodies, scene.unbalances))
     except InputError as error:
         raise InputError([*problems, *error.problems]) from error
     places = Places(bodies)
     built, found = _elements(scene, Surroundings(places, laws, scene.temperature), may_build=not wrong_law)
     problems += found
+    turning, found = turning_loads(scene.unbalances, scene.excitations, places)
+    problems += found
     parts = [part for group in built.values() for part in group]
     own_bodies = [body for part in parts for body in part.bodies]
     try:
-        system = System((*bodies, *own_bodies), scene.springs, scene.loads, [part.element for part in parts])
-        problems += _place_problems(places, scene) or _idle_problems(system, scene)
+        elements = [part.element for part in parts]
+        system = System((*bodies, *own_bodies), scene.springs, scene.loads, elements, turning, scene.gravity)
+        problems += _place_problems(places, scene) or _idle_problems(system, scene, turning)
         problems += axial_problems(system, scene.gears, Operation(scene.speed))
     except InputError as error:
         problems += [*error.problems, *_place_problems(places, scene)]
@@ -272,13 +277,19 @@ def _place_problems(places: Places, scene: Scene) -> list[str]:
     ]
 
 
-def _idle_problems(system: System, scene: Scene) -> list[str]:
+def _idle_problems(system: System, scene: Scene, turning: Sequence[TurningLoad]) -> list[str]:
     """What does nothing in the system, which is hardly meant: an unstrained spring, a load that moves nothing."""
     problems = [
         f"spring {spring.name!r}: {spring.on} and {spring.against} do not move against each other; allowed: places of "
         "two bodies, or of one that moves and the ground"
         for spring in scene.springs
         if not np.any(system.relative(spring.on, spring.against))
+    ]
+    problems += [
+        f"{entry.name!r}: no freedom moves its place along it; allowed: an unbalance or excitation in a direction in "
+        "which the body is free"
+        for entry in turning
+        if not np.any(system.relative(entry.on, entry.against).T @ entry.vector)
     ]
     for kind, name, direction, on, against in (
         *(("load", load.name, load.force, load.on, load.against) for load in scene.loads),

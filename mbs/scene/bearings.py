@@ -11,6 +11,7 @@ from ehdmaps.units import short
 from mbs.bearings.bearing import MOST_COUPLED
 from mbs.scene import fields
 from mbs.scene.fields import DEGREE
+from mbs.scene.matrices import MatrixSpec, read_table_bearing
 from mbs.scene.profiles import read_profile
 from mbs.scene.specs import BearingSpec
 from mbs.scene.thermal import read_mounting, read_thermal
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
     from mbs.scene.surroundings import Built, Surroundings
 
 
-def read_bearing(section: Table, name: str) -> BearingSpec | None:
-    """Read a bearing; None where a problem was noted.
+def read_bearing(section: Table, name: str) -> BearingSpec | MatrixSpec | None:
+    """Read a bearing of rollers, or one by matrices with kind = "table"; None where a problem was noted.
 
     Parameters
     ----------
@@ -29,6 +30,8 @@ def read_bearing(section: Table, name: str) -> BearingSpec | None:
     name : str
         Name of the bearing.
     """
+    if section.choice("kind", ("rollers", "table")) == "table":
+        return read_table_bearing(section, name)
     inner, outer = fields.place(section, "inner"), fields.place(section, "outer")
     given = section.get("geometry", required='{ name = "NU308" } or dimensions, as [bearing] of a job file')
     problems: list[str] = []
