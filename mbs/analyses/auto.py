@@ -335,7 +335,13 @@ def _verdicts(
 
 
 def _worst(verdicts: list[Verdict], least: bool = False) -> Verdict:
-    """The verdict that counts for all bearings: one that is on, and of these the largest, or least, size."""
+    """The verdict that counts for all bearings: one that is on, and of these the largest, or least, size.
+
+    What was not looked at, having no size, is told of all.
+    """
+    if all(math.isnan(verdict.size) for verdict in verdicts):
+        words = dict.fromkeys(verdict.words for verdict in verdicts)
+        return dataclasses.replace(verdicts[0], on=any(verdict.on for verdict in verdicts), words="; ".join(words))
 
     def weight(verdict: Verdict) -> tuple[bool, float]:
         size = -verdict.size if least else verdict.size

@@ -73,6 +73,7 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
         f"{model.scene.title}: law {model.law}",
         f"  {at}{temperature_text(model)}, clearance {clearance_text(model) or 'none'}; assumed: "
         + (f"{len(model.scene.assumed)} keys of the scene, marked there" if model.scene.assumed else "nothing"),
+        *_estimated(model),
         *(
             f"  the weight of {name} is left out: its finite elements are held themselves, so that it bears on no "
             "other body"
@@ -80,6 +81,15 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
         ),
         *state_lines(model.states),
     ]
+
+
+def _estimated(model: Model) -> list[str]:
+    """A line for each kind of bearing whose inner geometry is an estimate."""
+    found: dict[tuple[str, str], list[str]] = {}
+    for entry in model.scene.bearings:
+        if entry.geometry.estimated:
+            found.setdefault((entry.geometry.name, entry.geometry.estimated), []).append(entry.name)
+    return [f"  {name} ({', '.join(bearings)}): {words}" for (name, words), bearings in found.items()]
 
 
 def held_lines(model: Model) -> list[str]:

@@ -25,7 +25,7 @@ _MAPS_IN_A_ROW = 4
 _MARKS = 16
 _LEVELS_SHOWN = 50.0
 _NOTHING = 1e-4
-_DASHES = ("-", "--", "-.", ":")
+_DASHES = ("-", "--", "-.", ":", (0, (6.0, 1.0, 1.0, 1.0, 1.0, 1.0)), (0, (1.0, 4.0)))
 _LIMIT = (0.0, (5.0, 1.5, 1.0, 1.5))
 """Dashes of the frequency from which on the films are notably wrong."""
 
