@@ -65,6 +65,8 @@ class Body:
         Places at which springs, bearings, loads and sensors attach.
     spin : float
         Prescribed speed of the body about x as a multiple of the system's.
+    line : tuple of Frame
+        Places one after the other along a shaft, for pictures of its shape; none of other bodies.
     """
 
     name: str
@@ -76,6 +78,7 @@ class Body:
     stiffness: FloatArray
     frames: Mapping[str, Frame] = field(default_factory=dict)
     spin: float = 0.0
+    line: tuple[Frame, ...] = ()
 
     @property
     def size(self) -> int:
