@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from mbs.analyses.auto import AutoSettings, automatic
     from mbs.analyses.campbell import campbell
     from mbs.analyses.case import Case
+    from mbs.analyses.critical import critical
     from mbs.analyses.hammer import HammerSettings, hammer
     from mbs.analyses.lsa import LsaSettings, lsa
     from mbs.analyses.modes import modes
@@ -110,6 +111,7 @@ __all__ = [
     "assemble",
     "automatic",
     "campbell",
+    "critical",
     "hammer",
     "lsa",
     "modes",
@@ -163,6 +165,7 @@ _HOMES = {
     "assemble": "scene.assembly",
     "automatic": "analyses.auto",
     "campbell": "analyses.campbell",
+    "critical": "analyses.critical",
     "hammer": "analyses.hammer",
     "lsa": "analyses.lsa",
     "modes": "analyses.modes",

@@ -58,6 +58,11 @@ def parser() -> argparse.ArgumentParser:
     sweep = _scene_command(commands, "sweep", "modes, bearings and frequency responses over speed", compares=True)
     _films(sweep, compares=True)
     _sweep(sweep)
+    critical = _scene_command(
+        commands, "critical", "critical speeds, and the response to unbalances and orders over speed", compares=False
+    )
+    _films(critical, compares=False)
+    _speeds(critical)
     campbell = _scene_command(
         commands,
         "campbell",
@@ -159,16 +164,21 @@ def _supply(command: argparse.ArgumentParser, of: str, compares: bool) -> None:
 def _sweep(command: argparse.ArgumentParser) -> None:
     """Add the options of a sweep."""
     _load_and_angle(command)
+    _speeds(command)
+    command.add_argument(
+        "--cage-angles",
+        metavar="COUNT",
+        help="angles within one pitch of the rollers over which k and c of the bearings are averaged (1)",
+    )
+
+
+def _speeds(command: argparse.ArgumentParser) -> None:
+    """Add the speeds of a sweep."""
     command.add_argument(
         "--speeds",
         nargs=3,
         metavar=("FROM", "TO", "POINTS"),
         help='such as "500 rpm" "2500 rpm" 40, in place of [sweep] of the scene',
-    )
-    command.add_argument(
-        "--cage-angles",
-        metavar="COUNT",
-        help="angles within one pitch of the rollers over which k and c of the bearings are averaged (1)",
     )
 
 
@@ -344,13 +354,20 @@ def _plan(commands: Any) -> None:
     words = "which ranges a scene needs of a contact map, and the job that covers just these"
     command: argparse.ArgumentParser = commands.add_parser("plan", help=words, description=words)
     command.add_argument("scene", metavar="SCENE")
-    command.add_argument("--map", metavar="MAP.nc", help="say whether this map covers the scene, instead of a job")
+    command.add_argument(
+        "--map",
+        metavar="MAP.nc",
+        action="append",
+        help="say whether this map covers the scene, instead of a job; with several types of bearing one for each",
+    )
     command.add_argument("--law", metavar="LAW", default="hertz", help="hertz | constant:NAME, for the loads at rest")
     command.add_argument("--clearance", metavar="LENGTH", help='diametral clearance of all bearings, such as "20 um"')
     command.add_argument(
         "--margin", metavar="FACTOR", help="highest load of the map over the largest one at rest, for what moves (3)"
     )
-    command.add_argument("-o", "--output", metavar="JOB.toml", help="job for `ehdmaps generate`")
+    command.add_argument(
+        "-o", "--output", metavar="JOB.toml", help="job for `ehdmaps generate`; one for each type of bearing"
+    )
 
 
 def _reduce(commands: Any) -> None:
@@ -404,7 +421,10 @@ def _scene_command(
     # What comes twice is an error of the command, in words, where it does not compare.
     more = _MORE if compares else ""
     command.add_argument(
-        "--map", metavar="MAP.nc", action="append", help=f"made by `ehdmaps generate` for the same bearing{more}"
+        "--map",
+        metavar="MAP.nc",
+        action="append",
+        help=f"made by `ehdmaps generate` for the same bearing; more than once for other types of bearing{more}",
     )
     command.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
     command.add_argument("--law", metavar="LAW", action="append", help=f"{_LAW}{more}")
@@ -439,6 +459,12 @@ def _auto(command: argparse.ArgumentParser, tolerance: bool = True) -> None:
         help="heat in the films of the map of --auto: isothermal | inlet-heat | thermal; default: by the rule of the "
         "inlet where that matters and holds",
     )
+    command.add_argument(
+        "--shear",
+        metavar="LAW",
+        help="law of the shear stress in the films of the map of --auto: newtonian | eyring | carreau | limiting; "
+        "default: limiting where that matters",
+    )
     if not tolerance:
         return
     command.add_argument(
@@ -455,7 +481,12 @@ def _run(commands: Any, top: argparse.ArgumentParser) -> None:
     words = "every analysis for which the scene has a table: statics, modes, lsa, sweep, and campbell or runup"
     command: argparse.ArgumentParser = commands.add_parser("run", help=words, description=words)
     command.add_argument("scene", metavar="SCENE")
-    command.add_argument("--map", metavar="MAP.nc", help="made by `ehdmaps generate` for the same bearing; or --auto")
+    command.add_argument(
+        "--map",
+        metavar="MAP.nc",
+        action="append",
+        help="made by `ehdmaps generate` for the same bearing; more than once for other types of bearing; or --auto",
+    )
     command.add_argument("--clearance", metavar="LENGTH", help='diametral clearance of all bearings, such as "20 um"')
     command.add_argument("-o", "--output", metavar="FOLDER", help="results, figures and texts of all analyses")
     _auto(command)

@@ -26,6 +26,7 @@ auto           an analysis with a map that is planned, made or reused, and check
 kept_map       a map for a planned job: one that is there, or a new one
 film_verdicts  which physics of the films a scene requires
 film_criteria  such criteria at a contact, in closed form
+shear_effect   what a limiting shear stress changes there, by solving
 case           the models that an analysis compares, with their labels
 varied         what comparisons vary, one row a key
 recorded       runs that are recorded, measured or simulated before: signals, levels, amplitudes

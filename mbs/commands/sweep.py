@@ -116,7 +116,7 @@ def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
     speeds: SweepRange | None = None
     cases: list[Case] = []
     try:
-        speeds = _speeds(arguments.speeds) if arguments.speeds else None
+        speeds = read_speeds(arguments.speeds) if arguments.speeds else None
     except InputError as error:
         problems += error.problems
     angles = _whole(arguments.cage_angles or "1")
@@ -133,8 +133,19 @@ def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
     return SweepSettings(speeds, angles), cases
 
 
-def _speeds(texts: Sequence[str]) -> SweepRange:
-    """Read FROM TO POINTS."""
+def read_speeds(texts: Sequence[str]) -> SweepRange:
+    """Read FROM TO POINTS of `--speeds`.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        The three texts.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
     problems = []
     ends = []
     for text in texts[:2]:

@@ -67,6 +67,8 @@ class Body:
         Prescribed speed of the body about x as a multiple of the system's.
     line : tuple of Frame
         Places one after the other along a shaft, for pictures of its shape; none of other bodies.
+    gravity : array, shape (n, 3), or None
+        Load on the coordinates by gravity along x, y, z of 1 m/s2 [kg or kg m]; None where `mbs.model.weight` finds it.
     """
 
     name: str
@@ -79,6 +81,7 @@ class Body:
     frames: Mapping[str, Frame] = field(default_factory=dict)
     spin: float = 0.0
     line: tuple[Frame, ...] = ()
+    gravity: FloatArray | None = None
 
     @property
     def size(self) -> int:
@@ -224,6 +227,7 @@ def rigid_body(
             for key, place in places.items()
         },
         spin=spin,
+        gravity=mass[free, :3],
     )
 
 
