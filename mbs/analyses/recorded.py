@@ -102,7 +102,9 @@ def simulated(runs: Sequence[tuple[str, Model, Recording]]) -> TimeData:
     )
     attributes = dict(law_attributes(model))
     attributes["law"] = "; ".join(f"{label}: {entry.law}" for label, entry, _ in runs)
-    return TimeData(model.scene.title, records, tuple(excited_orders(model)), attributes)
+    look = model.scene.campbell
+    orders = [(order, f"{order:g}") for order in look.orders] or excited_orders(model)
+    return TimeData(model.scene.title, records, tuple(orders), attributes, look)
 
 
 def simulated_campbell(runs: Sequence[LawRun]) -> TimeData:

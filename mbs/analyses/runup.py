@@ -110,7 +110,7 @@ def runup(model: Model, settings: RunUp | None = None, progress: Progress | None
     dataset = described(dataset, **law_attributes(model))
     if sensors:
         signals = signal_variables(simulated([(model.label, model, record)]))
-        dataset = dataset.merge(signals).assign_attrs(title=model.scene.title, label=model.label)
+        dataset = dataset.merge(signals).assign_attrs({**signals.attrs, **dataset.attrs})
     return RunUpResult(model, course, record, seconds, dataset)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import closest
+from mbs.settings import CampbellSettings
 from mbs.spectral.levels import Reference
 from mbs.spectral.run_signal import RunSignal
 from mbs.timedata.quantities import Recorded, motion
@@ -140,12 +141,15 @@ class TimeData:
         Orders that the machine excites, with their names, where they are known.
     attributes : dict of str to str
         Provenance.
+    look : CampbellSettings or None
+        What the scene of a simulated run looks at; None where there is none.
     """
 
     title: str
     records: tuple[TimeRecord, ...]
     orders: tuple[tuple[float, str], ...] = ()
     attributes: dict[str, str] | None = None
+    look: CampbellSettings | None = None
 
 
 def chosen(record: TimeRecord, name: str, option: str) -> TimeChannel:
