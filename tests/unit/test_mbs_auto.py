@@ -167,10 +167,10 @@ def test_bearings_of_two_types_have_a_map_each_and_one_alone_is_widened(folder, 
     assert [kept.emap.bearing.name for kept in found.kept] == ["NU308", "N1014"]
     assert "map of NU308" in found.subject.model().law
     assert "; map of N1014" in found.subject.model().law
-    supply, *heats = found.verdicts[1], *found.verdicts[3:]
+    supply, *heats_and_shears = found.verdicts[1], *found.verdicts[3:]
     # the layer that matters is the thicker film's, told with its bearing
     assert supply.words.startswith(("NU308: none is stated", "N1014: none is stated"))
-    assert [verdict.words[:7] for verdict in heats] == ["NU308: ", "N1014: "]
+    assert [verdict.words[:7] for verdict in heats_and_shears] == ["NU308: ", "N1014: "] * 2
 
 
 def test_options_that_do_not_go_together_are_refused_before_a_map_is_made(file, capsys, by_formula):
