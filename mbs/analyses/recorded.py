@@ -113,7 +113,7 @@ def simulated_campbell(runs: Sequence[LawRun]) -> TimeData:
     Parameters
     ----------
     runs : sequence of LawRun
-        Of one result.
+        Runs of one result.
     """
     return simulated([(entry.case.label, entry.case.model, entry.record) for entry in runs])
 
@@ -126,13 +126,13 @@ def recorded_campbell(
     Parameters
     ----------
     data : TimeData
-        Of `mbs.output.time_files.read_time_data`, or of `simulated`.
+        Recorded runs, from `mbs.output.time_files.read_time_data` or `simulated`.
     settings : CampbellSettings
         What is looked at; orders that it does not name are those of the data.
     sensors : sequence of str
         Names of channels, or `ALL_SENSORS`; that of the settings, or the first one of an acceleration, if left out.
     source : SpeedSource
-        Where the speed is, of records that do not have it themselves.
+        Place of the speed of records that do not have it themselves.
 
     Raises
     ------

@@ -60,11 +60,11 @@ class Look:
     orders : tuple of float
         Orders to follow; none for those of the machine.
     source : SpeedSource
-        Where the speed of a record is.
+        Place of the speed of a record.
     measured : str or None
         File of a measured run.
     channels : list of str
-        Its channels, in the order of the sensors.
+        Channels of the measured run, in the order of the sensors.
     """
 
     sensors: list[str]

@@ -117,7 +117,7 @@ def signal_outputs(option: str, path: str | None, laws: int = 1) -> tuple[list[O
     option : str
         That names the file.
     path : str or None
-        As it was given.
+        Path as it was given.
     laws : int
         How many records there will be.
     """
