@@ -210,7 +210,7 @@ class TestHostile:
             ("full_scale = 1800.0", "full_scale = -3.0", "channel 3, full_scale: got -3.0; allowed: a number above 0"),
             ('unit = "m/s2"', 'unit = "kg"', "channel 1, unit: got the unit 'kg'"),
             ("step = 0.0002", "step = 0.02", "step: got 0.02 for a sound file of 5000 Hz"),
-            ("title", "titel", "'titel' is not known (did you mean 'title'?)"),
+            ("title", "titlx", "'titlx' is not known (did you mean 'title'?)"),
             ('name = "S1"\n', "", "channel 1: got a table of 2 entries; allowed: the keys name, unit, full_scale"),
             (good[good.rindex("[[") :], "", "got 2 channels for a sound file of 3"),
         ):
