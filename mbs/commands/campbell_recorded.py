@@ -300,7 +300,7 @@ def _figure(data: TimeData, found: RecordedResult) -> Figure:
     if channels[1:]:
         sensors = [(channel.name, _reference(channel)) for channel in channels]
         return sensors_figure(data.title, labels, results, sensors, found.orders)
-    title = f"{data.title}\nsensor {channels[0].name}; recorded run"
+    title = f"{data.title or labels[0]}\nsensor {channels[0].name}; recorded run"
     return campbell_figure(title, labels, [spectra[0] for spectra in results], _reference(channels[0]), found.orders)
 
 
