@@ -52,6 +52,7 @@ def parser() -> argparse.ArgumentParser:
         command = _scene_command(commands, name, words, compares=several)
         if name == "modes":
             _modes(command)
+            _shapes(command)
         if name == "runup":
             _runup(command)
         _films(command, compares=several)
@@ -113,6 +114,15 @@ def _modes(command: argparse.ArgumentParser) -> None:
         "--highest",
         metavar="FREQUENCY",
         help='highest frequency listed and drawn, such as "5 kHz"; default: the highest of [linear], else 10 kHz',
+    )
+
+
+def _shapes(command: argparse.ArgumentParser) -> None:
+    """Add pictures and files of mode shapes."""
+    command.add_argument("--shapes", metavar="FIG.png", help="picture of mode shapes in space; also .pdf, .svg")
+    command.add_argument("--shapes-file", metavar="SHAPES.vtu", help="mode shapes for ParaView")
+    command.add_argument(
+        "--shape-modes", metavar="N", nargs="+", help="numbers of the modes there; default: those listed, six a picture"
     )
 
 

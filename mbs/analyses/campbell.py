@@ -224,7 +224,7 @@ def chosen_sensors(scene: Scene, settings: CampbellSettings, names: Sequence[str
     scene : Scene
         The scene.
     settings : CampbellSettings
-        Its sensor is taken where no name is given.
+        Settings whose sensor is taken where no name is given.
     names : sequence of str
         Names, or `ALL_SENSORS` for all of the scene.
     problems : list of str

@@ -213,7 +213,7 @@ def lsa_dataset(labels: Sequence[str], results: Sequence[LsaResult]) -> xr.Datas
     labels : sequence of str
         What each is called.
     results : sequence of LsaResult
-        Of `lsa_of`, at the same frequencies.
+        Results of `lsa_of`, at the same frequencies.
     """
     parts = [result.dataset for result in results]
     if len(parts) == 1:

@@ -102,7 +102,9 @@ def simulated(runs: Sequence[tuple[str, Model, Recording]]) -> TimeData:
     )
     attributes = dict(law_attributes(model))
     attributes["law"] = "; ".join(f"{label}: {entry.law}" for label, entry, _ in runs)
-    return TimeData(model.scene.title, records, tuple(excited_orders(model)), attributes)
+    look = model.scene.campbell
+    orders = [(order, f"{order:g}") for order in look.orders] or excited_orders(model)
+    return TimeData(model.scene.title, records, tuple(orders), attributes, look)
 
 
 def simulated_campbell(runs: Sequence[LawRun]) -> TimeData:
@@ -111,7 +113,7 @@ def simulated_campbell(runs: Sequence[LawRun]) -> TimeData:
     Parameters
     ----------
     runs : sequence of LawRun
-        Of one result.
+        Runs of one result.
     """
     return simulated([(entry.case.label, entry.case.model, entry.record) for entry in runs])
 
@@ -124,13 +126,13 @@ def recorded_campbell(
     Parameters
     ----------
     data : TimeData
-        Of `mbs.output.time_files.read_time_data`, or of `simulated`.
+        Recorded runs, from `mbs.output.time_files.read_time_data` or `simulated`.
     settings : CampbellSettings
         What is looked at; orders that it does not name are those of the data.
     sensors : sequence of str
         Names of channels, or `ALL_SENSORS`; that of the settings, or the first one of an acceleration, if left out.
     source : SpeedSource
-        Where the speed is, of records that do not have it themselves.
+        Place of the speed of records that do not have it themselves.
 
     Raises
     ------

@@ -147,7 +147,7 @@ def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = Non
     dataset = described(dataset, **law_attributes(model))
     if sensors:
         signals = signal_variables(simulated([(model.label, model, record)]))
-        dataset = dataset.merge(signals).assign_attrs(title=model.scene.title, label=model.label)
+        dataset = dataset.merge(signals).assign_attrs({**signals.attrs, **dataset.attrs})
     return _Made(course, record, seconds, dataset)
 
 

@@ -60,11 +60,11 @@ class Look:
     orders : tuple of float
         Orders to follow; none for those of the machine.
     source : SpeedSource
-        Where the speed of a record is.
+        Place of the speed of a record.
     measured : str or None
         File of a measured run.
     channels : list of str
-        Its channels, in the order of the sensors.
+        Channels of the measured run, in the order of the sensors.
     """
 
     sensors: list[str]
@@ -223,7 +223,8 @@ def recorded_runs(arguments: argparse.Namespace) -> tuple[str, int]:
         Arguments of the command; `scene` is the file.
     """
     data, look = recorded_data(arguments, _OF_A_SCENE)
-    found = recorded_campbell(data, look.settings(CampbellSettings()), look.sensors, look.source)
+    settings = look.settings(data.look or CampbellSettings())
+    found = recorded_campbell(data, settings, look.sensors, look.source)
     runs = found.runs
     speeds = runs[0].record.speed
     assert speeds is not None  # spectra were made with them
@@ -231,7 +232,7 @@ def recorded_runs(arguments: argparse.Namespace) -> tuple[str, int]:
     lines = [
         f"{data.title or Path(arguments.scene).name}: recorded run from {RPM.text(float(speeds[0]))} to "
         f"{RPM.text(float(speeds[-1]))}; {'sensors' if runs[0].channels[1:] else 'sensor'} {names}",
-        *resolution_lines(runs[0].spectra[0], look.settings(CampbellSettings()).highest),
+        *resolution_lines(runs[0].spectra[0], settings.highest),
     ]
     for run in runs:
         lines += _run_lines(run.record.label, run)
@@ -299,7 +300,7 @@ def _figure(data: TimeData, found: RecordedResult) -> Figure:
     if channels[1:]:
         sensors = [(channel.name, _reference(channel)) for channel in channels]
         return sensors_figure(data.title, labels, results, sensors, found.orders)
-    title = f"{data.title}\nsensor {channels[0].name}; recorded run"
+    title = f"{data.title or labels[0]}\nsensor {channels[0].name}; recorded run"
     return campbell_figure(title, labels, [spectra[0] for spectra in results], _reference(channels[0]), found.orders)
 
 

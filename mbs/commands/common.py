@@ -301,12 +301,24 @@ def write(arguments: argparse.Namespace, dataset: xr.Dataset, figure: Figure | N
         write_dataset(dataset, path)
         lines.append(f"{path}: written")
     if arguments.plot and figure is not None:
-        # Names of a scene are no formulas.
-        for text in figure.findobj(Text):
-            text.set_text(text.get_text().replace("$", r"\$"))
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            write_figure(figure, arguments.plot, RESOLUTION)
-        lines.append(f"{arguments.plot}: written")
-        lines += dict.fromkeys(f"warning: {arguments.plot}: {entry.message}" for entry in caught)
+        lines += write_plot(figure, arguments.plot)
     return lines
+
+
+def write_plot(figure: Figure, path: str) -> list[str]:
+    """Write a figure; a line that says so, and what the library warned of.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    path : str
+        The file.
+    """
+    # Names of a scene are no formulas.
+    for text in figure.findobj(Text):
+        text.set_text(text.get_text().replace("$", r"\$"))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        write_figure(figure, path, RESOLUTION)
+    return [f"{path}: written", *dict.fromkeys(f"warning: {path}: {entry.message}" for entry in caught)]

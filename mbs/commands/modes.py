@@ -4,18 +4,37 @@ from __future__ import annotations
 
 import argparse
 import math
+from pathlib import Path
 
 import numpy as np
 
 from ehdmaps.arrays import IntArray
 from ehdmaps.errors import InputError
-from mbs.analyses.modes import modes
+from ehdmaps.extras import lacking
+from ehdmaps.outputs import FIGURE, Output, output_problems
+from ehdmaps.units import RPM
+from mbs.analyses.modes import ModesResult, modes
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_model
-from mbs.commands.common import band_lines, clean, film_lines, free_words, heading, outside_at, read_option, write
+from mbs.commands.common import (
+    band_lines,
+    clean,
+    film_lines,
+    free_words,
+    heading,
+    outside_at,
+    read_option,
+    write,
+    write_plot,
+)
 from mbs.commands.reach import fade_lines
 from mbs.linearised.modes import Modes
+from mbs.linearised.shapes import skeleton
 from mbs.output.modes_plot import modes_figure
+from mbs.output.results import RESULT
+from mbs.output.shapes_file import MOST_SHAPES as MOST_WRITTEN
+from mbs.output.shapes_file import SHAPES, write_shapes
+from mbs.output.shapes_plot import MOST_SHAPES, shapes_figure
 from mbs.scene.assembly import Model
 from mbs.scene.campbell import HIGHEST_HIGHEST, LOWEST_HIGHEST
 from mbs.scene.fields import HERTZ, MILLISECOND
@@ -25,6 +44,7 @@ HIGHEST = 10e3
 """Highest frequency shown of a scene that asks for no responses [Hz]."""
 
 _LEAST_SHARE = 0.05
+_LAST = 100_000
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -53,6 +73,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *(fade_lines(model, np.array([model.scene.speed])) if model.scene.speed else []),
         *outside,
         *write(arguments, result.dataset, figure),
+        *_write_shapes(arguments, result, shown),
     ]
     return "\n".join(lines), 1 if outside else done.status
 
@@ -66,9 +87,60 @@ def _asked(arguments: argparse.Namespace) -> tuple[Model, float]:
         problems += error.problems
         model = None
     highest = _highest(arguments, None if model is None else model.scene, problems)
+    problems += _shape_problems(arguments, model)
     if problems or model is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     return model, highest
+
+
+def _shape_problems(arguments: argparse.Namespace, model: Model | None) -> list[str]:
+    """What is wrong about pictures and files of shapes."""
+    picture, file = getattr(arguments, "shapes", None), getattr(arguments, "shapes_file", None)
+    numbers = getattr(arguments, "shape_modes", None)
+    problems = []
+    if numbers:
+        if picture is None and file is None:
+            problems.append("--shape-modes: stands without --shapes and --shapes-file; allowed: with one of them")
+        wrong = [text for text in numbers if not (text.isascii() and text.isdigit() and 1 <= int(text[:9]) <= _LAST)]
+        problems += [f"--shape-modes: got {text!r:.40}; allowed: numbers of modes from 1 on" for text in wrong]
+        if picture is not None and len(numbers) > MOST_SHAPES:
+            problems.append(f"--shape-modes: got {len(numbers)} modes for a picture; allowed: up to {MOST_SHAPES}")
+    if file is not None:
+        problems += lacking("flexible", "meshio", "--shapes-file")
+    read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *(model.scene.files if model else ())]
+    outputs = [
+        Output("-o", getattr(arguments, "output", None), RESULT),
+        Output("--plot", getattr(arguments, "plot", None), FIGURE),
+        Output("--shapes", picture, FIGURE),
+        Output("--shapes-file", file, SHAPES),
+    ]
+    return problems + (output_problems(outputs, read) if picture or file else [])
+
+
+def _write_shapes(arguments: argparse.Namespace, result: ModesResult, shown: IntArray) -> list[str]:
+    """Write the pictures and files of shapes that are asked for; a line for each."""
+    picture, file = getattr(arguments, "shapes", None), getattr(arguments, "shapes_file", None)
+    if picture is None and file is None:
+        return []
+    given = [int(text) - 1 for text in getattr(arguments, "shape_modes", None) or ()]
+    there = [mode for mode in given if mode < result.modes.frequency.size]
+    lines = [
+        f"warning: --shape-modes: mode {mode + 1} is not there; the last one is {result.modes.frequency.size}"
+        for mode in given
+        if mode not in there
+    ]
+    wanted = there if given else [int(mode) for mode in shown]
+    bones = skeleton(result.model.system)
+    if file is not None:
+        write_shapes(Path(file), result.modes, bones, wanted)
+        lines.append(f"{file}: written, {min(len(wanted), MOST_WRITTEN)} modes")
+    if picture is not None:
+        drawn = wanted[:MOST_SHAPES]
+        at = RPM.text(result.model.scene.speed)
+        lines += write_plot(shapes_figure(result.model, result.modes, bones, drawn, at), picture)
+        if len(drawn) < len(wanted):
+            lines.append(f"  {picture}: modes {', '.join(str(mode + 1) for mode in drawn)}; others by --shape-modes")
+    return lines
 
 
 def _highest(arguments: argparse.Namespace, scene: Scene | None, problems: list[str]) -> float:

@@ -10,10 +10,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from mbs.flexible.damping import modal_damping
 from mbs.flexible.shaft_layout import shaft_problems
-from mbs.flexible.shaft_model import reduced, shaft_model
+from mbs.flexible.shaft_model import ShaftModel, reduced, shaft_model
 from mbs.flexible.shaft_parts import Disc, Section
 from mbs.model.body import FREEDOMS, Body, Frame
 
@@ -86,9 +87,10 @@ def flexible_shaft(
         if cutoff is None:
             kept = list(range(len(model.nodes)))
             mass, gyroscopic, stiffness = model.mass, model.gyroscopic, model.stiffness
+            basis = np.eye(len(mass))
         else:
             kept = list(dict.fromkeys(nodes.values()))
-            mass, gyroscopic, stiffness = reduced(model, kept, cutoff)
+            mass, gyroscopic, stiffness, basis = reduced(model, kept, cutoff)
         damping = modal_damping(mass, stiffness, damping_ratio)
     except InputError as error:
         raise InputError([f"shaft {name!r}, {problem}" for problem in error.problems]) from error
@@ -113,4 +115,16 @@ def flexible_shaft(
         stiffness=stiffness,
         frames=places,
         spin=spin,
+        line=_line(model, here, basis),
     )
+
+
+def _line(model: ShaftModel, here: FloatArray, basis: FloatArray) -> tuple[Frame, ...]:
+    """All nodes of a shaft, with how they move by its coordinates."""
+    rows = [FREEDOMS.index(freedom) for freedom in model.freedoms]
+    found = []
+    for node, place in enumerate(model.nodes.tolist()):
+        transform = np.zeros((6, basis.shape[1]))
+        transform[rows] = basis[model.rows([node], model.freedoms)]
+        found.append(Frame(here + np.array([place, 0.0, 0.0]), transform))
+    return tuple(found)

@@ -113,8 +113,10 @@ def shaft_model(
     return model
 
 
-def reduced(model: ShaftModel, masters: Sequence[int], cutoff: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """M, G, K in the freedoms of the master nodes and the modes with these held, by Craig and Bampton.
+def reduced(
+    model: ShaftModel, masters: Sequence[int], cutoff: float
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """M, G, K and the basis, in the freedoms of the master nodes and the modes with these held, by Craig and Bampton.
 
     Static loads at the masters are carried exactly. Modes are mass-normalised and in the order of their frequency;
     each is in one plane, as the shaft is round.
@@ -170,7 +172,7 @@ def reduced(model: ShaftModel, masters: Sequence[int], cutoff: float) -> tuple[F
     first = static.shape[1]
     stiffness[:first, :first] = static.T @ model.stiffness @ static
     stiffness[range(first, len(mass)), range(first, len(mass))] = [squares[index] for index in order]
-    return 0.5 * (mass + mass.T), 0.5 * (gyroscopic - gyroscopic.T), 0.5 * (stiffness + stiffness.T)
+    return 0.5 * (mass + mass.T), 0.5 * (gyroscopic - gyroscopic.T), 0.5 * (stiffness + stiffness.T), basis
 
 
 def _disc_matrices(inertia: Inertia) -> tuple[FloatArray, FloatArray]:

@@ -65,6 +65,8 @@ class Body:
         Places at which springs, bearings, loads and sensors attach.
     spin : float
         Prescribed speed of the body about x as a multiple of the system's.
+    line : tuple of Frame
+        Places one after the other along a shaft, for pictures of its shape; none of other bodies.
     gravity : array, shape (n, 3), or None
         Load on the coordinates by gravity along x, y, z of 1 m/s2 [kg or kg m]; None where `mbs.model.weight` finds it.
     """
@@ -78,6 +80,7 @@ class Body:
     stiffness: FloatArray
     frames: Mapping[str, Frame] = field(default_factory=dict)
     spin: float = 0.0
+    line: tuple[Frame, ...] = ()
     gravity: FloatArray | None = None
 
     @property

@@ -111,7 +111,7 @@ def of_sensors(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     Parameters
     ----------
     parts : sequence of xarray.Dataset
-        Of `campbell_dataset`, one a sensor, of the same runs.
+        Datasets of `campbell_dataset`, one a sensor, of the same runs.
     """
     if len(parts) == 1:
         return parts[0]
@@ -140,9 +140,9 @@ def with_measured(dataset: xr.Dataset, measured: xr.Dataset) -> xr.Dataset:
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of simulated runs.
+        Levels of simulated runs.
     measured : xarray.Dataset
-        Of the measured run, from `of_sensors`; it has speeds and frequencies of its own.
+        Levels of the measured run, from `of_sensors`; it has speeds and frequencies of its own.
     """
     alone = measured.isel(law=0, drop=True)
     own = [str(name) for name in (*alone.variables, *alone.dims) if name != "sensor"]

@@ -197,7 +197,7 @@ def speed_range(results: Sequence[RunUpSpectra]) -> tuple[float, float]:
     Parameters
     ----------
     results : sequence of RunUpSpectra
-        At least one.
+        Results, at least one.
     """
     speeds = [result.campbell.speeds for result in results]
     return min(float(part.min()) for part in speeds) * RPM, max(float(part.max()) for part in speeds) * RPM

@@ -21,7 +21,7 @@ def resolution_lines(spectra: RunUpSpectra, highest: float) -> list[str]:
     Parameters
     ----------
     spectra : RunUpSpectra
-        Of one run.
+        Spectra of one run.
     highest : float
         Highest frequency that was asked for [Hz].
     """
@@ -40,7 +40,7 @@ def highest_line(spectra: RunUpSpectra) -> str:
     Parameters
     ----------
     spectra : RunUpSpectra
-        Of one run.
+        Spectra of one run.
     """
     found = spectra.campbell
     at = int(np.argmax(found.sum_level))
@@ -67,7 +67,7 @@ def peak_lines(spectra: RunUpSpectra) -> list[str]:
     Parameters
     ----------
     spectra : RunUpSpectra
-        Of one run.
+        Spectra of one run.
     """
     if spectra.peaks:
         return [PEAKS, *map(peak_line, spectra.peaks)]
@@ -84,7 +84,7 @@ def sensor_line(name: str, reference: Reference, spectra: RunUpSpectra) -> str:
     reference : Reference
         Reference of its levels.
     spectra : RunUpSpectra
-        Its levels.
+        Levels of the sensor.
     """
     line = f"  {name} ({reference.text}): {highest_line(spectra)}"
     if not spectra.peaks:

@@ -36,11 +36,11 @@ def signal_panels(
     Parameters
     ----------
     figure : FigureBase
-        Where to draw.
+        Figure, or part of one, that is drawn into.
     records : sequence of TimeRecord
         A run each, of the same channels.
     spectra : sequence of sequence of sequence of AmplitudeSpectrum
-        About each speed, of each run, of each sensor; a column a speed.
+        Spectra about each speed, of each run, of each sensor; a column a speed.
     labelled : bool
         Whether a legend says which colour is which run, also of one alone.
     """

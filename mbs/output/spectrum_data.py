@@ -16,9 +16,9 @@ def with_spectra(dataset: xr.Dataset, spectra: Sequence[Sequence[Sequence[Amplit
     Parameters
     ----------
     dataset : xarray.Dataset
-        With the dim sensor, and law of several runs.
+        Result with the dim sensor, and law of several runs.
     spectra : sequence of sequence of sequence of AmplitudeSpectrum
-        About each speed, of each run, of each sensor; all with one window.
+        Spectra about each speed, of each run, of each sensor; all with one window.
     """
     if not spectra:
         return dataset

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ehdmaps.errors import InputError
+from ehdmaps.extras import lacking
 from ehdmaps.outputs import TABLE, Output
 from mbs.modal.uff import UFF
 from mbs.output.results import RESULT, described, write_dataset
@@ -116,7 +117,7 @@ def signal_outputs(option: str, path: str | None, laws: int = 1) -> tuple[list[O
     option : str
         That names the file.
     path : str or None
-        As it was given.
+        Path as it was given.
     laws : int
         How many records there will be.
     """
@@ -127,5 +128,6 @@ def signal_outputs(option: str, path: str | None, laws: int = 1) -> tuple[list[O
         return [], [f"{option}: got {path!r:.300}; allowed: a file that ends in {', '.join(ENDINGS)}"]
     if laws > 1 and ending != ".nc":
         return [], [f"{option}: got {laws} laws for {path}; allowed in {ending}: one; write .nc, or one law at a time"]
+    problems = list(lacking("modal", "pyuff", option)) if _KINDS[ending] is UFF else []
     outputs = [Output(option, path, _KINDS[ending])]
-    return outputs + ([Output(option, scale_path(Path(path)), SCALE)] if ending == ".wav" else []), []
+    return outputs + ([Output(option, scale_path(Path(path)), SCALE)] if ending == ".wav" else []), problems

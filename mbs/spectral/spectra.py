@@ -151,7 +151,7 @@ class AmplitudeSpectrum:
     frequencies : array, shape (lines,)
         [Hz].
     amplitude : array, shape (lines,)
-        Of a sine at each line [unit of the signal]; low by at most 1 % (0.09 dB) between two lines.
+        Amplitude of a sine at each line [unit of the signal]; low by at most 1 % (0.09 dB) between two lines.
     window : float
         Length of the window [s].
     """

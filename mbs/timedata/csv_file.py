@@ -44,7 +44,7 @@ def write_csv(path: Path, data: TimeData) -> None:
     path : Path
         The file.
     data : TimeData
-        With one record.
+        Time data of one record.
 
     Raises
     ------

@@ -16,6 +16,7 @@ import xarray as xr
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import check_input
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
+from mbs.settings import CampbellSettings
 from mbs.timedata.quantities import read_unit
 from mbs.timedata.records import MOST, MOST_CHANNELS, TimeChannel, TimeData, TimeRecord
 
@@ -27,6 +28,9 @@ _NEEDED = ("signal", "signal_time", "signal_speed", "signal_angle", "sensor", "s
 _ALLOWED = "a result of `mbs runup -o` or a file of `--signals`"
 _WORDS = ("title", "law", "scene", "scene_toml", "schema_version", "ehdmaps_version", "oil_supply", "surface")
 """Attributes that go on into what is made from a file."""
+
+_LOOK = ("campbell_sensor", "campbell_highest_hz", "campbell_window_s")
+"""Attributes of what the scene of a simulated run looks at."""
 
 
 def signal_variables(data: TimeData) -> xr.Dataset:
@@ -65,7 +69,10 @@ def signal_variables(data: TimeData) -> xr.Dataset:
         coordinates["excited"] = _texts([name for _, name in data.orders])
         values = np.array([order for order, _ in data.orders])
         variables["followed_order"] = ("excited", values, {"units": "1", "long_name": words})
-    attributes = {"label": first.label, **(data.attributes or {}), "title": data.title}
+    attributes: dict[str, Any] = {"label": first.label, **(data.attributes or {}), "title": data.title}
+    if data.look is not None:
+        given = (data.look.sensor, data.look.highest, data.look.window)
+        attributes |= {name: value for name, value in zip(_LOOK, given, strict=True) if value is not None}
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 
@@ -123,7 +130,20 @@ def _data(path: Path, dataset: xr.Dataset) -> TimeData:
         for label, values in zip(labels, signals if several else signals[None], strict=True)
     )
     words = {key: str(dataset.attrs[key]) for key in _WORDS if key in dataset.attrs}
-    return TimeData(words.get("title", ""), records, tuple(orders), words)
+    return TimeData(words.get("title", ""), records, tuple(orders), words, _look(path, dataset.attrs))
+
+
+def _look(path: Path, attributes: dict[str, Any]) -> CampbellSettings | None:
+    """What the scene of a run looks at."""
+    sensor, highest, window = (attributes.get(name) for name in _LOOK)
+    if highest is None:
+        return None
+    try:
+        return CampbellSettings(
+            None if sensor is None else str(sensor), float(highest), None if window is None else float(window)
+        )
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{path}: {', '.join(_LOOK)}: got no numbers ({error}); the file is damaged") from error
 
 
 def _texts(values: Sequence[str]) -> Any:

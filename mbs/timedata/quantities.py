@@ -70,7 +70,7 @@ def read_unit(unit: str, name: str) -> tuple[Recorded, str, float]:
     Parameters
     ----------
     unit : str
-        As it stands in a file.
+        Unit as it stands in a file.
     name : str
         Name of the channel: one in rad/s that is called a speed is the speed of the system.
 

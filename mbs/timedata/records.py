@@ -9,6 +9,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import closest
+from mbs.settings import CampbellSettings
 from mbs.spectral.levels import Reference
 from mbs.spectral.run_signal import RunSignal
 from mbs.timedata.quantities import Recorded, motion
@@ -63,7 +64,7 @@ class TimeRecord:
     channels : tuple of TimeChannel
         What the columns are.
     values : array, shape (samples, channels)
-        In the unit of each channel.
+        Values in the unit of each channel.
     speed, angle : array, shape (samples,), or None
         Speed of the system [rad/s] and angle turned [rad], where they are known.
 
@@ -133,19 +134,22 @@ class TimeData:
     Attributes
     ----------
     title : str
-        Of what; empty if the file does not say.
+        Title of the machine or the measurement; empty if the file does not say.
     records : tuple of TimeRecord
         One, or one for each law of a simulated run.
     orders : tuple of (float, str)
         Orders that the machine excites, with their names, where they are known.
     attributes : dict of str to str
-        Provenance.
+        Provenance of the data.
+    look : CampbellSettings or None
+        What the scene of a simulated run looks at; None where there is none.
     """
 
     title: str
     records: tuple[TimeRecord, ...]
     orders: tuple[tuple[float, str], ...] = ()
     attributes: dict[str, str] | None = None
+    look: CampbellSettings | None = None
 
 
 def chosen(record: TimeRecord, name: str, option: str) -> TimeChannel:

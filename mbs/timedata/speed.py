@@ -113,7 +113,7 @@ def with_speed(record: TimeRecord, source: SpeedSource) -> Turned:
     record : TimeRecord
         The record; one that has its speed already keeps it if the source names none.
     source : SpeedSource
-        Where the speed is.
+        Place of the speed.
 
     Raises
     ------

@@ -34,7 +34,7 @@ def write_time_uff(path: Path, data: TimeData) -> None:
     path : Path
         The file.
     data : TimeData
-        With one record.
+        Time data of one record.
 
     Raises
     ------

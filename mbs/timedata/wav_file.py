@@ -67,7 +67,7 @@ def write_wav(path: Path, data: TimeData) -> list[str]:
     path : Path
         The sound file.
     data : TimeData
-        With one record.
+        Time data of one record.
 
     Raises
     ------

@@ -51,7 +51,7 @@ def unbalanced(
     Parameters
     ----------
     mass, damping, stiffness : ndarray, shape (n, n)
-        Of the linear part.
+        Matrices of the linear part.
     transform : ndarray, shape (m, n)
         Motion of the ports from that of the coordinates.
     weight : ndarray, shape (n,)
@@ -61,7 +61,7 @@ def unbalanced(
     loads, port_force : ndarray
         Loads on the coordinates, shape (n,), and forces of the elements at the ports, shape (m,).
     force : ndarray, shape (n,)
-        Result.
+        Forces out of balance, the result.
     """
     q, v, a = state
     size = by_load = by_contact = by_inertia = 0.0

@@ -132,6 +132,9 @@ NEEDY = (
     ("openfoam", "PyFoam", ("ehdmaps.jobs.cli", "generate", "nu308_openfoam")),
     ("openfoam", "PyFoam", ("ehdmaps.jobs.cli", "check", "nu308_openfoam")),
     ("modal", "pyuff", ("mbs.cli", "modal-fit", "hits.uff")),
+    ("modal", "pyuff", ("mbs.cli", "campbell", "hits.uff")),
+    ("modal", "pyuff", ("mbs.cli", "runup", "nu308_rigid", "--signals", "new.uff")),
+    ("flexible", "meshio", ("mbs.cli", "modes", "nu308_rigid", "--shapes-file", "new.vtu")),
     ("modal", "pyuff", ("mbs.cli", "hammer", "n1014_testrig", "--law", "hertz", "-o", "new.uff")),
 )
 """Commands that need an extra, and its package."""
