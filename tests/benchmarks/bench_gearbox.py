@@ -17,6 +17,9 @@ The first fifth of a piece is left out: there the machine forgets how it was sta
 and then sampled each 40 us; `sampling` shows what it costs to leave that out. Where motion is chaotic, runs that begin
 a little apart stay apart; `start moved` shows whether they do. Signals and single windows of such runs cannot be
 compared, only `mean`, and that no finer than in this row.
+
+With --waits instead: what a step costs from rest on, where films fade, beside a step with whole films; the steps that
+ran in compiled code; and the largest difference of the bearing forces from steps in Python over the first ones.
 """
 
 from __future__ import annotations
@@ -367,6 +370,44 @@ def coordinates_table(bench: Bench, law: str) -> None:
     print("largest change of the natural frequencies up to 1, 2.5, 5 kHz, in rising order", *shifts, sep="\n")
 
 
+WAITS = (0.0, 10.0, 20.0, 29.0, 1000.0)
+"""Where pieces of the ramp begin [rpm]."""
+
+WAIT_STEPS, COMPARED_STEPS = 400, 20
+
+
+def waits_table(bench: Bench) -> None:
+    """What a step takes where films fade, in alternating pieces of a ramp."""
+    print("films    from rpm   us a step   beside the last row   compiled   forces beside Python")
+    for films in get_args(Films):
+        system = assemble(bench.scene, "map", bench.emap, films=films).system
+        pieces, differences = [], []
+        for begin in WAITS:
+            speed = SpeedProfile(Course((0.0, 1.0), (begin * RPM, (begin + 400.0) * RPM)))
+            start = equilibrium(system, Operation(speed.at(0.0)[0])).displacement
+            pieces.append((speed, start))
+            settings = Settings(SAMPLE, SAMPLE, residual=1e-12)
+            ways = [
+                run(system, speed, COMPARED_STEPS * SAMPLE, settings, (), start, options=Options(compiled=compiled))
+                for compiled in (True, False)
+            ]
+            pairs = zip(ways[0].forces[:-1], ways[1].forces[:-1], strict=True)  # the mesh comes last
+            differences.append(max(float(np.abs(a - b).max() / np.abs(b).max()) for a, b in pairs))
+        spent, share = np.full((3, len(WAITS)), np.inf), [0.0] * len(WAITS)
+        for turn in range(3):
+            for place, (speed, start) in enumerate(pieces):
+                begun = time.process_time()
+                record = run(system, speed, WAIT_STEPS * SAMPLE, Settings(SAMPLE, SAMPLE), (), start)
+                spent[turn, place] = 1e6 * (time.process_time() - begun) / record.steps
+                share[place] = record.compiled / record.steps
+        best = spent.min(axis=0)
+        for begin, cost, compiled, difference in zip(WAITS, best.tolist(), share, differences, strict=True):
+            print(
+                f"{films:8} {begin:8g} {cost:11.0f} {cost / float(best[-1]):21.2f} {100.0 * compiled:8.0f} % "
+                f"{difference:22.1e}"
+            )
+
+
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description="Run-ups of the shipped gearbox: cost beside error.")
@@ -375,6 +416,7 @@ def main() -> None:
     parser.add_argument("--whole", action="store_true", help="the whole ramp of 5 s; fewer rows")
     parser.add_argument("--housing", help="the same housing with modes up to 12 kHz, by `python -m examples.housings`")
     parser.add_argument("--films", choices=get_args(Films), default=DEFAULT_FILMS, help="of the map")
+    parser.add_argument("--waits", action="store_true", help="what steps cost from rest on, instead")
     given = parser.parse_args()
     if not SHORTEST <= given.duration <= LONGEST:
         parser.error(f"--duration: got {given.duration:g} s; allowed: {SHORTEST:g} to {LONGEST:g} s")
@@ -382,6 +424,9 @@ def main() -> None:
     assert scene.run_up is not None
     duration = scene.run_up.duration if given.whole else given.duration
     bench = Bench(scene, ehdmaps.open_map(given.map), duration, given.whole, given.housing, given.films)
+    if given.waits:
+        waits_table(bench)
+        return
     begin, end = (bench.speed.at(at)[0] / RPM for at in (0.0, duration))
     print(f"{scene.title}: {begin:.0f} to {end:.0f} rpm in {duration:g} s; levels {Reference.of(bench.sensor).text}")
     for law in ("map", "hertz"):
