@@ -16,6 +16,7 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import closest
 from mbs.analyses.case import Case, as_cases
 from mbs.analyses.changed_laws import SIGNS, law_changes, with_changed_laws
+from mbs.analyses.drive import course_of
 from mbs.analyses.operating import held, states_of
 from mbs.analyses.progress import Progress, silent
 from mbs.linearised.sweep import sweep
@@ -430,7 +431,7 @@ def recorded_run(
     start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
     return run_system(
         model.system,
-        course.speed,
+        course_of(model, course),
         course.duration,
         course.settings,
         sensors=sensors,

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import xarray as xr
 
 from ehdmaps.errors import InputError
+from mbs.analyses.drive import course_of
 from mbs.analyses.operating import held, states_of
 from mbs.analyses.progress import Progress, silent
 from mbs.model.elements import Operation
@@ -86,7 +87,7 @@ def runup(model: Model, settings: RunUp | None = None, progress: Progress | None
     begin = time.perf_counter()
     record = run_system(
         model.system,
-        course.speed,
+        course_of(model, course),
         course.duration,
         course.settings,
         displacement=start.displacement,

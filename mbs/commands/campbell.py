@@ -26,7 +26,7 @@ from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
 from mbs.output.campbell_plot import MOST_LAWS, Overlay, Reach, campbell_figure
-from mbs.output.energy_text import energy_lines
+from mbs.output.energy_text import drive_lines, energy_lines
 from mbs.scene.assembly import Model
 from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.fields import HERTZ, MILLISECOND
@@ -217,7 +217,7 @@ def _report(entry: LawRun) -> list[str]:
         axes_outside(entry.case.model, float(np.abs(record.speed).max())),
         entry.case.label,
     )
-    lines += [f"  {line}" for line in energy_lines(record.energy)]
+    lines += [f"  {line}" for line in (*drive_lines(record.drive), *energy_lines(record.energy))]
     ends = (float(found.speeds[0]), float(found.speeds[-1]))
     return [*lines, *fade_lines(entry.case.model, record.speed, "the run"), *film_course(entry.case.model, ends)]
 

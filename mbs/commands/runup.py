@@ -15,7 +15,7 @@ from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_model
 from mbs.commands.common import Told, film_course, heading, held_lines, write
 from mbs.commands.reach import fade_lines, outside_lines
-from mbs.output.energy_text import energy_lines
+from mbs.output.energy_text import drive_lines, energy_lines
 from mbs.output.run_plot import run_figure
 from mbs.scene.assembly import Model
 from mbs.transient.run import Recording
@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             f"{size[-1]:.5g} N at the end; largest change from sample to sample {_changes(size, result.speed, fade)}; "
             f"{outside[bearing.name]} calls outside the map"
         )
-    lines += energy_lines(result.energy)
+    lines += drive_lines(result.drive) + energy_lines(result.energy)
     lines += fade_lines(model, result.speed, "the run")
     fastest = float(np.abs(result.speed).max())
     lines += outside_lines(outside, "{} calls outside the map", axes_outside(model, fastest))
