@@ -68,6 +68,10 @@ COLD_START_BELOW = 1.0
 VALLEY_REFINEMENT = 1.2
 """Density of cells at the bottom of the damping valley, relative to the density elsewhere."""
 
+OTHER_PLACES = 1.05, 1.1
+"""Densities of cells, relative to the one asked for, that are tried besides where an oil has a limiting stress: on some
+grids Newton goes round in circles, as its front stands between two cells."""
+
 THIN_FILM = 20.0
 """Load M above which a negative loss can only be a numerical one."""
 
@@ -215,7 +219,9 @@ def solve_groups(
         resolution = replace(resolution, density=VALLEY_REFINEMENT * resolution.density)
     solution = _solve_once(problem, M, L, resolution, previous)
     steps = solution.steps
-    for again in (resolution.with_wide_spike, replace(resolution, density=2.0 * resolution.density)):
+    nearby = OTHER_PLACES if problem.shear.form == LIMITING and problem.heat.log_eta.size == 0 else ()
+    others = [replace(resolution, density=factor * resolution.density) for factor in (*nearby, 2.0)]
+    for again in (*others[:-1], resolution.with_wide_spike, others[-1]):
         if solution.outcome == CONVERGED and (solution.loss > 0.0 or M < THIN_FILM):
             break
         if again == resolution:

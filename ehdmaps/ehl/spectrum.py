@@ -9,6 +9,7 @@ high that they do not, the space grows to that of all unknowns, which is exact.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +24,9 @@ SMALL_RESIDUAL = 1e-13
 
 CHECK_EVERY = 3
 """Vectors that are added between two looks at the residual."""
+
+MOST_VECTORS = 150
+"""Vectors of the space of equations that are known by what they do."""
 
 _TINY = float(np.finfo(float).tiny)
 
@@ -90,6 +94,32 @@ def film_space(linear: Linearisation, fastest: float) -> FilmSpace:
     return FilmSpace(*_space(linear.arrays, linear.unit, linear.height, fastest))
 
 
+def arnoldi(step: Callable[[FloatArray], FloatArray], static: FloatArray, height: int, fastest: float) -> FilmSpace:
+    """Return the Krylov space of equations that are known by what they do.
+
+    Parameters
+    ----------
+    step : callable
+        T z of a state z, shape (size,).
+    static : ndarray, shape (size,)
+        Static response A^-1 e.
+    height : int
+        Index of H0 in a state.
+    fastest : float
+        Highest Omega = omega b/u.
+    """
+    norm, most = float(np.linalg.norm(static)), min(static.size, MOST_VECTORS)
+    basis, hessenberg = np.empty((most + 1, static.size)), np.zeros((most + 1, most))
+    basis[0] = static / norm
+    count = 0
+    while count < most:
+        _orthogonalised(step(basis[count]), basis, hessenberg, count)
+        count += 1
+        if _residual(hessenberg, count, fastest) < SMALL_RESIDUAL or hessenberg[count, count - 1] < _TINY:
+            break
+    return FilmSpace(norm, hessenberg[:count, :count].copy(), basis[:count, height].copy())
+
+
 @njit(cache=True)
 def _space(linear: Arrays, unit: FloatArray, height: int, fastest: float) -> tuple[float, FloatArray, FloatArray]:
     """Length of the static response, T in the space of its vectors, and the unknown `height` of these."""
@@ -113,7 +143,12 @@ def _space(linear: Arrays, unit: FloatArray, height: int, fastest: float) -> tup
 @njit(cache=True)
 def _extend(linear: Arrays, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
     """Add T times the last vector to the basis, orthogonal to all before it; twice, for round-off."""
-    found = solved(linear, storage(linear, basis[count]))
+    _orthogonalised(solved(linear, storage(linear, basis[count])), basis, hessenberg, count)
+
+
+@njit(cache=True)
+def _orthogonalised(found: FloatArray, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
+    """Add a vector to the basis, orthogonal to all before it."""
     for _ in range(2):
         along = basis[: count + 1] @ found
         for i in range(count + 1):

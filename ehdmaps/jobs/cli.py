@@ -34,8 +34,10 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     generate = commands.add_parser("generate", help="make a map; the same command goes on after an interruption")
-    generate.add_argument("job", metavar="JOB")
-    generate.add_argument("-o", "--output", metavar="MAP.nc", help="default: the job's name with .nc, in this folder")
+    generate.add_argument("jobs", metavar="JOB", nargs="+", help="of several, one map after the other")
+    generate.add_argument(
+        "-o", "--output", metavar="MAP.nc", help="of one job; default: the job's name with .nc, in this folder"
+    )
     generate.add_argument("--solver", metavar="NAME", help=_SOLVER)
     generate.add_argument(
         "--tolerance",

@@ -4,23 +4,32 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
+import numpy as np
 import xarray as xr
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
+from mbs.analyses.case import Case
 from mbs.analyses.drive import course_of
 from mbs.analyses.operating import held, states_of
 from mbs.analyses.progress import Progress, silent
+from mbs.analyses.recorded import simulated
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.output.energy_data import with_energy
 from mbs.output.results import described, run_dataset
 from mbs.output.state_data import with_states
-from mbs.scene.assembly import Model, law_attributes
+from mbs.scene.assembly import Model, law_attributes, supply_attributes
 from mbs.settings import RunUp
-from mbs.transient.run import WITH_STATES, Recording
+from mbs.timedata.netcdf_file import signal_variables
+from mbs.transient.run import Options, Recording
 from mbs.transient.run import run as run_system
+
+_KEPT = Options(states=True, every_step=True)
+"""States at the samples, and sensors at every step: fewer would fold what lies above their band into it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +43,7 @@ class RunUpResult:
     course : RunUp
         Speed, duration, and how it was integrated.
     record : Recording
-        Recorded states and forces, and how often each element was outside its map.
+        Recorded states, forces and signals, and how often each element was outside its map.
     seconds : float
         How long the integration took [s].
     dataset : xarray.Dataset
@@ -84,18 +93,133 @@ def runup(model: Model, settings: RunUp | None = None, progress: Progress | None
     steps = course.settings.steps_per_sample
     total = math.ceil(course.duration / course.settings.sample - 1e-9) * steps
     tell(0, total)
+    sensors = model.scene.sensors
     begin = time.perf_counter()
     record = run_system(
         model.system,
         course_of(model, course),
         course.duration,
         course.settings,
+        sensors=sensors,
         displacement=start.displacement,
         progress=lambda done: tell(done * steps, total),
-        options=WITH_STATES,
+        options=_KEPT,
     )
     seconds = time.perf_counter() - begin
     dataset = with_energy(run_dataset(model.system, record), record.energy)
     dataset = with_states(dataset, states_of(model))
     dataset = described(dataset, **law_attributes(model))
+    if sensors:
+        signals = signal_variables(simulated([(model.label, model, record)]))
+        dataset = dataset.merge(signals).assign_attrs(title=model.scene.title, label=model.label)
     return RunUpResult(model, course, record, seconds, dataset)
+
+
+class RunUps(NamedTuple):
+    """Runs of one scene with several laws.
+
+    Attributes
+    ----------
+    labels : tuple of str
+        What each is called.
+    runs : tuple of RunUpResult
+        Those that came to the end.
+    failed : tuple of str
+        Why the others did not, each with its label.
+    """
+
+    labels: tuple[str, ...]
+    runs: tuple[RunUpResult, ...]
+    failed: tuple[str, ...]
+
+    @property
+    def dataset(self) -> xr.Dataset:
+        """What `mbs runup -o` writes: of one law its result, of several all of them over the dim law."""
+        if len(self.runs) == 1:
+            return self.runs[0].dataset
+        return _of_laws(self)
+
+
+def runups(cases: Sequence[Case], progress: Progress | None = None, *, keep_partial: bool = False) -> RunUps:
+    """Integrate the run of one scene with several laws.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        Models, with their labels.
+    progress : callable, optional
+        Told how many steps are done, and of how many, over all laws.
+    keep_partial : bool
+        Whether Ctrl-C returns the laws that have come to the end, if there are any; else it is raised.
+
+    Raises
+    ------
+    InputError
+        As `runup` does.
+    AnalysisError
+        If no law came to the end.
+
+    Examples
+    --------
+    >>> import dataclasses
+    >>> from mbs import Case, assemble, read_scene
+    >>> scene = read_scene("nu308_rigid")
+    >>> scene = dataclasses.replace(scene, run_up=dataclasses.replace(scene.run_up, duration=1e-3))
+    >>> laws = ("hertz", "constant:hertz")
+    >>> found = runups([Case(law, assemble(scene, law), 0.0) for law in laws])
+    >>> found.dataset["signal"].dims
+    ('law', 'signal_time', 'sensor')
+    """
+    tell = progress or silent
+    labels: list[str] = []
+    runs: list[RunUpResult] = []
+    failed: list[str] = []
+    for index, case in enumerate(cases):
+        try:
+            runs.append(runup(case.model, progress=_part(tell, index, len(cases))))
+            labels.append(case.label)
+        except AnalysisError as error:
+            if not cases[1:]:
+                raise
+            failed.append(f"{case.label}: {error}")
+        except KeyboardInterrupt:
+            if not (runs and keep_partial):
+                raise
+            failed += [f"{left.label}: stopped, no result" for left in cases[index:]]
+            break
+    if not runs:
+        raise AnalysisError("\n".join(f"warning: {line}" for line in failed))
+    return RunUps(tuple(labels), tuple(runs), tuple(failed))
+
+
+def _part(tell: Progress, index: int, count: int) -> Callable[[int, int], None]:
+    """Progress of one of some runs of the same length."""
+
+    def told(done: int, total: int) -> None:
+        if done or not index:
+            tell(index * total + done, count * total)
+
+    return told
+
+
+_SHARED = ("speed", "angle", "quantity", "signal_unit", "signal_speed", "signal_angle", "followed_order")
+"""Variables that are the same whatever the law."""
+
+
+def _of_laws(found: RunUps) -> xr.Dataset:
+    """The results of all laws over the dim law; what a law has not is not a number."""
+    parts = [run.dataset for run in found.runs]
+    own = [part.drop_vars([name for name in _SHARED if name in part]) for part in parts]
+    law = xr.DataArray(np.array(found.labels, dtype=np.str_), dims="law", name="law")
+    joined = xr.concat(
+        own, law, data_vars="all", coords="minimal", compat="override", join="outer", combine_attrs="override"
+    )
+    for name in _SHARED:
+        if name in parts[0]:
+            joined[name] = parts[0][name]
+    counts = {
+        key: sum(int(part.attrs[key]) for part in parts) for key in ("steps", "steps_halved", "newton_iterations")
+    }
+    words = "; ".join(f"{label}: {run.model.law}" for label, run in zip(found.labels, found.runs, strict=True))
+    supplies = supply_attributes([(label, run.model) for label, run in zip(found.labels, found.runs, strict=True)])
+    return joined.assign_attrs({**parts[0].attrs, **counts, "law": words, **supplies})

@@ -286,7 +286,7 @@ def _place(subject: Subject, settings: CampbellSettings, runs: list[_Run], place
 
 def _law_content(subject: Subject) -> str:
     """The law of a subject without its films and their oil supply, as a text: the same text, the same law."""
-    return f"{subject.law.name} {id(subject.law.emap)}"
+    return f"{subject.law.name} {id(subject.law.maps)}"
 
 
 def _made(

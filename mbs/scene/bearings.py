@@ -12,6 +12,7 @@ from mbs.bearings.bearing import MOST_COUPLED
 from mbs.scene import fields
 from mbs.scene.fields import DEGREE
 from mbs.scene.matrices import MatrixSpec, read_table_bearing
+from mbs.scene.profiles import read_profile
 from mbs.scene.specs import BearingSpec
 from mbs.scene.thermal import read_mounting, read_thermal
 
@@ -39,7 +40,7 @@ def read_bearing(section: Table, name: str) -> BearingSpec | MatrixSpec | None:
         geometry, _ = read_contacts(Table({"bearing": given}, "geometry", problems), None)
     for problem in problems:
         section.note("geometry", problem.removeprefix("[bearing] ").removeprefix("[bearing]: "))
-    profile = section.choice("profile", ("iso", "straight")) or "iso"
+    profile = read_profile(section, geometry)
     slices = section.integer("slices", 1, 10000) or 41
     angle = section.quantity("start_angle", "rad", -7.0, 7.0, DEGREE) or 0.0
     rollers = section.choice("rollers", ("massless", "bodies")) or "massless"

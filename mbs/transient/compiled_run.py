@@ -1,6 +1,6 @@
 """A run in compiled code: what `run_kernel` needs, prepared for a batch of steps, and the steps between.
 
-Steps that an element has no compiled answer for (speeds below the map, where films fade; loads above it) are made by
+Steps that an element has no compiled answer for (such as loads above a map whose law refuses them) are made by
 `mbs.transient.stepping`, from the same state: motion, and what elements have of their own.
 """
 
@@ -46,9 +46,11 @@ class CompiledRun:
     orders : array, shape (k,)
         Whether of displacement, velocity or acceleration: 0, 1, 2.
     samples : int
-        How many records there will be.
+        How many records of forces there will be.
     states : bool
-        Whether all coordinates are recorded.
+        Whether all coordinates are recorded with them.
+    stride : int
+        How many records of outputs there will be from one of forces to the next.
     """
 
     def __init__(
@@ -61,6 +63,7 @@ class CompiledRun:
         orders: IntArray,
         samples: int,
         states: bool,
+        stride: int = 1,
     ) -> None:
         self._speed, self._settings, self._stepper = speed, settings, stepper
         values, modes = scipy.linalg.eigh(system.stiffness, system.mass)
@@ -85,9 +88,10 @@ class CompiledRun:
         self._records = Records(
             rows=np.ascontiguousarray(outputs @ modes),
             orders=orders,
-            outputs=np.zeros((samples, outputs.shape[0])),
+            outputs=np.zeros(((samples - 1) * stride + 1, outputs.shape[0])),
             forces=np.zeros((samples, expand.shape[0])),
             motions=np.zeros((samples if states else 0, 3, system.size)),
+            stride=stride,
         )
         self._transform, self._expand = ports, expand
         self._energies = _energies(system, modes, self._elements)

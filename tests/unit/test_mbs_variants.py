@@ -23,6 +23,7 @@ from mbs.cli import VARIED_KEYS
 from mbs.output.variants_plot import variants_figure
 from mbs.scene import changes
 from mbs.scene.bodies import build_body
+from mbs.scene.map_set import MapSet
 from mbs.spectral.levels import LevelDifference, difference_text
 from tests.cases.laws import dataset_of
 from tests.cases.run_up import refused
@@ -157,7 +158,7 @@ class TestTable:
             Variation("films", "slow"),
             Variation("law", "hertz:1e-5 s"),
         ]
-        film = LawChoice("map", "map", EHDMap(dataset_of()), "slow")
+        film = LawChoice("map", "map", MapSet([EHDMap(dataset_of())]), "slow")
         found = variants(scene, (DRY, film), changed)
         # dry, film; film at another temperature; the other dry law, which the fake makes as quiet as the film
         assert found.runs == len(levels) == 4
