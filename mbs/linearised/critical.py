@@ -31,6 +31,9 @@ AROUND = (-4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0)
 _ACROSS = 1e-6
 """Square of the motion across the axis over that along it, up to which it is none."""
 
+_UNDAMPED = 1e-9
+"""Damping ratio up to which a mode has no finite response at its critical speed, to rounding."""
+
 _EVALUATIONS = 12
 _WIDEST = 0.1
 
@@ -187,7 +190,7 @@ def with_critical(speeds: FloatArray, found: Sequence[CriticalSpeed]) -> FloatAr
         entry.speed * (1.0 + min(entry.damping_ratio, _WIDEST) * part)
         for entry in found
         for part in AROUND
-        if entry.damping_ratio > 0.0
+        if entry.damping_ratio > _UNDAMPED
     ]
     inside = [speed for speed in added if speeds[0] < speed < speeds[-1]]
     return np.asarray(np.unique(np.concatenate([speeds, inside])))

@@ -60,7 +60,17 @@ def fan(ross: Any) -> Any:
     place, mass, polar, transverse = case["disc"]
     disc = ross.DiskElement(n=round(place / element), m=mass, Ip=polar, Id=transverse)
     bearings = [
-        ross.BearingElement(n=round(at / element), kxx=k[0], kyy=k[1], cxx=c[0], cyy=c[1])
+        ross.BearingElement(
+            n=round(at / element),
+            kxx=k[0][0],
+            kxy=k[0][1],
+            kyx=k[1][0],
+            kyy=k[1][1],
+            cxx=c[0][0],
+            cxy=c[0][1],
+            cyx=c[1][0],
+            cyy=c[1][1],
+        )
         for at, k, c in case["bearings"]
     ]
     return ross.Rotor(elements, [disc], bearings)

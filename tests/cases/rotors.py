@@ -25,8 +25,8 @@ def fan() -> Scene:
         MatrixSpec(
             entry.name,
             entry.inner,
-            np.diag([0.0, *stiffness, 0.0, 0.0, 0.0])[None],
-            np.diag([0.0, *damping, 0.0, 0.0, 0.0])[None],
+            np.pad(stiffness, ((1, 3), (1, 3)))[None],
+            np.pad(damping, ((1, 3), (1, 3)))[None],
         )
         for entry, (_, stiffness, damping) in zip(reversed(scene.bearings), FAN["bearings"], strict=True)
     ]

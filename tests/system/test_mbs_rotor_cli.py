@@ -21,8 +21,8 @@ def test_critical_speeds_of_the_shipped_rotor(here, capsys):
     asked = ("--speeds", "8000 rpm", "15000 rpm", "8", "-o", "rotor.nc", "--plot", "rotor.png")
     status, out, _ = run(capsys, "critical", "overhung_rotor", *DAMPED, *asked)
     assert status == 0
-    assert "9475.2 rpm" in out
-    assert "backward (-0.96)" in out
+    assert "9539.5 rpm" in out
+    assert "backward (-0.97)" in out
     assert "none: along or about the axis" in out
     assert "orbit of rotor:wheel" in out
     assert "warning: front: the force of order 1 is above the static one of 248.9 N" in out

@@ -49,7 +49,7 @@ class TestBesideRoss:
         (response,) = order_responses(lambda speed: model.system, speeds)
         found = response.motion @ model.system.relative(place)[1:3].T
         wanted = np.array(case["amplitudes"]) @ np.array([[1, 0], [1j, 0], [0, 1], [0, 1j]])
-        # Beside resonances, 1.3 % away, an error of 2e-5 in their frequency is one of 1e-3.
+        # Beside a resonance, 0.65 % away, an error of 4e-6 in its frequency is one of 7e-4.
         np.testing.assert_allclose(found, wanted, rtol=1e-3, atol=1e-6 * np.abs(wanted).max())
 
 
