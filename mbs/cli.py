@@ -10,6 +10,7 @@ from typing import Any
 
 from ehdmaps.errors import AnalysisError
 from ehdmaps.program import Parser, run
+from ehdmaps.workers import processes
 from mbs.model.relaxation import DEFAULT_FILMS
 
 VARIED_KEYS = (
@@ -117,6 +118,7 @@ def _modes(command: argparse.ArgumentParser) -> None:
 
 def _runup(command: argparse.ArgumentParser) -> None:
     """Add the options of runs in time."""
+    _parallel(command)
     command.add_argument(
         "--spectrum-at",
         metavar="SPEED",
@@ -151,9 +153,17 @@ def _supply(command: argparse.ArgumentParser, of: str, compares: bool) -> None:
     )
 
 
+def _parallel(command: argparse.ArgumentParser) -> None:
+    """Add the number of processes."""
+    command.add_argument(
+        "--workers", metavar="N", type=processes, help="processes that compute cases side by side; default: all cores"
+    )
+
+
 def _sweep(command: argparse.ArgumentParser) -> None:
     """Add the options of a sweep."""
     _load_and_angle(command)
+    _parallel(command)
     _speeds(command)
     command.add_argument(
         "--cage-angles",
@@ -174,6 +184,7 @@ def _speeds(command: argparse.ArgumentParser) -> None:
 
 def _campbell(command: argparse.ArgumentParser) -> None:
     """Add the options of a Campbell diagram."""
+    _parallel(command)
     _load_and_angle(command)
     command.add_argument(
         "--sensor",
@@ -251,6 +262,7 @@ def _tradeoff(commands: Any) -> None:
 
 def _variants(command: argparse.ArgumentParser) -> None:
     """Add the options of single changes."""
+    _parallel(command)
     command.add_argument(
         "--vary",
         nargs="+",

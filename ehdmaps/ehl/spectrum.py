@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numba import njit
@@ -25,18 +26,26 @@ SMALL_RESIDUAL = 1e-13
 CHECK_EVERY = 3
 """Vectors that are added between two looks at the residual."""
 
-MOST_VECTORS = 150
-"""Vectors of the space of equations that are known by what they do."""
+MOST_VECTORS, LITTLE_RESIDUAL = 150, 1e-9
+"""Vectors of the space of equations that are known by what they do, and the residual at which it is large enough."""
 
 _TINY = float(np.finfo(float).tiny)
 
 
-def film_compliances(linear: Linearisation, frequencies: FloatArray) -> ComplexArray:
+class Followed(Protocol):
+    """Equations of a film with more than its own unknowns, that make their space themselves."""
+
+    def space(self, fastest: float) -> FilmSpace:
+        """Return the Krylov space that serves all frequencies up to a highest one, Omega."""
+        ...
+
+
+def film_compliances(linear: Linearisation | Followed, frequencies: FloatArray) -> ComplexArray:
     """Complex film compliance S = -dH0/dW - ln(2)/pi; S = compliance - i Omega loss for slow motion.
 
     Parameters
     ----------
-    linear : Linearisation
+    linear : Linearisation or Followed
         The equations about a steady solution.
     frequencies : ndarray, shape (k,)
         Omega = omega b/u, > 0.
@@ -46,7 +55,8 @@ def film_compliances(linear: Linearisation, frequencies: FloatArray) -> ComplexA
     ndarray, shape (k,)
         Film compliances in units of b/(p_H R).
     """
-    space = film_space(linear, float(np.max(frequencies)))
+    fastest = float(np.max(frequencies))
+    space = film_space(linear, fastest) if isinstance(linear, Linearisation) else linear.space(fastest)
     return space.compliances(np.ascontiguousarray(frequencies, dtype=float))
 
 
@@ -115,7 +125,7 @@ def arnoldi(step: Callable[[FloatArray], FloatArray], static: FloatArray, height
     while count < most:
         _orthogonalised(step(basis[count]), basis, hessenberg, count)
         count += 1
-        if _residual(hessenberg, count, fastest) < SMALL_RESIDUAL or hessenberg[count, count - 1] < _TINY:
+        if _residual(hessenberg, count, fastest) < LITTLE_RESIDUAL or hessenberg[count, count - 1] < _TINY:
             break
     return FilmSpace(norm, hessenberg[:count, :count].copy(), basis[:count, height].copy())
 

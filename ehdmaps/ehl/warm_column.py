@@ -28,8 +28,10 @@ from ehdmaps.ehl.warm_oil import warm_viscosity
 from ehdmaps.physics.isotherm import density
 from ehdmaps.physics.rheology import LIMITING, NEWTONIAN, ShearLaw, thinning, yielding
 
-POINTS = 11
-"""Lobatto points across the film, both walls included."""
+POINTS = 9
+"""Lobatto points across the film, both walls included. Beside 19 they change the film of a light contact in cold oil,
+5 N/mm at 5 m/s and 20 degC, by 0.6 % and its loss by 1.5 %, at 10 m/s and 60 degC by 0.2 and 0.02 %, and others by less
+than 0.1 %."""
 
 MOST_STEPS = 200
 """Steps towards the stress of a column."""

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Sequence
 
 from ehdmaps.program import Parser, run
+from ehdmaps.workers import processes
 
 _KEEP = "openfoam: keep the case folders of all runs; default folder: ehdmaps-cases"
 _SOLVER = (
@@ -45,7 +46,7 @@ def parser() -> argparse.ArgumentParser:
         help='of k, c and film offset of the contact laws, "1 %%": grid and refinement lines are chosen for it, and '
         "confirmed by fresh solves; default: the settings of the job",
     )
-    generate.add_argument("--workers", metavar="N", type=_workers, help="processes; default: all cores")
+    generate.add_argument("--workers", metavar="N", type=processes, help="processes; default: all cores")
     generate.add_argument("--fresh", action="store_true", help="forget what is solved already")
     generate.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
 
@@ -143,7 +144,7 @@ def parser() -> argparse.ArgumentParser:
     export.add_argument(
         "--contact", metavar="NAME", help="series | inner | outer | line; default: series, of a bare contact line"
     )
-    export.add_argument("--points", metavar="N", type=_workers, default=200, help="loads of a curve; default: 200")
+    export.add_argument("--points", metavar="N", type=processes, default=200, help="loads of a curve; default: 200")
     export.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
     export.add_argument("--roughness", metavar="LENGTH", help=_ROUGHNESS)
 
@@ -188,7 +189,7 @@ def _add_tradeoff(commands: argparse._SubParsersAction[Parser]) -> None:
         default="contact",
         help="contact: single points by every solver; map: contact laws of whole maps between their points",
     )
-    tradeoff.add_argument("--points", metavar="N", type=_workers, default=60, help="random points; default: 60")
+    tradeoff.add_argument("--points", metavar="N", type=processes, default=60, help="random points; default: 60")
     tradeoff.add_argument("--seed", metavar="S", type=_count, default=1, help="seed of the points; default: 1")
     tradeoff.add_argument(
         "--openfoam",
@@ -245,13 +246,6 @@ def _count(text: str) -> int:
     """Read a whole number >= 0."""
     if not (text.isascii() and text.isdigit() and len(text) <= 9):
         raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 0 to 999999999")
-    return int(text)
-
-
-def _workers(text: str) -> int:
-    """Read a whole number >= 1."""
-    if not (text.isascii() and text.isdigit() and 1 <= int(text[:6]) <= 1024 and len(text) <= 4):
-        raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 1 to 1024")
     return int(text)
 
 

@@ -32,6 +32,7 @@ case           the models that an analysis compares, with their labels
 varied         what comparisons vary, one row a key
 recorded       runs that are recorded, measured or simulated before: signals, levels, amplitudes
 progress       how an analysis tells how far it is
+side_by_side   cases in processes of their own
 operating      a model as it is in operation: temperatures, heat and clearances of its bearings at a speed
 rings          how the rings of the bearings move
 reach          where the films of a law begin, and calls outside its map

@@ -7,6 +7,7 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -19,6 +20,7 @@ from mbs.analyses.changed_laws import SIGNS, law_changes, with_changed_laws
 from mbs.analyses.drive import course_of
 from mbs.analyses.operating import held, states_of
 from mbs.analyses.progress import Progress, silent
+from mbs.analyses.side_by_side import Failed, side_by_side
 from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Operation, Sensor
@@ -119,6 +121,7 @@ def campbell(
     with_modes: bool = False,
     keep_partial: bool = False,
     bands: int = 0,
+    workers: int = 1,
 ) -> CampbellResult:
     """Run up with each contact law, and compute levels over speed, frequency and order.
 
@@ -139,6 +142,8 @@ def campbell(
     bands : int
         Runs more of each law that states errors, up to `MOST_BANDS`: its stiffness, damping and films are wrong there
         by the bounds of these errors, with all signs in turn (`mbs.analyses.changed_laws`). Each costs a run.
+    workers : int
+        Number of processes among which the runs are divided.
 
     Raises
     ------
@@ -169,7 +174,7 @@ def campbell(
     cases = tuple(dataclasses.replace(case, model=held(case.model)) for case in cases)
     rehearsed(settings, course, orders)
     look = _Look(settings, tuple(seen), course, tuple(orders))
-    runs, failed = _runs(cases, look, progress or silent, with_modes, keep_partial, bands)
+    runs, failed = _runs(cases, look, progress or silent, with_modes, keep_partial, bands, workers)
     if not runs:
         raise AnalysisError("\n".join(f"warning: {line}" for line in failed))
     labels, known = [entry.case.label for entry in runs], runs[0].spectra[0].campbell.speeds
@@ -257,47 +262,64 @@ def _runs(
     with_modes: bool,
     keep_partial: bool,
     bands: int,
+    workers: int,
 ) -> tuple[list[LawRun], list[str]]:
-    """The run of each case, and why some have none."""
+    """The run of each case, and why some have none; those of its band after it."""
     course = look.course
     each = round(course.duration / course.settings.sample)
     speeds = [course.speed.at(part * course.duration)[0] for part in (0.0, 0.5, 1.0)]
     changes = [law_changes(case.model, speeds) if bands else None for case in cases]
-    total = sum(1 if change is None else 1 + bands for change in changes) * each
-    done = 0
+    pieces = [
+        (index, signs)
+        for index, change in enumerate(changes)
+        for signs in (None, *(SIGNS[:bands] if change is not None else ()))
+    ]
+    total = each * len(pieces)
+    runs: dict[int, LawRun] = {}
+    lost: dict[int, str] = {}
+    levels: dict[int, list[FloatArray]] = {}
 
-    def told(samples: int) -> None:
-        tell(done + samples, total)
+    def work(piece: int, told: Callable[[int], None]) -> _Made | FloatArray:
+        (index, signs), change = pieces[piece], changes[pieces[piece][0]]
+        if signs is None or change is None:
+            return _one(cases[index].model, look, told, with_modes)
+        if index in lost:
+            raise AnalysisError(lost[index])
+        return _sum_levels(_one(with_changed_laws(cases[index].model, change, signs), look, told, False).spectra)
 
     tell(0, total)
-    runs: list[LawRun] = []
-    failed: list[str] = []
-    for index, (case, change) in enumerate(zip(cases, changes, strict=True)):
-        begun = done
-        try:
-            runs.append(_one(case, look, told, with_modes))
-            done += each
-            if change is not None:
-                levels = []
-                for signs in SIGNS[:bands]:
-                    other = dataclasses.replace(case, model=with_changed_laws(case.model, change, signs))
-                    levels.append(_sum_levels(_one(other, look, told, False)))
-                    done += each
-                wrong = np.abs(np.array(levels) - _sum_levels(runs[-1])).max(axis=0)
-                runs[-1] = dataclasses.replace(runs[-1], level_error=tuple(wrong))
-        except AnalysisError as error:
-            # The run-ups with the other laws are worth minutes; keep them.
-            part = ", a run of its band" if runs and runs[-1].case is case else ""
-            failed.append(f"{case.label}{part}: {error}")
-        except KeyboardInterrupt:
-            if not (runs and keep_partial):
-                raise
-            left_out = cases[index + (runs[-1].case is case) :]
-            failed += [f"{left.label}: stopped, no result" for left in left_out]
-            break
-        # A run that has no result counts as done.
-        done = begun + (1 if change is None else 1 + bands) * each
-    return runs, failed
+    made = side_by_side(
+        work,
+        [each] * len(pieces),
+        workers,
+        lambda done: tell(done, total),
+        lambda piece: cases[pieces[piece][0]].label,
+    )
+    stopped: list[str] = []
+    try:
+        for (index, signs), found in zip(pieces, made, strict=True):
+            if isinstance(found, Failed):
+                # The run-ups with the other laws are worth minutes; keep them.
+                if not isinstance(found.error, AnalysisError):
+                    raise found.error
+                part = "" if signs is None else ", a run of its band"
+                lost.setdefault(index, f"{cases[index].label}{part}: {found.error}")
+            elif isinstance(found, _Made):
+                runs[index] = LawRun(cases[index], *found)
+            elif index not in lost:
+                levels.setdefault(index, []).append(found)
+                if len(levels[index]) == bands:
+                    wrong = np.abs(np.array(levels[index]) - _sum_levels(runs[index].spectra)).max(axis=0)
+                    runs[index] = dataclasses.replace(runs[index], level_error=tuple(wrong))
+    except KeyboardInterrupt:
+        if not (runs and keep_partial):
+            raise
+        stopped = [
+            f"{case.label}: stopped, no result"
+            for index, case in enumerate(cases)
+            if index not in runs and index not in lost
+        ]
+    return list(runs.values()), [*lost.values(), *stopped]
 
 
 def run_course(scene: Scene, highest: float, problems: list[str]) -> RunUp | None:
@@ -456,14 +478,22 @@ def rehearsed(settings: CampbellSettings, course: RunUp, orders: Sequence[tuple[
     return run_up_spectra(silent_run(course), 1.0, settings.highest, settings.window, [order for order, _ in orders])
 
 
-def _sum_levels(run: LawRun) -> FloatArray:
+def _sum_levels(spectra: Sequence[RunUpSpectra]) -> FloatArray:
     """Sum levels of all sensors, shape (sensors, windows) [dB]."""
-    return np.array([spectra.campbell.sum_level for spectra in run.spectra])
+    return np.array([each.campbell.sum_level for each in spectra])
 
 
-def _one(case: Case, look: _Look, told: Callable[[int], None], with_modes: bool) -> LawRun:
+class _Made(NamedTuple):
+    """A run with one law, as of `LawRun`."""
+
+    record: Recording
+    spectra: tuple[RunUpSpectra, ...]
+    modes: Sweep | None
+    seconds: float
+
+
+def _one(model: Model, look: _Look, told: Callable[[int], None], with_modes: bool) -> _Made:
     """Run up with one law; all sensors of the scene are recorded."""
-    model = case.model
     begin = time.perf_counter()
     record = recorded_run(model, look.course, model.scene.sensors, told)
     seconds = time.perf_counter() - begin
@@ -474,7 +504,7 @@ def _one(case: Case, look: _Look, told: Callable[[int], None], with_modes: bool)
         signal = RunSignal(record.time, record.speed, record.angle, record.signals[:, places[sensor.name]])
         reference = Reference.of(sensor).value
         spectra.append(run_up_spectra(signal, reference, settings.highest, settings.window, orders))
-    return LawRun(case, record, tuple(spectra), _modes(model, spectra[0]) if with_modes else None, seconds)
+    return _Made(record, tuple(spectra), _modes(model, spectra[0]) if with_modes else None, seconds)
 
 
 def recorded_run(

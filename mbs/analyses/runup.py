@@ -17,6 +17,7 @@ from mbs.analyses.drive import course_of
 from mbs.analyses.operating import held, states_of
 from mbs.analyses.progress import Progress, silent
 from mbs.analyses.recorded import simulated
+from mbs.analyses.side_by_side import Failed, side_by_side
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.output.energy_data import with_energy
@@ -85,15 +86,39 @@ def runup(model: Model, settings: RunUp | None = None, progress: Progress | None
     >>> runup(model, short).dataset.sizes["time"]
     11
     """
+    tell = progress or silent
+    total = _steps(_course(model, settings))
+    tell(0, total)
+    return RunUpResult(held(model), *_run(model, lambda done: tell(done, total), settings))
+
+
+class _Made(NamedTuple):
+    """A run, as of `RunUpResult`."""
+
+    course: RunUp
+    record: Recording
+    seconds: float
+    dataset: xr.Dataset
+
+
+def _course(model: Model, settings: RunUp | None = None) -> RunUp:
+    """What is run: that of the scene if nothing else is given."""
     course = settings or model.scene.run_up
     if course is None:
         raise InputError(f"{model.scene.name}: [runup] missing; a run needs from, to, duration and step")
-    tell, model = progress or silent, held(model)
+    return course
+
+
+def _steps(course: RunUp) -> int:
+    """Steps of a run, in whole samples."""
+    return math.ceil(course.duration / course.settings.sample - 1e-9) * course.settings.steps_per_sample
+
+
+def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = None) -> _Made:
+    """Integrate over a speed profile, that of the scene if none is given; what is told are steps."""
+    course, model = _course(model, settings), held(model)
     start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
-    steps = course.settings.steps_per_sample
-    total = math.ceil(course.duration / course.settings.sample - 1e-9) * steps
-    tell(0, total)
-    sensors = model.scene.sensors
+    steps, sensors = course.settings.steps_per_sample, model.scene.sensors
     begin = time.perf_counter()
     record = run_system(
         model.system,
@@ -102,7 +127,7 @@ def runup(model: Model, settings: RunUp | None = None, progress: Progress | None
         course.settings,
         sensors=sensors,
         displacement=start.displacement,
-        progress=lambda done: tell(done * steps, total),
+        progress=lambda done: told(done * steps),
         options=_KEPT,
     )
     seconds = time.perf_counter() - begin
@@ -112,7 +137,7 @@ def runup(model: Model, settings: RunUp | None = None, progress: Progress | None
     if sensors:
         signals = signal_variables(simulated([(model.label, model, record)]))
         dataset = dataset.merge(signals).assign_attrs(title=model.scene.title, label=model.label)
-    return RunUpResult(model, course, record, seconds, dataset)
+    return _Made(course, record, seconds, dataset)
 
 
 class RunUps(NamedTuple):
@@ -140,7 +165,9 @@ class RunUps(NamedTuple):
         return _of_laws(self)
 
 
-def runups(cases: Sequence[Case], progress: Progress | None = None, *, keep_partial: bool = False) -> RunUps:
+def runups(
+    cases: Sequence[Case], progress: Progress | None = None, *, keep_partial: bool = False, workers: int = 1
+) -> RunUps:
     """Integrate the run of one scene with several laws.
 
     Parameters
@@ -151,6 +178,8 @@ def runups(cases: Sequence[Case], progress: Progress | None = None, *, keep_part
         Told how many steps are done, and of how many, over all laws.
     keep_partial : bool
         Whether Ctrl-C returns the laws that have come to the end, if there are any; else it is raised.
+    workers : int
+        Number of processes among which the laws are divided.
 
     Raises
     ------
@@ -171,35 +200,32 @@ def runups(cases: Sequence[Case], progress: Progress | None = None, *, keep_part
     ('law', 'signal_time', 'sensor')
     """
     tell = progress or silent
-    labels: list[str] = []
-    runs: list[RunUpResult] = []
+    sizes = [_steps(_course(case.model)) for case in cases]
+    runs: dict[int, RunUpResult] = {}
     failed: list[str] = []
-    for index, case in enumerate(cases):
-        try:
-            runs.append(runup(case.model, progress=_part(tell, index, len(cases))))
-            labels.append(case.label)
-        except AnalysisError as error:
-            if not cases[1:]:
-                raise
-            failed.append(f"{case.label}: {error}")
-        except KeyboardInterrupt:
-            if not (runs and keep_partial):
-                raise
-            failed += [f"{left.label}: stopped, no result" for left in cases[index:]]
-            break
+    made = side_by_side(
+        lambda index, told: _run(cases[index].model, told),
+        sizes,
+        workers,
+        lambda done: tell(done, sum(sizes)),
+        lambda index: cases[index].label,
+    )
+    tell(0, sum(sizes))
+    try:
+        for index, found in enumerate(made):
+            if not isinstance(found, Failed):
+                runs[index] = RunUpResult(held(cases[index].model), *found)
+            elif isinstance(found.error, AnalysisError) and cases[1:]:
+                failed.append(f"{cases[index].label}: {found.error}")
+            else:
+                raise found.error
+    except KeyboardInterrupt:
+        if not (runs and keep_partial):
+            raise
+        failed += [f"{left.label}: stopped, no result" for left in cases[len(runs) + len(failed) :]]
     if not runs:
         raise AnalysisError("\n".join(f"warning: {line}" for line in failed))
-    return RunUps(tuple(labels), tuple(runs), tuple(failed))
-
-
-def _part(tell: Progress, index: int, count: int) -> Callable[[int, int], None]:
-    """Progress of one of some runs of the same length."""
-
-    def told(done: int, total: int) -> None:
-        if done or not index:
-            tell(index * total + done, count * total)
-
-    return told
+    return RunUps(tuple(cases[index].label for index in runs), tuple(runs.values()), tuple(failed))
 
 
 _SHARED = ("speed", "angle", "quantity", "signal_unit", "signal_speed", "signal_angle", "followed_order")

@@ -14,6 +14,7 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.figures import typeset
 from ehdmaps.units import RPM
+from ehdmaps.workers import available_cores
 from mbs.analyses.campbell import MODE_SPEEDS, MOST_BANDS, CampbellResult, LawRun, campbell, campbell_problems
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import notable_from
@@ -49,7 +50,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run up with each law, and compare; or look at runs that are recorded."""
     if is_time_data(arguments.scene):
         return recorded_runs(arguments)
-    done = analysed(arguments, _asked, lambda asked: _ran(asked, arguments.modes), _looks_at, own_tolerance=True)
+    workers = arguments.workers or available_cores()
+    done = analysed(
+        arguments, _asked, lambda asked: _ran(asked, arguments.modes, workers), _looks_at, own_tolerance=True
+    )
     found, tolerated, beside = done.result.run, done.result.tolerated, done.result.measured
     settings, runs, course, bands = found.settings, found.runs, found.course, int(arguments.bands or "0")
     lines = [
@@ -92,7 +96,7 @@ class _Ran(NamedTuple):
     measured: RecordedRun | None
 
 
-def _ran(asked: _Asked, with_modes: bool) -> _Ran:
+def _ran(asked: _Asked, with_modes: bool, workers: int) -> _Ran:
     """Choose the numerical settings where a tolerance is given, and run up."""
     cases, tolerated = asked.cases, None
     if asked.tolerance is not None and cases[0].subject is not None:
@@ -106,6 +110,7 @@ def _ran(asked: _Asked, with_modes: bool) -> _Ran:
         with_modes=with_modes,
         keep_partial=True,
         bands=asked.bands,
+        workers=workers,
     )
     return _Ran(found, tolerated, asked.measured)
 

@@ -14,6 +14,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.figures import COLOURS
 from ehdmaps.units import RPM
+from ehdmaps.workers import available_cores
 from mbs.analyses.campbell import silent_run
 from mbs.analyses.case import Case
 from mbs.analyses.reach import Fade, axes_outside, fade_of
@@ -68,10 +69,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run with each law, and say what was found; or look at a recorded run."""
     if is_time_data(arguments.scene):
         return _recorded(arguments)
+    workers = arguments.workers or available_cores()
     done = analysed(
         arguments,
         _asked,
-        lambda asked: (runups(asked.cases, Told("step"), keep_partial=True), asked),
+        lambda asked: (runups(asked.cases, Told("step"), keep_partial=True, workers=workers), asked),
         lambda asked: _looks_at(asked.cases[0].model.scene),
     )
     found, asked = done.result

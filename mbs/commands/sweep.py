@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM, quantity
+from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import film_errors, notable_from
 from mbs.analyses.operating import operating
@@ -39,8 +40,12 @@ _ROUND_OFF = 1e-12
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Sweep over speed."""
+    workers = arguments.workers or available_cores()
     done = analysed(
-        arguments, lambda given: _Asked(*_read(given)), lambda asked: sweep(asked.cases, asked.settings), _looks_at
+        arguments,
+        lambda given: _Asked(*_read(given)),
+        lambda asked: sweep(asked.cases, asked.settings, workers=workers),
+        _looks_at,
     )
     result = done.result
     cases, found = result.cases, result.sweeps

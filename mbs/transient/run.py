@@ -106,10 +106,19 @@ class Recording:
     account: Callable[[], EnergyBalance]
     drive: DriveAccount | None = None
 
+    def __getstate__(self) -> dict[str, Any]:
+        """For other processes, which have no system to account for: with the balance made."""
+        return {**self.__dict__, "account": functools.partial(_the_same, self.energy)}
+
     @functools.cached_property
     def energy(self) -> EnergyBalance:
         """Energy balance: what came in, where it went, what does not close. It is made when it is first asked for."""
         return self.account()
+
+
+def _the_same(balance: EnergyBalance) -> EnergyBalance:
+    """A balance that has been made."""
+    return balance
 
 
 @dataclass(frozen=True)

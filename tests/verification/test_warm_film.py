@@ -22,7 +22,6 @@ from ehdmaps.ehl.warm_column import (
 )
 from ehdmaps.ehl.warm_oil import STEP, heat_groups, warm_viscosity
 from ehdmaps.ehl.warm_response import WarmLinearisation
-from ehdmaps.errors import InputError
 from ehdmaps.physics.heat import HeatData
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.operating_point import OperatingPoint
@@ -192,9 +191,28 @@ def test_any_point_has_an_answer(load: float, speed: float, celsius: float) -> N
     assert found.status is not Status.FAILED
 
 
-def test_frequencies_are_refused() -> None:
-    """The response of a film with temperatures is that of slow motion."""
-    with pytest.raises(InputError, match="slow motion only"):
-        THERMAL.film_spectrum(INNER, OIL, OperatingPoint(5e4, 2.0, 333.15), np.array([100.0]))
+def test_slow_end_of_the_spectrum() -> None:
+    """At a low frequency S is film compliance - i omega loss, to the next order of omega b/u = 0.01."""
+    point = OperatingPoint(5e4, 2.0, 333.15)
+    omega = 0.01 * 2.0 / float(half_width(5e4, INNER.radius, INNER.reduced_modulus))
+    found = THERMAL.film_spectrum(INNER, OIL, point, np.array([omega / (2.0 * math.pi)]))
+    assert found.compliance[0].real == pytest.approx(found.film.film_compliance, rel=2e-3)
+    assert -found.compliance[0].imag / omega == pytest.approx(found.film.loss_compliance, rel=2e-3)
+
+
+def test_spectrum_of_a_film_that_heat_leaves_alone() -> None:
+    """So slow that nothing warms: the isothermal spectrum, with the temperatures among the unknowns.
+
+    The columns take the oil's flow by another quadrature: 1e-4 of the film.
+    """
+    point, frequencies = OperatingPoint(5e4, 0.02, 333.15), np.array([20.0, 100.0, 300.0])
+    warm, cold = (
+        solver.film_spectrum(INNER, OIL, point, frequencies).compliance for solver in (THERMAL, ReynoldsSolver())
+    )
+    assert np.abs(warm / cold - 1.0) == pytest.approx(0.0, abs=5e-3)
+
+
+def test_maps_have_slow_motion_only() -> None:
+    """Maps with heat have no natural frequencies, and say what they are made with."""
     assert THERMAL.natural_frequencies == ()
     assert THERMAL.settings()["physics"] == "thermal"
