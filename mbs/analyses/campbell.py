@@ -17,6 +17,7 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import closest
 from mbs.analyses.case import Case, as_cases
 from mbs.analyses.changed_laws import SIGNS, law_changes, with_changed_laws
+from mbs.analyses.drive import course_of
 from mbs.analyses.operating import held, states_of
 from mbs.analyses.progress import Progress, silent
 from mbs.analyses.side_by_side import Failed, side_by_side
@@ -537,7 +538,7 @@ def recorded_run(
     start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
     return run_system(
         model.system,
-        course.speed,
+        course_of(model, course),
         course.duration,
         course.settings,
         sensors=sensors,

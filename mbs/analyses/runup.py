@@ -13,6 +13,7 @@ import xarray as xr
 
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.analyses.case import Case
+from mbs.analyses.drive import course_of
 from mbs.analyses.operating import held, states_of
 from mbs.analyses.progress import Progress, silent
 from mbs.analyses.recorded import simulated
@@ -133,7 +134,7 @@ def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = Non
     begin = time.perf_counter()
     record = run_system(
         model.system,
-        course.speed,
+        course_of(model, course),
         course.duration,
         course.settings,
         sensors=sensors,

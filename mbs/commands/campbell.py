@@ -32,7 +32,7 @@ from mbs.model.elements import Sensor
 from mbs.output.campbell_data import with_measured
 from mbs.output.campbell_plot import MOST_LAWS, Overlay, Reach, campbell_figure
 from mbs.output.campbell_text import PEAKS, highest_line, peak_line, peak_lines, resolution_lines, sensor_line
-from mbs.output.energy_text import energy_lines
+from mbs.output.energy_text import drive_lines, energy_lines
 from mbs.output.sensors_plot import sensors_figure
 from mbs.output.time_files import is_time_data, write_time_data
 from mbs.scene.assembly import Model
@@ -249,7 +249,7 @@ def _report(entry: LawRun, sensors: Sequence[Sensor]) -> list[str]:
         entry.case.label,
         source_of(entry.case.model),
     )
-    lines += [f"  {line}" for line in energy_lines(record.energy)]
+    lines += [f"  {line}" for line in (*drive_lines(record.drive), *energy_lines(record.energy))]
     ends = (float(found.speeds[0]), float(found.speeds[-1]))
     return [*lines, *fade_lines(entry.case.model, record.speed, "the run"), *film_course(entry.case.model, ends)]
 

@@ -39,10 +39,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines = [
         *done.lines,
         *heading(model),
-        f"  {result.sweep.speeds.size} speeds from {RPM.text(float(result.speeds[0]))} to {RPM.text(fastest)}, "
+        f"  {result.sweep.speeds.size} speeds from {_rpm(result.speeds[0])} to {_rpm(fastest)}, "
         f"{result.speeds.size - result.sweep.speeds.size} more around critical ones",
         *_critical(result),
         *_responses(result),
+        *_lifting(result),
         *fade_lines(model, result.sweep.speeds),
     ]
     figure = None
@@ -88,16 +89,21 @@ def _critical(result: CriticalResult) -> list[str]:
     lines = ["critical speeds      order       speed   frequency/Hz   damping ratio   whirl"]
     for entry in result.found:
         lines.append(
-            f"  mode {entry.mode + 1:4d} {entry.order:14.4g} {RPM.text(entry.speed):>13} "
+            f"  mode {entry.mode + 1:4d} {entry.order:14.4g} {_rpm(entry.speed):>13} "
             f"{entry.eigenvalue.imag / (2.0 * math.pi):12.5g} {entry.damping_ratio:15.3g}   {_whirl_words(entry.whirl)}"
         )
     return lines
 
 
+def _rpm(speed: float) -> str:
+    """A speed [rad/s] in words, with the digits that a critical speed is known by."""
+    return f"{RPM.value(float(speed)):.5g} rpm"
+
+
 def _whirl_words(whirl: float) -> str:
     """Direction of whirl in words."""
     if not math.isfinite(whirl):
-        return "none of turning bodies"
+        return "none: along or about the axis"
     if abs(whirl) < _MIXED:
         return "in a plane"
     return f"{'forward' if whirl > 0.0 else 'backward'} ({whirl:+.2f})"
@@ -114,21 +120,38 @@ def _responses(result: CriticalResult) -> list[str]:
             worst = int(np.argmax(axes[:, index, 0]))
             lines.append(
                 f"  orbit of {place}: {axes[worst, index, 0] * 1e6:.4g} by {abs(axes[worst, index, 1]) * 1e6:.4g} um "
-                f"(semi-axes) at {RPM.text(float(result.speeds[worst]))}"
+                f"(semi-axes) at {_rpm(result.speeds[worst])}"
             )
         seen = np.abs(sensed(system, sensors, result.speeds, response))
         for index, sensor in enumerate(sensors):
             worst = int(np.argmax(seen[:, index]))
             lines.append(
                 f"  sensor {sensor.name}: {seen[worst, index]:.4g} {sensor_unit(sensor)} at "
-                f"{RPM.text(float(result.speeds[worst]))}"
+                f"{_rpm(result.speeds[worst])}"
             )
         for index, connected in enumerate(system.elements):
             force = result.dataset["element_force"].sel(order=response.order).values[:, index]
             worst = int(np.argmax(force))
             if force[worst] > 0.0:
                 lines.append(
-                    f"  force of {connected.element.name}: {force[worst]:.4g} N at "
-                    f"{RPM.text(float(result.speeds[worst]))}"
+                    f"  force of {connected.element.name}: {force[worst]:.4g} N at {_rpm(result.speeds[worst])}"
+                )
+    return lines
+
+
+def _lifting(result: CriticalResult) -> list[str]:
+    """Warnings of bearings whose dynamic force is above the static one, so that contacts lift off."""
+    lines = []
+    for index, bearing in enumerate(result.model.bearings):
+        static = np.hypot(*result.sweep.forces[index][:, 1:3].T)
+        at_rest = np.interp(result.speeds, result.sweep.speeds, static)
+        for response in result.responses:
+            force = result.dataset["element_force"].sel(order=response.order, element=bearing.name).values
+            if np.any(force > at_rest):
+                first = int(np.argmax(force > at_rest))
+                lines.append(
+                    f"warning: {bearing.name}: the force of order {response.order:.4g} is above the static one of "
+                    f"{at_rest[first]:.4g} N from {_rpm(result.speeds[first])} on, where contacts lift off: small "
+                    "motions no more; see mbs runup"
                 )
     return lines

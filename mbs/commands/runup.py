@@ -26,7 +26,7 @@ from mbs.commands.campbell_recorded import read_source, signal_problems
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Told, film_course, heading, held_lines, read_option, step_lines, write
 from mbs.commands.reach import fade_lines, outside_lines
-from mbs.output.energy_text import energy_lines
+from mbs.output.energy_text import drive_lines, energy_lines
 from mbs.output.results import described
 from mbs.output.run_plot import run_figure, signals_figure
 from mbs.output.signal_text import signal_lines
@@ -235,7 +235,7 @@ def _report(found: RunUpResult) -> list[str]:
             f"{size[-1]:.5g} N at the end; largest change from sample to sample {_changes(size, result.speed, fade)}; "
             f"{outside[bearing.name]} calls outside the map"
         )
-    lines += energy_lines(result.energy)
+    lines += drive_lines(result.drive) + energy_lines(result.energy)
     lines += fade_lines(model, result.speed, "the run")
     fastest = float(np.abs(result.speed).max())
     lines += outside_lines(outside, "{} calls outside the map", axes_outside(model, fastest), source=source_of(model))

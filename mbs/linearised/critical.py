@@ -28,6 +28,12 @@ CLOSE = 1e-7
 AROUND = (-4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0)
 """Speeds around a critical one at which responses are found besides, in damping ratios of it."""
 
+_ACROSS = 1e-6
+"""Square of the motion across the axis over that along it, up to which it is none."""
+
+_UNDAMPED = 1e-9
+"""Damping ratio up to which a mode has no finite response at its critical speed, to rounding."""
+
 _EVALUATIONS = 12
 _WIDEST = 0.1
 
@@ -46,7 +52,7 @@ class CriticalSpeed:
         Eigenvalue of the mode there [1/s]; its imaginary part is order times speed.
     whirl : float
         Direction in which the places of turning bodies go round: 1 with their spin on circles, -1 against it, 0 in a
-        plane. NaN where no turning body takes part.
+        plane. NaN where no turning body moves across its axis.
     mode : int
         Undamped mode, from 0 on, that the mode is nearest to where its track begins.
     """
@@ -184,7 +190,7 @@ def with_critical(speeds: FloatArray, found: Sequence[CriticalSpeed]) -> FloatAr
         entry.speed * (1.0 + min(entry.damping_ratio, _WIDEST) * part)
         for entry in found
         for part in AROUND
-        if entry.damping_ratio > 0.0
+        if entry.damping_ratio > _UNDAMPED
     ]
     inside = [speed for speed in added if speeds[0] < speed < speeds[-1]]
     return np.asarray(np.unique(np.concatenate([speeds, inside])))
@@ -240,12 +246,13 @@ def _whirl(point: Point, which: int) -> float:
     """How round the places of turning bodies go in a complex mode, and whether with their spin."""
     system = point.balance.system
     shape = point.states.right[: system.size, point.kept[which]]
-    area = size = 0.0
+    area = size = along = 0.0
     for place, spin in turning_places(system):
-        y, z = system.relative(place)[1:3] @ shape
+        x, y, z = system.relative(place)[:3] @ shape
         area += math.copysign(2.0, spin) * (y * z.conjugate()).imag
         size += abs(y) ** 2 + abs(z) ** 2
-    return float(area / size) if size > 0.0 else math.nan
+        along += abs(x) ** 2
+    return float(area / size) if size > _ACROSS * along else math.nan
 
 
 def turning_places(system: System) -> list[tuple[str, float]]:

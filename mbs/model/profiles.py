@@ -118,6 +118,18 @@ class Course:
         return self.values[index] + part * (self.values[index + 1] - self.values[index])
 
 
+class Speed(Protocol):
+    """Speed of a system over time."""
+
+    def at(self, time: float) -> tuple[float, float]:
+        """Speed [rad/s] and angle [rad] at a time >= 0 [s]."""
+        ...
+
+    def rate(self, time: float) -> float:
+        """How fast the speed rises at a time >= 0 [rad/s2]."""
+        ...
+
+
 @dataclass(frozen=True)
 class SpeedProfile:
     """Prescribed speed of the system over time, and the angle turned since time zero.

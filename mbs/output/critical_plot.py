@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -53,24 +54,32 @@ def critical_figure(
     for order in orders:
         top.plot(turns, order * sweep.speeds / (2.0 * np.pi), color="0.5", lw=0.9, ls="--")
         top.annotate(
-            f"order {order:.4g}", (turns[-1], order * sweep.speeds[-1] / (2.0 * np.pi)), fontsize=7, ha="right"
+            f"order {order:.4g}",
+            (turns[-1], order * sweep.speeds[-1] / (2.0 * np.pi)),
+            fontsize=7,
+            ha="right",
+            va="bottom",
         )
     for entry in found:
-        ahead = entry.whirl > 0.0
-        marker = "^" if ahead else "v"
+        marker = "o" if math.isnan(entry.whirl) else "^" if entry.whirl > 0.0 else "v"
         top.plot(entry.speed * _RPM, entry.eigenvalue.imag / (2.0 * np.pi), marker, color=COLOURS[1], ms=6)
     top.set(
         ylabel="frequency of damped modes, Hz",
         ylim=(0.0, _ROOM * max(orders) * float(sweep.speeds[-1]) / (2.0 * np.pi)),
     )
-    top.set_title("triangles: critical speeds, upwards with the spin, downwards against it", fontsize=8, loc="left")
+    top.set_title(
+        "triangles: critical speeds, upwards with the spin, downwards against it; circles: along or about the axis",
+        fontsize=8,
+        loc="left",
+    )
     for panel, response in zip(panels[1:], responses, strict=True):
         places, axes = orbits(model.system, response)
         for index, place in enumerate(places):
             colour = COLOURS[index % len(COLOURS)]
             panel.semilogy(speeds * _RPM, np.maximum(axes[:, index, 0], 1e-15) * 1e6, color=colour, lw=1.1, label=place)
         panel.set_ylabel(f"orbit by order {response.order:.4g},\nlargest radius, um")
-        panel.legend(fontsize=7, frameon=False)
+        if panel is panels[1]:
+            panel.legend(fontsize=7, frameon=False)
         low = np.max(axes[1:, :, 0]) * 1e-5 if axes.shape[0] > 1 else 1e-12
         panel.set_ylim(bottom=max(low, 1e-15) * 1e6)
     for panel in panels:

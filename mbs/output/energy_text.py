@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mbs.model.drive import DriveAccount
 from mbs.transient.energy import ElementEnergy, EnergyBalance
 
 NOTABLE = 0.01
@@ -25,6 +26,22 @@ def energy_lines(energy: EnergyBalance) -> list[str]:
         f"  {energy.dissipated:.4g} J dissipated ({_named(sinks)})",
         f"  {energy.stored:.4g} J stored more at the end ({_named(stores)})",
         *_method_lines(energy),
+    ]
+
+
+def drive_lines(account: DriveAccount | None) -> list[str]:
+    """A line on the energy of the drive of a run; none where the speed is prescribed.
+
+    Parameters
+    ----------
+    account : DriveAccount or None
+        Energies of the drive.
+    """
+    if account is None:
+        return []
+    return [
+        f"drive: the motor gave {account.motor:.4g} J; {account.stored:.4g} J into turning, {account.load:.4g} J to "
+        f"the load and to rolling, {account.taken:.4g} J into the moving system; residual {account.residual:.2g} J"
     ]
 
 

@@ -11,6 +11,7 @@ from ehdmaps.errors import InputError
 from mbs.flexible.plan import ReductionPlan
 from mbs.flexible.reduced_body import mode_frequencies, up_to
 from mbs.flexible.reduced_file import read_reduced
+from mbs.model.drive import DrivenSpeed
 from mbs.model.profiles import Advanced, Constant, Course, SpeedProfile
 from mbs.scene.fields import HERTZ
 from mbs.scene.scene import Scene
@@ -79,6 +80,8 @@ def with_duration(scene: Scene, duration: float) -> Scene:
         If the scene has no run-up.
     """
     course = _run_up(scene)
+    if isinstance(course.speed, DrivenSpeed):
+        raise InputError("the scene has a [drive], whose torques make the length of the run-up; change those instead")
     given = course.speed.course
     factor = duration / course.duration
     speed = SpeedProfile(Course(tuple(factor * time for time in given.times), given.values))

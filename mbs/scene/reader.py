@@ -21,10 +21,12 @@ from ehdmaps.jobs.table import Table
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, short
 from mbs.model.body import FREEDOMS, Inertia
+from mbs.model.drive import Drive, DrivenSpeed
 from mbs.model.elements import Input, Load, Sensor, Spring
 from mbs.model.profiles import Constant, Course, Harmonic, LoadProfile, SpeedProfile
 from mbs.scene import fields, kinds
 from mbs.scene.campbell import read_campbell
+from mbs.scene.drive import read_drive
 from mbs.scene.fields import DEGREE, FORCE, HERTZ, MICROMETRE, MILLISECOND, MOMENT, Built
 from mbs.scene.flexible import read_flexible
 from mbs.scene.matrices import MatrixSpec, read_spring
@@ -144,8 +146,11 @@ class _Reader:
         if linear:
             frequencies = read_axis(linear, _FREQUENCIES)
             self._close(linear)
+        drive = top.optional("drive", "[drive]", read_drive, self._close)
         section = top.table("runup", "[runup]")
-        run_up = self._run_up(section) if section else None
+        run_up = self._run_up(section, drive) if section else None
+        if "drive" in top and "runup" not in top:
+            top.note("drive", "stands without [runup]; allowed: with a table [runup]; delete it, or add that")
         sweep = top.optional("sweep", "[sweep]", read_sweep, self._close)
         campbell = top.optional("campbell", "[campbell]", read_campbell, self._close)
         top.close()
@@ -325,17 +330,20 @@ class _Reader:
                 found[key] = (stiffness, damping or 0.0)
         return found
 
-    def _run_up(self, section: Table) -> RunUp | None:
-        """Read [runup]."""
+    def _run_up(self, section: Table, drive: Drive | None) -> RunUp | None:
+        """Read [runup]; with a drive the last speed is not given."""
         begin = section.quantity("from", "rad/s", 0.0, 1e5, RPM, required=True)
-        end = section.quantity("to", "rad/s", 0.0, 1e5, RPM, required=True)
+        driven = "drive" in self._top
+        end = section.quantity("to", "rad/s", 0.0, 1e5, RPM, required=not driven)
+        if driven and "to" in section:
+            section.note("to", "stands beside [drive], by which the speed follows from torques; delete one of both")
         duration = section.quantity("duration", "s", 1e-9, 1e6, Display("s"), required=True)
         step = section.quantity("step", "s", 1e-9, 1.0, MILLISECOND, required=True)
         sample = section.quantity("sample", "s", 1e-9, 1e3, MILLISECOND)
         radius = section.number("spectral_radius", 0.0, 1.0)
         tolerance = section.quantity("tolerance", "m", 1e-15, 1e-3, MICROMETRE)
         self._close(section)
-        if begin is None or end is None or duration is None or step is None:
+        if begin is None or (end is None and drive is None) or duration is None or step is None:
             return None
         settings = fields.built(
             section,
@@ -348,4 +356,7 @@ class _Reader:
         )
         if settings is None:
             return None
+        if end is None:
+            assert drive is not None
+            return RunUp(DrivenSpeed.of(drive, begin, duration), duration, settings)
         return RunUp(SpeedProfile.ramp(begin, end, duration), duration, settings)

@@ -14,7 +14,7 @@ import scipy.linalg
 
 from ehdmaps.arrays import FloatArray, IntArray
 from mbs.model.blocks import IN_PYTHON
-from mbs.model.profiles import LoadProfile, SpeedProfile
+from mbs.model.profiles import LoadProfile, Speed
 from mbs.model.system import System
 from mbs.settings import Settings
 from mbs.transient.energy import Instant, Sums
@@ -35,8 +35,8 @@ class CompiledRun:
     ----------
     system : System
         System whose elements all have a kind in `mbs.transient.kinds`.
-    speed : SpeedProfile
-        Prescribed speed.
+    speed : Speed
+        Speed over time.
     settings : Settings
         Method and steps.
     stepper : Stepper
@@ -56,7 +56,7 @@ class CompiledRun:
     def __init__(
         self,
         system: System,
-        speed: SpeedProfile,
+        speed: Speed,
         settings: Settings,
         stepper: Stepper,
         outputs: FloatArray,
@@ -172,6 +172,11 @@ class CompiledRun:
         """Outputs (samples, k), forces in all ports (samples, ports), and motions (samples, 3, n) where recorded."""
         records = self._records
         return records.outputs, records.forces @ self._elements.expand, records.motions @ self._modes.T
+
+    @property
+    def position(self) -> FloatArray:
+        """Displacement of the coordinates after the last step, shape (n,)."""
+        return np.asarray(self._modes @ self._state.motion[0])
 
     def ends(self) -> tuple[FloatArray, FloatArray, list[Any]]:
         """Displacement and velocity of the coordinates, and states of the elements, after the last step."""

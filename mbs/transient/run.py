@@ -21,8 +21,9 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import AnalysisError, InputError
+from mbs.model.drive import FEWEST, FOLLOWED, DriveAccount, DrivenRun, DrivenSpeed
 from mbs.model.elements import Operation, Sensor
-from mbs.model.profiles import SpeedProfile
+from mbs.model.profiles import Speed, SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
 from mbs.transient.compiled_run import CompiledRun
@@ -82,6 +83,8 @@ class Recording:
         Motion of all coordinates; of no samples if it was not asked for.
     account : callable
         Makes the energy balance; `energy` has it.
+    drive : DriveAccount or None
+        Energies of the drive; None where the speed is prescribed.
     """
 
     time: FloatArray
@@ -101,6 +104,7 @@ class Recording:
     notes: tuple[str, ...]
     states: States
     account: Callable[[], EnergyBalance]
+    drive: DriveAccount | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """For other processes, which have no system to account for: with the balance made."""
@@ -158,7 +162,7 @@ def run(
     system : System
         Bodies, springs, loads, elements.
     speed : SpeedProfile
-        Prescribed speed.
+        Prescribed speed, or one that a drive makes.
     duration : float
         How long [s]; rounded up to whole samples.
     settings : Settings
@@ -181,21 +185,27 @@ def run(
     """
     plan = _Plan.of(system, sensors, duration, settings, options)
     start = [_start(name, given, system) for name, given in (("displacement", displacement), ("velocity", velocity))]
-    stepper = Stepper(system, speed, settings, start[0], start[1])
+    given: Speed = speed
+    followed = None
+    if isinstance(speed, DrivenSpeed):
+        _check_driven(system)
+        given = followed = speed.started()
+    stepper = Stepper(system, given, settings, start[0], start[1])
     engine: _Engine
     notes = _notes(system) if options.compiled else ()
     if options.compiled and not notes:
         records = (plan.rows, plan.orders, plan.samples + 1, plan.states, plan.stride)
-        engine = CompiledRun(system, speed, settings, stepper, *records)
+        engine = CompiledRun(system, given, settings, stepper, *records)
     else:
         engine = _Reference(stepper, plan, settings)
-    begin = stored_energy(system, stepper.q, stepper.v, stepper.states, Operation(*speed.at(0.0), 0.0))
-    steps, halved = _drive(engine, settings, plan, progress)
+    begin = stored_energy(system, stepper.q, stepper.v, stepper.states, Operation(*given.at(0.0), 0.0))
+    shaft = None if followed is None else _Shaft(followed, engine, system)
+    steps, halved = _drive(engine, settings, plan, progress, shaft)
     last = plan.samples * settings.sample
-    end = stored_energy(system, *engine.ends(), Operation(*speed.at(last), last))
+    end = stored_energy(system, *engine.ends(), Operation(*given.at(last), last))
     outputs, forces, motions = engine.recorded()
     fine = plan.times(settings)
-    seen_at = np.array([speed.at(time) for time in fine.tolist()])
+    seen_at = np.array([given.at(time) for time in fine.tolist()])
     times, courses = fine[:: plan.stride], seen_at[:: plan.stride]
     ports = [connected.transform.shape[0] for connected in system.elements]
     ends = np.cumsum([0, *ports]).tolist()
@@ -230,7 +240,36 @@ def run(
         notes=notes,
         states=States(motions[:, 0], motions[:, 1], motions[:, 2]),
         account=account,
+        drive=None if followed is None else followed.account(),
     )
+
+
+class _Shaft:
+    """What the moving system takes from the shaft that a drive turns: told to the drive after some steps."""
+
+    def __init__(self, followed: DrivenRun, engine: _Engine, system: System) -> None:
+        self._followed, self._engine, self._steady = followed, engine, system.steady_loads
+        self._last = self._given()
+
+    def _given(self) -> float:
+        """Work of the loads that turn, and what turning brought into elements, so far [J]."""
+        sums = self._engine.sums
+        return sums.loads - float(self._steady @ self._engine.position) + float(np.nansum(sums.exchanged[:, 1]))
+
+    def settle(self, time: float) -> None:
+        """Tell the drive what was taken up to a time [s]."""
+        given = self._given()
+        self._followed.settle(time, given - self._last)
+        self._last = given
+
+
+def _check_driven(system: System) -> None:
+    """Refuse loads whose work may or may not come from the shaft."""
+    if system.varying_loads:
+        raise InputError(
+            "run, drive: got loads that vary over time beside a speed by torques, whose work may or may not come from "
+            "the shaft; allowed: constant [[loads]], and [[excitations]] by an order"
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -296,6 +335,11 @@ class _Engine(Protocol):
         """Energies of the steps so far."""
         ...
 
+    @property
+    def position(self) -> FloatArray:
+        """Displacement of the coordinates after the last step, shape (n,)."""
+        ...
+
     def ends(self) -> tuple[FloatArray, FloatArray, Sequence[Any]]:
         """Displacement and velocity of the coordinates, and states of the elements, after the last step."""
         ...
@@ -305,8 +349,15 @@ class _Engine(Protocol):
         ...
 
 
-def _drive(engine: _Engine, settings: Settings, plan: _Plan, progress: Callable[[int], None] | None) -> tuple[int, int]:
+def _drive(
+    engine: _Engine,
+    settings: Settings,
+    plan: _Plan,
+    progress: Callable[[int], None] | None,
+    shaft: _Shaft | None,
+) -> tuple[int, int]:
     """Step to the end, with halved steps where they are needed; steps made, and steps taken back."""
+    chunk = CHUNK if shaft is None else max(round(FOLLOWED / settings.step), FEWEST)
     finest = 1 << HALVINGS
     tick = settings.step / finest
     sample = settings.steps_per_sample * finest
@@ -315,12 +366,14 @@ def _drive(engine: _Engine, settings: Settings, plan: _Plan, progress: Callable[
     level = steps = halved = told = 0
     while ticks < end:
         stride = finest >> level
-        count = min(CHUNK, (end - ticks) // finest) if level == 0 else 1
+        count = min(chunk, (end - ticks) // finest) if level == 0 else 1
         reached = ticks + stride * np.arange(1, count + 1)
         rows = np.where(reached % row == 0, reached // row, -1)
         done, error = engine.steps(np.asarray(reached * tick, dtype=np.float64), stride * tick, rows)
         ticks += done * stride
         steps += done
+        if shaft is not None and done:
+            shaft.settle(ticks * tick)
         if done < count:
             halved += 1
             level += 1
@@ -374,6 +427,11 @@ class _Reference:
     def sums(self) -> Sums:
         """Energies of the steps so far."""
         return self._stepper.account.sums
+
+    @property
+    def position(self) -> FloatArray:
+        """Displacement after the last step."""
+        return self._stepper.q
 
     def ends(self) -> tuple[FloatArray, FloatArray, Sequence[Any]]:
         """Displacement, velocity and states after the last step."""

@@ -21,7 +21,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from mbs.model.elements import Operation
-from mbs.model.profiles import SpeedProfile
+from mbs.model.profiles import Speed
 from mbs.model.system import System
 from mbs.settings import Settings
 from mbs.transient.energy import Account, Instant
@@ -93,7 +93,7 @@ class Stepper:
     def __init__(
         self,
         system: System,
-        speed: SpeedProfile,
+        speed: Speed,
         settings: Settings,
         displacement: FloatArray,
         velocity: FloatArray,

@@ -45,6 +45,37 @@ def rotor(ross: Any) -> Any:
     return ross.Rotor(elements, [disc], bearings)
 
 
+def fan(ross: Any) -> Any:
+    """The shipped overhung rotor, with its bearings as springs and dampers along both directions."""
+    case = REFERENCES["fan"]
+    steel = ross.Material("steel", rho=case["density"], E=case["youngs_modulus"], Poisson=case["poisson_ratio"])
+    element = case["element"]
+    elements = [
+        ross.ShaftElement(
+            element, 0.0, diameter, material=steel, shear_effects=True, rotary_inertia=True, gyroscopic=True
+        )
+        for begin, end, diameter in case["sections"]
+        for _ in range(round((end - begin) / element))
+    ]
+    place, mass, polar, transverse = case["disc"]
+    disc = ross.DiskElement(n=round(place / element), m=mass, Ip=polar, Id=transverse)
+    bearings = [
+        ross.BearingElement(
+            n=round(at / element),
+            kxx=k[0][0],
+            kxy=k[0][1],
+            kyx=k[1][0],
+            kyy=k[1][1],
+            cxx=c[0][0],
+            cxy=c[0][1],
+            cyx=c[1][0],
+            cyy=c[1][1],
+        )
+        for at, k, c in case["bearings"]
+    ]
+    return ross.Rotor(elements, [disc], bearings)
+
+
 def frequencies(machine: Any, speed: float) -> Any:
     """Eigenvalues of bending at a speed [rad/s], in the order of their frequency; torsion is not damped."""
     values = machine.run_modal(speed, sparse=False, num_modes=60).evalues
@@ -52,27 +83,34 @@ def frequencies(machine: Any, speed: float) -> Any:
     return np.array(sorted(found, key=lambda v: v.imag))
 
 
-def main() -> None:
-    """Print critical speeds and responses."""
-    import ross  # type: ignore[import-not-found, unused-ignore]
-
-    case, machine = REFERENCES["overhung"], rotor(ross)
-    grid = np.linspace(100.0, case["speeds"][-1], 60) * RPM
-    apart = np.array([[frequencies(machine, w)[mode].imag - w for mode in range(4)] for w in grid])
+def describe(machine: Any, case: dict[str, Any], highest: float) -> None:
+    """Print critical speeds up to the highest one [rpm], and responses."""
+    grid = np.linspace(100.0, highest, 60) * RPM
+    found = [frequencies(machine, w) for w in grid]
+    count = min(len(values) for values in found)
+    apart = np.array([[values[mode].imag - w for mode in range(count)] for values, w in zip(found, grid, strict=True)])
     print("critical speeds [rpm], damping ratio")
-    for mode in range(4):
+    for mode in range(count):
         for i in np.flatnonzero(apart[:-1, mode] * apart[1:, mode] < 0.0):
             speed = brentq(lambda w, m=mode: frequencies(machine, w)[m].imag - w, grid[i], grid[i + 1], xtol=1e-9)
             value = frequencies(machine, speed)[mode]
             print(f"  {speed / RPM:14.6f} {-value.real / abs(value):12.8f}")
-    element = case["element"]
-    node = round(case["disc"][0] / element)
+    node = round(case["disc"][0] / case["element"])
     speeds = np.array(case["response_speeds"]) * RPM
-    found = machine.run_unbalance_response(node, case["unbalance"], 0.0, speeds).forced_resp
+    moved = machine.run_unbalance_response(node, case["unbalance"], 0.0, speeds).forced_resp
     print("amplitudes [m] at the disc along both directions: real, imaginary")
     for k, speed in enumerate(case["response_speeds"]):
-        x, y = found[DOFS * node, k], found[DOFS * node + 1, k]
+        x, y = moved[DOFS * node, k], moved[DOFS * node + 1, k]
         print(f"  {speed:8.1f} rpm {x.real: .8e} {x.imag: .8e} {y.real: .8e} {y.imag: .8e}")
+
+
+def main() -> None:
+    """Print critical speeds and responses."""
+    import ross  # type: ignore[import-not-found, unused-ignore]
+
+    describe(rotor(ross), REFERENCES["overhung"], REFERENCES["overhung"]["speeds"][-1])
+    print("the shipped overhung rotor")
+    describe(fan(ross), REFERENCES["fan"], 16000.0)
 
 
 if __name__ == "__main__":

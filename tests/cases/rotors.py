@@ -2,13 +2,37 @@
 
 from __future__ import annotations
 
+import dataclasses
 import tomllib
 from pathlib import Path
 
-from mbs import Inertia, Scene, parse_scene
+import numpy as np
 
+from mbs import Inertia, Scene, ShaftSpec, Spring, parse_scene, read_scene
+from mbs.scene.matrices import MatrixSpec
+
+AXIS = Spring("axis", "rotor:end", "ground", np.diag([5e7, 0.0, 0.0, 0.0, 0.0, 0.0]))
 REFERENCES = tomllib.loads((Path(__file__).parents[1] / "references" / "rotors.toml").read_text(encoding="utf-8"))
-OVERHUNG = REFERENCES["overhung"]
+OVERHUNG, FAN = REFERENCES["overhung"], REFERENCES["fan"]
+
+
+def fan() -> Scene:
+    """The shipped overhung rotor without damping of the shaft, on the radial stiffness of its roller bearings alone."""
+    scene = read_scene("overhung_rotor")
+    (shaft,) = scene.bodies
+    assert isinstance(shaft, ShaftSpec)
+    kept = [
+        MatrixSpec(
+            entry.name,
+            entry.inner,
+            np.pad(stiffness, ((1, 3), (1, 3)))[None],
+            np.pad(damping, ((1, 3), (1, 3)))[None],
+        )
+        for entry, (_, stiffness, damping) in zip(reversed(scene.bearings), FAN["bearings"], strict=True)
+    ]
+    return dataclasses.replace(
+        scene, bodies=[dataclasses.replace(shaft, damping_ratio=0.0)], elements=kept, excitations=(), springs=[AXIS]
+    )
 
 
 def overhung() -> Scene:

@@ -15,34 +15,42 @@ from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.settings import Settings
 from mbs.transient.run import Options, run
-from tests.cases.rotors import OVERHUNG, overhung
+from tests.cases.rotors import FAN, OVERHUNG, fan, overhung
 
 RPM = math.pi / 30.0
 
 
 class TestBesideRoss:
-    """An overhung rotor on cross-coupled bearings whose matrices change with the speed."""
+    """An overhung rotor on cross-coupled bearings whose matrices change with the speed, and the shipped one."""
 
-    @pytest.fixture(scope="class")
+    @pytest.fixture(scope="class", params=["overhung", "fan"])
     @staticmethod
-    def model():
-        return assemble(overhung())
+    def machine(request):
+        make, case, place = {
+            "overhung": (overhung, OVERHUNG, "shaft:disc"),
+            "fan": (fan, FAN, "rotor:wheel"),
+        }[request.param]
+        return assemble(make()), case, place
 
-    def test_critical_speeds(self, model):
-        found = critical(model, SweepSettings(SweepRange(10.0, 6000.0 * RPM, 25))).found
-        # Shaft elements are the same; the reduction to modes up to 5 kHz, and the figures printed, are left: 1e-6.
-        np.testing.assert_allclose([c.speed / RPM for c in found], OVERHUNG["critical_speeds"], rtol=2e-6)
-        np.testing.assert_allclose([c.damping_ratio for c in found], OVERHUNG["critical_damping_ratios"], rtol=1e-5)
+    def test_critical_speeds(self, machine):
+        model, case, _ = machine
+        fastest = 1.02 * max(case["critical_speeds"]) * RPM
+        found = critical(model, SweepSettings(SweepRange(10.0, fastest, 20))).found
+        bending = [entry for entry in found if not math.isnan(entry.whirl)]
+        # Coarser elements of the shipped shaft are left, as `largest_element` chooses them for its cut-off: 1e-5.
+        np.testing.assert_allclose([c.speed / RPM for c in bending], case["critical_speeds"], rtol=5e-5)
+        np.testing.assert_allclose([c.damping_ratio for c in bending], case["critical_damping_ratios"], rtol=1e-4)
         # Backward before forward.
-        assert [c.whirl > 0.0 for c in found] == [False, True, False, True]
+        assert [c.whirl > 0.0 for c in bending] == [False, True] * (len(bending) // 2)
 
-    def test_unbalance_response(self, model):
-        speeds = np.array(OVERHUNG["response_speeds"]) * RPM
+    def test_unbalance_response(self, machine):
+        model, case, place = machine
+        speeds = np.array(case["response_speeds"]) * RPM
         (response,) = order_responses(lambda speed: model.system, speeds)
-        found = response.motion @ model.system.relative("shaft:disc")[1:3].T
-        wanted = np.array(OVERHUNG["amplitudes"]) @ np.array([[1, 0], [1j, 0], [0, 1], [0, 1j]])
-        # Near resonances an error of 1e-6 in frequency over a damping ratio of 0.003 is one of some 1e-4.
-        np.testing.assert_allclose(found, wanted, rtol=1e-4, atol=1e-6 * np.abs(wanted).max())
+        found = response.motion @ model.system.relative(place)[1:3].T
+        wanted = np.array(case["amplitudes"]) @ np.array([[1, 0], [1j, 0], [0, 1], [0, 1j]])
+        # Beside a resonance, 0.65 % away, an error of 4e-6 in its frequency is one of 7e-4.
+        np.testing.assert_allclose(found, wanted, rtol=1e-3, atol=1e-6 * np.abs(wanted).max())
 
 
 JEFFCOTT = """

@@ -1,0 +1,76 @@
+"""Rotors as a user meets them: critical speeds, matrices over speed, and a drive, on the command line."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from tests.cases.commands import run
+
+DAMPED = ("--law", "hertz:1.25e-5 s")
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_critical_speeds_of_the_shipped_rotor(here, capsys):
+    asked = ("--speeds", "8000 rpm", "15000 rpm", "8", "-o", "rotor.nc", "--plot", "rotor.png")
+    status, out, _ = run(capsys, "critical", "overhung_rotor", *DAMPED, *asked)
+    assert status == 0
+    assert "9539.5 rpm" in out
+    assert "backward (-0.97)" in out
+    assert "none: along or about the axis" in out
+    assert "orbit of rotor:wheel" in out
+    assert "warning: front: the force of order 1 is above the static one of 248.9 N" in out
+    with xr.open_dataset(here / "rotor.nc") as found:
+        assert found.attrs["loads"] == "order 1: residual; order 5: blades"
+        assert found["orbit_major"].dims == ("order", "speed", "place")
+        assert np.all(found["orbit_major"] >= np.abs(found["orbit_minor"]))
+        peak = float(found["speed"][np.argmax(found["orbit_major"].sel(order=1, place="rotor:wheel").values)])
+        # The speeds around a critical one are half its damping ratio apart.
+        assert np.min(np.abs(found["critical_speed"].values / peak - 1.0)) < 2e-3
+    assert (here / "rotor.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("command", ["statics", "modes"])
+def test_bearings_by_matrices_beside_others(here, capsys, command):
+    status, out, err = run(capsys, command, "overhung_rotor", *DAMPED)
+    assert status == 0, out + err
+
+
+def _scene(here, *changes):
+    from importlib import resources
+
+    text = (resources.files("mbs") / "systems" / "overhung_rotor.toml").read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    (here / "own.toml").write_text(text, encoding="utf-8")
+
+
+def test_a_drive_is_told(here, capsys):
+    _scene(here, ('duration = "2.5 s"', 'duration = "4 ms"'))
+    status, out, _ = run(capsys, "runup", "own.toml", *DAMPED)
+    assert status == 0
+    assert "drive: the motor gave" in out
+
+
+def test_a_speed_beyond_a_table_is_a_warning(here, capsys):
+    _scene(
+        here,
+        ('x = "5e7 N/m", y = "1e5 N/m"', 'x = "5e7 N/m", y = ["1e5 N/m", "2e5 N/m"]'),
+        ('name = "locating"', 'name = "locating"\nspeeds = ["0 rpm", "1000 rpm"]'),
+    )
+    status, out, _ = run(capsys, "statics", "own.toml", *DAMPED)
+    assert status == 1
+    assert "warning: locating: lies outside the map" in out
+
+
+def test_no_critical_speed_without_spin_or_speeds(here, capsys):
+    _scene(here, ('[sweep]\nfrom = "300 rpm"\nto = "15000 rpm"\npoints = 50\nassumed = ["from", "to"]\n', ""))
+    status, _, err = run(capsys, "critical", "own.toml")
+    assert (status, "no speeds" in err) == (2, True)
