@@ -114,8 +114,7 @@ class OpenFoamSolver(ContactSolverDefaults):
     columns, rows : int
         Cells along and across the film.
     physics : {"isothermal", "thermal"}
-        Whether the film has the temperature of the surfaces, or the energy of the film is solved with the flow; the
-        latter with the flow thin_film.
+        Whether the film has the temperature of the surfaces, or the energy of the film is solved with the flow.
     shear : {"newtonian", "eyring", "carreau", "limiting"}
         Law of the shear stress, see `ehdmaps.physics.rheology`.
     shear_stress, limiting_ratio, carreau_exponent : float, optional
@@ -188,10 +187,6 @@ class OpenFoamSolver(ContactSolverDefaults):
             for name, words in (("flow", FLOWS), ("physics", PHYSICS))
             if getattr(self, name) not in words
         ]
-        if self.physics == THERMAL and self.flow != "thin_film":
-            problems.append(
-                f"openfoam solver, physics: got thermal with flow {self.flow!r:.60}; allowed: with flow thin_film"
-            )
         if self.physics == THERMAL and not abs(self.slide_to_roll) < 2.0:
             problems.append(
                 f"openfoam solver, slide_to_roll: got {self.slide_to_roll!r} with physics thermal; allowed: between -2 "

@@ -141,6 +141,24 @@ def test_the_film_compliance_is_the_slope_of_the_film_over_the_load() -> None:
     assert _solved().results.film_compliance[0] == pytest.approx(slope, rel=0.02)
 
 
+def test_all_stresses_with_heat() -> None:
+    thin, full = _solved().results, openfoam_runs.run(replace(_parameters(), flow="full_stress")).results
+    # what thin films neglect: the slope of the film, 0.01 in the inlet where it is made and heated
+    for name in ("central_film", "minimum_film", "film_offset"):
+        assert getattr(full, name) == pytest.approx(getattr(thin, name), rel=2e-3), name
+    for name in ("film_temperature", "surface_temperature"):
+        rise, thin_rise = (getattr(found, name) - POINT.temperature for found in (full, thin))
+        assert rise == pytest.approx(thin_rise, rel=0.01), name
+    # not so what is made in all: the inlet of all stresses begins at half a radius, and backflow before it heats too
+    assert full.wall_heat == pytest.approx(thin.wall_heat, rel=5e-3)
+    # responses are of first order along the film: 3 % x 100/columns each
+    for name in ("film_compliance", "loss_compliance"):
+        assert getattr(full, name)[0] == pytest.approx(getattr(thin, name)[0], rel=0.03), name
+    # conservative: what Newton's method leaves
+    made = full.dissipated_heat + full.compression_heat
+    assert full.wall_heat + full.carried_heat == pytest.approx(made, abs=1e-7 * full.dissipated_heat)
+
+
 def test_no_heat_is_no_change() -> None:
     settings = _parameters()
     assert settings.heat is not None

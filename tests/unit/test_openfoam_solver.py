@@ -398,7 +398,6 @@ OPTIONS = {
     "slide": (dict(slide_to_roll=3.0), "slide_to_roll: got 3.0; allowed: -2 to 2"),
     "nan": (dict(slide_to_roll=float("nan")), "slide_to_roll: got nan; allowed: -2 to 2"),
     "physics": (dict(physics="inlet-heat"), "physics: got 'inlet-heat'; allowed: isothermal, thermal"),
-    "all stresses with heat": (dict(physics="thermal", flow="full_stress"), "physics: got thermal with flow 'full_str"),
     "a wall that stands": (dict(physics="thermal", slide_to_roll=-2.0), "slide_to_roll: got -2.0 with physics thermal"),
     "timeout": (dict(timeout=0.0), "timeout: got 0.0; allowed: 0.1 to"),
     "folder": (dict(keep_cases=Path("/tmp/my cases")), "OpenFOAM takes no spaces or quotes in the path of a case"),

@@ -42,6 +42,7 @@ Foam::filmFlow::filmFlow(const dictionary& dict, filmMesh& film, const lineConta
     contact_(contact),
     oil_(dict, contact.pressure),
     heat_(dict.found("heat") ? new filmHeat(dict.subDict("heat"), film, contact) : nullptr),
+    T_(heat_.valid() ? film.fixedOnSurfaces<scalar>("T", dimTemperature).ptr() : nullptr),
     expectedFilm_(contact.filmUnit()*dict.subDict("mesh").get<scalar>("film")),
     massUnit_(oil_.density(0)*contact.entrainment()*film.depth*expectedFilm_)
 {}
@@ -111,6 +112,29 @@ Foam::scalar Foam::filmFlow::inletPressure(const filmState& state) const
     (
         oil_.viscosity(0)*contact_.entrainment(), contact_.radius, -state.x[0], state.h[0], expectedFilm_
     ).pressure;
+}
+
+
+void Foam::filmFlow::putTemperature(const filmState& state)
+{
+    if (!heat_.valid()) return;
+    volScalarField& T = *T_;
+    for (label i = 0; i < film_.columns(); ++i)
+    {
+        for (label j = 0; j < film_.rows(); ++j)
+        {
+            T[film_.cell(i, j)] = heat_->temperature(state.local[place(i, j, warmthKind())]);
+        }
+    }
+    for (const label patch : {film_.lower(), film_.upper()})
+    {
+        const labelUList& cells = film_.mesh().boundary()[patch].faceCells();
+        scalarField wall(cells.size());
+        const label first = patch == film_.upper() ? film_.columns() : 0;
+        forAll(wall, f) wall[f] = heat_->temperature(state.wall[first + cells[f]/film_.rows()]);
+        T.boundaryFieldRef()[patch] == wall;
+    }
+    T.correctBoundaryConditions();
 }
 
 

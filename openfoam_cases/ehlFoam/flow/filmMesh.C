@@ -7,7 +7,6 @@
 #include "filmMesh.H"
 #include "linear.H"
 #include "zeroGradientFvPatchFields.H"
-#include "fixedValueFvPatchFields.H"
 #include "emptyFvPatchFields.H"
 
 namespace Foam

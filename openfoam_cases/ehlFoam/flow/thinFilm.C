@@ -8,8 +8,6 @@
 #include "addToRunTimeSelectionTable.H"
 #include "fvc.H"
 #include "linear.H"
-#include "fixedValueFvPatchFields.H"
-#include "zeroGradientFvPatchFields.H"
 
 namespace Foam
 {
@@ -20,35 +18,14 @@ namespace Foam
 //- Change of a temperature [T_b] over which the equations are linear
 static constexpr scalar warmthStep = 1e-7;
 
-
-//- A cell field whose values on the two surfaces are fixed
-static tmp<volScalarField> fixedOnSurfaces
-(
-    const filmMesh& film,
-    const word& name,
-    const dimensionSet& dimensions
-)
-{
-    wordList types(film.field("pattern", dimensions)().boundaryField().types());
-    types[film.lower()] = fixedValueFvPatchScalarField::typeName;
-    types[film.upper()] = fixedValueFvPatchScalarField::typeName;
-    return tmp<volScalarField>::New
-    (
-        IOobject(name, film.mesh().time().timeName(), film.mesh()),
-        film.mesh(),
-        dimensionedScalar(name, dimensions, 0),
-        types
-    );
-}
-
 } // End namespace Foam
 
 
 Foam::thinFilm::thinFilm(const dictionary& dict, filmMesh& film, const lineContact& contact)
 :
     filmFlow(dict, film, contact),
-    couette_(fixedOnSurfaces(film, "couette", dimVelocity)),
-    u_(fixedOnSurfaces(film, "u", dimVelocity)),
+    couette_(film.fixedOnSurfaces<scalar>("couette", dimVelocity)),
+    u_(film.fixedOnSurfaces<scalar>("u", dimVelocity)),
     p_(film.field("p", dimPressure, true)),
     mu_(film.field("mu", dimDynamicViscosity)),
     rho_(film.field("rho", dimDensity)),
@@ -61,7 +38,6 @@ Foam::thinFilm::thinFilm(const dictionary& dict, filmMesh& film, const lineConta
     )
 {
     flux_.setOriented();
-    if (heat_.valid()) T_.reset(fixedOnSurfaces(film, "T", dimTemperature).ptr());
     couette_.boundaryFieldRef()[film.lower()] == contact.lowerSpeed;
     couette_.boundaryFieldRef()[film.upper()] == contact.upperSpeed;
     forAll(couette_, c)
@@ -227,6 +203,7 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
 
     scalarField densityRate(mesh.nCells(), Zero);
     volScalarField shape(film_.field("shape", sqr(dimLength)));
+    putTemperature(state);
     for (label i = 0; i < film_.columns(); ++i)
     {
         const scalar v = state.column[i];
@@ -244,8 +221,7 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
             if (rate) densityRate[c] = slope*rate->column[i];
             if (heat_.valid())
             {
-                const scalar T = heat_->temperature(state.local[place(i, j, warmth)]);
-                (*T_)[c] = T;
+                const scalar T = (*T_)[c];
                 mu_[c] = heat_->oil().viscosity(p, T);
                 rho_[c] = heat_->oil().density(p, T);
                 if (rate)
@@ -255,18 +231,6 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
                 }
             }
         }
-    }
-    if (heat_.valid())
-    {
-        for (const label patch : {film_.lower(), film_.upper()})
-        {
-            const labelUList& cells = mesh.boundary()[patch].faceCells();
-            scalarField wall(cells.size());
-            const label first = patch == film_.upper() ? film_.columns() : 0;
-            forAll(wall, f) wall[f] = heat_->temperature(state.wall[first + cells[f]/film_.rows()]);
-            T_->boundaryFieldRef()[patch] == wall;
-        }
-        T_->correctBoundaryConditions();
     }
     p_.boundaryFieldRef()[film_.inlet()] == inletPressure(state);
     p_.correctBoundaryConditions();

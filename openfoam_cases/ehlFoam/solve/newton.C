@@ -63,7 +63,7 @@ static slice::unknowns stepped
         }
         for (label j = 0; j < flow.film().rows(); ++j)
         {
-            const label place = flow.place(i, j, flow.cellSize() - 1); // v of the cell
+            const label place = flow.place(i, j, flow.pressureKind());
             next.local[place] = edged(u.local[place], next.local[place]);
         }
     }
@@ -84,7 +84,7 @@ static bool crossed(const slice& s, const slice::unknowns& before, const slice::
         }
         for (label j = 0; j < flow.film().rows(); ++j)
         {
-            const label place = flow.place(i, j, flow.cellSize() - 1); // v of the cell
+            const label place = flow.place(i, j, flow.pressureKind());
             if ((before.local[place] > 0) != (after.local[place] > 0)) return true;
         }
     }

@@ -44,16 +44,18 @@ Foam::solvedFilm Foam::steadyState
     const scalar filmScale = dict.subDict("mesh").get<scalar>("film")*contact.filmUnit();
 
     // what a stage starts from: the case's own start, or the stage before
-    struct { scalarField pressure; scalar central; Eigen::VectorXd local, wall, velocity; } from;
+    struct
+    {
+        scalarField pressure;
+        scalar central;
+        Eigen::VectorXd local, wall;
+        // of the thin film: what pressure adds to the velocities of the cells, their temperatures, fluxes into the walls
+        scalarField velocity, warmth, flux;
+    } from;
     from.pressure = startPressure(dict, contact, x);
     from.central = dict.found("start") ? positive(dict.subDict("start"), "centralFilm") : filmScale;
     label iterations = 0;
     solvedFilm found;
-    if (dict.found("heat") && flow != "thinFilm")
-    {
-        FatalIOErrorInFunction(dict)
-            << "heat: got it with the flow " << flow << ", allowed with thinFilm only" << exit(FatalIOError);
-    }
 
     auto solve = [&](const word& type, const dictionary& law, const newtonControls& stageControls, const scalar heated = 0)
     {
@@ -77,20 +79,30 @@ Foam::solvedFilm Foam::steadyState
             before.wall = from.wall;
             start = found.contact->settled(before, before);
         }
-        else if (heated > 0)
+        else if (from.velocity.size())
         {
-            // the velocities of the isothermal film
-            for (label i = 0; i < x.size() - 1; ++i)
+            // what the thin film before knows of this one
+            for (label c = 0; c < from.velocity.size(); ++c)
             {
-                for (label j = 0; j < film.rows(); ++j)
+                const label i = c/film.rows(), j = c % film.rows();
+                start.local[found.flow->place(i, j, 0)] += from.velocity[c];
+                if (heated > 0 && from.warmth.size())
                 {
-                    start.local[found.flow->place(i, j, 0)] = from.velocity[film.cell(i, j)];
+                    start.local[found.flow->place(i, j, found.flow->warmthKind())] = from.warmth[c];
+                }
+            }
+            if (heated > 0 && from.warmth.size())
+            {
+                start.wall = from.wall;
+                for (label k = 0; k < from.flux.size(); ++k)
+                {
+                    start.local[found.flow->fluxPlace(k/2, k % 2)] = from.flux[k];
                 }
             }
         }
-        else
+        else if (!newtonian)
         {
-            if (!newtonian) start = found.contact->balanced(start);
+            start = found.contact->balanced(start);
         }
         found.result = newton(*found.contact, start, contact.load, stageControls, none);
         iterations += found.result.iterations;
@@ -103,11 +115,21 @@ Foam::solvedFilm Foam::steadyState
             from.central = centralFilm(state);
             from.local = found.result.state.local;
             from.wall = found.result.state.wall;
-            from.velocity.resize(film.columns()*film.rows());
-            for (label c = 0; c < from.velocity.size(); ++c)
+            if (type != "thinFilm") return converged;
+            const label cells = film.columns()*film.rows();
+            from.velocity.setSize(cells);
+            from.warmth.setSize(heated > 0 ? cells : 0);
+            from.flux.setSize(heated > 0 ? 2*film.columns() : 0);
+            for (label c = 0; c < cells; ++c)
             {
-                from.velocity[c] = from.local[found.flow->place(c/film.rows(), c % film.rows(), 0)];
+                auto unknown = [&](const label kind)
+                {
+                    return from.local[found.flow->place(c/film.rows(), c % film.rows(), kind)];
+                };
+                from.velocity[c] = unknown(0);
+                if (heated > 0) from.warmth[c] = unknown(found.flow->warmthKind());
             }
+            forAll(from.flux, k) from.flux[k] = from.local[found.flow->fluxPlace(k/2, k % 2)];
         }
         return converged;
     };
@@ -147,12 +169,13 @@ Foam::solvedFilm Foam::steadyState
         }
     }
     if (found.result.end != outcome::converged) return found;
-    if (dict.found("heat") && !solve(flow, shear, controls, 1))
+    const scalar heated = dict.found("heat") ? 1 : 0;
+    if (heated > 0 && !solve("thinFilm", shear, controls, heated))
     {
         // a little heat first: it thins the oil where most of it is made
         for (scalar share = 1.0/64; share <= 1; share *= 4)
         {
-            if (!solve(flow, shear, controls, share)) return found;
+            if (!solve("thinFilm", shear, controls, share)) return found;
         }
     }
     if (flow == "thinFilm") return found;
@@ -160,6 +183,6 @@ Foam::solvedFilm Foam::steadyState
     // where all stresses have no solution to be found, the thin film shows whether the law of shear is admissible
     found.contact->residual(found.result.state, nullptr);
     writeTable(film.mesh().time().path()/"thinFilm.dat", *found.contact, found.contact->film(found.result.state));
-    solve(flow, shear, controls);
+    solve(flow, shear, controls, heated);
     return found;
 }
