@@ -89,7 +89,6 @@ def fitted(peclet: float) -> tuple[float, float]:
     return half * cotangent - 1.0, math.copysign(slope, peclet)
 
 
-@njit(cache=True)
 def energy(
     problem: LineProblem, columns: Columns, face_step: FloatArray, walls: FloatArray, rises: FloatArray, first: int
 ) -> EnergyEquations:
@@ -110,6 +109,20 @@ def energy(
     first : int
         Last column that is not heated.
     """
+    found = _energy(problem, columns, face_step, walls, rises, first)
+    if np.all(np.isfinite(found.residual)):
+        try:
+            found.inverse[first + 1 :] = np.linalg.inv(found.itself[first + 1 :])
+        except np.linalg.LinAlgError:
+            found.residual[first + 1 :] = math.nan
+    return found
+
+
+@njit(cache=True)
+def _energy(
+    problem: LineProblem, columns: Columns, face_step: FloatArray, walls: FloatArray, rises: FloatArray, first: int
+) -> EnergyEquations:
+    """`energy` without the inverses."""
     n, k, heat = face_step.size, POINTS, problem.heat
     out = np.zeros((n, k))
     itself, inverse = np.zeros((n, k, k)), np.zeros((n, k, k))
@@ -242,7 +255,6 @@ def energy(
         if not np.all(np.isfinite(matrix)):
             out[f] = np.nan
             break
-        inverse[f] = np.linalg.inv(matrix)
     return EnergyEquations(
         out, itself, inverse, before, before_that, behind, behind_that, slopes, taken, flux, flux_warm, last_back
     )

@@ -366,7 +366,8 @@ def _converged_warm(
     metric = (grid.x, grid.step, grid.face, grid.face_step, kernel)
     steps = 0
     try:
-        result = warm_newton(problem, *metric, start, rises, LOAD, tolerance, MOST_WARM_STEPS)
+        here = near is not None and near.warmth is not None and near.grid is grid and near.problem is problem
+        result = warm_newton(problem, *metric, start, rises, LOAD, tolerance, MOST_WARM_STEPS, here)
         steps = result.steps
         if result.outcome != CONVERGED and problem.shear.form == LIMITING:
             # a start from another grid asks for more stress than the oil bears: the isothermal film has soft tangents
@@ -374,7 +375,7 @@ def _converged_warm(
             iso = newton(cold, *metric[:2], *metric[3:], start, LOAD, LOOSE_TOLERANCE, MOST_STEPS)
             steps += iso.steps
             if iso.outcome == CONVERGED:
-                result = warm_newton(problem, *metric, iso.unknowns, rises, LOAD, tolerance, MOST_WARM_STEPS)
+                result = warm_newton(problem, *metric, iso.unknowns, rises, LOAD, tolerance, MOST_WARM_STEPS, False)
                 steps += result.steps
     except np.linalg.LinAlgError:
         return None, steps, DIVERGED

@@ -214,7 +214,7 @@ def face_films(gap: FloatArray) -> FloatArray:
     n = gap.size - 1
     faces = np.empty(n)
     for f in range(n):
-        first, weights = _face_weights(f, n)
+        first, weights = face_weights(f, n)
         faces[f] = 0.0
         for k in range(4):
             if weights[k] != 0.0:
@@ -223,8 +223,14 @@ def face_films(gap: FloatArray) -> FloatArray:
 
 
 @njit(cache=True)
-def _face_weights(f: int, n: int) -> tuple[int, tuple[float, float, float, float]]:
-    """First of the four nodes that give the film at a face, and their weights."""
+def face_weights(f: int, n: int) -> tuple[int, tuple[float, float, float, float]]:
+    """First of the four nodes that give the film at a face, and their weights.
+
+    Parameters
+    ----------
+    f, n : int
+        Number of the face, and of all faces.
+    """
     if f == 0:
         return -1, (0.0, 0.5, 0.5, 0.0)
     if f == n - 1:
@@ -448,7 +454,7 @@ def residual_with(
             row[f - 1] += conductance * left[f]
         if f + 1 < n:
             row[f] += conductance * right[f]
-        first, weights = _face_weights(f, n)
+        first, weights = face_weights(f, n)
         for k in range(4):
             by_film[first + k - f + 3] = 3.0 * flux / gap_face * weights[k]
         # wedge
@@ -490,7 +496,7 @@ def residual_with(
                         row[i - 1] += c * slopes[0]
                     if i + 1 < n:
                         row[i] += c * slopes[1]
-                    first, weights = _face_weights(i, n)
+                    first, weights = face_weights(i, n)
                     for q in range(4):
                         if weights[q] != 0.0:
                             by_film[first + q - f + 3] += c * slopes[2] * weights[q]

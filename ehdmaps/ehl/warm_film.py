@@ -100,29 +100,24 @@ def hold_gradients(problem: LineProblem, outflow: float, rises: FloatArray, colu
 def asked_flows(
     problem: LineProblem,
     x: FloatArray,
-    face_step: FloatArray,
     kernel: FloatArray,
     unknowns: FloatArray,
-    rises: FloatArray,
     columns: Columns,
 ) -> FloatArray:
     """Mobility times dP/dX that the flow through the contact asks of each column that yields, NaN of others.
 
     Parameters
     ----------
-    problem, x, face_step, kernel, unknowns
+    problem, x, kernel, unknowns
         The arguments of `reynolds.residual`.
-    rises : ndarray, shape (n, k)
-        Temperatures [K above T_0].
     columns : Columns
-        Columns that are overwritten with those of the pressures.
+        Columns at the gradients of the pressures.
     """
-    n = face_step.size
+    n = x.size - 1
     pressure, gap = node_pressure(unknowns), film(x, kernel, unknowns)
     log_eta, slope, rho, rho_slope = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
     oil(problem, pressure, log_eta, slope, rho, rho_slope)
     means = cell_means(problem, log_eta - np.log(rho), slope - rho_slope / rho, pressure)[0]
-    fill_columns(problem, x, face_step, kernel, unknowns, rises, np.empty(0), columns)
     asked = np.full(n, np.nan)
     for f in range(n):
         film_here, gradient = columns.place[f, 1], columns.place[f, 2]

@@ -12,11 +12,10 @@ from numba import njit
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.energy import ROWS, EnergyEquations
-from ehdmaps.ehl.reynolds import face_films
+from ehdmaps.ehl.reynolds import face_weights, node_pressure
 from ehdmaps.ehl.warm_column import POINTS, Columns
 
 
-@njit(cache=True)
 def marched(equations: EnergyEquations, right: FloatArray, first: int) -> FloatArray:
     """Temperatures of the linear equations, shape (n, k, m), for m right-hand sides.
 
@@ -29,16 +28,24 @@ def marched(equations: EnergyEquations, right: FloatArray, first: int) -> FloatA
     first : int
         Last column that is not heated.
     """
-    n, k, many = right.shape[0], POINTS, right.shape[2]
-    found, fluxes = np.zeros((n, k, many)), np.zeros((2, n, many))
-    start = first + 1
+    n, many = right.shape[0], right.shape[2]
+    found, start, end = np.zeros((n, POINTS, many)), first + 1, first + 1
     if equations.last_back > first:
         # columns with backflow and the two that these see, at once
         end = min(equations.last_back + 3, n)
-        _together(equations, right, start, end, found)
-        for f in range(start, end):
-            _wall_fluxes(equations, right, first, f, found, fluxes)
-        start = end
+        matrix, side = _together(equations, right, start, end)
+        found[start:end] = np.linalg.solve(matrix, side).reshape((end - start, POINTS, many))
+    _one_by_one(equations, right, first, end, found)
+    return found
+
+
+@njit(cache=True)
+def _one_by_one(equations: EnergyEquations, right: FloatArray, first: int, start: int, found: FloatArray) -> None:
+    """Fill the temperatures of the columns from `start` on; those before are known."""
+    n, k, many = found.shape
+    fluxes = np.zeros((2, n, many))
+    for f in range(first + 1, start):
+        _wall_fluxes(equations, right, first, f, found, fluxes)
     for f in range(start, n):
         side = right[f, :k].copy()
         if f - 1 > first:
@@ -50,7 +57,6 @@ def marched(equations: EnergyEquations, right: FloatArray, first: int) -> FloatA
             side -= equations.before_that[f] @ found[f - 2]
         found[f] = equations.inverse[f] @ side
         _wall_fluxes(equations, right, first, f, found, fluxes)
-    return found
 
 
 @njit(cache=True)
@@ -65,8 +71,8 @@ def _wall_fluxes(
 
 
 @njit(cache=True)
-def _together(equations: EnergyEquations, right: FloatArray, start: int, end: int, found: FloatArray) -> None:
-    """Temperatures of the columns from `start` to before `end` by elimination."""
+def _together(equations: EnergyEquations, right: FloatArray, start: int, end: int) -> tuple[FloatArray, FloatArray]:
+    """Matrix and right-hand sides of the columns from `start` to before `end`."""
     k, many = POINTS, right.shape[2]
     size = (end - start) * k
     matrix, side = np.zeros((size, size)), np.empty((size, many))
@@ -95,11 +101,7 @@ def _together(equations: EnergyEquations, right: FloatArray, start: int, end: in
                         matrix[row, there + j] -= taken * equations.flux_warm[i, g, wall, j]
                 for q in range(many):
                     side[row, q] += taken * right[i, k + wall, q]
-    solved = np.linalg.solve(matrix, side)
-    for f in range(start, end):
-        for i in range(k):
-            for q in range(many):
-                found[f, i, q] = solved[(f - start) * k + i, q]
+    return matrix, side
 
 
 @njit(cache=True)
@@ -127,52 +129,66 @@ def stored(equations: EnergyEquations, columns: Columns, added: FloatArray) -> F
     return right
 
 
-@njit(cache=True)
 def followed(
-    equations: EnergyEquations,
+    equations: EnergyEquations | None,
     columns: Columns,
     x: FloatArray,
     face_step: FloatArray,
     kernel: FloatArray,
     unknowns: FloatArray,
     first: int,
-    frozen: bool,
-    apart: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Derivatives of temperatures, shape (n, k, n + 2), mobilities and carriages, shape (n, n + 2), by all unknowns.
+    """Derivatives of temperatures, shape (n, k, n + 3), mobilities and carriages, shape (n, n + 3), by all unknowns.
 
-    With `apart` there is one more at the end: what the gradients change that are apart from those of the columns.
+    The last ones are no derivatives: what the energy still asks of the temperatures changes, and what gradients change
+    that are apart from those of the columns.
 
     Parameters
     ----------
-    equations : EnergyEquations
-        The energy at the temperatures of these unknowns.
+    equations : EnergyEquations or None
+        The energy at the temperatures of these unknowns; None where temperatures stay as they are.
     columns : Columns
         The columns there.
     x, face_step, kernel, unknowns
         The arguments of `reynolds.residual`.
     first : int
         Last column that is not heated.
-    frozen : bool
-        Whether the temperatures stay as they are.
-    apart : ndarray, shape (n,)
-        dP/dX at the faces less that of the columns; of no length where it is the same.
     """
-    n, k = face_step.size, POINTS
-    size = n + 2
-    nodes = np.empty((n + 1, size))
-    for i in range(n + 1):
-        for j in range(1, n):
-            nodes[i, j - 1] = -kernel[i, j]
-        nodes[i, n - 1], nodes[i, n], nodes[i, n + 1] = 0.0, unknowns[n] + x[i], 1.0
-    films = np.empty((n, size))
-    for j in range(size):
-        column = face_films(nodes[:, j].copy())
-        for f in range(n):
-            films[f, j] = column[f]
-    many = size + (apart.size > 0)
-    right = np.zeros((n, ROWS, many))
-    for f in range(n if frozen else first + 1, n):
+    apart = np.diff(node_pressure(unknowns)) / face_step - columns.place[:, 2]
+    films = _films(x, kernel, float(unknowns[x.size - 1]))
+    if equations is None:
+        found = np.zeros((face_step.size, POINTS, unknowns.size + 1))
+    else:
+        found = marched(equations, _by_unknowns(equations, face_step, films, apart, first), first)
+    return found, *_factor_rows(columns, face_step, films, apart, found)
+
+
+@njit(cache=True)
+def _films(x: FloatArray, kernel: FloatArray, exit_at: float) -> FloatArray:
+    """Derivatives of the films at the faces by all unknowns, shape (n, n + 2)."""
+    n = x.size - 1
+    films = np.zeros((n, n + 2))
+    for f in range(n):
+        start, weights = face_weights(f, n)
+        for i in range(4):
+            if weights[i] != 0.0:
+                for j in range(1, n):
+                    films[f, j - 1] -= weights[i] * kernel[start + i, j]
+                films[f, n] += weights[i] * (exit_at + x[start + i])
+                films[f, n + 1] += weights[i]
+    return films
+
+
+@njit(cache=True)
+def _by_unknowns(
+    equations: EnergyEquations, face_step: FloatArray, films: FloatArray, apart: FloatArray, first: int
+) -> FloatArray:
+    """Right-hand sides of `marched` for all unknowns, and for what is left of the energy."""
+    n, size = films.shape
+    right = np.zeros((n, ROWS, size + 1))
+    for f in range(first + 1, n):
+        for j in range(POINTS):
+            right[f, j, size] = -equations.residual[f, j]
         for g in range(3):
             slope, i = equations.slopes[f, g], f - g
             for j in range(ROWS):
@@ -185,10 +201,17 @@ def followed(
                 if i + 1 < n:
                     right[f, j, i] -= by_pressure + by_gradient
                 right[f, j, n - 1] -= slope[3, j]
-                if many > size:
-                    right[f, j, size] -= slope[2, j] * apart[i]
-    found = np.zeros((n, k, many)) if frozen else marched(equations, right, first)
-    mobility, carriage = np.empty((n, many)), np.empty((n, many))
+                right[f, j, size] -= slope[2, j] * apart[i]
+    return right
+
+
+@njit(cache=True)
+def _factor_rows(
+    columns: Columns, face_step: FloatArray, films: FloatArray, apart: FloatArray, found: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Derivatives of mobilities and carriages by all unknowns, and what else changes them."""
+    n, size = films.shape
+    mobility, carriage = np.empty((n, size + 1)), np.empty((n, size + 1))
     for f in range(n):
         for which in range(2):
             rows, slope = (mobility, columns.mobility[f]) if which == 0 else (carriage, columns.carriage[f])
@@ -196,10 +219,9 @@ def followed(
             line = warm @ found[f]
             for q in range(size):
                 rows[f, q] = line[q] + slope[2] * films[f, q]
-            if many > size:
-                rows[f, size] = line[size] + slope[3] * apart[f]
+            rows[f, size] = line[size] + slope[3] * apart[f]
             if f > 0:
                 rows[f, f - 1] += 0.5 * slope[1] - slope[3] / face_step[f]
             if f + 1 < n:
                 rows[f, f] += 0.5 * slope[1] + slope[3] / face_step[f]
-    return found, mobility, carriage
+    return mobility, carriage

@@ -31,8 +31,12 @@ from ehdmaps.ehl.warm_film import asked_flows, fill_columns, first_column, hold_
 from ehdmaps.ehl.warm_march import followed, marched
 from ehdmaps.physics.rheology import LIMITING
 
-LOOSE, TIGHT = 0.1, 1e-7
-"""Last step of the temperatures for a film that is far from its solution, and for one that is there [K]."""
+LOOSE, TIGHT, LITTLE = 0.1, 1e-7, 1e-4
+"""Last step of the temperatures for a film that is far from its solution, for one that is near, and the one that leaves
+its square [K]."""
+
+JOINT, NEAR = 1.0, 10.0
+"""Size of the last step, and its change of a temperature [K], below which film and temperatures move in one step."""
 
 MOST_STEPS = 15
 """Steps of the temperatures of one film."""
@@ -87,15 +91,17 @@ def warm_factors(
         Columns of the film.
     unknowns : ndarray, shape (n + 2,)
         Unknowns of the film.
-    mobility_rows, carriage_rows : ndarray, shape (n, n + 2), or (n, n + 3) with `drop`
-        Derivatives by all unknowns, see `energy.followed`; of no length for the residual alone.
+    mobility_rows, carriage_rows : ndarray, shape (n, n + 3)
+        Derivatives by all unknowns and what else changes them, see `followed`; of no length for the residual alone.
     drop : ndarray, shape (n,), optional
-        Steps of pressure of the columns, about which the factors are tangents, where those are not the film's.
+        Steps of pressure of the columns, about which the factors are tangents; those of the film where they are left
+        out.
     """
     none = np.empty((0, 0))
     mobility, carriage = columns.mobility[:, 0].copy(), columns.carriage[:, 0].copy()
     if drop is None:
         drop = np.diff(node_pressure(unknowns))
+    if mobility_rows.size == 0:
         return Factors(mobility, np.zeros(drop.size), drop, carriage, none, none, mobility_rows, carriage_rows)
     offset, carriage = drop * mobility_rows[:, -1], carriage + carriage_rows[:, -1]
     return Factors(mobility, offset, drop, carriage, none, none, mobility_rows, carriage_rows)
@@ -114,8 +120,8 @@ def warm_temperatures(
     asked: FloatArray,
     tolerance: float,
     most_steps: int,
-) -> tuple[EnergyEquations, float, int]:
-    """Temperatures of a film by Newton, from `rises`, which is overwritten: equations there, last step [K], steps.
+) -> tuple[EnergyEquations, float]:
+    """Temperatures of a film by Newton, from `rises`, which is overwritten: equations there, and the last step [K].
 
     Parameters
     ----------
@@ -145,17 +151,17 @@ def warm_temperatures(
         fill_columns(problem, x, face_step, kernel, unknowns, rises, asked, columns)
         equations = energy(problem, columns, face_step, walls, rises, first)
         if not np.all(np.isfinite(equations.residual)):
-            return equations, math.inf, count
+            return equations, math.inf
         if last <= tolerance or count >= most_steps:
             if asked.size > 0:
                 hold_gradients(problem, unknowns[n - 1], rises, columns)
                 equations = energy(problem, columns, face_step, walls, rises, first)
-            return equations, last, count
+            return equations, last
         right[:, :POINTS, 0] = -equations.residual
         move = marched(equations, right, first)[:, :, 0]
         last = np.max(np.abs(move))
         if not math.isfinite(last):
-            return equations, math.inf, count
+            return equations, math.inf
         part = min(1.0, LARGEST_RISE / max(last, 1e-300))
         rises += part * move
         count += 1
@@ -173,6 +179,7 @@ def warm_newton(
     load: float,
     tolerance: float,
     most_steps: int,
+    near: bool,
 ) -> WarmResult:
     """Solve the discrete contact with its temperatures.
 
@@ -188,6 +195,8 @@ def warm_newton(
         Temperatures to start from [K above T_0].
     load, tolerance, most_steps
         The other arguments of `newton`.
+    near : bool
+        Whether the start is a solution on the same grid, with its temperatures.
     """
     size = start.size
     n = size - 2
@@ -201,50 +210,43 @@ def warm_newton(
     last, relaxation = math.inf, 1.0
     old = np.zeros(n - 1)
     before, warm_before, taken, warming = unknowns, rises, np.zeros(size), np.zeros((n, POINTS))
-    frozen, known = True, False
+    frozen, known = not near, near
 
     def asked() -> FloatArray:
         """What the columns are asked to let flow: far from a solution, where the stress hardly depends on it."""
         if problem.shear.form != LIMITING or last <= SOFT_ABOVE:
             return np.empty(0)
-        return np.asarray(asked_flows(problem, x, face_step, kernel, unknowns, rises, columns))
+        fill_columns(problem, x, face_step, kernel, unknowns, rises, np.empty(0), columns)
+        return np.asarray(asked_flows(problem, x, kernel, unknowns, columns))
+
+    def settled(tolerance: float, steps: int = MOST_STEPS) -> tuple[EnergyEquations, float]:
+        """Temperatures of these unknowns."""
+        return warm_temperatures(
+            problem, x, face_step, kernel, unknowns, walls, first, rises, columns, asked(), tolerance, steps
+        )
 
     for count in range(most_steps):
-        follows = problem.shear.form == LIMITING and last > SOFT_ABOVE
         close = max(TIGHT, min(LOOSE, 0.1 * last))
-        # from another grid pressures are too rough to heat anything: first with the temperatures as they are
-        equations, left, _ = warm_temperatures(
-            problem,
-            x,
-            face_step,
-            kernel,
-            unknowns,
-            walls,
-            first,
-            rises,
-            columns,
-            asked(),
-            close,
-            0 if frozen else MOST_STEPS,
-        )
-        for _ in range(MOST_RETURNS):
-            if frozen or left <= close or not known:
-                break
-            # too far: an oil that yields too much is heated without bound
-            taken, warming = 0.5 * taken, 0.5 * warming
-            unknowns, rises = before + taken, warm_before + warming
-            equations, left, _ = warm_temperatures(
-                problem, x, face_step, kernel, unknowns, walls, first, rises, columns, asked(), close, MOST_STEPS
-            )
-        if not (frozen or left <= close):
-            return WarmResult(unknowns, rises, first, DIVERGED, count, last)
-        drop, apart = None, np.empty(0)
-        if follows:
-            drop = columns.place[:, 2] * face_step
-            apart = np.diff(node_pressure(unknowns)) / face_step - columns.place[:, 2]
-        following, mobility, carriage = followed(
-            equations, columns, x, face_step, kernel, unknowns, first, frozen, apart
-        )
+        equations: EnergyEquations | None = None
+        if frozen:
+            # from another grid pressures are too rough to heat anything: first with the temperatures as they are
+            fill_columns(problem, x, face_step, kernel, unknowns, rises, asked(), columns)
+        elif known and (last < JOINT or (near and count == 0)) and np.max(np.abs(warming)) < NEAR:
+            # film and temperatures in one step
+            equations, left = settled(close, 0)
+        else:
+            equations, left = settled(close)
+            for _ in range(MOST_RETURNS):
+                if left <= close or not known:
+                    break
+                # too far: an oil that yields too much is heated without bound
+                taken, warming = 0.5 * taken, 0.5 * warming
+                unknowns, rises = before + taken, warm_before + warming
+                equations, left = settled(close)
+            if not left <= close:
+                return WarmResult(unknowns, rises, first, DIVERGED, count, last)
+        drop = columns.place[:, 2] * face_step
+        following, mobility, carriage = followed(equations, columns, x, face_step, kernel, unknowns, first)
         known = not frozen
         factors = warm_factors(columns, unknowns, mobility, carriage, drop)
         lowest = residual_with(problem, factors, x, step, face_step, kernel, unknowns, load, out, jacobian)
@@ -258,17 +260,16 @@ def warm_newton(
         most = min(relaxation, YIELDING_STEP / last) if problem.shear.form == LIMITING else relaxation
         length = step_length(problem, x, kernel, unknowns, move, lowest, most)
         before, warm_before, taken = unknowns, rises, length * move
-        warming = (following[:, :, :size].reshape((n * POINTS, size)) @ taken).reshape((n, POINTS))
-        if follows:
-            warming += length * following[:, :, size]
+        warming = (following.reshape((n * POINTS, size + 1)) @ np.append(taken, length)).reshape((n, POINTS))
         warming *= min(1.0, LARGEST_RISE / max(np.max(np.abs(warming)), 1e-300))
         unknowns, rises = before + taken, warm_before + warming
         if frozen and (last < SMOOTH or count == MOST_FROZEN):
             frozen = False
         elif length == 1.0 and last < tolerance:
-            _, left, _ = warm_temperatures(
-                problem, x, face_step, kernel, unknowns, walls, first, rises, columns, asked(), TIGHT, MOST_STEPS
-            )
-            outcome = CONVERGED if left <= TIGHT else DIVERGED
+            # what a step leaves is of the order of its square
+            left = float(np.max(np.abs(warming)))
+            if left > LITTLE:
+                left = settled(LITTLE)[1]
+            outcome = CONVERGED if left <= LITTLE else DIVERGED
             return WarmResult(unknowns, rises, first, outcome, count + 1, last)
     return WarmResult(unknowns, rises, first, STAGNATED, most_steps, last)

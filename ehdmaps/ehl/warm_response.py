@@ -43,8 +43,8 @@ from ehdmaps.ehl.warm_newton import MOST_STEPS, warm_factors, warm_temperatures
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from ehdmaps.physics.isotherm import density
 
-EXACT = 1e-8
-"""Last step of temperatures that are differenced [K]."""
+EXACT = 1e-4
+"""Last step of temperatures that are differenced [K]: what it leaves is of the order of its square."""
 
 LEAST_RISE = 1e-3
 """Least unit of temperatures in a state [K]."""
@@ -74,7 +74,7 @@ def _state(
     kernel, n = log_kernel(grid.x, grid.step), grid.face.size
     columns, rises = empty_columns(n), rises.copy()
     walls = wall_weights(grid.face, first)
-    equations, _, _ = warm_temperatures(
+    equations, _ = warm_temperatures(
         problem, grid.x, grid.face_step, kernel, unknowns, walls, first, rises, columns, np.empty(0), EXACT, MOST_STEPS
     )
     none, out = np.empty((0, 0)), np.empty(n + 2)
@@ -363,8 +363,9 @@ def warm_linearised(
     here = _state(problem, grid, unknowns, rises, first, load)
     x, kernel = grid.x, here.kernel
     following, mobility_rows, carriage_rows = followed(
-        here.equations, here.columns, x, grid.face_step, kernel, unknowns, first, False, np.empty(0)
+        here.equations, here.columns, x, grid.face_step, kernel, unknowns, first
     )
+    following = np.ascontiguousarray(following[:, :, :-1])
     factors = warm_factors(here.columns, unknowns, mobility_rows, carriage_rows)
     size = unknowns.size
     total = size + (neighbour is not None)
