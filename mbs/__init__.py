@@ -22,7 +22,7 @@ the system          `model`: bodies, elements, what is prescribed; the system an
 what bodies are     `flexible` (beams, finite elements, reduction)
 what connects them  `bearings` (the bearing force), `gears`
 linear              `linearised` (modes, responses, over speed); `modal` (identified from hammer hits)
-in time             `transient` (method, compiled runs); `spectral` (levels over speed and order)
+in time             `transient` (method, compiled runs); `spectral` (levels over speed and order); `timedata` (files)
 analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, variants, hammer, plan; `automatic`
 for people          `output` (datasets, figures), `commands`, `cli`; `systems` (shipped scenes)
 ==================  ====================================================================================
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from mbs.analyses.auto import AutoSettings, automatic
     from mbs.analyses.campbell import campbell
     from mbs.analyses.case import Case
+    from mbs.analyses.critical import critical
     from mbs.analyses.hammer import HammerSettings, hammer
     from mbs.analyses.lsa import LsaSettings, lsa
     from mbs.analyses.modes import modes
@@ -110,6 +111,7 @@ __all__ = [
     "assemble",
     "automatic",
     "campbell",
+    "critical",
     "hammer",
     "lsa",
     "modes",
@@ -163,6 +165,7 @@ _HOMES = {
     "assemble": "scene.assembly",
     "automatic": "analyses.auto",
     "campbell": "analyses.campbell",
+    "critical": "analyses.critical",
     "hammer": "analyses.hammer",
     "lsa": "analyses.lsa",
     "modes": "analyses.modes",

@@ -10,6 +10,7 @@ from typing import Any
 
 from ehdmaps.errors import AnalysisError
 from ehdmaps.program import Parser, run
+from ehdmaps.workers import processes
 from mbs.model.relaxation import DEFAULT_FILMS
 
 VARIED_KEYS = (
@@ -44,16 +45,30 @@ def parser() -> argparse.ArgumentParser:
         ("statics", "equilibrium, loads of the rollers, stiffness and damping of the bearings"),
         ("modes", "frequencies, damping ratios and where the strain energy is"),
         ("lsa", "linear system analysis: state space and frequency responses"),
-        ("runup", "integrate the nonlinear system in time over its speed profile"),
+        ("runup", "integrate the nonlinear system in time over its speed profile; SCENE may be a recorded run"),
     ):
-        command = _scene_command(commands, name, words, compares=False)
+        # Laws stand side by side in lsa and runup.
+        several = name in ("lsa", "runup")
+        command = _scene_command(commands, name, words, compares=several)
         if name == "modes":
             _modes(command)
-        _films(command, compares=name == "lsa")
+        if name == "runup":
+            _runup(command)
+        _films(command, compares=several)
     sweep = _scene_command(commands, "sweep", "modes, bearings and frequency responses over speed", compares=True)
     _films(sweep, compares=True)
     _sweep(sweep)
-    campbell = _scene_command(commands, "campbell", "run-up in time as levels over speed and frequency", compares=True)
+    critical = _scene_command(
+        commands, "critical", "critical speeds, and the response to unbalances and orders over speed", compares=False
+    )
+    _films(critical, compares=False)
+    _speeds(critical)
+    campbell = _scene_command(
+        commands,
+        "campbell",
+        "run-up in time as levels over speed and frequency; SCENE may be a recorded run (.nc, .csv, .uff, .wav)",
+        compares=True,
+    )
     _films(campbell, compares=True)
     _campbell(campbell)
     variants = _scene_command(
@@ -101,6 +116,20 @@ def _modes(command: argparse.ArgumentParser) -> None:
     )
 
 
+def _runup(command: argparse.ArgumentParser) -> None:
+    """Add the options of runs in time."""
+    _parallel(command)
+    command.add_argument(
+        "--spectrum-at",
+        metavar="SPEED",
+        action="append",
+        help='amplitude spectra of all sensors about a speed, such as "1500 rpm"; up to four times',
+    )
+    command.add_argument("--window", metavar="TIME", help='length of their windows, such as "50 ms"')
+    command.add_argument("--highest", metavar="FREQUENCY", help='their highest frequency, such as "5 kHz"')
+    _recorded(command)
+
+
 def _films(command: argparse.ArgumentParser, compares: bool) -> None:
     """Add the kind of the films."""
     command.add_argument(
@@ -124,15 +153,18 @@ def _supply(command: argparse.ArgumentParser, of: str, compares: bool) -> None:
     )
 
 
+def _parallel(command: argparse.ArgumentParser) -> None:
+    """Add the number of processes."""
+    command.add_argument(
+        "--workers", metavar="N", type=processes, help="processes that compute cases side by side; default: all cores"
+    )
+
+
 def _sweep(command: argparse.ArgumentParser) -> None:
     """Add the options of a sweep."""
     _load_and_angle(command)
-    command.add_argument(
-        "--speeds",
-        nargs=3,
-        metavar=("FROM", "TO", "POINTS"),
-        help='such as "500 rpm" "2500 rpm" 40, in place of [sweep] of the scene',
-    )
+    _parallel(command)
+    _speeds(command)
     command.add_argument(
         "--cage-angles",
         metavar="COUNT",
@@ -140,12 +172,43 @@ def _sweep(command: argparse.ArgumentParser) -> None:
     )
 
 
+def _speeds(command: argparse.ArgumentParser) -> None:
+    """Add the speeds of a sweep."""
+    command.add_argument(
+        "--speeds",
+        nargs=3,
+        metavar=("FROM", "TO", "POINTS"),
+        help='such as "500 rpm" "2500 rpm" 40, in place of [sweep] of the scene',
+    )
+
+
 def _campbell(command: argparse.ArgumentParser) -> None:
     """Add the options of a Campbell diagram."""
+    _parallel(command)
     _load_and_angle(command)
-    command.add_argument("--sensor", metavar="NAME", help="a sensor; default: the first of an acceleration")
+    command.add_argument(
+        "--sensor",
+        metavar="NAME",
+        action="append",
+        help="a sensor, more than once for several of one run, or all; default: the first of an acceleration",
+    )
     command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
     command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
+    command.add_argument(
+        "--orders", metavar="ORDER", nargs="+", help="to draw and follow, such as 21 42; default: of gears or rollers"
+    )
+    _recorded(command)
+    command.add_argument(
+        "--measured",
+        metavar="FILE",
+        help="a measured run beside the simulated ones: .csv, .uff, .wav or .nc with a speed",
+    )
+    command.add_argument(
+        "--channel",
+        metavar="NAME",
+        action="append",
+        help="its channel for the sensor, once for each --sensor; default: the one of that name, else the only one",
+    )
     command.add_argument(
         "--bands",
         metavar="N",
@@ -159,6 +222,19 @@ def _campbell(command: argparse.ArgumentParser) -> None:
         'it, such as "1 dB"; with --auto films, supply and roughness, too',
     )
     command.add_argument("--modes", action="store_true", help="draw in the linear modes, with the films of each run")
+
+
+def _recorded(command: argparse.ArgumentParser) -> None:
+    """Add where the speed of a recorded run is, and where signals are written."""
+    command.add_argument(
+        "--signals", metavar="FILE", help="the signals of all sensors with the speed: .csv, .uff, .wav, or .nc"
+    )
+    command.add_argument(
+        "--speed-channel", metavar="NAME", help="speed of a recorded run; default: its only channel in rpm, Hz or 1/min"
+    )
+    command.add_argument("--tacho", metavar="NAME", help="a channel of pulses instead, with --pulses")
+    command.add_argument("--pulses", metavar="N", help="pulses of the tacho a turn of the system (1)")
+    command.add_argument("--speed-table", metavar="FILE.csv", help="a table of time and speed instead")
 
 
 def _tradeoff(commands: Any) -> None:
@@ -186,6 +262,7 @@ def _tradeoff(commands: Any) -> None:
 
 def _variants(command: argparse.ArgumentParser) -> None:
     """Add the options of single changes."""
+    _parallel(command)
     command.add_argument(
         "--vary",
         nargs="+",
@@ -279,13 +356,20 @@ def _plan(commands: Any) -> None:
     words = "which ranges a scene needs of a contact map, and the job that covers just these"
     command: argparse.ArgumentParser = commands.add_parser("plan", help=words, description=words)
     command.add_argument("scene", metavar="SCENE")
-    command.add_argument("--map", metavar="MAP.nc", help="say whether this map covers the scene, instead of a job")
+    command.add_argument(
+        "--map",
+        metavar="MAP.nc",
+        action="append",
+        help="say whether this map covers the scene, instead of a job; with several types of bearing one for each",
+    )
     command.add_argument("--law", metavar="LAW", default="hertz", help="hertz | constant:NAME, for the loads at rest")
     command.add_argument("--clearance", metavar="LENGTH", help='diametral clearance of all bearings, such as "20 um"')
     command.add_argument(
         "--margin", metavar="FACTOR", help="highest load of the map over the largest one at rest, for what moves (3)"
     )
-    command.add_argument("-o", "--output", metavar="JOB.toml", help="job for `ehdmaps generate`")
+    command.add_argument(
+        "-o", "--output", metavar="JOB.toml", help="job for `ehdmaps generate`; one for each type of bearing"
+    )
 
 
 def _reduce(commands: Any) -> None:
@@ -339,12 +423,14 @@ def _scene_command(
     # What comes twice is an error of the command, in words, where it does not compare.
     more = _MORE if compares else ""
     command.add_argument(
-        "--map", metavar="MAP.nc", action="append", help=f"made by `ehdmaps generate` for the same bearing{more}"
+        "--map",
+        metavar="MAP.nc",
+        action="append",
+        help=f"made by `ehdmaps generate` for the same bearing; more than once for other types of bearing{more}",
     )
     command.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
     command.add_argument("--law", metavar="LAW", action="append", help=f"{_LAW}{more}")
-    # Films stand side by side in lsa, too.
-    _supply(command, "[supply] of the scene, else of the job of the map, else flooded", compares or name == "lsa")
+    _supply(command, "[supply] of the scene, else of the job of the map, else flooded", compares)
     command.add_argument(
         "--clearance",
         metavar="LENGTH",
@@ -375,6 +461,12 @@ def _auto(command: argparse.ArgumentParser, tolerance: bool = True) -> None:
         help="heat in the films of the map of --auto: isothermal | inlet-heat | thermal; default: by the rule of the "
         "inlet where that matters and holds",
     )
+    command.add_argument(
+        "--shear",
+        metavar="LAW",
+        help="law of the shear stress in the films of the map of --auto: newtonian | eyring | carreau | limiting; "
+        "default: limiting where that matters",
+    )
     if not tolerance:
         return
     command.add_argument(
@@ -391,7 +483,12 @@ def _run(commands: Any, top: argparse.ArgumentParser) -> None:
     words = "every analysis for which the scene has a table: statics, modes, lsa, sweep, and campbell or runup"
     command: argparse.ArgumentParser = commands.add_parser("run", help=words, description=words)
     command.add_argument("scene", metavar="SCENE")
-    command.add_argument("--map", metavar="MAP.nc", help="made by `ehdmaps generate` for the same bearing; or --auto")
+    command.add_argument(
+        "--map",
+        metavar="MAP.nc",
+        action="append",
+        help="made by `ehdmaps generate` for the same bearing; more than once for other types of bearing; or --auto",
+    )
     command.add_argument("--clearance", metavar="LENGTH", help='diametral clearance of all bearings, such as "20 um"')
     command.add_argument("-o", "--output", metavar="FOLDER", help="results, figures and texts of all analyses")
     _auto(command)

@@ -68,6 +68,10 @@ COLD_START_BELOW = 1.0
 VALLEY_REFINEMENT = 1.2
 """Density of cells at the bottom of the damping valley, relative to the density elsewhere."""
 
+OTHER_PLACES = 1.05, 1.1
+"""Densities of cells, relative to the one asked for, that are tried besides where an oil has a limiting stress: on some
+grids Newton goes round in circles, as its front stands between two cells."""
+
 THIN_FILM = 20.0
 """Load M above which a negative loss can only be a numerical one."""
 
@@ -91,8 +95,8 @@ LADDER_FEET = 1.0, 0.2
 FIRST_HEAT, LEAST_HEAT = 0.25, 0.1
 """First part of the heat that is let in on the way to a film with temperatures, and the least part at once."""
 
-STRONGEST, LEAST_STRONG = 64.0, 1.5
-"""Strengths of the oil, as factors on its stresses, with which the way to an oil that yields may begin."""
+STRONGEST = 64.0
+"""Largest strength of the oil, a factor on its stresses, with which the way to an oil that yields may begin."""
 
 WEAKENING, LEAST_WEAKENING = 0.5, 0.98
 """First factor from one strength to the next on that way, and the factor closest to one that is tried."""
@@ -215,7 +219,9 @@ def solve_groups(
         resolution = replace(resolution, density=VALLEY_REFINEMENT * resolution.density)
     solution = _solve_once(problem, M, L, resolution, previous)
     steps = solution.steps
-    for again in (resolution.with_wide_spike, replace(resolution, density=2.0 * resolution.density)):
+    nearby = OTHER_PLACES if problem.shear.form == LIMITING and problem.heat.log_eta.size == 0 else ()
+    others = [replace(resolution, density=factor * resolution.density) for factor in (*nearby, 2.0)]
+    for again in (*others[:-1], resolution.with_wide_spike, others[-1]):
         if solution.outcome == CONVERGED and (solution.loss > 0.0 or M < THIN_FILM):
             break
         if again == resolution:
@@ -303,13 +309,46 @@ def converged(
         start = hertz_start(grid.x, grid.step, kernel, guess, thick_film_exit(guess), LOAD)
     if problem.heat.log_eta.size > 0:
         return _converged_warm(problem, layout, grid, kernel, start, spike, tolerance, near)
+    unknowns, steps, outcome = _isothermal(problem, grid, kernel, start, tolerance)
+    if outcome != CONVERGED and problem.shear.form != NEWTONIAN:
+        unknowns, more, outcome = _weakened(problem, grid, kernel, start, tolerance)
+        steps += more
+    if outcome != CONVERGED:
+        return None, steps, outcome
+    return Profile(problem, layout, grid, kernel, unknowns, spike), steps, CONVERGED
+
+
+def _isothermal(
+    problem: LineProblem, grid: Grid, kernel: FloatArray, start: FloatArray, tolerance: float
+) -> tuple[FloatArray, int, int]:
+    """Newton on one grid without temperatures: unknowns, steps, outcome."""
     try:
         result = newton(problem, grid.x, grid.step, grid.face_step, kernel, start, LOAD, tolerance, MOST_STEPS)
     except np.linalg.LinAlgError:  # a start that is too far away
-        return None, 0, DIVERGED
-    if result.outcome != CONVERGED:
-        return None, result.steps, result.outcome
-    return Profile(problem, layout, grid, kernel, result.unknowns, spike), result.steps, CONVERGED
+        return start, 0, DIVERGED
+    return result.unknowns, result.steps, result.outcome
+
+
+def _weakened(
+    problem: LineProblem, grid: Grid, kernel: FloatArray, start: FloatArray, tolerance: float
+) -> tuple[FloatArray, int, int]:
+    """Newton on one grid for an oil that bears more stress, which is let yield more and more."""
+    strength, total, outcome, unknowns = 1.0, 0, STAGNATED, start
+    while outcome != CONVERGED and strength < STRONGEST:
+        strength /= WEAKENING
+        unknowns, steps, outcome = _isothermal(_stronger(problem, strength), grid, kernel, start, tolerance)
+        total += steps
+    weakening = WEAKENING
+    while outcome == CONVERGED and strength > 1.0:
+        weaker = max(1.0, strength * weakening)
+        trial, steps, found = _isothermal(_stronger(problem, weaker), grid, kernel, unknowns, tolerance)
+        total += steps
+        if found == CONVERGED:
+            unknowns, strength, weakening = trial, weaker, weakening**1.5
+        else:
+            weakening = math.sqrt(weakening)
+            outcome = found if weakening > LEAST_WEAKENING else CONVERGED
+    return unknowns, total, outcome
 
 
 def _converged_warm(
@@ -378,14 +417,11 @@ def _first(
     if warm is not None:
         found, steps, outcome = on_coarse_grid(problem, guess, resolution, warm)
         total += steps
-    if found is None and M < 20.0:
+    if found is None and (M < 20.0 or problem.shear.form != NEWTONIAN):
         found, steps, outcome = on_coarse_grid(problem, guess, resolution, None)
         total += steps
-    if found is None and problem.shear.form == NEWTONIAN:
+    if found is None:
         found, steps, outcome = _climb(problem, M, L, resolution)
-        total += steps
-    if found is None and problem.shear.form != NEWTONIAN:
-        found, steps, outcome = _yielding(problem, M, L, resolution)
         total += steps
     return found, total, outcome
 
@@ -426,29 +462,6 @@ def _less_heated(problem: LineProblem, share: float) -> LineProblem:
     return problem._replace(
         heat=heat._replace(dissipation=share * heat.dissipation, compression=share * heat.compression)
     )
-
-
-def _yielding(problem: LineProblem, M: float, L: float, resolution: Resolution) -> tuple[Profile | None, int, int]:
-    """Start with an oil that hardly yields, and let it yield more and more."""
-    guess = expected_film(M, L)
-    stronger, total, outcome = STRONGEST, 0, STAGNATED
-    found: Profile | None = None
-    while found is None and stronger > LEAST_STRONG:
-        found, steps, outcome = on_coarse_grid(_stronger(problem, stronger), guess, resolution, None)
-        total += steps
-        stronger *= WEAKENING if found is None else 1.0
-    weakening = WEAKENING
-    while found is not None and stronger > 1.0:
-        weaker = max(1.0, stronger * weakening)
-        trial, steps, outcome = on_coarse_grid(_stronger(problem, weaker), guess, resolution, found)
-        total += steps
-        if trial is not None:
-            found, stronger, weakening = trial, weaker, weakening**1.5
-        else:
-            weakening = math.sqrt(weakening)
-            if weakening > LEAST_WEAKENING:
-                found = None
-    return found, total, outcome
 
 
 def _stronger(problem: LineProblem, factor: float) -> LineProblem:

@@ -18,7 +18,7 @@ from ehdmaps.ehl.reynolds import (
     shear_factors,
     steepest_viscosity_step,
 )
-from ehdmaps.physics.rheology import NEWTONIAN
+from ehdmaps.physics.rheology import LIMITING, NEWTONIAN
 
 LOG_VISCOSITY_STEP = 5.0
 """Largest change of ln eta in one step."""
@@ -38,7 +38,11 @@ LEAST_RELAXATION = 0.1
 TURNED = 0.3
 """Minus the cosine between two steps from which on the second counts as turned back."""
 
-SOFT_ABOVE = 1e-3
+YIELDING_STEP = 0.1
+"""Largest step of an oil that yields, in its size as of `step_size`: a pressure that rises over the front of a spike by
+more than the oil bears asks for flows of any size."""
+
+SOFT_ABOVE = 1e-4
 """Size of the last step above which the tangents of an oil that yields are soft, see `shear_factors`."""
 
 CONVERGED, STAGNATED, DIVERGED = 0, 1, 2
@@ -225,7 +229,8 @@ def newton(
             return NewtonResult(unknowns, DIVERGED, count, last)
         if yields:
             relaxation = relaxed(move, old, relaxation) if last > SOFT_ABOVE else 1.0
-        length = step_length(problem, x, kernel, unknowns, move, lowest, relaxation)
+        most = min(relaxation, YIELDING_STEP / last) if problem.shear.form == LIMITING else relaxation
+        length = step_length(problem, x, kernel, unknowns, move, lowest, most)
         unknowns = unknowns + length * move
         if length == 1.0 and last < tolerance:
             return NewtonResult(unknowns, CONVERGED, count + 1, last)

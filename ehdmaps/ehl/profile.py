@@ -8,10 +8,10 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.elastic import DRY_DATUM
-from ehdmaps.ehl.energy import fill_columns
 from ehdmaps.ehl.grid import Grid, Layout, Spike
 from ehdmaps.ehl.reynolds import MOST_LOG_VISCOSITY, LineProblem, face_films, film, node_pressure, shear_factors
 from ehdmaps.ehl.warm_column import POINTS, empty_columns
+from ehdmaps.ehl.warm_film import fill_columns
 from ehdmaps.physics.isotherm import log_viscosity
 from ehdmaps.physics.rheology import NEWTONIAN
 from ehdmaps.physics.rolling import film_times_rise, rolling_force_of_inlet
@@ -24,7 +24,7 @@ class Warmth:
     Attributes
     ----------
     rises : ndarray, shape (n, k)
-        Temperatures at the Chebyshev points across the film, from the lower to the upper wall [K above T_0].
+        Temperatures at the Lobatto points across the film, from the lower to the upper wall [K above T_0].
     first : int
         Last face before which nothing is heated.
     """

@@ -178,7 +178,8 @@ class ReynoldsSolver(ContactSolverDefaults):
     def natural_frequencies(self) -> tuple[float, ...]:
         """Octaves over which the complex stiffness of a contact goes from that of slow motion to that of a locked film.
 
-        They cost a sixth of a map's time. None for films with temperatures, whose response is that of slow motion only.
+        They cost a sixth of a map's time. Maps of films with temperatures have none of them: they would take as long
+        as these films. `film_spectrum` answers for those too.
         """
         return (0.5, 1.0, 2.0, 4.0, 8.0) if self.physics != THERMAL else ()
 
@@ -287,11 +288,6 @@ class ReynoldsSolver(ContactSolverDefaults):
         self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint, frequencies: FloatArray
     ) -> FilmSpectrum:
         """Film of one point over frequency, from one solution; arguments as of `ContactSolver.film_spectrum`."""
-        if self.physics == THERMAL:
-            raise InputError(
-                f"reynolds solver, frequency: physics = {self.physics!r} has films of slow motion only; "
-                f"leave the frequencies out, or choose {ISOTHERMAL}"
-            )
         film, groups = self._solve(contact, lubricant, point, None)
         spectrum = self._spectrum(contact, lubricant, point, film, groups, frequencies)
         return self._with_inlet_heat(spectrum, contact, lubricant, point)

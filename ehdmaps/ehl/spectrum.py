@@ -9,7 +9,9 @@ high that they do not, the space grows to that of all unknowns, which is exact.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numba import njit
@@ -24,15 +26,26 @@ SMALL_RESIDUAL = 1e-13
 CHECK_EVERY = 3
 """Vectors that are added between two looks at the residual."""
 
+MOST_VECTORS, LITTLE_RESIDUAL = 150, 1e-9
+"""Vectors of the space of equations that are known by what they do, and the residual at which it is large enough."""
+
 _TINY = float(np.finfo(float).tiny)
 
 
-def film_compliances(linear: Linearisation, frequencies: FloatArray) -> ComplexArray:
+class Followed(Protocol):
+    """Equations of a film with more than its own unknowns, that make their space themselves."""
+
+    def space(self, fastest: float) -> FilmSpace:
+        """Return the Krylov space that serves all frequencies up to a highest one, Omega."""
+        ...
+
+
+def film_compliances(linear: Linearisation | Followed, frequencies: FloatArray) -> ComplexArray:
     """Complex film compliance S = -dH0/dW - ln(2)/pi; S = compliance - i Omega loss for slow motion.
 
     Parameters
     ----------
-    linear : Linearisation
+    linear : Linearisation or Followed
         The equations about a steady solution.
     frequencies : ndarray, shape (k,)
         Omega = omega b/u, > 0.
@@ -42,7 +55,8 @@ def film_compliances(linear: Linearisation, frequencies: FloatArray) -> ComplexA
     ndarray, shape (k,)
         Film compliances in units of b/(p_H R).
     """
-    space = film_space(linear, float(np.max(frequencies)))
+    fastest = float(np.max(frequencies))
+    space = film_space(linear, fastest) if isinstance(linear, Linearisation) else linear.space(fastest)
     return space.compliances(np.ascontiguousarray(frequencies, dtype=float))
 
 
@@ -90,6 +104,32 @@ def film_space(linear: Linearisation, fastest: float) -> FilmSpace:
     return FilmSpace(*_space(linear.arrays, linear.unit, linear.height, fastest))
 
 
+def arnoldi(step: Callable[[FloatArray], FloatArray], static: FloatArray, height: int, fastest: float) -> FilmSpace:
+    """Return the Krylov space of equations that are known by what they do.
+
+    Parameters
+    ----------
+    step : callable
+        T z of a state z, shape (size,).
+    static : ndarray, shape (size,)
+        Static response A^-1 e.
+    height : int
+        Index of H0 in a state.
+    fastest : float
+        Highest Omega = omega b/u.
+    """
+    norm, most = float(np.linalg.norm(static)), min(static.size, MOST_VECTORS)
+    basis, hessenberg = np.empty((most + 1, static.size)), np.zeros((most + 1, most))
+    basis[0] = static / norm
+    count = 0
+    while count < most:
+        _orthogonalised(step(basis[count]), basis, hessenberg, count)
+        count += 1
+        if _residual(hessenberg, count, fastest) < LITTLE_RESIDUAL or hessenberg[count, count - 1] < _TINY:
+            break
+    return FilmSpace(norm, hessenberg[:count, :count].copy(), basis[:count, height].copy())
+
+
 @njit(cache=True)
 def _space(linear: Arrays, unit: FloatArray, height: int, fastest: float) -> tuple[float, FloatArray, FloatArray]:
     """Length of the static response, T in the space of its vectors, and the unknown `height` of these."""
@@ -113,7 +153,12 @@ def _space(linear: Arrays, unit: FloatArray, height: int, fastest: float) -> tup
 @njit(cache=True)
 def _extend(linear: Arrays, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
     """Add T times the last vector to the basis, orthogonal to all before it; twice, for round-off."""
-    found = solved(linear, storage(linear, basis[count]))
+    _orthogonalised(solved(linear, storage(linear, basis[count])), basis, hessenberg, count)
+
+
+@njit(cache=True)
+def _orthogonalised(found: FloatArray, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
+    """Add a vector to the basis, orthogonal to all before it."""
     for _ in range(2):
         along = basis[: count + 1] @ found
         for i in range(count + 1):

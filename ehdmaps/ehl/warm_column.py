@@ -1,6 +1,6 @@
 """Columns of a film with temperatures: velocity, flow and heat of shear across the film, with exact derivatives.
 
-Temperatures stand at Chebyshev points across the film, and all integrals are those of the polynomial through them. With
+Temperatures stand at Lobatto points across the film, and all integrals are those of the polynomial through them. With
 F = rate/tau of the law of shear at the viscosity of the place, A_0 and A_1 the integrals of F and F zeta from the lower
 wall, and rho in units of its value at the surfaces' temperature,
 
@@ -28,9 +28,10 @@ from ehdmaps.ehl.warm_oil import warm_viscosity
 from ehdmaps.physics.isotherm import density
 from ehdmaps.physics.rheology import LIMITING, NEWTONIAN, ShearLaw, thinning, yielding
 
-POINTS = 11
-"""Chebyshev points across the film, both walls included: 9 change the film of a light contact by 0.4 %, of others by
-0.01 %."""
+POINTS = 9
+"""Lobatto points across the film, both walls included. Beside 19 they change the film of a light contact in cold oil,
+5 N/mm at 5 m/s and 20 degC, by 0.6 % and its loss by 1.5 %, at 10 m/s and 60 degC by 0.2 and 0.02 %, and others by less
+than 0.1 %."""
 
 MOST_STEPS = 200
 """Steps towards the stress of a column."""
@@ -39,23 +40,22 @@ _thinning, _yielding = njit(cache=True)(thinning), njit(cache=True)(yielding)
 _density = njit(cache=True)(density)
 
 
-def _chebyshev(points: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _lobatto(points: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Places on 0 .. 1, derivative, and integral from 0, as matrices on values at the places."""
-    last = points - 1
-    x = -np.cos(math.pi * np.arange(points) / last)
-    ends = np.where((np.arange(points) % last) == 0, 2.0, 1.0) * (-1.0) ** np.arange(points)
-    apart = x[:, None] - x[None, :] + np.eye(points)
-    derivative = np.outer(ends, 1.0 / ends) / apart
-    derivative -= np.diag(derivative.sum(axis=1))
-    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, last))
-    series = np.polynomial.chebyshev.chebint(to_series, lbnd=-1, axis=0)
-    integral = 0.5 * np.polynomial.chebyshev.chebvander(x, points) @ series
-    return 0.5 * (x + 1.0), 2.0 * derivative, np.ascontiguousarray(integral)
+    legendre = np.polynomial.legendre
+    inner = legendre.Legendre.basis(points - 1).deriv().roots().real
+    x = np.concatenate([[-1.0], np.sort(inner), [1.0]])
+    to_series = np.linalg.inv(legendre.legvander(x, points - 1))
+    derivative = legendre.legvander(x, points - 2) @ legendre.legder(to_series)
+    integral = legendre.legvander(x, points) @ legendre.legint(to_series, lbnd=-1)
+    return 0.5 * (x + 1.0), np.ascontiguousarray(2.0 * derivative), np.ascontiguousarray(0.5 * integral)
 
 
-HEIGHTS, SLOPE, INTEGRAL = _chebyshev(POINTS)
-BEND = np.ascontiguousarray(SLOPE @ SLOPE)
+HEIGHTS, SLOPE, INTEGRAL = _lobatto(POINTS)
 WEIGHTS = INTEGRAL[-1].copy()
+CONDUCTION = np.ascontiguousarray(SLOPE.T @ (WEIGHTS[:, None] * SLOPE))
+"""Int v' T' dzeta of the polynomials through values at the places: each row is what one place gives to the others."""
+
 PARABOLA = 6.0 * HEIGHTS * (1.0 - HEIGHTS)
 
 
@@ -230,7 +230,7 @@ def lower_stress(law: ShearLaw, pressure: float, rise: float, rate: float, fluid
     bound *= _yielding(law, bound, pressure)[0]
     low, high = min(-rise, 0.0), max(0.0, -rise) + bound
     trial = min(max(guess, low), high)
-    unit = law.stress * a0
+    unit, before = law.stress * a0, math.inf
     for _ in range(MOST_STEPS):
         total = slope = 0.0
         for k in range(POINTS):
@@ -246,8 +246,10 @@ def lower_stress(law: ShearLaw, pressure: float, rise: float, rate: float, fluid
         if math.isfinite(total) and math.isfinite(slope) and slope > 0.0:
             miss = math.asinh(rate / unit) - math.asinh(total / unit)
             newton = miss * math.hypot(unit, total) / slope
-            if low <= trial + newton <= high:
+            # walls that yield both ways throw Newton from one end of the bracket to the other and back
+            if low <= trial + newton <= high and abs(newton) <= 0.5 * before:
                 move, quadratic = newton, True
+        before = abs(move)
         trial += move
         if abs(move) <= (1e-9 if quadratic else 1e-14) * (abs(trial) + abs(rise)):
             break

@@ -11,11 +11,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.ehl.energy import LARGEST_RISE, asked_flows, first_column, followed, wall_weights, warm_temperatures
+from ehdmaps.ehl.energy import ROWS, EnergyEquations, energy
 from ehdmaps.ehl.newton import CONVERGED, DIVERGED, SOFT_ABOVE, STAGNATED, lifted, relaxed, solve_scaled, step_length
 from ehdmaps.ehl.newton import step_size as size_of
 from ehdmaps.ehl.reynolds import Factors, LineProblem, film, node_pressure, residual_with
+from ehdmaps.ehl.wall_heat import wall_weights
 from ehdmaps.ehl.warm_column import POINTS, Columns, empty_columns
+from ehdmaps.ehl.warm_film import asked_flows, fill_columns, first_column, hold_gradients
+from ehdmaps.ehl.warm_march import followed, marched
 from ehdmaps.physics.rheology import LIMITING
 
 LOOSE, TIGHT = 0.1, 1e-7
@@ -26,6 +29,9 @@ MOST_STEPS = 15
 
 SMOOTH, MOST_FROZEN = 0.05, 12
 """Size of the last step from which on temperatures follow, and the steps after which they do at all events."""
+
+LARGEST_RISE = 30.0
+"""Largest change of a temperature in one step [K]."""
 
 MOST_RETURNS = 4
 """Halvings of a step after which the film has no temperatures."""
@@ -85,6 +91,66 @@ def warm_factors(
     return Factors(mobility, offset, drop, carriage, none, none, mobility_rows, carriage_rows)
 
 
+def warm_temperatures(
+    problem: LineProblem,
+    x: FloatArray,
+    face_step: FloatArray,
+    kernel: FloatArray,
+    unknowns: FloatArray,
+    walls: FloatArray,
+    first: int,
+    rises: FloatArray,
+    columns: Columns,
+    asked: FloatArray,
+    tolerance: float,
+    most_steps: int,
+) -> tuple[EnergyEquations, float, int]:
+    """Temperatures of a film by Newton, from `rises`, which is overwritten: equations there, last step [K], steps.
+
+    Parameters
+    ----------
+    problem, x, face_step, kernel, unknowns
+        The arguments of `reynolds.residual`.
+    walls : ndarray, shape (n, n)
+        Matrix of `wall_heat.wall_weights`.
+    first : int
+        Last column that is not heated.
+    rises : ndarray, shape (n, k)
+        Temperatures [K above T_0].
+    columns : Columns
+        Columns of the film, on return those at its temperatures.
+    asked : ndarray, shape (n,)
+        Flow that the gradient of a column follows, see `asked_flows`, NaN where it is that of the pressures; of no
+        length where it is so everywhere.
+    tolerance : float
+        Largest last step [K].
+    most_steps : int
+        Steps at most.
+    """
+    n = face_step.size
+    right = np.zeros((n, ROWS, 1))
+    last = math.inf
+    count = 0
+    while True:
+        fill_columns(problem, x, face_step, kernel, unknowns, rises, asked, columns)
+        equations = energy(problem, columns, face_step, walls, rises, first)
+        if not np.all(np.isfinite(equations.residual)):
+            return equations, math.inf, count
+        if last <= tolerance or count >= most_steps:
+            if asked.size > 0:
+                hold_gradients(problem, unknowns[n - 1], rises, columns)
+                equations = energy(problem, columns, face_step, walls, rises, first)
+            return equations, last, count
+        right[:, :POINTS, 0] = -equations.residual
+        move = marched(equations, right, first)[:, :, 0]
+        last = np.max(np.abs(move))
+        if not math.isfinite(last):
+            return equations, math.inf, count
+        part = min(1.0, LARGEST_RISE / max(last, 1e-300))
+        rises += part * move
+        count += 1
+
+
 def warm_newton(
     problem: LineProblem,
     x: FloatArray,
@@ -119,7 +185,7 @@ def warm_newton(
     rises = warm_start.copy()
     first = first_column(film(x, kernel, unknowns), unknowns[n - 1])
     rises[: first + 1] = 0.0
-    walls = wall_weights(face, first)[0]
+    walls = wall_weights(face, first)
     columns = empty_columns(n)
     out, jacobian = np.empty(size), np.empty((size, size))
     last, relaxation = math.inf, 1.0

@@ -1,9 +1,13 @@
-"""Linear response of a film with temperatures to slow motion: they follow, and oil and surfaces store heat.
+"""Linear response of a film with temperatures: these follow the film, and oil and surfaces store heat.
 
-As in `linearisation` the spike's place is an unknown besides. In the order of the frequency the film moves as if it
-were steady at each instant; what that misses is stored: mass between each face and the exit, heat in the oil, and heat
-in the surfaces, which carry what they took up at S to X in the time (X - S)/U. All three add to the equations of the
-next order, whose solution gives the loss.
+As in `linearisation` the spike's place is an unknown besides. What motion adds to the equations is what the film
+stores: mass between each face and the exit, heat in the oil, and heat in the surfaces. A surface remembers,
+(d/dX + 1/U d/dT)^(1/2) T = q; to the first order in d/dT, which is exact of slow motion and bounded of any,
+
+    T + 1/(2 U) Int dT/dT dS = that of the steady source
+
+The response to slow motion is that of the first order in the frequency; the others are those of the Krylov space of
+`spectrum`, with the temperatures among the unknowns.
 """
 
 from __future__ import annotations
@@ -11,11 +15,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from scipy.linalg import lu_factor, lu_solve
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.ehl.elastic import log_kernel
-from ehdmaps.ehl.energy import EnergyEquations, followed, marched, wall_weights, warm_temperatures
+from ehdmaps.ehl.energy import EnergyEquations, fitted
 from ehdmaps.ehl.grid import Grid
 from ehdmaps.ehl.linearisation import Neighbour, Response
 from ehdmaps.ehl.reynolds import (
@@ -30,13 +35,19 @@ from ehdmaps.ehl.reynolds import (
     residual_with,
     stored_mass_rate,
 )
-from ehdmaps.ehl.warm_column import INTEGRAL, POINTS, SLOPE, WEIGHTS, Columns, empty_columns
-from ehdmaps.ehl.warm_newton import MOST_STEPS, warm_factors
+from ehdmaps.ehl.spectrum import FilmSpace, arnoldi
+from ehdmaps.ehl.wall_heat import wall_weights
+from ehdmaps.ehl.warm_column import HEIGHTS, POINTS, WEIGHTS, Columns, empty_columns
+from ehdmaps.ehl.warm_march import followed, marched, stored
+from ehdmaps.ehl.warm_newton import MOST_STEPS, warm_factors, warm_temperatures
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from ehdmaps.physics.isotherm import density
 
 EXACT = 1e-8
 """Last step of temperatures that are differenced [K]."""
+
+LEAST_RISE = 1e-3
+"""Least unit of temperatures in a state [K]."""
 
 SLOWEST_WALL = 1e-3
 """Speed of a wall, in that of the entrainment, below which it does not store what it took up elsewhere."""
@@ -62,7 +73,7 @@ def _state(
     """Temperatures, residual and mass of a film on a grid."""
     kernel, n = log_kernel(grid.x, grid.step), grid.face.size
     columns, rises = empty_columns(n), rises.copy()
-    walls = wall_weights(grid.face, first)[0]
+    walls = wall_weights(grid.face, first)
     equations, _, _ = warm_temperatures(
         problem, grid.x, grid.face_step, kernel, unknowns, walls, first, rises, columns, np.empty(0), EXACT, MOST_STEPS
     )
@@ -87,29 +98,238 @@ def _thinned(problem: LineProblem, rises: FloatArray) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class WarmLinearisation:
-    """Film compliance and loss of a film with temperatures, in the limit of slow motion.
+class _Grid:
+    """What a shift of the grid's spike does: derivatives by the shift.
 
     Attributes
     ----------
-    response : Response or None
-        None where the film has no linear response: its matrix is singular.
+    face : ndarray, shape (n,)
+        Places of the faces.
+    mass : ndarray, shape (n + 1,)
+        Stored mass, as faces see it that move.
+    rises, films : ndarray, shapes (n, k) and (n,)
+        Temperatures and films at the faces.
+    """
+
+    face: FloatArray
+    mass: FloatArray
+    rises: FloatArray
+    films: FloatArray
+
+
+@dataclass(frozen=True)
+class WarmLinearisation:
+    """The transient equations of a film with temperatures to first order: matrix z + storage(dz/dT) = unit dW.
+
+    The state z has the unknowns of the film, the spike's place where the grid follows it, and the temperatures at the
+    faces in units of `warmest`.
+
+    Attributes
+    ----------
     balance : float
         Heat into the walls and out with the oil less the heat that shear and compression make, over the heat of shear.
     """
 
-    response: Response | None
+    problem: LineProblem
+    unknowns: FloatArray
+    first: int
+    here: _State
+    factors: Factors
+    following: FloatArray
+    by_grid: _Grid | None
+    lu: tuple[FloatArray, IntArray] | None
+    scale: FloatArray
+    warmest: float
     balance: float
 
     @property
     def singular(self) -> bool:
-        """Whether the film has no linear response."""
-        return self.response is None
+        """Whether the film has no linear response: a pivot of its matrix is zero to the rounding of the numbers."""
+        return self.lu is None
+
+    @property
+    def height(self) -> int:
+        """Index of H0 in the state."""
+        return self.unknowns.size - 1
+
+    @property
+    def rows(self) -> int:
+        """Number of unknowns but for the temperatures."""
+        return self.scale.size
+
+    def solve(self, right: FloatArray, heat: FloatArray) -> FloatArray:
+        """State of the equations without storage.
+
+        Parameters
+        ----------
+        right : ndarray, shape (rows,)
+            Right-hand side of the film's equations.
+        heat : ndarray, shape (n, k + 2, 1)
+            That of the temperatures and fluxes, see `warm_march.marched`.
+        """
+        assert self.lu is not None
+        here, size = self.here, self.unknowns.size
+        extra = marched(here.equations, heat, self.first)[:, :, 0]
+        right = right.copy()
+        right[:size] -= self._moved_by(extra)
+        film_part = np.asarray(lu_solve(self.lu, self.scale * right))
+        rises = extra + (self.following.reshape(-1, size) @ film_part[:size]).reshape(extra.shape)
+        if self.by_grid is not None:
+            rises = rises + self.by_grid.rises * film_part[size]
+        return np.concatenate([film_part, rises.ravel() / self.warmest])
+
+    def _moved_by(self, rises: FloatArray) -> FloatArray:
+        """What small changes of the temperatures change in the residual of the film, shape (n + 2,)."""
+        here, columns = self.here, self.here.columns
+        none = np.empty((0, 0))
+        changed = self.factors._replace(
+            slope=self.factors.slope + np.sum(columns.mobility_warm * rises, axis=1),
+            carriage=self.factors.carriage + np.sum(columns.carriage_warm * rises, axis=1),
+            mobility_rows=none,
+            carriage_rows=none,
+        )
+        size, grid = self.unknowns.size, here.grid
+        other, scratch = np.empty(size), np.empty((1, size))
+        residual_with(
+            self.problem, changed, grid.x, grid.step, grid.face_step, here.kernel, self.unknowns, 0.0, other, scratch
+        )
+        other[:-1] -= here.residual[:-1]
+        other[-1] = 0.0
+        return other
+
+    def storage(self, state: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """What the rate of a state adds to the equations: to those of the film, shape (rows,), and to the heat.
+
+        The latter, shape (n, k + 2, 1), is that of the other side, as `solve` takes it.
+        """
+        problem, here, unknowns = self.problem, self.here, self.unknowns
+        grid, columns, n = here.grid, here.columns, here.grid.face.size
+        rate, rises = state[: unknowns.size], self.warmest * state[self.rows :].reshape(n, POINTS)
+        shift = float(state[unknowns.size]) if self.by_grid is not None else 0.0
+        # mass
+        pressure, moved = np.maximum(node_pressure(unknowns), 0.0), node_pressure(rate)
+        rho, rho_slope = density(problem.isotherm, pressure)
+        thinned = _thinned(problem, here.rises)
+        by_hand = StoredOil(rho * thinned * grid.step, rho_slope * thinned * here.gap * grid.step)
+        mass = np.asarray(stored_mass_rate(by_hand, grid.x, here.kernel, float(unknowns[n]), rate))
+        still = rises if self.by_grid is None else rises - self.by_grid.rises * shift
+        warming = problem.heat.density_slope * _at_nodes(still @ WEIGHTS)
+        mass = mass + np.asarray(accumulated(rho * warming * here.gap * grid.step))
+        mass = mass - np.asarray(carried_mass(here.mass)) * rate[n]
+        if self.by_grid is not None:
+            mass = mass + self.by_grid.mass * shift
+        added = np.zeros(self.rows)
+        added[:n], added[n] = -mass[:n], mass[n]
+        # heat
+        films = np.asarray(face_films(rate[n + 1] + (unknowns[n] + grid.x) * rate[n] - here.kernel @ moved))
+        moving = np.full(n, float(rate[n]))
+        if self.by_grid is not None:
+            films = films + self.by_grid.films * shift
+            moving = moving + self.by_grid.face * shift
+        cells, warmed = _cell_storage(
+            problem, columns, grid.face_step, here.rises, rises, 0.5 * (moved[1:] + moved[:-1]), films, moving
+        )
+        cells[: self.first + 1] = 0.0
+        heat = stored(here.equations, columns, cells)
+        for g in range(3):
+            flow_rate = np.concatenate([np.zeros(g), added[: n - g]])
+            heat[:, :, 0] -= here.equations.slopes[:, g, 3, :] * flow_rate[:, None]
+        heat[: self.first + 1] = 0.0
+        for side, row in ((0, 0), (1, POINTS - 1)):
+            speed = 1.0 + (side - 0.5) * problem.slide
+            if speed > SLOWEST_WALL:
+                wall = np.where(np.arange(n) > self.first, warmed[:, row], 0.0)
+                heat[:, row, 0] -= 0.5 / speed * _from_inlet(wall, grid.face)
+        return added, heat
+
+    def _static(self) -> FloatArray:
+        """State of a unit load."""
+        unit = np.zeros(self.rows)
+        unit[self.height] = 1.0
+        return self.solve(unit, np.zeros((self.here.grid.face.size, POINTS + 2, 1)))
+
+    def _next(self, state: FloatArray) -> FloatArray:
+        """State that the storage of another one brings about, T z of `spectrum`."""
+        added, heat = self.storage(state)
+        return self.solve(added, -heat)
 
     def slow_response(self) -> Response:
-        """Film compliance and loss."""
-        assert self.response is not None
-        return self.response
+        """Film compliance and loss in the limit of slow motion."""
+        static = self._static()
+        slow = self._next(static)
+        return Response(-float(static[self.height]) - DRY_COMPLIANCE, -float(slow[self.height]))
+
+    def space(self, fastest: float) -> FilmSpace:
+        """Return the Krylov space that serves all frequencies up to a highest one.
+
+        Parameters
+        ----------
+        fastest : float
+            Highest Omega = omega b/u.
+        """
+        return arnoldi(self._next, self._static(), self.height, fastest)
+
+
+def _from_inlet(values: FloatArray, x: FloatArray) -> FloatArray:
+    """Integral from the inlet to each place, by trapezia."""
+    pieces = 0.5 * (values[1:] + values[:-1]) * np.diff(x)
+    return np.concatenate([[0.0], np.cumsum(pieces)])
+
+
+@njit(cache=True)
+def _along(values: FloatArray, face_step: FloatArray, f: int) -> float:
+    """Derivative by X at face f."""
+    last = values.size - 1
+    if f == 0:
+        return 0.0
+    if f == last:
+        return float((values[last] - values[last - 1]) / face_step[f])
+    return float(0.5 * (values[f + 1] - values[f - 1]) / face_step[f])
+
+
+@njit(cache=True)
+def _cell_storage(
+    problem: LineProblem,
+    columns: Columns,
+    face_step: FloatArray,
+    rises: FloatArray,
+    rate: FloatArray,
+    pressure_rate: FloatArray,
+    film_rate: FloatArray,
+    moving: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """What storage adds to the energy of each cell, shape (n, k), and rates of the temperatures at standing places.
+
+    Rates are those of faces that move with `moving`.
+    """
+    heat, (n, k) = problem.heat, rises.shape
+    added, still = np.zeros((n, k)), np.empty((n, k))
+    for j in range(k):
+        mass = columns.density[:, j] * columns.place[:, 1]
+        for f in range(n):
+            still[f, j] = rate[f, j] - moving[f] * _along(rises[:, j], face_step, f)
+            film, gradient = columns.place[f, 1], columns.place[f, 2]
+            share = WEIGHTS[j] * heat.convection * film
+            added[f, j] += share * mass[f] * still[f, j]
+            squeezed = heat.compression * film * film * (pressure_rate[f] - moving[f] * gradient)
+            warm = (heat.temperature + rises[f, j]) * columns.density_warm[f] / columns.density[f, j]
+            added[f, j] += WEIGHTS[j] * squeezed * warm
+    for f in range(2, n):
+        film = columns.place[f, 1]
+        along = heat.convection * film / face_step[f]
+        upwards = change = 0.0
+        for j in range(k - 1):
+            mass = columns.density[:, j] * columns.place[:, 1]
+            density_rate = columns.density_slope[f, j] * pressure_rate[f] + columns.density_warm[f] * rate[f, j]
+            mass_rate = film_rate[f] * columns.density[f, j] + film * density_rate
+            change -= WEIGHTS[j] * (mass_rate - moving[f] * _along(mass, face_step, f))
+            flow = columns.flow[:, j]
+            upwards -= WEIGHTS[j] * (1.5 * flow[f] - 2.0 * flow[f - 1] + 0.5 * flow[f - 2])
+            slope = fitted(along * upwards * (HEIGHTS[j + 1] - HEIGHTS[j]))[1]
+            step = heat.convection * film * change * (rises[f, j + 1] - rises[f, j])
+            added[f, j] += (0.5 - slope) * step
+            added[f, j + 1] += (0.5 + slope) * step
+    return added, still
 
 
 def warm_linearised(
@@ -121,7 +341,7 @@ def warm_linearised(
     load: float,
     neighbour: Neighbour | None = None,
 ) -> WarmLinearisation:
-    """Response of a converged film with its temperatures.
+    """The transient equations to first order about a converged film with its temperatures.
 
     Parameters
     ----------
@@ -141,130 +361,38 @@ def warm_linearised(
         Needed where the grid has a spike term: the grid then follows the spike.
     """
     here = _state(problem, grid, unknowns, rises, first, load)
-    n, columns, x, kernel = grid.face.size, here.columns, grid.x, here.kernel
-    by_unknowns, mobility_rows, carriage_rows = followed(
-        here.equations, columns, x, grid.face_step, kernel, unknowns, first, False, np.empty(0)
+    x, kernel = grid.x, here.kernel
+    following, mobility_rows, carriage_rows = followed(
+        here.equations, here.columns, x, grid.face_step, kernel, unknowns, first, False, np.empty(0)
     )
-    factors = warm_factors(columns, unknowns, mobility_rows, carriage_rows)
-    size = n + 2
+    factors = warm_factors(here.columns, unknowns, mobility_rows, carriage_rows)
+    size = unknowns.size
     total = size + (neighbour is not None)
     matrix, jacobian, out = np.zeros((total, total)), np.empty((size, size)), np.empty(size)
     residual_with(problem, factors, x, grid.step, grid.face_step, kernel, unknowns, load, out, jacobian)
     matrix[:size, :size] = jacobian
-    carried = np.asarray(carried_mass(here.mass))
-    faces = np.asarray(face_films(here.gap))
-    grid_mass, grid_rises, grid_films = np.zeros(n + 1), np.zeros_like(here.rises), np.zeros(n)
-    face_move = np.zeros(n)
+    by_grid: _Grid | None = None
     if neighbour is not None:
         moved = _state(problem, neighbour.grid, unknowns, here.rises, first, load)
-        face_move = (neighbour.grid.face - grid.face) / neighbour.shift
         matrix[:size, size] = (moved.residual - out) / neighbour.shift
         matrix[size, neighbour.node - 1] = 1.0
-        stored, now = (np.asarray(accumulated(s.mass * s.grid.step)) for s in (moved, here))
-        grid_mass = (stored - now) / neighbour.shift - carried * np.append(face_move, 0.0)
-        grid_rises = (moved.rises - here.rises) / neighbour.shift
-        grid_films = (np.asarray(face_films(moved.gap)) - faces) / neighbour.shift
+        faces = (neighbour.grid.face - grid.face) / neighbour.shift
+        after, now = (np.asarray(accumulated(s.mass * s.grid.step)) for s in (moved, here))
+        swept = np.asarray(carried_mass(here.mass)) * np.append(faces, 0.0)
+        by_grid = _Grid(
+            face=faces,
+            mass=(after - now) / neighbour.shift - swept,
+            rises=(moved.rises - here.rises) / neighbour.shift,
+            films=(np.asarray(face_films(moved.gap)) - np.asarray(face_films(here.gap))) / neighbour.shift,
+        )
     scale = 1.0 / np.max(np.abs(matrix), axis=1)
+    lu = None
+    if np.all(np.isfinite(matrix)):
+        lu = lu_factor(matrix * scale[:, None])
+        lu = lu if np.all(np.diagonal(lu[0])) else None
+    warmest = max(float(np.max(here.rises)), LEAST_RISE)
     balance = _balance(problem, here, first)
-    if not np.all(np.isfinite(matrix)):
-        return WarmLinearisation(None, balance)
-    lu = lu_factor(matrix * scale[:, None])
-    if not np.all(np.diagonal(lu[0])):
-        return WarmLinearisation(None, balance)
-    unit = np.zeros(total)
-    unit[n + 1] = 1.0
-    static = lu_solve(lu, scale * unit)
-    shift = static[size] if neighbour is not None else 0.0
-    following = (by_unknowns.reshape(n * POINTS, size) @ static[:size]).reshape(n, POINTS)
-    rate = following + grid_rises * shift
-    # mass
-    pressure = np.maximum(node_pressure(unknowns), 0.0)
-    rho, rho_slope = density(problem.isotherm, pressure)
-    thinned = _thinned(problem, here.rises)
-    oil = StoredOil(rho * thinned * grid.step, rho_slope * thinned * here.gap * grid.step)
-    mass_rate = np.asarray(stored_mass_rate(oil, x, kernel, float(unknowns[n]), static[:size]))
-    warming = problem.heat.density_slope * _at_nodes(following @ WEIGHTS)
-    mass_rate = mass_rate + np.asarray(accumulated(rho * warming * here.gap * grid.step))
-    mass_rate = mass_rate - carried * static[n] + grid_mass * shift
-    added = np.zeros(total)
-    added[:n], added[n] = -mass_rate[:n], mass_rate[n]
-    # heat
-    pressure_rate = 0.5 * np.diff(node_pressure(static[:size])) + node_pressure(static[:size])[:-1]
-    gap_rate = static[n + 1] + (unknowns[n] + x) * static[n] - kernel @ node_pressure(static[:size])
-    film_rate = np.asarray(face_films(gap_rate)) + grid_films * shift
-    moving = static[n] + face_move * shift
-    stored_heat = _stored_heat(problem, here, first, rate, pressure_rate, film_rate, moving, added[:n])
-    right, none = -stored_heat[:, :, None], np.zeros((2, n, 1))
-    extra = marched(here.equations, columns.place[:, 1].copy(), right, none, first)[:, :, 0]
-    changed = _with(factors, columns, extra)
-    other, scratch = np.empty(size), np.empty((1, size))
-    residual_with(problem, changed, x, grid.step, grid.face_step, kernel, unknowns, load, other, scratch)
-    added[:size] += other - out
-    slow = lu_solve(lu, -scale * added)
-    return WarmLinearisation(Response(-float(static[n + 1]) - DRY_COMPLIANCE, float(slow[n + 1])), balance)
-
-
-def _with(factors: Factors, columns: Columns, rises: FloatArray) -> Factors:
-    """Factors with small changes of the temperatures, to first order."""
-    none = np.empty((0, 0))
-    return factors._replace(
-        slope=factors.slope + np.sum(columns.mobility_warm * rises, axis=1),
-        carriage=factors.carriage + np.sum(columns.carriage_warm * rises, axis=1),
-        mobility_rows=none,
-        carriage_rows=none,
-    )
-
-
-def _stored_heat(
-    problem: LineProblem,
-    here: _State,
-    first: int,
-    rate: FloatArray,
-    pressure_rate: FloatArray,
-    film_rate: FloatArray,
-    moving: FloatArray,
-    flow_rate: FloatArray,
-) -> FloatArray:
-    """What slow storage adds to the energy of each height, shape (n, k).
-
-    Rates are those of faces that move with `moving`; `flow_rate` is what comes to the flow through each face.
-    """
-    heat, columns, step = problem.heat, here.columns, here.grid.face_step
-    faces, gradient = columns.place[:, 1], columns.place[:, 2]
-    n = faces.size
-
-    def along(values: FloatArray) -> FloatArray:
-        """Derivative by X at the faces."""
-        slope = np.zeros_like(values)
-        slope[1:-1] = 0.5 * (values[2:] - values[:-2])
-        slope[-1] = values[-1] - values[-2]
-        return (slope.T / step).T
-
-    still = rate - moving[:, None] * along(here.rises)
-    rho = columns.density
-    rho_rate = columns.density_slope * pressure_rate[:, None] + columns.density_warm[:, None] * rate
-    below = faces[:, None] * (rho @ INTEGRAL.T)
-    below_rate = film_rate[:, None] * (rho @ INTEGRAL.T) + faces[:, None] * (rho_rate @ INTEGRAL.T)
-    below_rate = below_rate - moving[:, None] * along(below)
-    lean = here.rises @ SLOPE.T
-    warm = heat.temperature + here.rises
-    added = heat.convection * (faces[:, None] ** 2 * rho * still - faces[:, None] * below_rate * lean)
-    squeezed = heat.compression * faces**2 * (pressure_rate - moving * gradient)
-    added += squeezed[:, None] * warm * columns.density_warm[:, None] / rho
-    for g in range(3):
-        earlier = np.concatenate([np.zeros(g), flow_rate[: n - g]])
-        added += here.equations.slopes[:, g, 3, :] * earlier[:, None]
-    late = wall_weights(here.grid.face, first)[1]
-    for side, row in ((0, 0), (1, POINTS - 1)):
-        sign = 1.0 if side == 0 else -1.0
-        speed = 1.0 + (side - 0.5) * problem.slide
-        flux = here.equations.flux[side]
-        flux_rate = sign * (rate @ SLOPE[row]) / faces - flux * film_rate / faces - moving * along(flux)
-        flux_rate[: first + 1] = 0.0
-        taken = (heat.lower, heat.upper)[side]
-        added[:, row] = taken / speed * (late @ flux_rate) if speed > SLOWEST_WALL else 0.0
-    added[: first + 1] = 0.0
-    return np.ascontiguousarray(added)
+    return WarmLinearisation(problem, unknowns, first, here, factors, following, by_grid, lu, scale, warmest, balance)
 
 
 def _balance(problem: LineProblem, here: _State, first: int) -> float:

@@ -54,7 +54,8 @@ def generate(
     output : str or path, optional
         The map file.
     solver : str or ContactSolver, optional
-        Solver in place of the job's: a name, for its default settings, or a solver.
+        Solver in place of the job's: a solver, or a name, for its default settings with the physics and shear of the
+        job.
     workers : int or None
         Number of processes; None for all cores. A script that uses more than one needs the usual
         ``if __name__ == "__main__":``.
@@ -94,10 +95,11 @@ def generate(
 
 
 def _with_solver(job: Job, name: str | None) -> Job:
-    """The job with another solver, which has its default settings."""
+    """The job with another solver: the same physics where it knows them, else its default settings."""
     if name is None or name == job.solver:
         return job
-    return dataclasses.replace(job, solver=_known(name), solver_options={}, corrected_by=None)
+    kept = solvers.carried(job.solver_options, _known(name))
+    return dataclasses.replace(job, solver=name, solver_options=kept, corrected_by=None)
 
 
 def compare(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -28,6 +27,7 @@ from ehdmaps.maps.checksum import content_sha256
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.validation import validate
 from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.workers import available_cores
 
 MOST_HALVINGS = 3
 """How often the steps of the lines of a law are halved, each time along one axis."""
@@ -252,8 +252,3 @@ def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Datas
         dataset.attrs[HALVED] = ", ".join(planned.halved)
     dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, group)
     return dataset, group
-
-
-def available_cores() -> int:
-    """Return the cores that this process may use, which may be fewer than the machine has."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
+from ehdmaps.compiling import Compiling
 from ehdmaps.program import tell
 
 LINE_SECONDS = 10.0
@@ -29,9 +30,9 @@ _DURATIONS = ((120.0, 1.0, "s"), (7200.0, 60.0, "min"), (172800.0, 3600.0, "h"),
 class Pace:
     """How fast it goes, and how long it will take.
 
-    It counts from the end of the first piece of work on, in which most of the code compiles. There is no estimate as
-    long as one wait makes up more than half of the time counted: a later piece may compile, too, or each process its
-    own code, and what that takes says nothing about the rest.
+    It counts from the end of the first piece of work on, and leaves out what this process compiles. There is no
+    estimate as long as one wait makes up more than half of the time counted: other processes may compile, too, and what
+    that takes says nothing about the rest.
 
     Parameters
     ----------
@@ -39,12 +40,16 @@ class Pace:
         Points, steps or hits.
     clock : callable
         Gives the time [s].
+    compiled : callable, optional
+        Gives what has been spent on compiling so far [s]; nothing if left out.
     """
 
-    def __init__(self, total: int, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self, total: int, clock: Callable[[], float] = time.monotonic, compiled: Callable[[], float] | None = None
+    ) -> None:
         self.total = total
         self.done = 0
-        self._clock = clock
+        self._clock = clock if compiled is None else lambda: clock() - compiled()
         self._first_told: float | None = None
         self._since = self._last = 0.0, 0
         self._longest = 0.0
@@ -90,9 +95,11 @@ class Bar:
     """A tqdm bar with rate and time left; what was taken over does not count for the rate."""
 
     def __init__(self, total: int, unit: str = "point") -> None:
-        self._pace = Pace(total)
+        self._compiling = Compiling(self._say)
+        self._pace = Pace(total, compiled=lambda: self._compiling.seconds)
         self._unit = unit
         self._bar: Any = None
+        self._compiling.listen()
 
     def begin(self) -> None:
         """Begin with nothing."""
@@ -114,15 +121,25 @@ class Bar:
         self._bar.update(count)
         if self._bar.n >= self._bar.total:
             self._bar.close()
+            self._compiling.end()
+
+    def _say(self, text: str) -> None:
+        """Say something above the bar."""
+        if self._bar is None:
+            tell(text)
+        else:
+            self._bar.write(text, file=_Stderr())
 
 
 class Lines:
     """One line at the beginning, one every `LINE_SECONDS`, one at the end."""
 
     def __init__(self, total: int, unit: str = "point") -> None:
-        self._pace = Pace(total)
+        self._compiling = Compiling(tell)
+        self._pace = Pace(total, compiled=lambda: self._compiling.seconds)
         self._unit = unit
         self._last = time.monotonic()
+        self._compiling.listen()
 
     def begin(self) -> None:
         """Begin with nothing, which is not worth a line."""
@@ -140,6 +157,8 @@ class Lines:
             pace = self._pace.text(self._unit)
             tell(f"{self._pace.done} of {self._pace.total} {self._unit}s{pace and ', '}{pace}")
             self._last = now
+        if self._pace.done >= self._pace.total:
+            self._compiling.end()
 
 
 class _Stderr:

@@ -56,7 +56,7 @@ def read_job(
     source : str or path
         Name of a shipped job ("nu308"), path of a job file, or path of a map file, whose job is read again.
     solver : str, optional
-        Takes the place of the job's solver; its own keys have their defaults then.
+        Takes the place of the job's solver: it keeps physics, shear and sliding, its other keys have their defaults.
     to_run : bool
         Whether the job is to be run here: what its solver lacks on this machine is a problem then.
     finding_solids : bool
@@ -137,7 +137,11 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool, f
     if override is not None and override not in solvers.SOLVER_NAMES:
         top.note("--solver", f"got {override!r:.60}; allowed: {', '.join(solvers.SOLVER_NAMES)}")
     elif override is not None and override != solver:
-        solver, options, rest = override, {}, {**rest, "corrected_by": None}
+        options = solvers.carried(options, override)
+        heat = options.get("physics")
+        if heat is not None and not solvers.takes(override, "physics", str(heat)):
+            top.note("--solver", f"got {override!r}, which knows no physics = {heat!r} of the job")
+        solver, rest = override, {**rest, "corrected_by": None}
     if to_run and solver is not None:
         by: CorrectedBy | None = rest["corrected_by"]
         for key, needed in (("name", solver), *([("corrected_by", by.solver)] if by else [])):

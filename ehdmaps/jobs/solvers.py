@@ -269,6 +269,20 @@ def takes(name: str, key: str, word: str) -> bool:
     return any(word in allowed for allowed in words)
 
 
+def carried(options: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """Keys of a job's solver that another one takes over in its place: what the film is, where it knows of that.
+
+    Parameters
+    ----------
+    options : mapping
+        Keys of the job's solver.
+    name : str
+        Name of the solver that takes its place.
+    """
+    known = {option.key for option in SOLVERS[name].options}
+    return {key: value for key, value in options.items() if key in PHYSICAL and key in known}
+
+
 def solver_words(options: Mapping[str, Any]) -> str:
     """What is said of a solver's own keys behind its name: physics, law of shear, sliding; nothing of the defaults.
 

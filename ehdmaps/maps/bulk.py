@@ -13,7 +13,7 @@ from numba import njit
 
 from ehdmaps.arrays import ByteArray, FloatArray, IntArray
 from ehdmaps.maps.elementary import log
-from ehdmaps.maps.kernel import collapse, evaluate_at, within_map
+from ehdmaps.maps.kernel import collapse, evaluate_at, full_state, within_map
 from ehdmaps.maps.lines import (
     FAST,
     cell_of,
@@ -92,6 +92,36 @@ def evaluate_many_at(point: Point, delta: FloatArray, rate: FloatArray, forces: 
         for i in range(n):
             if not (abs(r[i]) < math.inf and -math.inf < d[i] <= point.held_approach):
                 w[i], dw[i], dc[i] = evaluate_at(point, d[i], r[i], counts)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def rest_states(point: Point, delta: FloatArray, states: FloatArray) -> None:
+    """Loads at rest with the whole film, their slopes, damping and its slopes.
+
+    Parameters
+    ----------
+    point : Point
+        The law, of which no hold is taken.
+    delta : array (n,)
+        Approaches [m].
+    states : array (4, n)
+        Filled: w [N/m], dw/ddelta [N/m2], c [N s/m2], dc/ddelta [N s/m3].
+    """
+    w, dw, c, dc = states[0], states[1], states[2], states[3]
+    if point.centrifugal_load > 0.0:
+        for i in range(delta.size):
+            w[i], dw[i], ratio, dc[i] = full_state(point, delta[i])
+            c[i] = w[i] * ratio
+        return
+    line: Line = point.own
+    scratch, found = np.empty((2, delta.size)), np.empty((4, delta.size))
+    offset, inverse_scale = np.full(delta.size, line.offset), np.full(delta.size, line.inverse_scale)
+    places, scales = scratch[0], scratch[1]
+    _places(delta, offset, inverse_scale, (line.start, line.step, line.coefficients.shape[0]), places, scales)
+    _line_cubics(line.coefficients, places, found)
+    for i in range(delta.size):
+        w[i], dw[i], ratio, dc[i] = state_of(found[0, i], found[1, i] * scales[i], found[2, i], found[3, i] * scales[i])
+        c[i] = w[i] * ratio
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)

@@ -132,8 +132,8 @@ def _balanced_state(point: Point, delta: float) -> State:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _full_state(point: Point, delta: float) -> State:
-    """State with the whole film."""
+def full_state(point: Point, delta: float) -> State:
+    """State with the whole film, at rest."""
     if point.centrifugal_load > 0.0:
         return _balanced_state(point, delta)
     return line_state(point.own, delta)
@@ -160,7 +160,7 @@ def _faded_state(point: Point, delta: float) -> State:
     for _ in range(_STEPS):
         growth = exp(place)
         y = offset + 0.5 * scale * (growth - 1.0 / growth)
-        state = _full_state(point, y)
+        state = full_state(point, y)
         dry, compliance = structural_state(structure, q, state[0])
         excess = (1.0 - part) * dry + part * y - delta
         slope = part
@@ -191,7 +191,7 @@ def _rest_state(point: Point, delta: float) -> State:
     """State at rest, before the hold above the highest load."""
     if point.film < 1.0:
         return _faded_state(point, delta)
-    return _full_state(point, delta)
+    return full_state(point, delta)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
@@ -259,6 +259,14 @@ def within_map(table: LawTable, entrainment_speed: float, temperature: float, co
     return min(speed, table.highest_speed), min(max(temperature, low), high)
 
 
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def film_part(speed: float, film_speed: float) -> float:
+    """Part of the film that is there at a speed >= 0 [m/s]: 0 at standstill, 1 from `film_speed` on."""
+    part = 1.0 if speed >= film_speed else speed / film_speed
+    film: float = part * part * part * (10.0 - part * (15.0 - 6.0 * part))
+    return film
+
+
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def collapse(
     table: LawTable,
@@ -282,8 +290,7 @@ def collapse(
         int64, counted up.
     """
     speed, temperature = within_map(table, entrainment_speed, temperature, counts)
-    part = 1.0 if speed >= table.film_speed else speed / table.film_speed
-    film = part * part * part * (10.0 - part * (15.0 - 6.0 * part))
+    film = film_part(speed, table.film_speed)
     log_speed = log(max(speed, table.lowest_speed))
     q = centrifugal_load
     if q >= table.held_load:

@@ -5,7 +5,7 @@ The modules in the order in which data pass through them:
 ==================  ====================================================================================
 solids              `Material`, `STEEL`, the reduced modulus E'
 bearing             `BearingGeometry`: reduced radii, entrainment speed, the two contacts of a roller
-profiles            profiles of rollers: ISO 16281
+profiles            profiles of rollers: ISO 16281, arcs, tables
 catalogue           `BearingGeometry` estimated from what a catalogue says
 approach            the structural part of the approach: ISO 16281, Palmgren, half space
 fe_shipped          approaches by finite elements of the shipped bearings

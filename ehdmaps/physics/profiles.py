@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
 
 _LONG = 2.5
 
@@ -40,3 +45,138 @@ def iso_profile(x: FloatArray, roller_diameter: float, roller_length: float) -> 
         part = np.maximum(2.0 * np.abs(x) - (roller_length - crowned), 0.0) / crowned
         depth = 0.0005 * roller_diameter
     return np.asarray(-depth * np.log1p(-(part**2)))
+
+
+@dataclass(frozen=True)
+class CrownedProfile:
+    """Profile of a roller with an arc: P(x) = R - sqrt(R^2 - t^2), t how far x is beyond the straight middle.
+
+    Attributes
+    ----------
+    radius : float
+        Radius R of the arc along the roller [m]. It may be much larger than the roller, not smaller than its half
+        length.
+    straight : float
+        Length of the straight middle [m]; 0 for a roller that is crowned all along.
+
+    Raises
+    ------
+    InputError
+        If the radius is not finite and above zero, or the straight length not finite and at least zero.
+
+    Examples
+    --------
+    >>> profile = CrownedProfile.of_drop(10e-6, 15e-3, straight=9e-3)
+    >>> profile(np.array([0.0, 4.5e-3, 7.5e-3])).round(12).tolist()
+    [0.0, 0.0, 1e-05]
+    """
+
+    radius: float
+    straight: float = 0.0
+
+    def __post_init__(self) -> None:
+        problems = []
+        if not (math.isfinite(self.radius) and self.radius > 0.0):
+            problems.append(f"crowned profile, radius: got {self.radius!r} m; allowed: finite and > 0")
+        if not (math.isfinite(self.straight) and self.straight >= 0.0):
+            problems.append(f"crowned profile, straight: got {self.straight!r} m; allowed: finite and >= 0")
+        if problems:
+            raise InputError(problems)
+
+    @classmethod
+    def of_drop(cls, drop: float, roller_length: float, straight: float = 0.0) -> CrownedProfile:
+        """The arc that lies a given depth below the cylinder at the ends of the roller.
+
+        Parameters
+        ----------
+        drop : float
+            Depth at the ends [m].
+        roller_length : float
+            Length of the roller [m].
+        straight : float
+            Length of the straight middle [m].
+
+        Raises
+        ------
+        InputError
+            If no arc has that depth.
+        """
+        beyond = 0.5 * (roller_length - straight)
+        if not (0.0 < drop <= beyond):
+            raise InputError(
+                f"crowned profile, drop: got {drop!r} m with {straight!r} m straight of {roller_length!r} m; allowed: "
+                "above 0, with a straight middle that leaves more than the drop at either end"
+            )
+        return cls(0.5 * (beyond * beyond + drop * drop) / drop, straight)
+
+    def __call__(self, x: FloatArray) -> FloatArray:
+        """Depth below the cylinder on one side [m]; infinite, as NaN, where the arc has ended.
+
+        Parameters
+        ----------
+        x : array
+            Distance from the middle of the roller [m].
+        """
+        beyond = np.maximum(np.abs(x) - 0.5 * self.straight, 0.0)
+        with np.errstate(invalid="ignore"):
+            # R - sqrt(R^2 - t^2) without the difference of two large numbers
+            return np.asarray(beyond**2 / (self.radius + np.sqrt(self.radius**2 - beyond**2)))
+
+    def __str__(self) -> str:
+        """The profile in a few words."""
+        middle = f", {1e3 * self.straight:.4g} mm straight" if self.straight else ""
+        return f"crowned with a radius of {self.radius:.4g} m{middle}"
+
+
+@dataclass(frozen=True)
+class TabulatedProfile:
+    """Profile of a roller through measured points, with straight lines between them.
+
+    Attributes
+    ----------
+    positions : tuple of float
+        Distances from the middle of the roller [m], rising; from zero on for a symmetric roller.
+    depths : tuple of float
+        Depths below the cylinder there, on one side [m]; negative where the roller is thicker.
+
+    Raises
+    ------
+    InputError
+        If the points are no course.
+
+    Examples
+    --------
+    >>> TabulatedProfile((0.0, 5e-3, 7e-3), (0.0, 0.0, 4e-6))(np.array([-6e-3, 1e-3])).tolist()
+    [2e-06, 0.0]
+    """
+
+    positions: Sequence[float]
+    depths: Sequence[float]
+
+    def __post_init__(self) -> None:
+        for name in ("positions", "depths"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        if len(self.positions) != len(self.depths) or len(self.positions) < 2:
+            raise InputError(
+                f"profile table: got {len(self.positions)} positions and {len(self.depths)} depths; allowed: as many "
+                "of each, at least two"
+            )
+        if not (np.all(np.isfinite(self.positions)) and np.all(np.diff(self.positions) > 0.0)):
+            raise InputError(f"profile table, positions: got {self.positions!r:.80} m; allowed: finite and rising")
+        if not np.all(np.isfinite(self.depths)):
+            raise InputError(f"profile table, depths: got {self.depths!r:.80} m; allowed: finite")
+
+    def __call__(self, x: FloatArray) -> FloatArray:
+        """Depth below the cylinder on one side [m]; NaN outside the table.
+
+        Parameters
+        ----------
+        x : array
+            Distance from the middle of the roller [m].
+        """
+        places = np.abs(x) if self.positions[0] >= 0.0 else x
+        return np.interp(places, self.positions, self.depths, left=math.nan, right=math.nan)
+
+    def __str__(self) -> str:
+        """The profile in a few words."""
+        return f"of {len(self.positions)} points"

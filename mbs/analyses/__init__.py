@@ -8,6 +8,7 @@ bearing_point  one bearing without a scene: its equilibrium under a load, pressu
 modes          complex modes at the equilibrium
 lsa            state space and frequency responses at the equilibrium
 sweep          modes, bearings and responses over speed, of one or more models
+critical       critical speeds, and the response to unbalances and orders over speed
 runup          the nonlinear system in time over its speed profile
 campbell       run-ups with one or more laws as levels over speed, frequency and order
 changed_laws   models whose laws are wrong by the errors that their map states
@@ -26,9 +27,12 @@ auto           an analysis with a map that is planned, made or reused, and check
 kept_map       a map for a planned job: one that is there, or a new one
 film_verdicts  which physics of the films a scene requires
 film_criteria  such criteria at a contact, in closed form
+shear_effect   what a limiting shear stress changes there, by solving
 case           the models that an analysis compares, with their labels
 varied         what comparisons vary, one row a key
+recorded       runs that are recorded, measured or simulated before: signals, levels, amplitudes
 progress       how an analysis tells how far it is
+side_by_side   cases in processes of their own
 operating      a model as it is in operation: temperatures, heat and clearances of its bearings at a speed
 rings          how the rings of the bearings move
 reach          where the films of a law begin, and calls outside its map

@@ -1,8 +1,9 @@
-"""An analysis that makes its own map: planned, made or reused, run, and checked; again with a wider plan where needed.
+"""An analysis that makes its own maps: planned, made or reused, run, and checked; again with a wider plan where needed.
 
 The order of things: the ranges of the scene (`mbs.analyses.plan`), the physics that they require
-(`mbs.analyses.film_verdicts`), the map (`mbs.analyses.kept_map`), the analysis, and a look at what it visited. Loads
-outside the map widen the plan; films of slow motion that turn out too wrong at the bearings get their memory.
+(`mbs.analyses.film_verdicts`), a map for each type of bearing (`mbs.analyses.kept_map`), the analysis, and a look at
+what it visited. Loads outside a map widen its plan; films of slow motion that turn out too wrong at the bearings get
+their memory.
 """
 
 from __future__ import annotations
@@ -16,10 +17,13 @@ from types import NoneType
 from typing import Generic, TypeVar
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.job_text import Entry
 from ehdmaps.physics.heat import PHYSICS
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.rheology import SHEARS
 from mbs.analyses import film_verdicts, planning
 from mbs.analyses.campbell import CampbellResult
+from mbs.analyses.critical import CriticalResult
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.film_verdicts import Verdict
 from mbs.analyses.hammer import HammerResult
@@ -38,6 +42,7 @@ from mbs.model.equilibrium import equilibrium
 from mbs.model.relaxation import Films
 from mbs.scene.assembly import Model
 from mbs.scene.contact_laws import law_label
+from mbs.scene.map_set import MapSet
 from mbs.scene.scene import Scene
 
 R = TypeVar("R")
@@ -77,6 +82,8 @@ class AutoSettings:
         Oil supply of all bearings that is asked for.
     physics : {"isothermal", "inlet-heat", "thermal"} or None
         What films are to know of heat, whatever is required.
+    shear : {"newtonian", "eyring", "carreau", "limiting"} or None
+        Law of the shear stress that is asked for, whatever is required.
     workers : int or None
         Processes that make a map; all cores if None.
 
@@ -94,6 +101,7 @@ class AutoSettings:
     films: Films | None = None
     supply: OilSupply | None = None
     physics: str | None = None
+    shear: str | None = None
     workers: int | None = None
 
     def __post_init__(self) -> None:
@@ -104,11 +112,13 @@ class AutoSettings:
             )
         if self.physics is not None and self.physics not in PHYSICS:
             raise InputError(f"auto, physics: got {self.physics!r:.60}; allowed: {', '.join(PHYSICS)}")
+        if self.shear is not None and self.shear not in SHEARS:
+            raise InputError(f"auto, shear: got {self.shear!r:.60}; allowed: {', '.join(SHEARS)}")
 
 
 @dataclass(frozen=True, eq=False)
 class Automatic(Generic[R]):
-    """An analysis with the map that was made for it.
+    """An analysis with the maps that were made for it.
 
     Attributes
     ----------
@@ -117,19 +127,22 @@ class Automatic(Generic[R]):
     subject : Subject
         Scene and law that it was made with.
     maps : tuple of KeptMap
-        Maps that were tried; the last one counts.
+        Maps that were tried, plan by plan.
     margins : tuple of float
         Highest load of each of them over the largest one at rest.
+    kept : tuple of KeptMap
+        The last ones, which count: one for each type of bearing.
     verdicts : tuple of Verdict
-        Which physics is on, and why.
+        Which physics is on, and why: memory, supply, roughness, and heat of each map.
     left : mapping of str to int
-        How often each bearing was still outside the last map; empty where it never was.
+        How often each bearing was still outside its last map; empty where it never was.
     """
 
     result: R
     subject: Subject
     maps: tuple[KeptMap, ...]
     margins: tuple[float, ...]
+    kept: tuple[KeptMap, ...]
     verdicts: tuple[Verdict, ...]
     left: Mapping[str, int]
 
@@ -140,14 +153,15 @@ def automatic(
     settings: AutoSettings | None = None,
     progress: TellMap | None = None,
 ) -> Automatic[R]:
-    """Analyse a scene with a map that is planned and made, or reused, for it.
+    """Analyse a scene with maps that are planned and made, or reused, for it.
 
     Parameters
     ----------
     scene : Scene
-        Scene with bearings of one geometry and a lubricant.
+        Scene with bearings and a lubricant.
     analysis : callable
-        One of `mbs.statics`, `modes`, `lsa`, `sweep`, `runup`, `campbell`, `hammer`, or a function that calls one.
+        One of `mbs.statics`, `modes`, `lsa`, `sweep`, `critical`, `runup`, `campbell`, `hammer`, or a function that
+        calls one.
     settings : AutoSettings, optional
         Tolerance, frequencies, folder of the maps.
     progress : callable, optional
@@ -185,7 +199,7 @@ def settled(
     Parameters
     ----------
     scene : Scene
-        Scene with bearings of one geometry and a lubricant.
+        Scene with bearings and a lubricant.
     analyse : callable
         The analysis.
     settings : AutoSettings, optional
@@ -200,27 +214,34 @@ def settled(
     if highest is None:
         highest = max(scene.frequencies, default=scene.campbell.highest)
     looked_at = planned_for or scene
-    margin = planning.MARGIN
-    found = _plan(looked_at, settings.clearance, margin)
+    found = _plan(looked_at, settings.clearance, planning.MARGIN)
+    plans = [found] * len(found.needed)
+    margins = [planning.MARGIN] * len(plans)
     supplies = _supplies(scene, settings.supply)
     verdicts = _verdicts(scene, found, settings, supplies, highest)
-    maps: list[KeptMap] = []
-    margins: list[float] = []
-    while True:
-        (job,) = found.jobs(solver=verdicts[-1].solver)
-        kept = kept_map(scene.name, job, settings.folder, settings.others, settings.workers, progress)
-        maps.append(kept)
-        margins.append(margin)
+    tried: list[tuple[KeptMap, float]] = []
+    for attempt in range(1, MOST_MAPS + 1):
+        keys = _solver_keys(verdicts, len(plans))
+        jobs = [one.jobs(solvers=keys)[index] for index, one in enumerate(plans)]
+        kept = tuple(
+            kept_map(scene.name, job, settings.folder, settings.others, settings.workers, progress) for job in jobs
+        )
+        tried += zip(kept, margins, strict=True)
         subject = _subject(scene, kept, verdicts, supplies, settings)
         result = analyse(subject)
         left = outside_calls(result)
         more = _with_memory(subject, looked_at, found, verdicts, settings, highest)
-        wider = _wider(looked_at, settings.clearance, WIDER * margin) if left else None
-        if len(maps) == MOST_MAPS or (wider is None and more is None):
-            return Automatic(result, subject, tuple(maps), tuple(margins), verdicts, left)
+        widened = False
+        for index, one in enumerate(plans):
+            if left.keys() & set(one.needed[index].bearings):
+                wider = _wider(looked_at, settings.clearance, WIDER * margins[index])
+                if wider is not None:
+                    plans[index], margins[index], widened = wider, WIDER * margins[index], True
+        if attempt == MOST_MAPS or (not widened and more is None):
+            break
         verdicts = more or verdicts
-        if wider is not None:
-            found, margin = wider, WIDER * margin
+    maps, their_margins = zip(*tried, strict=True)
+    return Automatic(result, subject, maps, their_margins, kept, verdicts, left)
 
 
 def outside_calls(result: object) -> dict[str, int]:
@@ -245,6 +266,8 @@ def outside_calls(result: object) -> dict[str, int]:
         counts = [result.balance.outside]
     elif isinstance(result, HammerResult):
         counts = [result.balance.outside, result.outside_hits]
+    elif isinstance(result, CriticalResult):
+        counts = [result.outside]
     elif isinstance(result, SweepResult):
         counts = list(result.outside)
     elif isinstance(result, RunUpResult):
@@ -254,7 +277,7 @@ def outside_calls(result: object) -> dict[str, int]:
     else:
         raise InputError(
             f"auto, analysis: got a result of the type {type(result).__name__}; allowed: what statics, modes, lsa, "
-            "sweep, runup, campbell and hammer give"
+            "sweep, critical, runup, campbell and hammer give"
         )
     total: dict[str, int] = {}
     for entry in counts:
@@ -265,15 +288,8 @@ def outside_calls(result: object) -> dict[str, int]:
 
 
 def _plan(scene: Scene, clearance: float | None, margin: float) -> PlanResult:
-    """The plan of a scene, all of whose bearings have the same contacts."""
-    found = plan(scene, PlanSettings(clearance=clearance, margin=margin))
-    if len(found.needed) > 1:
-        groups = "; ".join(f"{entry.geometry.title}: {', '.join(entry.bearings)}" for entry in found.needed)
-        raise InputError(
-            f"{scene.name}: got bearings of {len(found.needed)} geometries ({groups}); allowed with --auto: one, as a "
-            "scene takes one map; `mbs plan` writes a job for each"
-        )
-    return found
+    """The plan of a scene."""
+    return plan(scene, PlanSettings(clearance=clearance, margin=margin))
 
 
 def _wider(scene: Scene, clearance: float | None, margin: float) -> PlanResult | None:
@@ -296,32 +312,59 @@ def _supplies(scene: Scene, asked: OilSupply | None) -> tuple[OilSupply, ...]:
 def _verdicts(
     scene: Scene, found: PlanResult, settings: AutoSettings, supplies: tuple[OilSupply, ...], highest: float
 ) -> tuple[Verdict, ...]:
-    """Which physics is required, each in its place: memory, supply, roughness, heat."""
+    """Which physics is required: memory, supply and roughness, each where it matters most; heat and shear by type."""
     assert scene.lubricant is not None  # the plan saw to it
-    there = film_verdicts.visited(found.needed[0], scene.lubricant, settings.tolerance)
     possible = not any(entry.centrifugal and not entry.rollers_as_bodies for entry in scene.bearings)
-    return (
-        film_verdicts.memory_verdict(there, highest, settings.films, possible),
-        film_verdicts.supply_verdict(there, supplies, settings.supply is not None),
-        film_verdicts.roughness_verdict(there, scene.surface),
-        film_verdicts.heat_verdict(there, settings.physics),
-    )
+    memory, supply, rough, heat, shear = (list[Verdict]() for _ in range(5))
+    for entry in found.needed:
+        there = film_verdicts.visited(entry, scene.lubricant, settings.tolerance)
+        theirs = tuple(
+            given for spec, given in zip(scene.bearings, supplies, strict=True) if spec.name in entry.bearings
+        )
+        verdicts = (
+            film_verdicts.memory_verdict(there, highest, settings.films, possible),
+            film_verdicts.supply_verdict(there, theirs, settings.supply is not None),
+            film_verdicts.roughness_verdict(there, scene.surface),
+            film_verdicts.heat_verdict(there, settings.physics),
+            film_verdicts.shear_verdict(there, settings.shear),
+        )
+        for group, verdict in zip((memory, supply, rough, heat, shear), verdicts, strict=True):
+            named = f"{entry.geometry.name}: {verdict.words}" if len(found.needed) > 1 else verdict.words
+            group.append(dataclasses.replace(verdict, words=named))
+    return _worst(memory), _worst(supply), _worst(rough, least=True), *heat, *shear
+
+
+def _worst(verdicts: list[Verdict], least: bool = False) -> Verdict:
+    """The verdict that counts for all bearings: one that is on, and of these the largest, or least, size."""
+
+    def weight(verdict: Verdict) -> tuple[bool, float]:
+        size = -verdict.size if least else verdict.size
+        return verdict.on, -math.inf if math.isnan(size) else size
+
+    return max(verdicts, key=weight)
+
+
+def _solver_keys(verdicts: tuple[Verdict, ...], types: int) -> list[dict[str, Entry]]:
+    """Keys of [solver] of the map of each bearing type: what its verdicts on heat and shear ask for."""
+    heat, shear = verdicts[3 : 3 + types], verdicts[3 + types :]
+    return [{**warm.solver, **limited.solver} for warm, limited in zip(heat, shear, strict=True)]
 
 
 def _subject(
     scene: Scene,
-    kept: KeptMap,
+    kept: tuple[KeptMap, ...],
     verdicts: tuple[Verdict, ...],
     supplies: tuple[OilSupply, ...],
     settings: AutoSettings,
 ) -> Subject:
     """Scene and law with what is switched on."""
-    memory, supply, rough, _ = verdicts
+    memory, supply, rough = verdicts[:3]
+    maps = MapSet([one.emap for one in kept])
     surface = film_verdicts.surface_in_force(scene.surface, rough)
     law = LawChoice(
-        law_label("map", kept.emap),
+        law_label("map", maps),
         "map",
-        kept.emap,
+        maps,
         "memory" if memory.on else "slow",
         settings.supply or film_verdicts.in_force(supplies, supply),
     )

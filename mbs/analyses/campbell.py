@@ -7,6 +7,7 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -18,11 +19,12 @@ from mbs.analyses.case import Case, as_cases
 from mbs.analyses.changed_laws import SIGNS, law_changes, with_changed_laws
 from mbs.analyses.operating import held, states_of
 from mbs.analyses.progress import Progress, silent
+from mbs.analyses.side_by_side import Failed, side_by_side
 from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Operation, Sensor
 from mbs.model.equilibrium import equilibrium
-from mbs.output.campbell_data import campbell_dataset
+from mbs.output.campbell_data import campbell_dataset, of_sensors
 from mbs.output.results import BAND, described
 from mbs.output.state_data import with_states
 from mbs.scene.assembly import Model, law_attributes, supply_attributes
@@ -42,6 +44,9 @@ LEAST_SAMPLES, MOST_SAMPLES = 64, 5_000_000
 MOST_BANDS = len(SIGNS)
 """Runs of a law for its band, at most."""
 
+ALL_SENSORS = "all"
+"""Stands for all sensors of a scene, or of a file."""
+
 MODE_SPEEDS = 9
 """Speeds of the run at which modes are computed."""
 
@@ -56,23 +61,23 @@ class LawRun:
         The model, with its label.
     record : Recording
         The run in time.
-    spectra : RunUpSpectra
-        Levels of the run over speed, frequency and order.
+    spectra : tuple of RunUpSpectra
+        Levels of the run over speed, frequency and order, one a sensor.
     modes : Sweep or None
         Modes of the linear system at some speeds of the run, if they were asked for.
     seconds : float
         How long the run took [s].
-    level_error : array, shape (windows,), or None
-        Band of the sum level, either way [dB]: its largest difference in runs whose laws are wrong by the errors that
-        the map states. None where no such runs were asked for, or the law states no errors.
+    level_error : tuple of array, shape (windows,), or None
+        Band of the sum level of each sensor, either way [dB]: its largest difference in runs whose laws are wrong by
+        the errors that the map states. None where no such runs were asked for, or the law states no errors.
     """
 
     case: Case
     record: Recording
-    spectra: RunUpSpectra
+    spectra: tuple[RunUpSpectra, ...]
     modes: Sweep | None
     seconds: float
-    level_error: FloatArray | None = None
+    level_error: tuple[FloatArray, ...] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,8 +88,8 @@ class CampbellResult:
     ----------
     settings : CampbellSettings
         What was looked at.
-    sensor : Sensor
-        Whose signal it is.
+    sensors : tuple of Sensor
+        Whose signals they are.
     course : RunUp
         The run, with a sample a step.
     orders : tuple of (float, str)
@@ -98,7 +103,7 @@ class CampbellResult:
     """
 
     settings: CampbellSettings
-    sensor: Sensor
+    sensors: tuple[Sensor, ...]
     course: RunUp
     orders: tuple[tuple[float, str], ...]
     runs: tuple[LawRun, ...]
@@ -111,9 +116,11 @@ def campbell(
     settings: CampbellSettings | None = None,
     progress: Progress | None = None,
     *,
+    sensors: Sequence[str] = (),
     with_modes: bool = False,
     keep_partial: bool = False,
     bands: int = 0,
+    workers: int = 1,
 ) -> CampbellResult:
     """Run up with each contact law, and compute levels over speed, frequency and order.
 
@@ -125,6 +132,8 @@ def campbell(
         What is looked at; [campbell] of the scene if left out.
     progress : callable, optional
         Told how many steps are done, and of how many, over all laws.
+    sensors : sequence of str
+        Names of sensors that are looked at, or `ALL_SENSORS`; all from one run. That of the settings if left out.
     with_modes : bool
         Whether modes of the linear system are computed at `MODE_SPEEDS` speeds of the run.
     keep_partial : bool
@@ -132,6 +141,8 @@ def campbell(
     bands : int
         Runs more of each law that states errors, up to `MOST_BANDS`: its stiffness, damping and films are wrong there
         by the bounds of these errors, with all signs in turn (`mbs.analyses.changed_laws`). Each costs a run.
+    workers : int
+        Number of processes among which the runs are divided.
 
     Raises
     ------
@@ -152,33 +163,34 @@ def campbell(
     scene = cases[0].model.scene
     settings = settings or scene.campbell
     problems: list[str] = []
-    sensor = _sensor(settings.sensor, scene, problems)
+    seen = chosen_sensors(scene, settings, sensors, problems)
     course = run_course(scene, settings.highest, problems)
     if not 0 <= bands <= MOST_BANDS:
         problems.append(f"bands: got {bands} runs; allowed: 0 to {MOST_BANDS}")
-    if problems or sensor is None or course is None:
+    if problems or course is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     orders = followed_orders(cases[0].model, settings, course)
     cases = tuple(dataclasses.replace(case, model=held(case.model)) for case in cases)
-    _rehearse(settings, course, orders)
-    runs, failed = _runs(cases, settings, sensor, course, orders, progress or silent, with_modes, keep_partial, bands)
+    rehearsed(settings, course, orders)
+    look = _Look(settings, tuple(seen), course, tuple(orders))
+    runs, failed = _runs(cases, look, progress or silent, with_modes, keep_partial, bands, workers)
     if not runs:
         raise AnalysisError("\n".join(f"warning: {line}" for line in failed))
-    known = runs[0].spectra.campbell.speeds
-    dataset = campbell_dataset(
-        [entry.case.label for entry in runs], [entry.spectra for entry in runs], Reference.of(sensor), sensor.name
-    )
-    dataset["sum_level_error"] = (
-        ("law", "speed"),
-        np.array([np.full(known.size, np.nan) if entry.level_error is None else entry.level_error for entry in runs]),
-        {"units": "dB", "long_name": f"{BAND} the sum level: largest difference of {bands} runs with wrong laws"},
-    )
+    labels, known = [entry.case.label for entry in runs], runs[0].spectra[0].campbell.speeds
+    words = f"{BAND} the sum level: largest difference of {bands} runs with wrong laws"
+    parts = []
+    for place, sensor in enumerate(seen):
+        part = campbell_dataset(labels, [entry.spectra[place] for entry in runs], Reference.of(sensor), sensor.name)
+        errors = [np.full(known.size, np.nan) if run.level_error is None else run.level_error[place] for run in runs]
+        part["sum_level_error"] = (("law", "speed"), np.array(errors), {"units": "dB", "long_name": words})
+        parts.append(part)
+    dataset = of_sensors(parts)
     dataset = with_states(dataset, [states_of(entry.case.model) for entry in runs], ("law",))
     # The dataset says of each law what it is.
     laws = "; ".join(f"{entry.case.label}: {entry.case.model.law}" for entry in runs)
     supplies = supply_attributes([(entry.case.label, entry.case.model) for entry in runs])
     dataset = described(dataset, **{**law_attributes(runs[0].case.model), "law": laws, **supplies})
-    return CampbellResult(settings, sensor, course, tuple(orders), tuple(runs), tuple(failed), dataset)
+    return CampbellResult(settings, tuple(seen), course, tuple(orders), tuple(runs), tuple(failed), dataset)
 
 
 def looked_at(scene: Scene, settings: CampbellSettings) -> tuple[Sensor, ...]:
@@ -204,64 +216,109 @@ def looked_at(scene: Scene, settings: CampbellSettings) -> tuple[Sensor, ...]:
     return sensor, *others
 
 
-def campbell_problems(scene: Scene, settings: CampbellSettings) -> list[str]:
-    """Everything about the run and the sensor of a scene that is not possible with some settings."""
+def chosen_sensors(scene: Scene, settings: CampbellSettings, names: Sequence[str], problems: list[str]) -> list[Sensor]:
+    """The sensors of some names, without doubles.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    settings : CampbellSettings
+        Its sensor is taken where no name is given.
+    names : sequence of str
+        Names, or `ALL_SENSORS` for all of the scene.
+    problems : list of str
+        What is wrong about them is appended.
+    """
+    if ALL_SENSORS in names and scene.sensors and all(sensor.name != ALL_SENSORS for sensor in scene.sensors):
+        return list(scene.sensors)
+    found = [_sensor(name, scene, problems) for name in names or (settings.sensor,)]
+    return list({sensor.name: sensor for sensor in found if sensor is not None}.values())
+
+
+def campbell_problems(scene: Scene, settings: CampbellSettings, sensors: Sequence[str] = ()) -> list[str]:
+    """Everything about the run and the sensors of a scene that is not possible with some settings."""
     problems: list[str] = []
-    _sensor(settings.sensor, scene, problems)
+    chosen_sensors(scene, settings, sensors, problems)
     run_course(scene, settings.highest, problems)
     return problems
 
 
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """What is looked at in each run."""
+
+    settings: CampbellSettings
+    sensors: tuple[Sensor, ...]
+    course: RunUp
+    orders: tuple[tuple[float, str], ...]
+
+
 def _runs(
     cases: Sequence[Case],
-    settings: CampbellSettings,
-    sensor: Sensor,
-    course: RunUp,
-    orders: list[tuple[float, str]],
+    look: _Look,
     tell: Progress,
     with_modes: bool,
     keep_partial: bool,
     bands: int,
+    workers: int,
 ) -> tuple[list[LawRun], list[str]]:
-    """The run of each case, and why some have none."""
+    """The run of each case, and why some have none; those of its band after it."""
+    course = look.course
     each = round(course.duration / course.settings.sample)
     speeds = [course.speed.at(part * course.duration)[0] for part in (0.0, 0.5, 1.0)]
     changes = [law_changes(case.model, speeds) if bands else None for case in cases]
-    total = sum(1 if change is None else 1 + bands for change in changes) * each
-    done = 0
+    pieces = [
+        (index, signs)
+        for index, change in enumerate(changes)
+        for signs in (None, *(SIGNS[:bands] if change is not None else ()))
+    ]
+    total = each * len(pieces)
+    runs: dict[int, LawRun] = {}
+    lost: dict[int, str] = {}
+    levels: dict[int, list[FloatArray]] = {}
 
-    def told(samples: int) -> None:
-        tell(done + samples, total)
+    def work(piece: int, told: Callable[[int], None]) -> _Made | FloatArray:
+        (index, signs), change = pieces[piece], changes[pieces[piece][0]]
+        if signs is None or change is None:
+            return _one(cases[index].model, look, told, with_modes)
+        if index in lost:
+            raise AnalysisError(lost[index])
+        return _sum_levels(_one(with_changed_laws(cases[index].model, change, signs), look, told, False).spectra)
 
     tell(0, total)
-    runs: list[LawRun] = []
-    failed: list[str] = []
-    for index, (case, change) in enumerate(zip(cases, changes, strict=True)):
-        begun = done
-        try:
-            runs.append(_one(case, settings, sensor, course, orders, told, with_modes))
-            done += each
-            if change is not None:
-                levels = []
-                for signs in SIGNS[:bands]:
-                    other = dataclasses.replace(case, model=with_changed_laws(case.model, change, signs))
-                    levels.append(_one(other, settings, sensor, course, orders, told, False).spectra.campbell.sum_level)
-                    done += each
-                wrong = np.abs(np.array(levels) - runs[-1].spectra.campbell.sum_level).max(axis=0)
-                runs[-1] = dataclasses.replace(runs[-1], level_error=wrong)
-        except AnalysisError as error:
-            # The run-ups with the other laws are worth minutes; keep them.
-            part = ", a run of its band" if runs and runs[-1].case is case else ""
-            failed.append(f"{case.label}{part}: {error}")
-        except KeyboardInterrupt:
-            if not (runs and keep_partial):
-                raise
-            left_out = cases[index + (runs[-1].case is case) :]
-            failed += [f"{left.label}: stopped, no result" for left in left_out]
-            break
-        # A run that has no result counts as done.
-        done = begun + (1 if change is None else 1 + bands) * each
-    return runs, failed
+    made = side_by_side(
+        work,
+        [each] * len(pieces),
+        workers,
+        lambda done: tell(done, total),
+        lambda piece: cases[pieces[piece][0]].label,
+    )
+    stopped: list[str] = []
+    try:
+        for (index, signs), found in zip(pieces, made, strict=True):
+            if isinstance(found, Failed):
+                # The run-ups with the other laws are worth minutes; keep them.
+                if not isinstance(found.error, AnalysisError):
+                    raise found.error
+                part = "" if signs is None else ", a run of its band"
+                lost.setdefault(index, f"{cases[index].label}{part}: {found.error}")
+            elif isinstance(found, _Made):
+                runs[index] = LawRun(cases[index], *found)
+            elif index not in lost:
+                levels.setdefault(index, []).append(found)
+                if len(levels[index]) == bands:
+                    wrong = np.abs(np.array(levels[index]) - _sum_levels(runs[index].spectra)).max(axis=0)
+                    runs[index] = dataclasses.replace(runs[index], level_error=tuple(wrong))
+    except KeyboardInterrupt:
+        if not (runs and keep_partial):
+            raise
+        stopped = [
+            f"{case.label}: stopped, no result"
+            for index, case in enumerate(cases)
+            if index not in runs and index not in lost
+        ]
+    return list(runs.values()), [*lost.values(), *stopped]
 
 
 def run_course(scene: Scene, highest: float, problems: list[str]) -> RunUp | None:
@@ -339,15 +396,46 @@ def followed_orders(model: Model, settings: CampbellSettings, course: RunUp) -> 
     """
     if settings.orders:
         return [(order, f"{order:g}") for order in settings.orders]
+    # None that lies above the band at every speed.
+    slowest = min(course.speed.at(0.0)[0], course.speed.at(course.duration)[0])
+    return orders_in_band(excited_orders(model), settings.highest, slowest)
+
+
+def orders_in_band(orders: Sequence[tuple[float, str]], highest: float, slowest: float) -> list[tuple[float, str]]:
+    """Those of some orders that do not lie above a band at every speed.
+
+    Parameters
+    ----------
+    orders : sequence of (float, str)
+        Orders, with their names.
+    highest : float
+        Highest frequency [Hz].
+    slowest : float
+        Lowest speed of the run [rad/s].
+
+    Examples
+    --------
+    >>> orders_in_band([(2.0, "2"), (200.0, "200")], 1000.0, 62.8)
+    [(2.0, '2')]
+    """
+    top = 2.0 * math.pi * highest / slowest if slowest > 0.0 else math.inf
+    return [(order, name) for order, name in orders if order < top]
+
+
+def excited_orders(model: Model) -> list[tuple[float, str]]:
+    """Orders that the elements of a model excite, with their names: of gears, else of passing rollers.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with a law.
+    """
     given = [one for entry in model.system.elements if (one := entry.element.excitation) is not None]
     highest_rank = max((entry.rank for entry in given), default=0)
     # Rounded, for bearings that differ in the last bit only.
     bases = sorted({(round(entry.order, 9), entry.harmonics) for entry in given if entry.rank == highest_rank})
     found = {k * base: f"{k * base:.4g}" for base, count in bases for k in range(1, count + 1)}
-    # None that lies above the band at every speed.
-    slowest = min(course.speed.at(0.0)[0], course.speed.at(course.duration)[0])
-    highest = 2.0 * math.pi * settings.highest / slowest if slowest > 0.0 else math.inf
-    return sorted((order, name) for order, name in found.items() if order < highest)
+    return sorted(found.items())
 
 
 def silent_run(course: RunUp) -> RunSignal:
@@ -369,34 +457,53 @@ def silent_run(course: RunUp) -> RunSignal:
     return RunSignal(times, speed, angle, np.zeros_like(times))
 
 
-def _rehearse(settings: CampbellSettings, course: RunUp, orders: list[tuple[float, str]]) -> None:
-    """Look at a silent run of the same course."""
-    run_up_spectra(silent_run(course), 1.0, settings.highest, settings.window, [order for order, _ in orders])
+def rehearsed(settings: CampbellSettings, course: RunUp, orders: Sequence[tuple[float, str]]) -> RunUpSpectra:
+    """What a silent run of a course gives: windows, speeds and frequencies of any signal of it.
+
+    Parameters
+    ----------
+    settings : CampbellSettings
+        What is looked at.
+    course : RunUp
+        The run.
+    orders : sequence of (float, str)
+        Orders to follow, with their names.
+
+    Raises
+    ------
+    InputError
+        If settings and orders do not fit the run.
+    """
+    return run_up_spectra(silent_run(course), 1.0, settings.highest, settings.window, [order for order, _ in orders])
 
 
-def _one(
-    case: Case,
-    settings: CampbellSettings,
-    sensor: Sensor,
-    course: RunUp,
-    orders: list[tuple[float, str]],
-    told: Callable[[int], None],
-    with_modes: bool,
-) -> LawRun:
-    """Run up with one law."""
-    model = case.model
+def _sum_levels(spectra: Sequence[RunUpSpectra]) -> FloatArray:
+    """Sum levels of all sensors, shape (sensors, windows) [dB]."""
+    return np.array([each.campbell.sum_level for each in spectra])
+
+
+class _Made(NamedTuple):
+    """A run with one law, as of `LawRun`."""
+
+    record: Recording
+    spectra: tuple[RunUpSpectra, ...]
+    modes: Sweep | None
+    seconds: float
+
+
+def _one(model: Model, look: _Look, told: Callable[[int], None], with_modes: bool) -> _Made:
+    """Run up with one law; all sensors of the scene are recorded."""
     begin = time.perf_counter()
-    record = recorded_run(model, course, (sensor,), told)
+    record = recorded_run(model, look.course, model.scene.sensors, told)
     seconds = time.perf_counter() - begin
-    signal = RunSignal(record.time, record.speed, record.angle, record.signals[:, 0])
-    spectra = run_up_spectra(
-        signal,
-        Reference.of(sensor).value,
-        settings.highest,
-        settings.window,
-        [order for order, _ in orders],
-    )
-    return LawRun(case, record, spectra, _modes(model, spectra) if with_modes else None, seconds)
+    settings, orders = look.settings, [order for order, _ in look.orders]
+    spectra = []
+    places = {sensor.name: place for place, sensor in enumerate(model.scene.sensors)}
+    for sensor in look.sensors:
+        signal = RunSignal(record.time, record.speed, record.angle, record.signals[:, places[sensor.name]])
+        reference = Reference.of(sensor).value
+        spectra.append(run_up_spectra(signal, reference, settings.highest, settings.window, orders))
+    return _Made(record, tuple(spectra), _modes(model, spectra[0]) if with_modes else None, seconds)
 
 
 def recorded_run(

@@ -1,4 +1,4 @@
-"""Whether a map covers what the bearings of a scene need."""
+"""Whether maps cover what the bearings of a scene need."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.emap import EHDMap
 from mbs.analyses import planning
 from mbs.analyses.planning import Needed
+from mbs.scene.map_set import MapSet
 
 ROUND_OFF = 1e-9
 """Of units that a map was written with, relative."""
@@ -62,27 +63,29 @@ class Coverage:
         return not any(axis.below or axis.above for axis in self.axes)
 
 
-def coverage(needed: Sequence[Needed], emap: EHDMap) -> tuple[Coverage, ...]:
-    """Compare a map with what is needed.
+def coverage(needed: Sequence[Needed], maps: EHDMap | MapSet) -> tuple[Coverage, ...]:
+    """Compare maps with what is needed.
 
     Parameters
     ----------
     needed : sequence of Needed
         Ranges by geometry, as `mbs.plan` finds them.
-    emap : EHDMap
-        The map.
+    maps : EHDMap or MapSet
+        One map for all, or one for each geometry.
 
     Raises
     ------
     EhdmapsError
         If no contact law can be made of the map, whatever its axes are.
     """
-    emap.check_usable(("inner", "outer"))
-    axes = [emap.dataset[key].values for key in ("load", "entrainment_speed", "temperature")]
-    # At rest there is no film to be mapped; only a dry map has no other speed.
-    mapped = [axis[axis > 0.0] if np.any(axis > 0.0) else axis for axis in axes]
     found = []
     for entry in needed:
+        emap = maps if isinstance(maps, EHDMap) else maps.of(entry.geometry)
+        assert emap is not None  # `dry_model` of the plan saw to it
+        emap.check_usable(("inner", "outer"))
+        axes = [emap.dataset[key].values for key in ("load", "entrainment_speed", "temperature")]
+        # At rest there is no film to be mapped; only a dry map has no other speed.
+        mapped = [axis[axis > 0.0] if np.any(axis > 0.0) else axis for axis in axes]
         highest = entry.load[1]
         wanted = dataclasses.replace(entry, load=(min(planning.LIGHT_ENOUGH * highest, planning.LIGHT), highest))
         temperatures = (wanted.temperature, wanted.temperature)

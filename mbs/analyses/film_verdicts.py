@@ -35,13 +35,14 @@ from mbs.analyses.film_criteria import (
     supply_effect,
 )
 from mbs.analyses.planning import Needed
+from mbs.analyses.shear_effect import shear_effect
 from mbs.model.relaxation import Films
 from mbs.scene.fields import HERTZ, MICROMETRE
 
 SHARES = (0.1, 1.0)
 """Loads of rollers that carry a bearing, over the highest one at rest."""
 
-_LOADS, _SPEEDS = 9, 5
+_LOADS, _SPEEDS, _SOLVED_LOADS = 9, 5, 4
 _ZETA, _ZETAS = (RIGID, 6.0), 41
 """Places ln(M/M_valley) that the lines of a map reach, and how many of them are looked at."""
 
@@ -55,7 +56,7 @@ class Verdict:
     Attributes
     ----------
     physics : str
-        Which: "film memory", "oil supply", "roughness", "inlet heating".
+        Which: "film memory", "oil supply", "roughness", "inlet heating", "limiting shear stress".
     on : bool
         Whether the analysis has it.
     size : float
@@ -104,6 +105,12 @@ class Range:
     def percent(self) -> str:
         """The tolerance, for people."""
         return _percent(self.tolerance)
+
+    @property
+    def slowest_and_fastest(self) -> tuple[ClosedContact, ...]:
+        """The states at the lowest and at the highest speed of each contact."""
+        speeds = [state.speed for state in self.states]
+        return tuple(state for state in self.states if state.speed in (min(speeds), max(speeds)))
 
     def carrying(self, values: Callable[[ClosedContact], FloatArray]) -> tuple[float, ClosedContact]:
         """The largest of some values at the loads of rollers that carry the bearing, and where it is.
@@ -247,6 +254,37 @@ def heat_verdict(found: Range, asked: str | None = None) -> Verdict:
     if not refused:
         return Verdict(name, True, size, f"{words}; the map has it by its rule", {"physics": INLET_HEAT})
     return Verdict(name, False, size, f"{words}; its rule does not hold here ({refused}); --physics thermal has it")
+
+
+def shear_verdict(found: Range, asked: str | None = None) -> Verdict:
+    """Whether a limiting shear stress matters: by solutions with it and without, at few loads.
+
+    Parameters
+    ----------
+    found : Range
+        Operating points.
+    asked : str or None
+        Law of shear that was asked for, a word of `ehdmaps.physics.rheology.SHEARS`.
+    """
+    name = "limiting shear stress"
+    loads = np.geomspace(*SHARES, _SOLVED_LOADS) * found.highest
+    size, state = max(
+        ((shear_effect(state, found.lubricant, loads), state) for state in found.slowest_and_fastest),
+        key=lambda entry: entry[0],
+    )
+    if size < 0.0:
+        words = "unknown: no film of these contacts could be solved with it and without"
+        size = math.nan
+    else:
+        words = (
+            f"it would change k or c of a contact by up to {_percent(size)} at {SPEED.text(state.speed)} "
+            f"({_beside(size, found)})"
+        )
+    if asked is not None:
+        on = asked != "newtonian"
+        return Verdict(name, on, size, f"as asked, {asked}; {words}", {"shear": asked} if on else {})
+    on = size > found.tolerance
+    return Verdict(name, on, size, words, {"shear": "limiting"} if on else {})
 
 
 def _no_rule(found: Range) -> str:

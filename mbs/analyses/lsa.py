@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -14,14 +16,14 @@ from mbs.analyses.operating import operating, states_of
 from mbs.linearised.level_bands import level_bands
 from mbs.linearised.linear import StateSpace, sensed, state_space, with_peaks
 from mbs.linearised.linear import responses as responses_of
-from mbs.linearised.modes import modes_of, state_modes, undamped_modes
+from mbs.linearised.modes import StateModes, modes_of, state_modes, undamped_modes
 from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import DynamicLoad, FilmError, dynamic_loads
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import described, linear_dataset
 from mbs.output.state_data import with_states
-from mbs.scene.assembly import Model, law_attributes
+from mbs.scene.assembly import Model, law_attributes, supply_attributes
 
 
 @dataclass(frozen=True)
@@ -106,7 +108,43 @@ def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
     >>> found.dataset["response_real"].dims
     ('frequency', 'sensor', 'input')
     """
-    settings = settings or LsaSettings()
+    return lsa_of([model], settings)[0]
+
+
+def lsa_of(models: Sequence[Model], settings: LsaSettings | None = None) -> list[LsaResult]:
+    """Linearise several models of one scene, and compute their responses at the same frequencies.
+
+    Parameters
+    ----------
+    models : sequence of Model
+        Scene with each law. Frequencies around the lightly damped modes of any of them are added for all.
+    settings : LsaSettings, optional
+        Frequencies and operation; those of the scene if left out.
+
+    Raises
+    ------
+    InputError
+        With everything that is missing.
+    AnalysisError
+        If there is no equilibrium, or its matrices are not finite.
+    """
+    found = [_linearised(model, settings or LsaSettings()) for model in models]
+    frequencies = np.unique(np.concatenate([entry.frequencies for entry in found]))
+    return [_responded(entry, frequencies) for entry in found]
+
+
+class _Linearised(NamedTuple):
+    """A model at its equilibrium, and the frequencies that its modes ask for."""
+
+    model: Model
+    balance: Equilibrium
+    states: StateModes
+    asked: int
+    frequencies: FloatArray
+
+
+def _linearised(model: Model, settings: LsaSettings) -> _Linearised:
+    """Linearise one model."""
     scene = model.scene
     asked = scene.frequencies if settings.frequencies is None else settings.frequencies
     missing = [
@@ -125,6 +163,13 @@ def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
     balance = equilibrium(steady_system(model.system), operation)
     states = state_modes(balance, undamped_modes(balance))
     frequencies = with_peaks(np.array(asked), modes_of(balance, states).eigenvalues)
+    return _Linearised(model, balance, states, len(asked), frequencies)
+
+
+def _responded(found: _Linearised, frequencies: FloatArray) -> LsaResult:
+    """The responses of a linearised model at some frequencies."""
+    model, balance, states, asked, _ = found
+    scene = model.scene
     motion = responses_of(balance, scene.inputs, frequencies)
     responses = sensed(balance, scene.sensors, frequencies, motion)
     level_error = level_bands(balance, states, scene.sensors, frequencies, motion, responses)
@@ -135,7 +180,7 @@ def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
         model=model,
         balance=balance,
         space=space,
-        asked=len(asked),
+        asked=asked,
         frequencies=frequencies,
         responses=responses,
         level_error=level_error,
@@ -143,3 +188,42 @@ def lsa(model: Model, settings: LsaSettings | None = None) -> LsaResult:
         lifting=lifting,
         dataset=described(with_states(dataset, states_of(model)), **law_attributes(model)),
     )
+
+
+def lsa_dataset(labels: Sequence[str], results: Sequence[LsaResult]) -> xr.Dataset:
+    """What `mbs lsa -o` writes: of one law its result, of several all of them over the dim law.
+
+    State spaces have as many states as the law with most of them; what a law has not is not a number.
+
+    Parameters
+    ----------
+    labels : sequence of str
+        What each is called.
+    results : sequence of LsaResult
+        Of `lsa_of`, at the same frequencies.
+    """
+    parts = [result.dataset for result in results]
+    if len(parts) == 1:
+        return parts[0]
+    shared = [name for name in ("quantity", "amplitude") if name in parts[0]]
+    law = xr.DataArray(np.array(labels, dtype=np.str_), dims="law", name="law")
+    joined = xr.concat(
+        [part.drop_vars(shared) for part in parts],
+        law,
+        data_vars="all",
+        coords="minimal",
+        compat="override",
+        join="outer",
+        combine_attrs="override",
+    ).assign({name: parts[0][name] for name in shared})
+    # Joined names of states are sorted; those of the law with most of them are in their order.
+    most = max(parts, key=lambda part: part.sizes["state"])
+    joined = joined.reindex(state=most["state"], of_state=most["of_state"])
+    for name in ("residual", "newton_steps"):
+        joined = joined.assign({name: ("law", [part.attrs[name] for part in parts], {"units": "1", "long_name": name})})
+    named = list(zip(labels, (result.model for result in results), strict=True))
+    words = "; ".join(f"{label}: {model.law}" for label, model in named)
+    bands = "; ".join(f"{label}: {part.attrs['bands']}" for label, part in zip(labels, parts, strict=True))
+    kept = {key: value for key, value in joined.attrs.items() if key not in ("residual", "newton_steps")}
+    joined.attrs = {**kept, "bands": bands, "law": words, **supply_attributes(named)}
+    return joined

@@ -18,8 +18,10 @@ from mbs.analyses.operating import held
 from mbs.analyses.planned_job import planned_job
 from mbs.analyses.planning import Needed
 from mbs.scene.assembly import Model, assemble
-from mbs.scene.contact_laws import constant_name, geometry_problems
+from mbs.scene.contact_laws import constant_name
+from mbs.scene.map_set import MapSet, as_map_set
 from mbs.scene.scene import Scene
+from mbs.scene.specs import BearingSpec
 
 
 @dataclass(frozen=True)
@@ -62,24 +64,25 @@ class PlanResult:
     speeds: tuple[float, float]
     needed: tuple[Needed, ...]
 
-    def jobs(self, names: Sequence[str] = (), solver: Mapping[str, Entry] | None = None) -> tuple[Job, ...]:
+    def jobs(self, names: Sequence[str] = (), solvers: Sequence[Mapping[str, Entry]] = ()) -> tuple[Job, ...]:
         """Jobs that cover the ranges, one a geometry, read back by the reader of jobs.
 
         Parameters
         ----------
         names : sequence of str
             One a geometry; "plan" if left out.
-        solver : mapping, optional
-            Further keys of [solver].
+        solvers : sequence of mapping
+            Further keys of [solver], one a geometry; none if left out.
 
         Raises
         ------
         InputError
             With everything that a job does not allow.
         """
+        count = len(self.needed)
         problems: list[str] = []
         jobs = []
-        for entry, name in zip(self.needed, names or ["plan"] * len(self.needed), strict=True):
+        for entry, name, solver in zip(self.needed, names or ["plan"] * count, solvers or [{}] * count, strict=True):
             try:
                 jobs.append(planned_job(self.scene, entry, name, solver))
             except InputError as error:
@@ -89,7 +92,9 @@ class PlanResult:
         return tuple(jobs)
 
 
-def plan(scene: Scene, settings: PlanSettings | None = None, emap: EHDMap | None = None) -> PlanResult:
+def plan(
+    scene: Scene, settings: PlanSettings | None = None, emap: EHDMap | MapSet | Sequence[EHDMap] | None = None
+) -> PlanResult:
     """Find the operating ranges that a scene needs of a contact map.
 
     Parameters
@@ -98,8 +103,8 @@ def plan(scene: Scene, settings: PlanSettings | None = None, emap: EHDMap | None
         Scene with bearings, and with a lubricant unless there is a map.
     settings : PlanSettings, optional
         How the ranges are found.
-    emap : EHDMap, optional
-        A map that is to be looked at with `mbs.analyses.coverage.coverage`; its oil counts.
+    emap : EHDMap, MapSet or sequence of EHDMap, optional
+        Maps that are to be looked at with `mbs.analyses.coverage.coverage`; their oil counts.
 
     Raises
     ------
@@ -116,7 +121,8 @@ def plan(scene: Scene, settings: PlanSettings | None = None, emap: EHDMap | None
     ['NU308']
     """
     settings = settings or PlanSettings()
-    return needed_of(scene, dry_model(scene, settings, emap), settings, emap)
+    maps = as_map_set(emap)
+    return needed_of(scene, dry_model(scene, settings, maps), settings, maps)
 
 
 def law_problems(law: str) -> list[str]:
@@ -126,7 +132,7 @@ def law_problems(law: str) -> list[str]:
     return [f"--law: got {law!r:.60}; allowed here: hertz, constant:NAME; loads at rest are those of dry contacts"]
 
 
-def dry_model(scene: Scene, settings: PlanSettings, emap: EHDMap | None = None, mapped: bool = False) -> Model:
+def dry_model(scene: Scene, settings: PlanSettings, maps: MapSet | None = None, mapped: bool = False) -> Model:
     """The scene with dry contacts, from which loads and speeds follow; the first half of `plan`.
 
     Parameters
@@ -135,8 +141,8 @@ def dry_model(scene: Scene, settings: PlanSettings, emap: EHDMap | None = None, 
         What is planned for.
     settings : PlanSettings
         Law and clearance.
-    emap : EHDMap, optional
-        A map that is to be looked at.
+    maps : MapSet, optional
+        Maps that are to be looked at.
     mapped : bool
         Whether there is a map that could not be read, so that the scene needs no lubricant.
 
@@ -152,9 +158,9 @@ def dry_model(scene: Scene, settings: PlanSettings, emap: EHDMap | None = None, 
         model = assemble(_dry_scene(scene), dry, clearance=settings.clearance)
     except InputError as error:
         problems += error.problems
-    if emap is not None:
+    if maps is not None:
         for entry in scene.bearings:
-            problems += geometry_problems(f"bearing {entry.name!r}", entry.geometry, emap)
+            problems += maps.problems(f"bearing {entry.name!r}", entry.geometry)
     if not scene.bearings:
         problems.append("got no bearing; allowed: at least one [[bearings]], which is what a map is for")
     if warm := [entry.name for entry in scene.bearings if entry.thermal is not None]:
@@ -162,7 +168,7 @@ def dry_model(scene: Scene, settings: PlanSettings, emap: EHDMap | None = None, 
             f"got thermal in {', '.join(warm)}; allowed: one temperature for all, that of [operation]; leave thermal "
             "out of a copy of the scene, or take a map over many temperatures, such as that of the shipped job nu308"
         )
-    if scene.lubricant is None and emap is None and not mapped:
+    if scene.lubricant is None and maps is None and not mapped:
         problems.append(
             'got no [lubricant], which a map is made for; add the table to the scene, such as name = "FVA3"'
         )
@@ -173,7 +179,7 @@ def dry_model(scene: Scene, settings: PlanSettings, emap: EHDMap | None = None, 
     return model
 
 
-def needed_of(scene: Scene, model: Model, settings: PlanSettings, emap: EHDMap | None = None) -> PlanResult:
+def needed_of(scene: Scene, model: Model, settings: PlanSettings, maps: MapSet | None = None) -> PlanResult:
     """The ranges that follow from a scene with dry contacts; the second half of `plan`.
 
     Parameters
@@ -184,7 +190,7 @@ def needed_of(scene: Scene, model: Model, settings: PlanSettings, emap: EHDMap |
         The scene with dry contacts, from `dry_model`.
     settings : PlanSettings
         The same.
-    emap : EHDMap, optional
+    maps : MapSet, optional
         Whose oil counts where the scene has none.
 
     Raises
@@ -194,10 +200,16 @@ def needed_of(scene: Scene, model: Model, settings: PlanSettings, emap: EHDMap |
     AnalysisError
         If a bearing carries no load or does not roll, or there is no equilibrium.
     """
+    speeds, needed = _needed(scene, model, settings, [_oil(scene, entry, maps) for entry in scene.bearings])
+    return PlanResult(scene, model, speeds, needed)
+
+
+def _oil(scene: Scene, bearing: BearingSpec, maps: MapSet | None) -> Lubricant:
+    """The oil of a bearing: that of the scene, else of its map."""
+    emap = None if maps is None else maps.of(bearing.geometry)
     oil = scene.lubricant if scene.lubricant is not None or emap is None else emap.lubricant
     assert oil is not None  # `dry_model` saw to it
-    speeds, needed = _needed(scene, model, settings, oil)
-    return PlanResult(scene, model, speeds, needed)
+    return oil
 
 
 def _dry_scene(scene: Scene, rooms: tuple[float, ...] = ()) -> Scene:
@@ -215,7 +227,7 @@ def _dry_scene(scene: Scene, rooms: tuple[float, ...] = ()) -> Scene:
 
 
 def _needed(
-    scene: Scene, model: Model, settings: PlanSettings, oil: Lubricant
+    scene: Scene, model: Model, settings: PlanSettings, oils: Sequence[Lubricant]
 ) -> tuple[tuple[float, float], tuple[Needed, ...]]:
     """Speeds of the system [rad/s], and the ranges that the scene needs."""
     steady = (scene.speed, *(scene.sweep.speeds.tolist() if scene.sweep else ()))
@@ -233,7 +245,7 @@ def _needed(
         planning.film_room(entry.bearing.geometry, oil, max(load, planning.LIGHT), speed, scene.temperature)
         if speed > 0.0
         else 0.0
-        for entry, load, speed in zip(model.bearings, dry, fastest, strict=True)
+        for entry, oil, load, speed in zip(model.bearings, oils, dry, fastest, strict=True)
     )
     filled = held(assemble(_dry_scene(model.scene, rooms), settings.law))
     preloaded = planning.largest_loads(filled.system, filled.bearings, speeds[1])

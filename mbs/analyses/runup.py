@@ -4,22 +4,32 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
+import numpy as np
 import xarray as xr
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
+from mbs.analyses.case import Case
 from mbs.analyses.operating import held, states_of
 from mbs.analyses.progress import Progress, silent
+from mbs.analyses.recorded import simulated
+from mbs.analyses.side_by_side import Failed, side_by_side
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.output.energy_data import with_energy
 from mbs.output.results import described, run_dataset
 from mbs.output.state_data import with_states
-from mbs.scene.assembly import Model, law_attributes
+from mbs.scene.assembly import Model, law_attributes, supply_attributes
 from mbs.settings import RunUp
-from mbs.transient.run import WITH_STATES, Recording
+from mbs.timedata.netcdf_file import signal_variables
+from mbs.transient.run import Options, Recording
 from mbs.transient.run import run as run_system
+
+_KEPT = Options(states=True, every_step=True)
+"""States at the samples, and sensors at every step: fewer would fold what lies above their band into it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +43,7 @@ class RunUpResult:
     course : RunUp
         Speed, duration, and how it was integrated.
     record : Recording
-        Recorded states and forces, and how often each element was outside its map.
+        Recorded states, forces and signals, and how often each element was outside its map.
     seconds : float
         How long the integration took [s].
     dataset : xarray.Dataset
@@ -75,26 +85,166 @@ def runup(model: Model, settings: RunUp | None = None, progress: Progress | None
     >>> runup(model, short).dataset.sizes["time"]
     11
     """
+    tell = progress or silent
+    total = _steps(_course(model, settings))
+    tell(0, total)
+    return RunUpResult(held(model), *_run(model, lambda done: tell(done, total), settings))
+
+
+class _Made(NamedTuple):
+    """A run, as of `RunUpResult`."""
+
+    course: RunUp
+    record: Recording
+    seconds: float
+    dataset: xr.Dataset
+
+
+def _course(model: Model, settings: RunUp | None = None) -> RunUp:
+    """What is run: that of the scene if nothing else is given."""
     course = settings or model.scene.run_up
     if course is None:
         raise InputError(f"{model.scene.name}: [runup] missing; a run needs from, to, duration and step")
-    tell, model = progress or silent, held(model)
+    return course
+
+
+def _steps(course: RunUp) -> int:
+    """Steps of a run, in whole samples."""
+    return math.ceil(course.duration / course.settings.sample - 1e-9) * course.settings.steps_per_sample
+
+
+def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = None) -> _Made:
+    """Integrate over a speed profile, that of the scene if none is given; what is told are steps."""
+    course, model = _course(model, settings), held(model)
     start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
-    steps = course.settings.steps_per_sample
-    total = math.ceil(course.duration / course.settings.sample - 1e-9) * steps
-    tell(0, total)
+    steps, sensors = course.settings.steps_per_sample, model.scene.sensors
     begin = time.perf_counter()
     record = run_system(
         model.system,
         course.speed,
         course.duration,
         course.settings,
+        sensors=sensors,
         displacement=start.displacement,
-        progress=lambda done: tell(done * steps, total),
-        options=WITH_STATES,
+        progress=lambda done: told(done * steps),
+        options=_KEPT,
     )
     seconds = time.perf_counter() - begin
     dataset = with_energy(run_dataset(model.system, record), record.energy)
     dataset = with_states(dataset, states_of(model))
     dataset = described(dataset, **law_attributes(model))
-    return RunUpResult(model, course, record, seconds, dataset)
+    if sensors:
+        signals = signal_variables(simulated([(model.label, model, record)]))
+        dataset = dataset.merge(signals).assign_attrs(title=model.scene.title, label=model.label)
+    return _Made(course, record, seconds, dataset)
+
+
+class RunUps(NamedTuple):
+    """Runs of one scene with several laws.
+
+    Attributes
+    ----------
+    labels : tuple of str
+        What each is called.
+    runs : tuple of RunUpResult
+        Those that came to the end.
+    failed : tuple of str
+        Why the others did not, each with its label.
+    """
+
+    labels: tuple[str, ...]
+    runs: tuple[RunUpResult, ...]
+    failed: tuple[str, ...]
+
+    @property
+    def dataset(self) -> xr.Dataset:
+        """What `mbs runup -o` writes: of one law its result, of several all of them over the dim law."""
+        if len(self.runs) == 1:
+            return self.runs[0].dataset
+        return _of_laws(self)
+
+
+def runups(
+    cases: Sequence[Case], progress: Progress | None = None, *, keep_partial: bool = False, workers: int = 1
+) -> RunUps:
+    """Integrate the run of one scene with several laws.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        Models, with their labels.
+    progress : callable, optional
+        Told how many steps are done, and of how many, over all laws.
+    keep_partial : bool
+        Whether Ctrl-C returns the laws that have come to the end, if there are any; else it is raised.
+    workers : int
+        Number of processes among which the laws are divided.
+
+    Raises
+    ------
+    InputError
+        As `runup` does.
+    AnalysisError
+        If no law came to the end.
+
+    Examples
+    --------
+    >>> import dataclasses
+    >>> from mbs import Case, assemble, read_scene
+    >>> scene = read_scene("nu308_rigid")
+    >>> scene = dataclasses.replace(scene, run_up=dataclasses.replace(scene.run_up, duration=1e-3))
+    >>> laws = ("hertz", "constant:hertz")
+    >>> found = runups([Case(law, assemble(scene, law), 0.0) for law in laws])
+    >>> found.dataset["signal"].dims
+    ('law', 'signal_time', 'sensor')
+    """
+    tell = progress or silent
+    sizes = [_steps(_course(case.model)) for case in cases]
+    runs: dict[int, RunUpResult] = {}
+    failed: list[str] = []
+    made = side_by_side(
+        lambda index, told: _run(cases[index].model, told),
+        sizes,
+        workers,
+        lambda done: tell(done, sum(sizes)),
+        lambda index: cases[index].label,
+    )
+    tell(0, sum(sizes))
+    try:
+        for index, found in enumerate(made):
+            if not isinstance(found, Failed):
+                runs[index] = RunUpResult(held(cases[index].model), *found)
+            elif isinstance(found.error, AnalysisError) and cases[1:]:
+                failed.append(f"{cases[index].label}: {found.error}")
+            else:
+                raise found.error
+    except KeyboardInterrupt:
+        if not (runs and keep_partial):
+            raise
+        failed += [f"{left.label}: stopped, no result" for left in cases[len(runs) + len(failed) :]]
+    if not runs:
+        raise AnalysisError("\n".join(f"warning: {line}" for line in failed))
+    return RunUps(tuple(cases[index].label for index in runs), tuple(runs.values()), tuple(failed))
+
+
+_SHARED = ("speed", "angle", "quantity", "signal_unit", "signal_speed", "signal_angle", "followed_order")
+"""Variables that are the same whatever the law."""
+
+
+def _of_laws(found: RunUps) -> xr.Dataset:
+    """The results of all laws over the dim law; what a law has not is not a number."""
+    parts = [run.dataset for run in found.runs]
+    own = [part.drop_vars([name for name in _SHARED if name in part]) for part in parts]
+    law = xr.DataArray(np.array(found.labels, dtype=np.str_), dims="law", name="law")
+    joined = xr.concat(
+        own, law, data_vars="all", coords="minimal", compat="override", join="outer", combine_attrs="override"
+    )
+    for name in _SHARED:
+        if name in parts[0]:
+            joined[name] = parts[0][name]
+    counts = {
+        key: sum(int(part.attrs[key]) for part in parts) for key in ("steps", "steps_halved", "newton_iterations")
+    }
+    words = "; ".join(f"{label}: {run.model.law}" for label, run in zip(found.labels, found.runs, strict=True))
+    supplies = supply_attributes([(label, run.model) for label, run in zip(found.labels, found.runs, strict=True)])
+    return joined.assign_attrs({**parts[0].attrs, **counts, "law": words, **supplies})

@@ -13,6 +13,7 @@ from mbs.bearings.rolling_loss import RollingLoss
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.free_motion import free_lines, free_motions
+from mbs.output.gear_data import with_gears
 from mbs.output.results import described, statics_dataset
 from mbs.output.state_data import with_states
 from mbs.scene.assembly import Model, law_attributes
@@ -83,5 +84,6 @@ def statics(model: Model, operation: Operation | None = None) -> StaticsResult:
         if (sentence := overload(state))
     )
     dataset = with_states(statics_dataset(balance, contacts, losses, (*overloads, *free)), states_of(model))
+    dataset = with_gears(dataset, model, balance)
     dataset = described(dataset, **law_attributes(model))
     return StaticsResult(model, balance, contacts, losses, overloads, free, dataset)

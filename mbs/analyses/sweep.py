@@ -13,6 +13,7 @@ from mbs.analyses.case import Case, as_cases
 from mbs.analyses.losses import losses_over_speed
 from mbs.analyses.operating import operating, states_of
 from mbs.analyses.progress import Progress, silent
+from mbs.analyses.side_by_side import Failed, side_by_side
 from mbs.linearised.sweep import sweep as sweep_system
 from mbs.linearised.sweep_result import Sweep
 from mbs.output.results import described
@@ -65,6 +66,7 @@ def sweep(
     models: Model | Case | Sequence[Model | Case],
     settings: SweepSettings | None = None,
     progress: Progress | None = None,
+    workers: int = 1,
 ) -> SweepResult:
     """Sweep over speed.
 
@@ -76,6 +78,8 @@ def sweep(
         Speeds and cage angles; the speeds of the scene at one angle if left out.
     progress : callable, optional
         Told how many models are done, and of how many.
+    workers : int
+        Number of processes among which the models are divided.
 
     Raises
     ------
@@ -102,10 +106,17 @@ def sweep(
         )
     tell = progress or silent
     tell(0, len(cases))
-    found = []
-    for case in cases:
-        found.append(_one(case, speeds, settings.cage_angles))
-        tell(len(found), len(cases))
+    found: list[Sweep] = []
+    for entry in side_by_side(
+        lambda index, _: _one(cases[index], speeds, settings.cage_angles),
+        [1] * len(cases),
+        workers,
+        lambda done: tell(done, len(cases)),
+        lambda index: cases[index].label,
+    ):
+        if isinstance(entry, Failed):
+            raise entry.error
+        found.append(entry)
     outside = tuple({name: int(np.count_nonzero(there)) for name, there in entry.outside.items()} for entry in found)
     return SweepResult(cases, tuple(found), outside, _dataset(cases, found))
 

@@ -35,6 +35,7 @@ from mbs.linearised.sweep_point import pitch
 from mbs.scene import changes
 from mbs.scene.contact_laws import law_label
 from mbs.scene.fields import HERTZ, MILLISECOND
+from mbs.scene.map_set import MapSet
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings
 from mbs.spectral.levels import Reference
@@ -137,7 +138,7 @@ def tradeoff(
         If the reference has no equilibrium.
     """
     settings = settings or TradeoffSettings(scene.campbell)
-    maps = [law for law in laws if law.emap is not None]
+    maps = [law for law in laws if law.maps is not None]
     films = maps[0] if maps else LawChoice(law_label("formula"), "formula")
     base = Subject(scene, dataclasses.replace(films, films="memory"), clearance)
     runs = settings.runs and scene.run_up is not None
@@ -204,24 +205,31 @@ def _maps(base: Subject, maps: Sequence[LawChoice]) -> Iterable[_Tried]:
     """Other maps, and the map of the reference with fewer points."""
     for law in maps[1:]:
         yield _Tried("map", law.label, dataclasses.replace(base, law=dataclasses.replace(law, films="memory")), base)
-    emap = base.law.emap
-    if emap is None:
+    given = base.law.maps
+    if given is None:
         return
     yield _Tried("map", "as given", base, base, True)
-    for label, thin in _thinned(emap):
-        yield _Tried("map", label, dataclasses.replace(base, law=dataclasses.replace(base.law, emap=thin)), base)
+    for label, thin in _thinned(given):
+        yield _Tried("map", label, dataclasses.replace(base, law=dataclasses.replace(base.law, maps=thin)), base)
 
 
-def _thinned(emap: EHDMap) -> Iterable[tuple[str, EHDMap]]:
-    """A map without what it costs most to make; only what is a map still."""
-    every_second = {"load": slice(None, None, 2)} if emap.dataset.sizes["load"] % 2 else {}
-    cuts: list[tuple[str, dict[str, slice], bool]] = [("no lines of refinement", {}, emap.backbone is not None)]
-    cuts.append(("every second load, no such lines", every_second, bool(every_second)))
-    for label, cut, there in cuts:
-        if there:
-            # What is left may be too little for a law.
-            with contextlib.suppress(EhdmapsError):
-                yield label, EHDMap(emap.dataset.isel(cut))
+def _thinned(given: MapSet) -> Iterable[tuple[str, MapSet]]:
+    """Maps without what it costs most to make; only what are maps still."""
+    if any(emap.backbone is not None for emap in given.maps):
+        with contextlib.suppress(EhdmapsError):
+            yield "no lines of refinement", given.each(lambda emap: EHDMap(emap.dataset))
+    if any(_every_second(emap) for emap in given.maps):
+        # What is left may be too little for a law.
+        with contextlib.suppress(EhdmapsError):
+            yield (
+                "every second load, no such lines",
+                given.each(lambda emap: EHDMap(emap.dataset.isel(_every_second(emap)))),
+            )
+
+
+def _every_second(emap: EHDMap) -> dict[str, slice]:
+    """Every second load of a map; all where the last one would be lost."""
+    return {"load": slice(None, None, 2)} if emap.dataset.sizes["load"] % 2 else {}
 
 
 def _numbers(base: Subject, keys: Sequence[str], settings: TradeoffSettings) -> Iterable[_Tried]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +20,7 @@ from ehdmaps.errors import AnalysisError, InputError
 from mbs.analyses.campbell import followed_orders, recorded_run, run_course, silent_run
 from mbs.analyses.operating import held
 from mbs.analyses.progress import Progress, silent
+from mbs.analyses.side_by_side import Failed, side_by_side
 from mbs.analyses.varied import VARIED, LawChoice, Subject, Value
 from mbs.model.elements import Sensor
 from mbs.output.results import described
@@ -158,6 +159,7 @@ def variants(
     progress: Progress | None = None,
     *,
     keep_partial: bool = False,
+    workers: int = 1,
 ) -> VariantsResult:
     """Run up with two laws, and again with each single change; compare the sum levels of all acceleration sensors.
 
@@ -177,6 +179,8 @@ def variants(
         Told how many steps are done, and of how many, over all runs.
     keep_partial : bool
         Whether Ctrl-C returns the changes that have come to the end, if there are any; else it is raised.
+    workers : int
+        Number of processes among which the runs are divided.
 
     Raises
     ------
@@ -196,7 +200,7 @@ def variants(
     settings = settings or scene.campbell
     sensors = tuple(sensor for sensor in scene.sensors if sensor.quantity == "acceleration")
     runs, pairs = _planned(scene, laws, variations, clearance, settings, sensors)
-    outcomes = _made(runs, sensors, settings, progress or silent, keep_partial)
+    outcomes = _made(runs, sensors, settings, progress or silent, keep_partial, workers)
     rows = tuple(_variant(change, pair, outcomes) for change, pair in zip([None, *variations], pairs, strict=True))
     if not any(row.differences for row in rows):
         raise AnalysisError("\n".join(f"warning: {row.words}: {row.problem}" for row in rows))
@@ -286,41 +290,52 @@ def _place(subject: Subject, settings: CampbellSettings, runs: list[_Run], place
 
 def _law_content(subject: Subject) -> str:
     """The law of a subject without its films and their oil supply, as a text: the same text, the same law."""
-    return f"{subject.law.name} {id(subject.law.emap)}"
+    return f"{subject.law.name} {id(subject.law.maps)}"
 
 
 def _made(
-    runs: Sequence[_Run], sensors: tuple[Sensor, ...], settings: CampbellSettings, tell: Progress, keep_partial: bool
+    runs: Sequence[_Run],
+    sensors: tuple[Sensor, ...],
+    settings: CampbellSettings,
+    tell: Progress,
+    keep_partial: bool,
+    workers: int,
 ) -> list[_Outcome]:
-    """Make all runs, one after another; fewer where they were stopped."""
+    """Make all runs, side by side; fewer where they were stopped."""
     total = sum(run.samples for run in runs)
-    done = 0
-
-    def told(samples: int) -> None:
-        tell(done + samples, total)
-
     tell(0, total)
     found: list[_Outcome] = []
-    for run in runs:
-        try:
-            record = recorded_run(held(run.model), run.course, sensors, told)
-            levels = []
-            for column, sensor in enumerate(sensors):
-                signal = RunSignal(record.time, record.speed, record.angle, record.signals[:, column])
-                reference = Reference.of(sensor).value
-                levels.append(
-                    campbell(signal, reference, settings.highest, settings.window, run.highest_order).sum_level
-                )
-            found.append(_Outcome(tuple(levels), {name: calls for name, calls in record.outside.items() if calls}))
-        except AnalysisError as error:
-            # The other runs are worth minutes; keep them.
-            found.append(_Outcome((), {}, str(error)))
-        except KeyboardInterrupt:
-            if not (keep_partial and len(found) > 1):
-                raise
-            break
-        done += run.samples
+    outcomes = side_by_side(
+        lambda index, told: _outcome(runs[index], sensors, settings, told),
+        [run.samples for run in runs],
+        workers,
+        lambda done: tell(done, total),
+        lambda index: f"run {index + 1} of {len(runs)}",
+    )
+    try:
+        for entry in outcomes:
+            # Where a run has no result the others are worth minutes; keep them.
+            found.append(_Outcome((), {}, str(entry.error)) if isinstance(entry, Failed) else entry)
+    except KeyboardInterrupt:
+        if not (keep_partial and len(found) > 1):
+            raise
     return found
+
+
+def _outcome(
+    run: _Run, sensors: tuple[Sensor, ...], settings: CampbellSettings, told: Callable[[int], None]
+) -> _Outcome:
+    """Make a run."""
+    try:
+        record = recorded_run(held(run.model), run.course, sensors, told)
+    except AnalysisError as error:
+        return _Outcome((), {}, str(error))
+    levels = []
+    for column, sensor in enumerate(sensors):
+        signal = RunSignal(record.time, record.speed, record.angle, record.signals[:, column])
+        reference = Reference.of(sensor).value
+        levels.append(campbell(signal, reference, settings.highest, settings.window, run.highest_order).sum_level)
+    return _Outcome(tuple(levels), {name: calls for name, calls in record.outside.items() if calls})
 
 
 def _variant(change: Variation | None, pair: tuple[int, int], outcomes: Sequence[_Outcome]) -> Variant:

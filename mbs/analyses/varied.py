@@ -13,7 +13,6 @@ from typing import Literal, get_args
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.supply import supply_from_text
-from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from ehdmaps.units import TEMPERATURE, Display, closest, quantity
@@ -22,6 +21,7 @@ from mbs.scene import changes
 from mbs.scene.assembly import Model, assemble
 from mbs.scene.contact_laws import law_label
 from mbs.scene.fields import DEGREE, HERTZ, MICROMETRE
+from mbs.scene.map_set import MapSet
 from mbs.scene.scene import Scene
 
 Value = float | int | str
@@ -45,8 +45,8 @@ class LawChoice:
         The law in two words.
     name : str or None
         Name of the law, as `mbs.scene.assembly.assemble` takes it.
-    emap : EHDMap or None
-        The map of the law `map`.
+    maps : MapSet or None
+        The maps of the law `map`, one for each type of bearing.
     films : {"slow", "memory"} or None
         Which films it is to have.
     supply : OilSupply or None
@@ -55,14 +55,14 @@ class LawChoice:
 
     label: str
     name: str | None
-    emap: EHDMap | None = None
+    maps: MapSet | None = None
     films: Films | None = None
     supply: OilSupply | None = None
 
     @property
     def has_films(self) -> bool:
         """Whether it knows an oil."""
-        return self.name in ("map", "formula") or (self.name is None and self.emap is not None)
+        return self.name in ("map", "formula") or (self.name is None and self.maps is not None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ class Subject:
     def model(self) -> Model:
         """The model; see `mbs.scene.assembly.assemble`."""
         law = self.law
-        return assemble(self.scene, law.name, law.emap, self.clearance, law.films, law.supply)
+        return assemble(self.scene, law.name, law.maps, self.clearance, law.films, law.supply)
 
 
 @dataclass(frozen=True)

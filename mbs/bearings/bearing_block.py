@@ -8,17 +8,20 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.copies import put
+from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.lines import FAST
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.bearing_kernel import Work, bearing_force, ring_powers
+from mbs.bearings.bearing_kernel import bearing_force, ring_powers
 from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
+from mbs.bearings.laws import Law
 from mbs.bearings.level_kernel import level_force
 from mbs.bearings.rings import LEVEL, Rings, answer_ring, feels, gather_rings, motion_of, placed, shape_of
-from mbs.bearings.slice_table import CELLS, LawNumbers, PreparedLaw, law_numbers, store_numbers
+from mbs.bearings.roller_motion import Work
+from mbs.bearings.slice_table import CELLS, KNOTS, LawNumbers, PreparedLaw, fade, law_numbers, store_numbers
 from mbs.bearings.speed_tables import NODES, SpeedTables
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
 from mbs.model.elements import Element
@@ -31,7 +34,7 @@ class Films(NamedTuple):
     ----------
     tables, numbers : array (films, nodes, rows, 8), (films, nodes, NUMBERS)
         Laws prepared as in `mbs.bearings.slice_table`.
-    cells, current : array (films, rows, 8), (films, NUMBERS)
+    cells, knots, current : array (films, rows, 8), (films, rows), (films, NUMBERS)
         The law in use.
     in_use : array (films, 2)
         Node and weight of those.
@@ -40,6 +43,7 @@ class Films(NamedTuple):
     tables: FloatArray
     numbers: FloatArray
     cells: FloatArray
+    knots: FloatArray
     current: FloatArray
     in_use: FloatArray
 
@@ -54,11 +58,13 @@ class Bearings(NamedTuple):
     rows : array (Z n,)
         Work space for one bearing after the other.
     states : array (bearings, 4 Z n)
-        Slices of each bearing at rest at the last answer, as of `mbs.bearings.bearing_kernel.Work`.
+        Slices of each bearing at rest at the last answer, as of `mbs.bearings.roller_motion.Work`.
     films : Films
         Tables of the laws.
     course : Course
         Places of the steps on the tables.
+    strict : array (bearings,), of bool
+        Whether the law refuses loads above its map.
     """
 
     rings: Rings
@@ -66,6 +72,7 @@ class Bearings(NamedTuple):
     states: FloatArray
     films: Films
     course: Course
+    strict: BoolArray
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -88,6 +95,10 @@ def _between(low: FloatArray, high: FloatArray, weight: float, out: FloatArray) 
         safe_approach=min(first.safe_approach, second.safe_approach) - aside,
         lift_off=min(first.lift_off, second.lift_off) - aside,
         slope=mixed.slope,
+        held_approach=mixed.held_approach,
+        held_load=mixed.held_load,
+        held_stiffness=mixed.held_stiffness,
+        held_damping=mixed.held_damping,
     )
     store_numbers(bounded, out)
 
@@ -97,7 +108,7 @@ def blend(films: Films, film: int, node: int, weight: float) -> None:
     """Bring the table in use to a place between two nodes: straight in ln of the speed, cell by cell.
 
     Tables have the same cells in z = (delta - centre)/scale, so that the blend of laws that rise with the approach
-    rises too, and is C1.
+    rises too, and is C1. A faded film has one table, and its weight is the part of the film that is there.
 
     Parameters
     ----------
@@ -114,13 +125,17 @@ def blend(films: Films, film: int, node: int, weight: float) -> None:
         return
     films.in_use[film, 0], films.in_use[film, 1] = node, weight
     low, cells, current = films.numbers[film, node], films.cells[film], films.current[film]
-    tabulated = law_numbers(low).kind == CELLS
+    kind = law_numbers(low).kind
+    if kind == KNOTS:
+        fade(films.tables[film, node], low, weight, cells, films.knots[film], current)
+        return
+    tabulated = kind == CELLS
     if weight == 0.0:
         put(low, current)
         if tabulated:
             put(films.tables[film, node].reshape(-1), cells.reshape(-1))
         return
-    other = (node + 1) % films.tables.shape[1]
+    other = (node + 1) % NODES
     _between(low, films.numbers[film, other], weight, current)
     if not tabulated:
         return
@@ -138,7 +153,7 @@ def _force(bearings: Bearings, b: int, moment: Moment, motion: FloatArray, out: 
     """Force, stiffness and damping of a bearing into `out` (13, 6); status as of `bearing_force`."""
     rings, films = bearings.rings, bearings.films
     z, n, film = rings.rollers[b], rings.slices[b], rings.films_of[b]
-    law = PreparedLaw(law_numbers(films.current[film]), films.cells[film])
+    law = PreparedLaw(law_numbers(films.current[film]), films.cells[film], films.knots[film])
     cells = z * n
     work = Work(bearings.rows[:cells].reshape(z, n), bearings.states[b][: 4 * cells].reshape(4, z, n))
     ring, shape = motion_of(rings, b, moment, motion), shape_of(rings, b)
@@ -170,9 +185,12 @@ def bearings_answer(bearings: Bearings, moment: Moment, motion: FloatArray, answ
     out = np.empty((13, 6))
     for b in range(rings.firsts.size):
         status = _force(bearings, b, moment, motion, out)
-        if status != 0:
-            return NO_SOLUTION if status < 0 else IN_PYTHON
-        answers.outside[rings.places[b]] += course.outside[moment.step, rings.films_of[b]]
+        if status < 0:
+            return NO_SOLUTION
+        if status > 0 and bearings.strict[b]:
+            return IN_PYTHON
+        outside = course.outside[moment.step, rings.films_of[b]]
+        answers.outside[rings.places[b]] += 1 if status > 0 or outside > 0 else 0
         answer_ring(rings.firsts[b], rings.felt[b], moment, out, answers)
     return FOUND
 
@@ -229,6 +247,7 @@ class BearingBlock(FilmBlock[Bearings]):
             states=np.zeros((len(elements), 4 * rings.most_slices)),
             films=films,
             course=course_of(0, len(tables)),
+            strict=np.array([is_strict(_force_of(element).law) for element in elements], dtype=np.bool_),
         )
         super().__init__(course, arrays)
 
@@ -239,13 +258,19 @@ def _force_of(element: BearingElement) -> BearingForce:
     return element.force
 
 
+def is_strict(law: Law) -> bool:
+    """Whether a law refuses loads above its map."""
+    return isinstance(law, ContactLaw) and law.outside == "error"
+
+
 def room_of(films: int, varies: bool) -> Films:
     """Room for tables."""
-    nodes, cells = (NODES, 2 * table.ROWS) if varies else (1, 1)
+    nodes, cells = (NODES + 1, 2 * table.ROWS) if varies else (1, 1)
     return Films(
         tables=np.zeros((films, nodes, cells, 8)),
         numbers=np.zeros((films, nodes, table.NUMBERS)),
         cells=np.zeros((films, cells, 8)),
+        knots=np.zeros((films, cells)),
         current=np.zeros((films, table.NUMBERS)),
         in_use=np.full((films, 2), -1.0),
     )

@@ -14,12 +14,12 @@ from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import NO_COUPLED_MEMORY, BearingForce
-from mbs.bearings.bearing_kernel import approaches_of_arrays
 from mbs.bearings.contact_energy import brought_by_speed, cage_moment, energy_at_rest
 from mbs.bearings.contact_groups import ContactGroup
 from mbs.bearings.film_relaxation import bearing_relaxation, massless_rows, natural_times
 from mbs.bearings.force_at_point import Arrays
 from mbs.bearings.roller_loads import RollerLoads
+from mbs.bearings.roller_motion import approaches_of_arrays
 from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port, Powers
 from mbs.model.relaxation import Films, Relaxation
 

@@ -66,8 +66,7 @@ class BearingForce:
     -----
     A call is for one pose; `evaluate` says besides whether it was outside the map. Speed, temperature and centrifugal
     load may change from call to call, which costs tens of microseconds more; `at` gives the element at fixed ones. Both
-    give the same numbers. For speeds between zero and the lowest mapped one the law itself is called for each slice,
-    which is slower. An object is for one thread.
+    give the same numbers. An object is for one thread.
     """
 
     def __init__(self, bearing: Bearing, law: Law, slices: int | None = None, outside: str | None = None) -> None:

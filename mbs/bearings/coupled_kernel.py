@@ -27,18 +27,9 @@ from ehdmaps.maps.binary_cells import FIRST, SHIFT
 from ehdmaps.maps.kernel import evaluate_at
 from ehdmaps.maps.lines import unilateral_force
 from ehdmaps.maps.tables import LOAD
-from mbs.bearings.bearing_kernel import (
-    Plane,
-    Shape,
-    added,
-    all_finite,
-    check_motion,
-    ring_motion,
-    roller_of,
-    sizes_of,
-    write_plane,
-)
+from mbs.bearings.bearing_kernel import Plane, added, write_plane
 from mbs.bearings.powers import power
+from mbs.bearings.roller_motion import Shape, all_finite, check_motion, ring_motion, roller_of, sizes_of
 from mbs.bearings.slice_table import CELLS, LAST, ROWS, LawNumbers, law_numbers, read_cells
 
 NO_LOADS = -3

@@ -10,22 +10,17 @@ import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError, OutsideMapError
-from ehdmaps.maps.kernel import LOAD_TOLERANCE
+from ehdmaps.maps.kernel import LOAD_TOLERANCE, film_part
 from ehdmaps.maps.law import ContactLaw, LawAtPoint
 from ehdmaps.maps.tables import POWER_LAW, Point
 from ehdmaps.solids.slices import without_ends
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_kernel import (
-    NOT_FINITE,
-    Sizes,
-    force_of_arrays,
-    force_of_point_arrays,
-    rollers_of_arrays,
-)
+from mbs.bearings.bearing_kernel import force_of_arrays, force_of_point_arrays
 from mbs.bearings.coupled_kernel import NO_LOADS, coupled_arrays
 from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.roller_loads import RollerLoads, roller_loads
+from mbs.bearings.roller_motion import NOT_FINITE, Sizes, rollers_of_arrays
 from mbs.model.elements import Forces
 
 Triple = tuple[FloatArray, FloatArray, FloatArray]
@@ -36,7 +31,8 @@ _WHOLE_ROLLERS = ("iso16281", "palmgren")
 _SIX, _OUT = (6,), (13, 6)
 _POWER = table.LawNumbers(
     kind=table.POWER, coefficient=0.0, exponent=0.0, damping=0.0, damping_time=0.0, centre=0.0, inverse_scale=0.0,
-    highest=0.0, safe_approach=0.0, lift_off=0.0, slope=1.0,
+    highest=0.0, safe_approach=0.0, lift_off=0.0, slope=1.0, held_approach=math.inf, held_load=math.inf,
+    held_stiffness=0.0, held_damping=0.0,
 )  # fmt: skip
 _BY_SLICES = _POWER._replace(lift_off=-math.inf, safe_approach=math.inf)
 """Where the law is called for each slice, slopes are whole and loads are counted there."""
@@ -71,7 +67,7 @@ class Arrays:
         self.rows = np.zeros((rollers, slices), dtype=np.int64)
         self.states = np.zeros((4, rollers, slices))
         self.numbers = np.zeros(table.NUMBERS)
-        self.cells = np.zeros((1, 8))
+        self.cells, self.knots, self.film = np.zeros((1, 8)), np.zeros(1), np.zeros((1, 8))
         self.buffer = np.zeros((1, 1))
         self.counts = np.zeros(4, dtype=np.int64)
         self.coupling = coupling
@@ -80,7 +76,12 @@ class Arrays:
     def make_room(self) -> None:
         """Make the arrays that only a tabulated law needs."""
         if self.cells.shape[0] == 1:
-            self.cells, self.buffer = np.empty((2 * table.ROWS, 8)), np.empty((8, 2 * table.ROWS + 1))
+            self.cells, self.buffer = np.empty((2 * table.ROWS, 8)), np.empty((6, 2 * table.ROWS + 1))
+
+    def make_knots(self) -> None:
+        """Make the arrays that only a faded film needs."""
+        if self.film.shape[0] == 1:
+            self.film, self.knots = np.empty((2 * table.ROWS, 8)), np.empty(2 * table.ROWS)
 
 
 class FlatLaw:
@@ -150,7 +151,12 @@ class ForceAtPoint:
                 )
             length = bearing.geometry.roller_length
             _set_power(
-                numbers, law.coefficient / length, law.exponent, math.inf, law.damping / length, law.damping_time
+                numbers,
+                law.coefficient / length,
+                law.exponent,
+                math.inf,
+                damping=law.damping / length,
+                damping_time=law.damping_time,
             )
         else:
             self._prepare(law)
@@ -158,7 +164,7 @@ class ForceAtPoint:
         w = self._work
         self._state = (w.state, w.state[:6], w.state[6:12])
         self._shape = (w.state, np.array(w.sizes), w.slices, w.angles, w.numbers)
-        self.arrays = (*self._shape, w.cells, w.rows, w.states)
+        self.arrays = (*self._shape, w.cells, w.knots, w.rows, w.states)
 
     def __call__(self, pose: npt.ArrayLike, velocity: npt.ArrayLike | None = None, cage_angle: float = 0.0) -> Triple:
         """Force, stiffness and damping; as calling the `BearingForce`. The arrays are new ones each time."""
@@ -227,28 +233,38 @@ class ForceAtPoint:
     def _prepare(self, law: ContactLaw) -> None:
         """Make the law of this point ready for compiled code."""
         work = self._work
-        q = check_conditions(self.conditions)
-        if q >= 0.0 and q < law.load_range[1]:
-            conditions = np.array(self.conditions, dtype=np.float64)
-            arrays, workspace = self._flat_law.arrays(law, q > 0.0)
-            counts = np.zeros(4, dtype=np.int64)
-            work.make_room()
-            fits = table.tabulate_law(
-                arrays, workspace, conditions, table.NODES, work.buffer, work.cells, work.numbers, counts
-            )
-            self._outside = bool(counts.any())
-            if fits and not (self._outside and law.outside == "error"):
-                return
-        point = self._point(law)
-        if point.film == 0.0 and point.centrifugal_load == 0.0 and _one_power(point.structure):
+        u, _, q = check_conditions(self.conditions)
+        part, faded = part_of_film(law, u), is_faded(law, u)
+        if part == 0.0 and q == 0.0 and is_one_power(law):
             # Dry contacts in series: delta = (a_1 + a_2) w^b.
+            point = self._point(law)
             b = float(point.structure[0, 2])
             a = float(np.sum(point.structure[:, 1]))
-            highest = min(point.highest_load * (1.0 + LOAD_TOLERANCE), point.held_load)
-            _set_power(work.numbers, a ** (-1.0 / b), 1.0 / b, highest)
+            _set_power(work.numbers, a ** (-1.0 / b), 1.0 / b, point.highest_load * (1.0 + LOAD_TOLERANCE), point)
             return
+        if 0.0 <= q < law.load_range[1] and not (self._coupled and faded) and self._tabulate(law, part, faded):
+            return
+        self._point(law)
         self._by_slices = True
         work.numbers[:] = _BY_SLICES
+
+    def _tabulate(self, law: ContactLaw, part: float, faded: bool) -> bool:
+        """Make the table of the law with a part of its film; whether there is one."""
+        work = self._work
+        arrays, workspace = self._flat_law.arrays(law, self.conditions[2] > 0.0)
+        counts = np.zeros(4, dtype=np.int64)
+        work.make_room()
+        if faded:
+            work.make_knots()
+        cells = work.film if faded else work.cells
+        conditions = np.array(self.conditions, dtype=np.float64)
+        fits: bool = table.tabulate_law(
+            arrays, workspace, conditions, table.NODES, work.buffer, cells, work.numbers, counts
+        )
+        self._outside = bool(counts.any())
+        if fits and faded:
+            table.fade(work.film, work.numbers.copy(), part, work.cells, work.knots, work.numbers)
+        return fits and not (self._outside and law.outside == "error")
 
     def _point(self, law: ContactLaw) -> Point:
         """The law at this point, for the calls that no table answers."""
@@ -278,7 +294,7 @@ class ForceAtPoint:
         w = self._work
         assert w.coupling is not None
         point = self._point(law) if self._by_slices and isinstance(law, ContactLaw) else None
-        status: int = coupled_arrays(point, *self.arrays, w.coupling, w.own, w.counts, out)
+        status: int = coupled_arrays(point, *self._shape, w.cells, w.rows, w.states, w.coupling, w.own, w.counts, out)
         return status
 
     def _settle(self, status: int, out: FloatArray) -> bool:
@@ -294,10 +310,6 @@ class ForceAtPoint:
             raise_state(work.state, work.sizes, status == NOT_FINITE)
         if not isinstance(law, ContactLaw):
             return False
-        if status > 0 and not self._apart:
-            numbers = work.numbers.copy()
-            status = self._from_slices(law, out)
-            work.numbers[:] = numbers
         if status == 0 and not self._outside:
             return False
         if status > 0 and law.outside == "error":
@@ -308,6 +320,16 @@ class ForceAtPoint:
                 "make a map that reaches there, or take a law with outside='clamp' or outside='asymptote'"
             )
         return True
+
+
+def is_faded(law: ContactLaw, entrainment_speed: float) -> bool:
+    """Whether a speed [m/s] lies below those with the whole film."""
+    return bool(abs(entrainment_speed) < law.plain_table.film_speed)
+
+
+def part_of_film(law: ContactLaw, entrainment_speed: float) -> float:
+    """Part of the film of a law that is there at a speed [m/s]."""
+    return float(film_part.py_func(abs(entrainment_speed), law.plain_table.film_speed))
 
 
 def coupling_beside(bearing: Bearing, law: Law) -> FloatArray | None:
@@ -330,8 +352,8 @@ def coupling_beside(bearing: Bearing, law: Law) -> FloatArray | None:
     return bearing.coupling if plane else without_ends(bearing.coupling)
 
 
-def check_conditions(conditions: tuple[float, float, float]) -> float:
-    """Refuse conditions that are missing or not finite; the centrifugal load.
+def check_conditions(conditions: tuple[float, float, float]) -> tuple[float, float, float]:
+    """Refuse conditions that are missing or not finite; the same as numbers.
 
     Parameters
     ----------
@@ -354,7 +376,8 @@ def check_conditions(conditions: tuple[float, float, float]) -> float:
             problems.append(f"bearing force, {name}: got {value!r}; the law of a map needs a finite number; give it")
     if problems:
         raise InputError(problems)
-    return float(conditions[2])
+    u, T, q = conditions
+    return float(u), float(T), float(q)
 
 
 def _set_power(
@@ -362,11 +385,12 @@ def _set_power(
     coefficient: float,
     exponent: float,
     highest: float,
+    point: Point | None = None,
     damping: float = 0.0,
     damping_time: float = 0.0,
 ) -> None:
-    """Write a law w = a delta^b, with its dampers."""
-    numbers[:] = _POWER._replace(
+    """Write a law w = a delta^b, with its dampers; held where that of a point is."""
+    power = _POWER._replace(
         coefficient=coefficient,
         exponent=exponent,
         damping=damping,
@@ -374,10 +398,20 @@ def _set_power(
         highest=highest,
         safe_approach=(highest / coefficient) ** (1.0 / exponent),
     )
+    if point is not None:
+        power = power._replace(
+            safe_approach=min(power.safe_approach, point.held_approach),
+            held_approach=point.held_approach,
+            held_load=point.held_load,
+            held_stiffness=point.held_stiffness,
+            held_damping=point.held_damping,
+        )
+    numbers[:] = power
 
 
-def _one_power(structure: FloatArray) -> bool:
-    """Whether contacts in series are one power law."""
+def is_one_power(law: ContactLaw) -> bool:
+    """Whether the dry contacts of a law in series are one power law."""
+    structure = law.plain_table.structure
     return bool(np.all(structure[:, 0] == POWER_LAW) and np.ptp(structure[:, 2]) < 1e-12)
 
 

@@ -9,8 +9,9 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.kernel import LOAD_TOLERANCE
 from ehdmaps.maps.law import LawAtPoint
 from ehdmaps.maps.memory import FilmState
-from mbs.bearings.bearing_kernel import NOT_FINITE, approaches_of_arrays, assemble_arrays
+from mbs.bearings.bearing_kernel import assemble_arrays
 from mbs.bearings.force_at_point import Arrays, raise_state, six_numbers
+from mbs.bearings.roller_motion import NOT_FINITE, approaches_of_arrays
 from mbs.model.elements import Forces
 
 

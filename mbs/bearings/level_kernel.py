@@ -7,23 +7,14 @@ their number as its weight; moments, and what tilts would change, are not comput
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.lines import FAST, unilateral_force
-from mbs.bearings.bearing_kernel import (
-    RingMotion,
-    Shape,
-    Work,
-    check_motion,
-    find_cells,
-    power_states,
-    roller_of,
-)
-from mbs.bearings.slice_table import CELLS, LawNumbers, PreparedLaw, read_cells
+from mbs.bearings.roller_motion import RingMotion, Shape, Work, check_motion, roller_of
+from mbs.bearings.slice_states import rest_states
+from mbs.bearings.slice_table import LawNumbers, PreparedLaw, unbounded
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
@@ -74,7 +65,7 @@ def assemble_level(
     numbers : LawNumbers
         The limits of the law, and what slopes are multiplied by.
     states : array (4, Z, n)
-        States of the slices, as of `mbs.bearings.bearing_kernel.Work`.
+        States of the slices, as of `mbs.bearings.roller_motion.Work`.
     out : array (13, 6)
         Force, six rows of stiffness, six rows of damping; rows and columns of y and z alone are written.
     """
@@ -119,8 +110,7 @@ def assemble_level_slices(
     out : array (13, 6)
         Written as by `assemble_level`.
     """
-    numbers = LawNumbers(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, math.inf, math.inf, -math.inf, 1.0)
-    assemble_level(motion, shape, weights, numbers, states, out)
+    assemble_level(motion, shape, weights, unbounded(), states, out)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -143,11 +133,6 @@ def level_force(
     wrong = check_motion(motion, shape.sizes)
     if wrong != 0:
         return wrong
-    states = work.states
-    if law.numbers.kind == CELLS:
-        find_cells(motion, shape, law.numbers, work.rows, states[0])
-        read_cells(law.cells, work.rows.reshape(-1), states.reshape(4, -1))
-    else:
-        power_states(motion, shape, law.numbers, states)
-    above = assemble_level(motion, shape, weights, law.numbers, states, out)
+    rest_states(motion, shape, law, work)
+    above = assemble_level(motion, shape, weights, law.numbers, work.states, out)
     return 1 if above > 0 else 0

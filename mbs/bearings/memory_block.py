@@ -16,7 +16,7 @@ from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.memory import FilmState
 from ehdmaps.maps.memory_table import step_of
-from mbs.bearings.bearing_kernel import assemble_slices, check_motion, sizes_of, slice_approaches
+from mbs.bearings.bearing_kernel import assemble_slices
 from mbs.bearings.film_clock import (
     ACCEPTED,
     LAST,
@@ -45,6 +45,7 @@ from mbs.bearings.rings import (
     shape_of,
     turned_by,
 )
+from mbs.bearings.roller_motion import check_motion, sizes_of, slice_approaches
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
 from mbs.model.elements import Element
 

@@ -44,10 +44,10 @@ _PART = 2.0**-6
 """How far a parabola reaches, as a part of the distance from the centre of the table: a cell or less."""
 
 _LOAD_PART = 2.0**-4
-_TOLERANCE = 3e-5
+_TOLERANCE = 3e-7
 _SMALL = 30.0
 """A slice has its state when the last move changed its load by less than `_TOLERANCE` of the load and this [N/m]: what
-is left is the square."""
+is left is the square, which has to lie below what the equations of motion are solved to."""
 
 _ROUNDS = 12
 _LEAST = 1e-30

@@ -14,7 +14,6 @@ from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.memory_table import step_of
-from mbs.bearings.bearing_kernel import Sizes, sizes_of
 from mbs.bearings.film_clock import (
     ACCEPTED,
     LAST,
@@ -31,6 +30,7 @@ from mbs.bearings.memory_kernel import MEMORY, begin, commit, loads, spent
 from mbs.bearings.memory_rollers import ContactStates, MemoryRollers
 from mbs.bearings.memory_tables import HIGHEST, MemoryFilms, MemoryTables, room, table_in_use
 from mbs.bearings.rings import turned_by
+from mbs.bearings.roller_motion import Sizes, sizes_of
 from mbs.bearings.roller_places import (
     Contact,
     Place,

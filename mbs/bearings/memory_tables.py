@@ -21,6 +21,8 @@ STEP = 4e-3
 NODES = 8
 """How many tables are held."""
 
+_ROUND_OFF = 1e-12
+
 CENTRE, INVERSE_SCALE, LIFT_OFF, HIGHEST = range(4)
 """Numbers of a table: as of `MemoryTable`, and the load above which slices are counted [N/m]."""
 
@@ -130,7 +132,7 @@ class MemoryTables:
 
     def __init__(self, law: ContactLaw, temperature: float, rate: float) -> None:
         self._law, self._temperature, self._rate = law, temperature, rate
-        self._window = SpeedWindow(STEP, NODES)
+        self._window = SpeedWindow(STEP, NODES, law.plain_table.lowest_speed / abs(rate) if rate else 1.0)
 
     def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
         """Nodes and weights of speeds [rad/s], see `SpeedWindow.places`."""
@@ -158,7 +160,9 @@ class MemoryTables:
         """Make the table of a speed."""
         before = dict(self._law.outside_counts)
         try:
-            at = self._law.at(self._rate * speed, self._temperature)
+            # the node at the lowest speed has its whole film, whatever the rounding
+            lowest, u = self._law.plain_table.lowest_speed, abs(self._rate * speed)
+            at = self._law.at(lowest if abs(u - lowest) < _ROUND_OFF * lowest else u, self._temperature)
             table = at.memory.table
         except EhdmapsError:
             return Made(sound=False)  # the step that asks for it will be told why

@@ -19,8 +19,8 @@ from numba import njit
 
 from ehdmaps.arrays import FloatArray, IntArray
 from mbs.bearings.bearing_element import BearingElement
-from mbs.bearings.bearing_kernel import RingMotion, Shape, sizes_of
 from mbs.bearings.force_at_point import Arrays
+from mbs.bearings.roller_motion import RingMotion, Shape, sizes_of
 from mbs.model.blocks import Answers, Member, Moment
 
 FELT = np.array([1, 2, 4, 5])

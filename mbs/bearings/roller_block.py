@@ -13,12 +13,13 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from ehdmaps.arrays import FloatArray, IntArray
-from mbs.bearings.bearing_block import Films, blend, room_of
-from mbs.bearings.bearing_kernel import RingMotion, Shape, Work, bearing_force, roller_of, roller_power, sizes_of
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from mbs.bearings.bearing_block import Films, blend, is_strict, room_of
+from mbs.bearings.bearing_kernel import bearing_force, roller_power
 from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
 from mbs.bearings.force_at_point import FlatLaw
 from mbs.bearings.roller_element import RollerElement
+from mbs.bearings.roller_motion import RingMotion, Shape, Work, roller_of, sizes_of
 from mbs.bearings.roller_places import (
     Contact,
     Rollers,
@@ -53,6 +54,8 @@ class RollerBearings(NamedTuple):
     lost, torques : array (bearings,)
         Power that the contacts of each dissipated at the last answer [W], and moment of their loads at rest on the
         cage [N m].
+    strict : array (bearings,), of bool
+        Whether a law refuses loads above its map.
     """
 
     rollers: Rollers
@@ -62,6 +65,7 @@ class RollerBearings(NamedTuple):
     course: Course
     lost: FloatArray
     torques: FloatArray
+    strict: BoolArray
 
 
 @njit(cache=True, error_model="numpy")
@@ -93,17 +97,21 @@ def rollers_answer(bearings: RollerBearings, moment: Moment, motion: FloatArray,
         work = Work(bearings.rows[:n].reshape(1, n), bearings.states[: 4 * n].reshape(4, 1, n))
         begin_answer(rollers, b, moment, answers)
         lost = torque = 0.0
+        outside = 0
         first, x = rings.firsts[b], motion[0]
         for j in range(rings.rollers[b]):
             place = place_of(rollers, b, j, cage, motion)
             for side in range(2):
                 film = rollers.films_of[b, side]
-                law = PreparedLaw(law_numbers(films.current[film]), films.cells[film])
+                law = PreparedLaw(law_numbers(films.current[film]), films.cells[film], films.knots[film])
                 y = place.approach[side] + sizes.half_clearance
                 ring = RingMotion(y, 0.0, 0.0, place.tilt, place.rate[side], 0.0, 0.0, place.tilt_rate, 1.0, 0.0)
                 status = bearing_force(ring, shape, law, work, out)
-                if status != 0:
-                    return NO_SOLUTION if status < 0 else IN_PYTHON
+                if status < 0:
+                    return NO_SOLUTION
+                if status > 0 and bearings.strict[b]:
+                    return IN_PYTHON
+                outside = max(outside, status, course.outside[moment.step, film])
                 stiffness, damping = out[1:7], out[7:13]
                 contact = Contact(
                     -out[0, _Y],
@@ -121,9 +129,6 @@ def rollers_answer(bearings: RollerBearings, moment: Moment, motion: FloatArray,
                 lost += power
                 torque += sign * across * flat - 0.5 * (x[first + 5] * s + x[first + 4] * c) * tilted
         bearings.lost[b], bearings.torques[b] = lost * sizes.slice_length, torque * sizes.slice_length
-        outside = 0
-        for side in range(2):
-            outside = max(outside, course.outside[moment.step, rollers.films_of[b, side]])
         answers.outside[rings.places[b]] += outside
     return FOUND
 
@@ -180,6 +185,7 @@ class RollerBlock(FilmBlock[RollerBearings]):
             course=course_of(0, len(tables)),
             lost=np.zeros(len(elements)),
             torques=np.zeros(len(elements)),
+            strict=np.array([any(map(is_strict, each.contacts.laws)) for each in elements], dtype=np.bool_),
         )
         super().__init__(course, arrays)
 

@@ -128,9 +128,9 @@ def roller_loads(
     slices : array (2, n)
         Positions of the slices, and twice the profile there [m].
     states : array (4, Z, n)
-        States of the slices, see `mbs.bearings.bearing_kernel.Work`.
+        States of the slices, see `mbs.bearings.roller_motion.Work`.
     rollers : array (4, Z)
-        Motion of the rollers, see `mbs.bearings.bearing_kernel.rollers_of_arrays`.
+        Motion of the rollers, see `mbs.bearings.roller_motion.rollers_of_arrays`.
     cage_angle : float
         Angle of the first roller [rad].
     own : array (Z, n), optional

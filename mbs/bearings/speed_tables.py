@@ -4,9 +4,14 @@ Making a table of `mbs.bearings.slice_table` costs fifty bearing forces, too muc
 places z = (delta - centre)/scale at all speeds; so a run makes tables at nodes evenly spaced in ln of the speed, as
 it comes to them, and takes between two nodes the straight blend of cells, centre and scale. The nodes are so close
 that the blend is wrong by less than the tables are: `STEP` makes some 1e-8 of load and stiffness of a bearing.
+
+Below the speeds with a whole film one table serves all: what is left of the film moves its knots, see `fade` of
+`mbs.bearings.slice_table`. With a centrifugal load, which changes with the speed, each step has a table of its own.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
@@ -15,14 +20,17 @@ from ehdmaps.errors import EhdmapsError
 from ehdmaps.maps.law import ContactLaw
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.force_at_point import FlatLaw, ForceAtPoint
+from mbs.bearings.force_at_point import FlatLaw, ForceAtPoint, is_faded, is_one_power, part_of_film
 from mbs.bearings.speed_window import Made, SpeedWindow
 
 STEP = 1e-3
 """Distance of the nodes in ln of the speed."""
 
 NODES = 32
-"""How many tables are held."""
+"""How many tables are held, besides that of a faded film."""
+
+_FADED = -(2**60)
+"""Node of the speeds at which a film is faded."""
 
 _KIND = table.LawNumbers._fields.index("kind")
 
@@ -50,12 +58,23 @@ class SpeedTables:
     def __init__(self, bearing: Bearing, law: FlatLaw, temperature: float, rates: tuple[float, float]) -> None:
         self._bearing, self._law, self._temperature, self._rates = bearing, law, temperature, rates
         self.varies = isinstance(law.law, ContactLaw)
-        self._window = SpeedWindow(STEP, NODES, self.varies)
-        self._buffer = np.empty((8, 2 * table.ROWS + 1))
+        lowest, self._faded_below = 1.0, 0.0
+        if isinstance(law.law, ContactLaw):
+            lowest, self._faded_below = _limits(law.law, abs(rates[0]))
+        self._window = SpeedWindow(STEP, NODES, lowest, self.varies)
+        self._buffer = np.empty((6, 2 * table.ROWS + 1))
+        self._film = Made(sound=False)
+        self._has_film = False
 
     def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Nodes and weights of speeds [rad/s], see `SpeedWindow.places`."""
-        return self._window.places(speeds)
+        """Nodes and weights of speeds [rad/s], see `SpeedWindow.places`; the part of the film where it is faded."""
+        nodes, weights = self._window.places(speeds)
+        law, faded = self._law.law, np.abs(speeds) < self._faded_below
+        # Dry contacts that are one power law need no table.
+        if isinstance(law, ContactLaw) and faded.any() and (np.any(speeds) or not is_one_power(law)):
+            nodes[faded] = _FADED
+            weights[faded] = [part_of_film(law, self._rates[0] * speed) for speed in speeds[faded].tolist()]
+        return nodes, weights
 
     def prepare(
         self, speeds: FloatArray, nodes: IntArray, weights: FloatArray, cells: FloatArray, numbers: FloatArray
@@ -68,9 +87,14 @@ class SpeedTables:
             Speeds [rad/s].
         nodes, weights : array (n,)
             Nodes and weights from `places`.
-        cells, numbers : array (NODES, rows, 8), (NODES, 10)
-            Tables, kept from call to call.
+        cells, numbers : array (NODES + 1, rows, 8), (NODES + 1, NUMBERS)
+            Tables, kept from call to call; the last one for the faded film.
         """
+        faded = nodes == _FADED
+        if faded[0]:
+            return self._faded(speeds[: _leading(faded)], cells, numbers)
+        count = _leading(~faded)
+        speeds, nodes, weights = speeds[:count], nodes[:count], weights[:count]
 
         def make(slot: int, speed: float, alone: bool) -> Made:
             if alone:
@@ -78,6 +102,18 @@ class SpeedTables:
             return self._made(speed, cells[slot], numbers[slot])
 
         return self._window.prepare(speeds, nodes, weights, make)
+
+    def _faded(
+        self, speeds: FloatArray, cells: FloatArray, numbers: FloatArray
+    ) -> tuple[IntArray, BoolArray, IntArray]:
+        """Have the table of the faded film made, unless it is there."""
+        one = self._rates[1] == 0.0
+        count = speeds.size if one else 1
+        if not (one and self._has_film):
+            self._film = self._tabulated(self._conditions(abs(float(speeds[0]))), cells[NODES], numbers[NODES])
+            self._has_film = True
+        slots, sound = np.full(count, NODES, dtype=np.int64), np.full(count, self._film.sound)
+        return slots, sound, np.full(count, int(self._film.outside), dtype=np.int64)
 
     def _force_at(self, conditions: tuple[float, float, float]) -> ForceAtPoint | None:
         """The force there, or none where it refuses: the step that asks for it will be told why."""
@@ -93,27 +129,49 @@ class SpeedTables:
         numbers[:] = point.arrays[4]
         if numbers[_KIND] == table.CELLS:
             cells[:] = point.arrays[5]
-        return _told(point.tabulated, point.outside, numbers)
+        return _told(point.tabulated and numbers[_KIND] != table.KNOTS, point.outside, numbers)
 
     def _made(self, speed: float, cells: FloatArray, numbers: FloatArray) -> Made:
-        """Make the table of a speed."""
-        law = self._law.law
+        """Make the table of a speed, or take over its power law."""
+        law, (u, temperature, centrifugal) = self._law.law, self._conditions(speed)
         assert isinstance(law, ContactLaw)
-        conditions = np.array(self._conditions(speed))
-        centrifugal = float(conditions[2])
+        if speed >= self._faded_below > 0.0:
+            # The node at the lowest speed has its whole film, whatever the rounding.
+            u = max(abs(u), law.plain_table.lowest_speed)
+        made = Made(sound=False)
+        if not is_faded(law, u):
+            made = self._tabulated((u, temperature, centrifugal), cells, numbers)
+        return made if made.sound else self._copied(self._force_at((u, temperature, centrifugal)), cells, numbers)
+
+    def _tabulated(self, given: tuple[float, float, float], cells: FloatArray, numbers: FloatArray) -> Made:
+        """Make a table at some conditions."""
+        law, centrifugal = self._law.law, given[2]
+        assert isinstance(law, ContactLaw)
         if not 0.0 <= centrifugal < law.load_range[1]:
             return Made(sound=False)
         arrays, workspace = self._law.arrays(law, centrifugal > 0.0)
-        counts = np.zeros(4, dtype=np.int64)
+        conditions, counts = np.array(given), np.zeros(4, dtype=np.int64)
         fits = table.tabulate_law(arrays, workspace, conditions, table.NODES, self._buffer, cells, numbers, counts)
-        if not fits:
-            return self._copied(self._force_at(self._conditions(speed)), cells, numbers)
         outside = bool(counts.any())
-        return _told(not (outside and law.outside == "error"), outside, numbers)
+        return _told(fits and not (outside and law.outside == "error"), outside, numbers)
 
     def _conditions(self, speed: float) -> tuple[float, float, float]:
         """Entrainment speed, temperature, centrifugal load."""
         return self._rates[0] * speed, self._temperature, self._rates[1] * speed**2
+
+
+def _limits(law: ContactLaw, rate: float) -> tuple[float, float]:
+    """Speed from which on the law changes with ln of the speed, and below which its film is faded [rad/s]."""
+    numbers = law.plain_table
+    if rate == 0.0 or math.isinf(numbers.film_speed):
+        # no film at any speed of the map
+        return 1.0, 0.0 if is_one_power(law) else numbers.counted_speed / rate if rate else math.inf
+    return numbers.lowest_speed / rate, numbers.film_speed / rate
+
+
+def _leading(marked: BoolArray) -> int:
+    """How many at the beginning are marked."""
+    return marked.size if marked.all() else int(np.argmin(marked))
 
 
 def _told(sound: bool, outside: bool, numbers: FloatArray) -> Made:

@@ -1,4 +1,8 @@
-"""Which speeds have a table: nodes evenly spaced in ln of the speed, in a few slots that are used again and again."""
+"""Which speeds have a table: nodes evenly spaced in ln of the speed, in a few slots that are used again and again.
+
+Below a lowest speed, where a film fades out, laws change with the speed itself and not with its logarithm: nodes there
+are evenly spaced in the speed, as closely as at the lowest one.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +13,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
-
-_STANDSTILL = -700.0
-"""ln of a speed that stands for rest: the part of the film that is left there is zero in double precision."""
 
 
 class Made(NamedTuple):
@@ -45,12 +46,14 @@ class SpeedWindow:
         Distance of the nodes in ln of the speed.
     slots : int
         How many tables are held.
+    lowest : float
+        Speed at which the nodes change from even in ln of the speed to even in the speed [rad/s], > 0.
     varies : bool
         Whether the law changes with speed; a dry one has one table for all.
     """
 
-    def __init__(self, step: float, slots: int, varies: bool = True) -> None:
-        self._step, self._slots, self._varies = step, slots, varies
+    def __init__(self, step: float, slots: int, lowest: float, varies: bool = True) -> None:
+        self._step, self._slots, self._lowest, self._varies = step, slots, lowest, varies
         self._held: list[tuple[bool, float] | None] = [None] * slots
         self._sound, self._outside = np.zeros(slots, dtype=np.bool_), np.zeros(slots, dtype=np.bool_)
         self._kinds = np.zeros(slots, dtype=np.int64)
@@ -60,10 +63,15 @@ class SpeedWindow:
         size = np.abs(speeds)
         if not self._varies or np.all(size == size[0]):
             return np.zeros(size.size, dtype=np.int64), np.zeros(size.size)
-        with np.errstate(divide="ignore"):
-            place = np.maximum(np.log(size), _STANDSTILL) / self._step
+        by_lowest = size / self._lowest
+        place = np.where(by_lowest < 1.0, by_lowest - 1.0, np.log(np.maximum(by_lowest, 1.0))) / self._step
         node = np.floor(place)
         return node.astype(np.int64), place - node
+
+    def speed_of(self, node: int) -> float:
+        """Speed of a node [rad/s]; exactly the lowest one for the node 0."""
+        place = node * self._step
+        return self._lowest * (math.exp(place) if node > 0 else max(1.0 + place, 0.0))
 
     def prepare(
         self, speeds: FloatArray, nodes: IntArray, weights: FloatArray, make: Maker
@@ -96,7 +104,7 @@ class SpeedWindow:
         low, high = np.minimum.accumulate(nodes), np.maximum.accumulate(nodes)
         count = int(np.searchsorted(high - low, self._slots - 2, side="right"))
         for node in range(int(low[count - 1]), int(high[count - 1]) + 2):
-            self._hold(node % self._slots, (False, float(node)), math.exp(node * self._step), make)
+            self._hold(node % self._slots, (False, float(node)), self.speed_of(node), make)
         slots, following = nodes[:count] % self._slots, (nodes[:count] + 1) % self._slots
         alike = self._kinds[slots] == self._kinds[following]
         return slots, alike & self._sound[slots] & self._sound[following], self._outside[slots].astype(np.int64)

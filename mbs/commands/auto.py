@@ -1,4 +1,4 @@
-"""What `--auto` does for a command: a map and the physics that the scene requires, and lines that say so."""
+"""What `--auto` does for a command: maps and the physics that the scene requires, and lines that say so."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import progress
 from ehdmaps.jobs.store import store_path
 from ehdmaps.physics.heat import PHYSICS
+from ehdmaps.physics.rheology import SHEARS
 from ehdmaps.program import tell
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE, closest
 from mbs.analyses.auto import MOST_TOLERANCE, TOLERANCE, Automatic, AutoSettings, settled
@@ -109,7 +110,9 @@ def analysed(
         if stores:
             tell(f"\nstopped; what is solved of a map is kept ({stores}): the same command goes on from there")
         raise
-    return Done(found.result, (*_lines(found, settings),), 1 if found.left or found.maps[-1].unmet else 0)
+    return Done(
+        found.result, (*_lines(found, settings),), 1 if found.left or any(one.unmet for one in found.kept) else 0
+    )
 
 
 def read_tolerance(text: str | None, problems: list[str]) -> float:
@@ -172,6 +175,9 @@ def _asked(
     physics = getattr(arguments, "physics", None)
     if physics is not None and physics not in PHYSICS:
         problems.append(f"--physics: got {physics!r:.60}{closest(physics, PHYSICS)}; allowed: {', '.join(PHYSICS)}")
+    shear = getattr(arguments, "shear", None)
+    if shear is not None and shear not in SHEARS:
+        problems.append(f"--shear: got {shear!r:.60}{closest(shear, tuple(SHEARS))}; allowed: {', '.join(SHEARS)}")
     if problems or scene is None or looked is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     return scene, looked, _settings(arguments, tolerance, folder, looked.highest)
@@ -202,12 +208,13 @@ def _settings(arguments: argparse.Namespace, tolerance: float, folder: Path, hig
         films=kinds.get(films[0]) if films else None,
         supply=supplies[0] if supplies else None,
         physics=getattr(arguments, "physics", None),
+        shear=getattr(arguments, "shear", None),
     )
 
 
 def _only_with_auto(arguments: argparse.Namespace, own_tolerance: bool) -> list[str]:
     """What is wrong about options that belong to `--auto`."""
-    options = ("maps", "physics") if own_tolerance else ("maps", "physics", "tolerance")
+    options = ("maps", "physics", "shear") if own_tolerance else ("maps", "physics", "shear", "tolerance")
     given = [option for option in options if getattr(arguments, option, None) is not None]
     return [f"--{option}: stands without --auto; allowed: with it" for option in given]
 
@@ -221,19 +228,20 @@ def _lines(found: Automatic[Any], settings: AutoSettings) -> list[str]:
     """What was planned and made, what is on, and what is not met."""
     lines = []
     for kept, margin in zip(found.maps, found.margins, strict=True):
-        lines += [*_map_lines(kept, margin)]
+        lines += [line for line in _map_lines(kept, margin) if line not in lines]
     lines += [f"auto: {verdict.line}" for verdict in found.verdicts]
-    last = found.maps[-1]
-    lines += [f"warning: auto: {last.path}: {line}" for line in last.unmet]
+    lines += [f"warning: auto: {one.path}: {line}" for one in found.kept for line in one.unmet]
     if found.left:
         names = ", ".join(f"{name} {count} times" for name, count in found.left.items())
+        plans = len(found.maps) // len(found.kept)
         lines.append(
-            f"warning: auto: after {len(found.maps)} plans the analysis still left its map ({names}); the loads grow "
+            f"warning: auto: after {plans} plans the analysis still left its map ({names}); the loads grow "
             "beyond what the plan allows for: check clearance, loads and speeds of the scene, or make a map by "
             "`mbs plan --margin` and `ehdmaps generate`"
         )
     else:
-        lines.append("auto: all loads, speeds and temperatures of the analysis lie inside the map")
+        inside = "the map" if len(found.kept) == 1 else "the maps"
+        lines.append(f"auto: all loads, speeds and temperatures of the analysis lie inside {inside}")
     return lines
 
 

@@ -35,8 +35,9 @@ from mbs.bearings.fits import Mounting, operating_clearance
 from mbs.bearings.state import BearingState
 from mbs.commands.cases import NO_MAP, read_clearance, read_supplies
 from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, result_kind
-from mbs.scene.contact_laws import HERTZ_FORMS, geometry_problems, hertz_damper, structure_words
+from mbs.scene.contact_laws import HERTZ_FORMS, hertz_damper
 from mbs.scene.fields import FORCE, MICROMETRE
+from mbs.scene.map_set import geometry_problems, structure_words
 
 LAWS = ("hertz", "formula", "map")
 PROFILES = ("iso", "straight")

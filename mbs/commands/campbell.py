@@ -14,24 +14,28 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.figures import typeset
 from ehdmaps.units import RPM
+from ehdmaps.workers import available_cores
 from mbs.analyses.campbell import MODE_SPEEDS, MOST_BANDS, CampbellResult, LawRun, campbell, campbell_problems
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside, fade_of
+from mbs.analyses.recorded import RecordedRun, simulated_campbell
 from mbs.analyses.tolerance import Tolerated, read_tolerance, within
 from mbs.commands.auto import Looked, analysed
+from mbs.commands.campbell_recorded import measured_lines, measured_run, read_look, recorded_runs, signal_problems
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Told, band_lines, film_course, heading, held_lines, read_option, write
+from mbs.commands.common import Told, band_lines, film_course, heading, held_lines, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
+from mbs.output.campbell_data import with_measured
 from mbs.output.campbell_plot import MOST_LAWS, Overlay, Reach, campbell_figure
+from mbs.output.campbell_text import PEAKS, highest_line, peak_line, peak_lines, resolution_lines, sensor_line
 from mbs.output.energy_text import energy_lines
+from mbs.output.sensors_plot import sensors_figure
+from mbs.output.time_files import is_time_data, write_time_data
 from mbs.scene.assembly import Model
-from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
-from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.settings import CampbellSettings
-from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, difference_text
 from mbs.spectral.orders import OrderPeak
 
@@ -43,52 +47,72 @@ _MOST_DAMPED = 0.5
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Run up with each law, and compare."""
-    done = analysed(arguments, _asked, lambda asked: _ran(asked, arguments.modes), _looks_at, own_tolerance=True)
-    found, tolerated = done.result.run, done.result.tolerated
+    """Run up with each law, and compare; or look at runs that are recorded."""
+    if is_time_data(arguments.scene):
+        return recorded_runs(arguments)
+    workers = arguments.workers or available_cores()
+    done = analysed(
+        arguments, _asked, lambda asked: _ran(asked, arguments.modes, workers), _looks_at, own_tolerance=True
+    )
+    found, tolerated, beside = done.result.run, done.result.tolerated, done.result.measured
     settings, runs, course, bands = found.settings, found.runs, found.course, int(arguments.bands or "0")
     lines = [
         *done.lines,
         f"{runs[0].case.model.scene.title}: run-up from {RPM.text(course.speed.at(0.0)[0])} to "
-        f"{RPM.text(course.speed.at(course.duration)[0])} in {course.duration:.4g} s; "
-        f"sensor {found.sensor.name}, {Reference.of(found.sensor).text}",
-        *_resolution(runs[0].spectra, settings),
+        f"{RPM.text(course.speed.at(course.duration)[0])} in {course.duration:.4g} s; {_sensor_words(found.sensors)}",
+        *resolution_lines(runs[0].spectra[0], settings.highest),
         *(tolerated.lines if tolerated else ()),
     ]
     for entry in runs:
-        lines += [*_report(entry), *_band(entry, bands)]
-    lines += [*_differences(runs), *(f"warning: {line}" for line in found.failed)]
+        lines += [*_report(entry, found.sensors), *_band(entry, bands, found.sensors)]
+    lines += measured_lines(beside, found) if beside else []
+    lines += [*_differences(runs, found.sensors), *(f"warning: {line}" for line in found.failed)]
     dataset = found.dataset.assign_attrs(tolerance="\n".join(tolerated.lines)) if tolerated else found.dataset
-    lines += write(arguments, dataset, _figure(found) if arguments.plot else None)
+    dataset = with_measured(dataset, beside.dataset) if beside else dataset
+    lines += write(arguments, dataset, _figure(found, beside) if arguments.plot else None)
+    if getattr(arguments, "signals", None):
+        lines += write_time_data(arguments.signals, simulated_campbell(runs))
     outside = any(any(entry.record.outside.values()) for entry in runs)
     unsound = found.failed or outside or (tolerated is not None and not tolerated.met)
     return "\n".join(lines), 1 if unsound else done.status
 
 
 class _Asked(NamedTuple):
-    """Laws that are run, what is looked at, how many runs a band has, and the tolerance if there is one [dB]."""
+    """Laws that are run, what is looked at, runs of a band, the tolerance if there is one [dB], a measured run."""
 
     cases: list[Case]
     settings: CampbellSettings
+    sensors: list[str]
     bands: int
     tolerance: float | None
+    measured: RecordedRun | None
 
 
 class _Ran(NamedTuple):
-    """The run-ups, and how their step, slices and cut-off were chosen."""
+    """The run-ups, how their step, slices and cut-off were chosen, and a measured run beside them."""
 
     run: CampbellResult
     tolerated: Tolerated | None
+    measured: RecordedRun | None
 
 
-def _ran(asked: _Asked, with_modes: bool) -> _Ran:
+def _ran(asked: _Asked, with_modes: bool, workers: int) -> _Ran:
     """Choose the numerical settings where a tolerance is given, and run up."""
     cases, tolerated = asked.cases, None
     if asked.tolerance is not None and cases[0].subject is not None:
         tolerated = within(cases[0].subject, asked.tolerance, asked.settings, Told("trial"))
         cases = [dataclasses.replace(cases[0], model=tolerated.subject.model(), subject=tolerated.subject)]
-    found = campbell(cases, asked.settings, Told("step"), with_modes=with_modes, keep_partial=True, bands=asked.bands)
-    return _Ran(found, tolerated)
+    found = campbell(
+        cases,
+        asked.settings,
+        Told("step"),
+        sensors=asked.sensors,
+        with_modes=with_modes,
+        keep_partial=True,
+        bands=asked.bands,
+        workers=workers,
+    )
+    return _Ran(found, tolerated, asked.measured)
 
 
 def _looks_at(asked: _Asked) -> Looked:
@@ -111,8 +135,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
             tolerance = read_tolerance(arguments.tolerance)
         except InputError as error:
             problems.append(f"--tolerance: {error.problems[0]}")
-    highest = read_option("--highest", arguments.highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
-    window = read_option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems)
+    looked = read_look(arguments, problems)
     try:
         cases = load_cases(arguments)
     except InputError as error:
@@ -128,29 +151,42 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
             "slices and cut-off are chosen"
         )
     scene = cases[0].model.scene
-    settings = dataclasses.replace(
-        scene.campbell,
-        sensor=arguments.sensor or scene.campbell.sensor,
-        highest=scene.campbell.highest if highest is None else highest,
-        window=scene.campbell.window if window is None else window,
-    )
-    problems += campbell_problems(scene, settings)
+    settings = looked.settings(scene.campbell)
+    problems += campbell_problems(scene, settings, looked.sensors)
+    read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *scene.files, *looked.files]
+    problems += signal_problems(arguments, read, len(cases))
+    measured = None
+    if looked.measured and not problems:
+        if len(cases) >= MOST_LAWS:
+            problems.append(f"--measured: got {len(cases)} laws beside it; allowed: up to {MOST_LAWS - 1}")
+        else:
+            measured = measured_run(looked, cases[0].model, settings)
     if problems:
         raise InputError(tuple(dict.fromkeys(problems)))
-    return _Asked(cases, settings, bands, tolerance)
+    return _Asked(cases, settings, looked.sensors, bands, tolerance, measured)
 
 
-def _figure(found: CampbellResult) -> Figure:
-    """The figure, with modes and with what is not valid marked."""
+def _figure(found: CampbellResult, measured: RecordedRun | None) -> Figure:
+    """The figure, with modes and with what is not valid marked; of several sensors the levels alone."""
+    labels = [entry.case.label for entry in found.runs]
+    results = [entry.spectra for entry in found.runs]
+    if measured is not None:
+        labels, results = [f"measured: {measured.record.label}", *labels], [measured.spectra, *results]
+    title = _title([entry.case.model for entry in found.runs], found.sensors)
+    if found.sensors[1:]:
+        sensors = [(sensor.name, Reference.of(sensor)) for sensor in found.sensors]
+        return sensors_figure(title, labels, results, sensors, found.orders)
+    # The measured run stands first, as what the others are compared with; it has no films and no modes.
+    first: list[None] = [None] * (measured is not None)
     return campbell_figure(
-        _title([entry.case.model for entry in found.runs], found.sensor),
-        [entry.case.label for entry in found.runs],
-        [entry.spectra for entry in found.runs],
-        Reference.of(found.sensor),
+        title,
+        labels,
+        [spectra[0] for spectra in results],
+        Reference.of(found.sensors[0]),
         found.orders,
-        [_overlay(entry) for entry in found.runs],
-        [_reach(entry) for entry in found.runs],
-        [entry.level_error for entry in found.runs],
+        [*first, *(_overlay(entry) for entry in found.runs)],
+        [*first, *(_reach(entry) for entry in found.runs)],
+        [*first, *(entry.level_error[0] if entry.level_error else None for entry in found.runs)],
     )
 
 
@@ -166,14 +202,14 @@ def _overlay(entry: LawRun) -> Overlay | None:
 
 def _reach(entry: LawRun) -> Reach:
     """Where the films of a law are not valid, over the speeds of the run."""
-    speeds = entry.spectra.campbell.speeds
+    speeds = entry.spectra[0].campbell.speeds
     at = np.linspace(float(speeds.min()), float(speeds.max()), MODE_SPEEDS)
     return Reach(at, notable_from(entry.case.model, at), float(speeds[_fading(entry)].max(initial=0.0)))
 
 
 def _fading(entry: LawRun) -> BoolArray:
     """Which windows reach below the map, where the film fades to the dry contact, shape (windows,)."""
-    found, record = entry.spectra.campbell, entry.record
+    found, record = entry.spectra[0].campbell, entry.record
     fade = fade_of(entry.case.model)
     if fade is None:
         return np.zeros(found.time.size, dtype=np.bool_)
@@ -181,36 +217,27 @@ def _fading(entry: LawRun) -> BoolArray:
     return fade.below(np.minimum(*ends))
 
 
-def _resolution(spectra: RunUpSpectra, settings: CampbellSettings) -> list[str]:
-    """How finely speed and frequency are resolved."""
-    found = spectra.campbell
-    return [
-        f"band {HERTZ.text(found.frequencies[0])} to {HERTZ.text(settings.highest)}; windows of "
-        f"{MILLISECOND.text(found.window)}: lines are {found.line_width:.3g} Hz wide, the highest order sweeps by "
-        f"{found.smear:.3g} Hz in one; order spectra over {spectra.spectra.window:.3g} turns"
-        + (f", single orders over {spectra.tracks.window:.3g} turns" if spectra.tracks else "")
-    ]
-
-
-def _report(entry: LawRun) -> list[str]:
+def _report(entry: LawRun, sensors: Sequence[Sensor]) -> list[str]:
     """Lines of one law: cost, highest sum level, peaks along the orders."""
-    found, record = entry.spectra.campbell, entry.record
-    at = int(np.argmax(found.sum_level))
+    found, record = entry.spectra[0].campbell, entry.record
     lines = [
         f"{entry.case.label}: {entry.case.model.law}",
         *heading(entry.case.model)[1:],
         *held_lines(entry.case.model),
         f"  {record.steps} steps, {record.halved} taken back, {1e6 * entry.seconds / max(record.steps, 1):.3g} us a "
         f"step, {entry.seconds:.3g} s",
-        f"  highest sum level {found.sum_level[at]:.1f} dB at {RPM.text(float(found.speeds[at]))}"
-        f"{_elsewhere(entry, at)}",
+        *(
+            f"{sensor_line(sensor.name, Reference.of(sensor), spectra)}{_elsewhere(entry, place)}"
+            if sensors[1:]
+            else f"  {highest_line(spectra)}{_elsewhere(entry, place)}"
+            for place, (sensor, spectra) in enumerate(zip(sensors, entry.spectra, strict=True))
+        ),
         *(f"  note: {line}" for line in record.notes),
     ]
-    if entry.spectra.peaks:
-        lines.append("  peaks along the orders: order   speed/rpm   frequency/Hz   level/dB   above its valleys/dB")
-        lines += [_peak(peak, entry.modes) for peak in entry.spectra.peaks]
-    elif entry.spectra.tracks:
-        lines.append("  no peak along the orders")
+    if not sensors[1:] and entry.modes is not None and entry.spectra[0].peaks:
+        lines += [PEAKS, *(_peak(peak, entry.modes) for peak in entry.spectra[0].peaks)]
+    elif not sensors[1:]:
+        lines += peak_lines(entry.spectra[0])
     lines += outside_lines(
         record.outside,
         "{} calls outside the map",
@@ -222,40 +249,44 @@ def _report(entry: LawRun) -> list[str]:
     return [*lines, *fade_lines(entry.case.model, record.speed, "the run"), *film_course(entry.case.model, ends)]
 
 
-def _band(entry: LawRun, runs: int) -> list[str]:
+def _band(entry: LawRun, runs: int, sensors: Sequence[Sensor]) -> list[str]:
     """Lines on the band of the sum level, where runs for it were asked for."""
     if not runs:
         return []
     words = band_lines(entry.case.model)
-    if entry.level_error is None:
-        return words
-    found = entry.spectra.campbell
-    worst = int(np.argmax(entry.level_error))
-    middle, at = float(np.median(entry.level_error)), RPM.text(float(found.speeds[worst]))
-    highest = float(entry.level_error[int(np.argmax(found.sum_level))])
-    return [
-        f"  band of the sum level by {runs} runs with laws wrong by the errors of the map: +- {middle:.2g} dB in the "
-        f"median of the windows, +- {highest:.2g} dB at the highest level, at most +- "
-        f"{entry.level_error[worst]:.2g} dB, at {at}",
-        *words,
-    ]
+    for place, wrong in enumerate(entry.level_error or ()):
+        found = entry.spectra[place].campbell
+        worst = int(np.argmax(wrong))
+        middle, at = float(np.median(wrong)), RPM.text(float(found.speeds[worst]))
+        highest = float(wrong[int(np.argmax(found.sum_level))])
+        of = f" of {sensors[place].name}" if sensors[1:] else ""
+        words.insert(
+            place,
+            f"  band of the sum level{of} by {runs} runs with laws wrong by the errors of the map: +- {middle:.2g} dB "
+            f"in the median of the windows, +- {highest:.2g} dB at the highest level, at most +- {wrong[worst]:.2g} "
+            f"dB, at {at}",
+        )
+    return words
 
 
-def _differences(found: Sequence[LawRun]) -> list[str]:
-    """Lines on the sum level of each law beside that of the first one with the same clearance and loads."""
+def _differences(found: Sequence[LawRun], sensors: Sequence[Sensor]) -> list[str]:
+    """Lines on the sum levels of each law beside that of the first one with the same clearance and loads."""
     lines = []
     first: dict[tuple[str, float, float | None], LawRun] = {}
     for entry in found:
         beside = first.setdefault((repr(entry.case.clearance), entry.case.load_factor, entry.case.start_angle), entry)
         if beside is not entry:
-            levels = (beside.spectra.campbell.sum_level, entry.spectra.campbell.sum_level)
-            lines.append(f"  {entry.case.label} beside {beside.case.label}: {difference_text(*levels)}")
+            for sensor, one, other in zip(sensors, beside.spectra, entry.spectra, strict=True):
+                at = f", {sensor.name}" if sensors[1:] else ""
+                text = difference_text(one.campbell.sum_level, other.campbell.sum_level)
+                lines.append(f"  {entry.case.label} beside {beside.case.label}{at}: {text}")
     return ["sum level at the same speed", *lines] if lines else []
 
 
-def _elsewhere(entry: LawRun, at: int) -> str:
-    """What is highest above the fade, where the window `at` of the highest sum level lies in it."""
-    found, fading = entry.spectra.campbell, _fading(entry)
+def _elsewhere(entry: LawRun, place: int = 0) -> str:
+    """What is highest above the fade, where the window of the highest sum level of a sensor lies in it."""
+    found, fading = entry.spectra[place].campbell, _fading(entry)
+    at = int(np.argmax(found.sum_level))
     if not fading[at]:
         return ""
     if fading.all():
@@ -267,14 +298,9 @@ def _elsewhere(entry: LawRun, at: int) -> str:
     )
 
 
-def _peak(peak: OrderPeak, modes: Sweep | None) -> str:
-    """Line of a peak, with the nearest natural frequency of the linear system at its speed where they are known."""
-    text = (
-        f"  {peak.order:29.5g} {RPM.value(peak.speed):11.1f} {peak.frequency:14.5g} {peak.level:10.1f} "
-        f"{peak.prominence:22.1f}"
-    )
-    if modes is None:
-        return text
+def _peak(peak: OrderPeak, modes: Sweep) -> str:
+    """Line of a peak, with the nearest natural frequency of the linear system at its speed."""
+    text = peak_line(peak)
     near = _nearest(modes.damped, modes.speeds, peak)
     return text if near is None else f"{text}   nearest linear mode {near[0]:.5g} Hz, damping ratio {near[1]:.2g}"
 
@@ -291,10 +317,18 @@ def _nearest(found: ComplexSweep, speeds: FloatArray, peak: OrderPeak) -> tuple[
     return float(frequency[best]), float(ratio[best])
 
 
-def _title(models: Sequence[Model], sensor: Sensor) -> str:
+def _sensor_words(sensors: Sequence[Sensor]) -> str:
+    """Names of the sensors, with the reference of one alone."""
+    if sensors[1:]:
+        return f"sensors {', '.join(sensor.name for sensor in sensors)}"
+    return f"sensor {sensors[0].name}, {Reference.of(sensors[0]).text}"
+
+
+def _title(models: Sequence[Model], sensors: Sequence[Sensor]) -> str:
     """Heading of the figure."""
     model = models[0]
     clearance, supply = clearance_text(model), common_supply(models)
     parts = [temperature_text(model), f"clearance {clearance}" if clearance else "", supply]
     at = ", ".join(part for part in parts if part)
-    return f"{model.scene.title}\nsensor {sensor.name}; {typeset(at)}"
+    names = f"sensor {sensors[0].name}; " if not sensors[1:] else ""
+    return f"{model.scene.title}\n{names}{typeset(at)}"

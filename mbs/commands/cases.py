@@ -1,6 +1,7 @@
 """What a command compares: contact laws and maps, clearances, load factors, in every combination.
 
-Each law of --law and each map of --map counts as one law; of laws with films, each kind of --films and each oil supply
+Each law of --law and each map of --map counts as one law; maps for different types of bearing make one law together
+(`mbs.scene.map_set`); of laws with films, each kind of --films and each oil supply
 of --supply. The clearances of --clearance, the factors of --load-factor and the angles of --start-angle may each be
 given more than once, too.
 """
@@ -27,6 +28,7 @@ from mbs.output.results import RESULT
 from mbs.scene.assembly import Model
 from mbs.scene.contact_laws import FILM_WORDS, ContactLaws, choose_law, law_label
 from mbs.scene.fields import DEGREE, MICROMETRE
+from mbs.scene.map_set import MapSet, map_sets
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 
@@ -50,9 +52,7 @@ def load_model(arguments: argparse.Namespace, kind: Kind = RESULT) -> Model:
     return load_cases(arguments, several=False, kind=kind)[0].model
 
 
-def load_cases(
-    arguments: argparse.Namespace, several: bool = True, kind: Kind = RESULT, *, several_films: bool = False
-) -> list[Case]:
+def load_cases(arguments: argparse.Namespace, several: bool = True, kind: Kind = RESULT) -> list[Case]:
     """Read scene, laws, maps, clearances and load factors into models; all problems at once.
 
     Parameters
@@ -64,8 +64,6 @@ def load_cases(
         Whether laws and maps stand side by side; else a law goes before a map.
     kind : Kind
         Kind of file that -o writes.
-    several_films : bool
-        Whether kinds of films, and oil supplies, stand side by side where laws and maps do not.
 
     Raises
     ------
@@ -73,13 +71,19 @@ def load_cases(
         With every problem.
     """
     problems: list[str] = []
-    scene, laws = _read_scene(arguments, problems), _named_laws(arguments, problems)
+    scene = _read_scene(arguments, problems)
+    laws = _named_laws(arguments, scene, problems)
     if not several:
         problems += [
-            f"--{option}: got {len(given)} of them; allowed: one; `mbs sweep` and `mbs campbell` compare more"
-            for option in ("law", "map", "clearance", "films", "supply")
-            if len(given := _given(arguments, option)) > 1 and not (option in ("films", "supply") and several_films)
+            f"--{option}: got {len(given)} of them; allowed: one; lsa, sweep, runup and campbell compare more"
+            for option in ("law", "clearance", "films", "supply")
+            if len(given := _given(arguments, option)) > 1
         ]
+        if sum(law.maps is not None for law in laws) > 1:
+            problems.append(
+                f"--map: got {len(_given(arguments, 'map'))} of them, several for one type of bearing; allowed: one "
+                "for each type of bearing; lsa, sweep, runup and campbell compare more"
+            )
         if _ready(arguments) is not None and _given(arguments, "law"):
             problems.append("--law: stands beside --auto, whose law is that of a map; leave one of them out")
         laws = laws[:1] if _given(arguments, "law") else laws
@@ -139,7 +143,7 @@ def read_compared(
         Kind of file that -o writes.
     """
     scene = _read_scene(arguments, problems)
-    laws = _with_films(_named_laws(arguments, problems), _given(arguments, "films"), problems)
+    laws = _with_films(_named_laws(arguments, scene, problems), _given(arguments, "films"), problems)
     laws = _with_supplies(laws, _given(arguments, "supply"), scene, problems)
     clearances = [read_clearance(text, problems) for text in _given(arguments, "clearance")]
     if len(clearances) > 1:
@@ -159,13 +163,13 @@ def _read_scene(arguments: argparse.Namespace, problems: list[str]) -> Scene | N
         return None
 
 
-def _named_laws(arguments: argparse.Namespace, problems: list[str]) -> list[LawChoice]:
+def _named_laws(arguments: argparse.Namespace, scene: Scene | None, problems: list[str]) -> list[LawChoice]:
     """The laws of --law and --map; a subject that stands ready has the first one."""
     structure = getattr(arguments, "structure", None)
     if (subject := _ready(arguments)) is None:
-        return _laws(_given(arguments, "law"), _given(arguments, "map"), structure, problems)
+        return _laws(_given(arguments, "law"), _given(arguments, "map"), structure, scene, problems)
     named = _given(arguments, "law")
-    return [subject.law, *(_laws(named, [], None, problems) if named else ())]
+    return [subject.law, *(_laws(named, [], None, scene, problems) if named else ())]
 
 
 def _ready(arguments: argparse.Namespace) -> Subject | None:
@@ -214,8 +218,10 @@ def _given(arguments: argparse.Namespace, name: str) -> list[str]:
     return [] if value is None else [value] if isinstance(value, str) else list(value)
 
 
-def _laws(names: list[str], paths: list[str], structure: str | None, problems: list[str]) -> list[LawChoice]:
-    """The laws that are meant: those named, and each map; dry Hertz without either."""
+def _laws(
+    names: list[str], paths: list[str], structure: str | None, scene: Scene | None, problems: list[str]
+) -> list[LawChoice]:
+    """The laws that are meant: those named, and each set of maps; dry Hertz without either."""
     if structure is not None and not paths:
         problems.append(NO_MAP.format(structure))
     for option, texts in (("--law", names), ("--map", paths)):
@@ -225,19 +231,50 @@ def _laws(names: list[str], paths: list[str], structure: str | None, problems: l
             if texts.count(text) > 1
         ]
     laws = [LawChoice(law_label(name), name) for name in names if name != "map" or not paths]
-    maps: list[tuple[str, EHDMap]] = []
+    laws += [
+        LawChoice(label, "map", maps)
+        for label, maps in _labelled_sets(read_maps(paths, structure, problems), scene, problems)
+    ]
+    return laws if names or paths else [LawChoice(law_label("hertz"), None)]
+
+
+def read_maps(paths: list[str], structure: str | None, problems: list[str]) -> list[tuple[str, EHDMap]]:
+    """Read the maps of --map, each with the name of its file; what is wrong about one is noted, and it is left out.
+
+    Parameters
+    ----------
+    paths : list of str
+        What was given.
+    structure : str or None
+        What was given for --structure.
+    problems : list of str
+        Appended to.
+    """
+    found: list[tuple[str, EHDMap]] = []
     for path in paths:
         try:
-            maps.append((path, open_given(path, structure)))
+            found.append((Path(path).stem, open_given(path, structure)))
         except InputError as error:
             problems += error.problems
         except EhdmapsError as error:
             problems += [f"--map: {line}" for line in str(error).splitlines()]
-    solvers = [str(emap.dataset.attrs.get("solver", "")) for _, emap in maps]
-    for (path, emap), solver in zip(maps, solvers, strict=True):
-        name = law_label("map", emap)
-        laws.append(LawChoice(name if solvers.count(solver) == 1 else f"{name} {Path(path).stem}", "map", emap))
-    return laws if names or paths else [LawChoice(law_label("hertz"), None)]
+    return found
+
+
+def _labelled_sets(
+    maps: list[tuple[str, EHDMap]], scene: Scene | None, problems: list[str]
+) -> list[tuple[str, MapSet]]:
+    """The sets that some maps make, each with a label that tells it from the others."""
+    try:
+        sets = map_sets(maps, None if scene is None else scene.bearings)
+    except InputError as error:
+        problems += error.problems
+        return []
+    labels = [law_label("map", one) for _, one in sets]
+    return [
+        (label if labels.count(label) == 1 else f"{label} {words}", one)
+        for (words, one), label in zip(sets, labels, strict=True)
+    ]
 
 
 def _with_films(laws: list[LawChoice], given: list[str], problems: list[str]) -> list[LawChoice]:
@@ -320,7 +357,7 @@ def read_supplies(given: Sequence[str], problems: list[str]) -> list[OilSupply]:
 
 def _stated_label(law: LawChoice, scene: Scene) -> str:
     """What the label of a law says of the oil supply that scene or map state."""
-    return ContactLaws(choose_law(law.name, law.emap), scene, law.emap).supply_label
+    return ContactLaws(choose_law(law.name, law.maps), scene, law.maps).supply_label
 
 
 def _labelled(law: LawChoice, words: str) -> LawChoice:

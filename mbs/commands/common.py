@@ -65,6 +65,11 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
         f"{model.scene.title}: law {model.law}",
         f"  {at}{temperature_text(model)}, clearance {clearance_text(model) or 'none'}; assumed: "
         + (f"{len(model.scene.assumed)} keys of the scene, marked there" if model.scene.assumed else "nothing"),
+        *(
+            f"  the weight of {name} is left out: its finite elements are held themselves, so that it bears on no "
+            "other body"
+            for name in model.system.weightless
+        ),
         *state_lines(model.states),
     ]
 

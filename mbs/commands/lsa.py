@@ -11,7 +11,7 @@ from scipy.signal import find_peaks
 
 from ehdmaps.errors import InputError
 from mbs.analyses.case import Case
-from mbs.analyses.lsa import LsaResult, lsa
+from mbs.analyses.lsa import LsaResult, lsa_dataset, lsa_of
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import band_lines, film_lines, heading, outside_at, write
@@ -21,13 +21,16 @@ from mbs.linearised.validity import DynamicLoad
 from mbs.output.response_plot import Curves, comparison_figure, response_figure
 from mbs.scene.assembly import Model
 
+MOST_COMPARED_CASES = 8
+"""That can be told apart in a figure."""
+
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Linearise, and compute the responses over the frequencies of the scene, with each kind of films and supply."""
+    """Linearise, and compute the responses over the frequencies of the scene, with each law."""
     done = analysed(
         arguments,
         _asked,
-        lambda cases: [(case.label, lsa(case.model)) for case in cases],
+        lambda cases: list(zip([c.label for c in cases], lsa_of([c.model for c in cases]), strict=True)),
         lambda cases: Looked(cases[0].model.scene, max(cases[0].model.scene.frequencies, default=0.0)),
     )
     found = done.result
@@ -51,27 +54,19 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     for label, entry in found:
         outside += [line for line in outside_at(entry.model, entry.balance) if line not in outside]
         lines += _report(entry, label if found[1:] else "")
-    lines += [*outside, *write(arguments, found[0][1].dataset, figure)]
+    dataset = lsa_dataset([label for label, _ in found], [entry for _, entry in found])
+    lines += [*outside, *write(arguments, dataset, figure)]
     return "\n".join(lines), 1 if outside else done.status
 
 
 def _asked(arguments: argparse.Namespace) -> list[Case]:
-    """A case for each kind of films and each oil supply; all problems at once."""
-    problems: tuple[str, ...] = ()
-    cases: list[Case] = []
-    try:
-        cases = load_cases(arguments, several=False, several_films=True)
-    except InputError as error:
-        problems = error.problems
-    asked = (("films", "kinds of films"), ("supply", "oil supplies"))
-    problems += tuple(
-        f"-o: got {count} {words}; allowed: one, as each has a state space of its own; write a file for each, or leave "
-        "-o out"
-        for option, words in asked
-        if arguments.output and (count := len(getattr(arguments, option, None) or ())) > 1
-    )
-    if problems:
-        raise InputError(problems)
+    """A case for each law, map, kind of films, oil supply and clearance."""
+    cases = load_cases(arguments)
+    if len(cases) > MOST_COMPARED_CASES:
+        raise InputError(
+            f"--law, --map, --films, --supply, --clearance: got {len(cases)} cases; allowed: up to "
+            f"{MOST_COMPARED_CASES} side by side"
+        )
     return cases
 
 

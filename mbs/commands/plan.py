@@ -1,4 +1,4 @@
-"""`mbs plan`: which operating ranges a scene needs of a contact map, and the job that covers just these."""
+"""`mbs plan`: which operating ranges a scene needs of its contact maps, and the jobs that cover just these."""
 
 from __future__ import annotations
 
@@ -9,27 +9,28 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ehdmaps.errors import EhdmapsError, InputError
+from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.commands.check import estimated_time
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.law_check import check_points
 from ehdmaps.jobs.reader import read_job, shipped_jobs
 from ehdmaps.jobs.refinement import refinement
-from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.outputs import SEALED, Output, output_problems, sealed, write_text
 from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display
 from mbs.analyses import planning
 from mbs.analyses.coverage import AxisCover, Coverage, coverage
 from mbs.analyses.plan import PlanResult, PlanSettings, dry_model, law_problems, needed_of
 from mbs.analyses.planning import Needed
-from mbs.commands.cases import read_clearance, scene_output_problems
+from mbs.commands.cases import read_clearance, read_maps, scene_output_problems
 from mbs.commands.common import heading
 from mbs.scene.assembly import Model
 from mbs.scene.fields import MICROMETRE
+from mbs.scene.map_set import MapSet, map_sets
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 
+_NOTHING = ("nothing written; -o JOB.toml writes the job",)
 _UNSAFE = re.compile(r"[^A-Za-z0-9_-]+")
 
 
@@ -44,48 +45,49 @@ class _Planned:
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Tell the ranges; then write the job, or say whether a map covers them."""
-    model, scene, emap, settings = _read(arguments)
-    found = needed_of(scene, model, settings, emap)
+    model, scene, maps, settings = _read(arguments)
+    found = needed_of(scene, model, settings, maps)
     slowest, fastest = found.speeds
     lines = [
         *heading(found.model),
         f"  turns at {RPM.text(slowest)} to {RPM.text(fastest)}; loads of slices at rest, "
         f"dry, over {planning.ANGLES} cage angles of a pitch, times {settings.margin:g} for what moves",
     ]
-    if emap is not None:
-        if scene.lubricant is not None and scene.lubricant != emap.lubricant:
-            lines.append(
-                f"  the oil of the map counts ({emap.lubricant.title}); that of the scene is another "
-                f"({scene.lubricant.title})"
-            )
-        return _covered(lines, coverage(found.needed, emap), arguments.map)
+    if maps is not None:
+        lines += [
+            f"  the oil of the map counts ({emap.lubricant.title}); that of the scene is another "
+            f"({scene.lubricant.title})"
+            for emap in maps.maps
+            if scene.lubricant is not None and scene.lubricant != emap.lubricant
+        ]
+        return _covered(lines, coverage(found.needed, maps), ", ".join(arguments.map))
     planned = _plan(found, arguments)
     for entry in planned:
         lines += _described(entry)
-    lines += [_written(entry.job, entry.path) for entry in planned if entry.path is not None]
-    return "\n".join(lines if arguments.output else [*lines, "nothing written; -o JOB.toml writes the job"]), 0
+    written = [entry.path for entry in planned if entry.path is not None]
+    for entry in planned:
+        if entry.path is not None:
+            write_text(entry.path, sealed(entry.job.text), SEALED)
+    return "\n".join([*lines, *(_next_steps(written, arguments.scene) if written else _NOTHING)]), 0
 
 
-def _read(arguments: argparse.Namespace) -> tuple[Model, Scene, EHDMap | None, PlanSettings]:
+def _read(arguments: argparse.Namespace) -> tuple[Model, Scene, MapSet | None, PlanSettings]:
     """Read scene, map, clearance and margin, and put the scene together; all problems at once."""
     problems: list[str] = []
     scene: Scene | None = None
     model: Model | None = None
-    emap: EHDMap | None = None
+    maps: MapSet | None = None
     try:
         scene = read_scene(arguments.scene)
     except InputError as error:
         problems += error.problems
     if arguments.map is not None:
-        try:
-            emap = open_map(arguments.map)
-        except EhdmapsError as error:
-            problems += [f"--map: {line}" for line in str(error).splitlines()]
+        maps = _read_maps(arguments.map, scene, problems)
     clearance = read_clearance(arguments.clearance, problems) if arguments.clearance is not None else None
     margin = _margin(arguments.margin, problems)
     settings = PlanSettings(arguments.law, clearance, margin)
     problems += law_problems(settings.law)
-    read = [arguments.map] if arguments.map is not None else []
+    read = arguments.map or []
     problems += scene_output_problems(
         arguments.scene, [*read, *(scene.files if scene else ())], arguments.output, kind=SEALED
     )
@@ -95,12 +97,26 @@ def _read(arguments: argparse.Namespace) -> tuple[Model, Scene, EHDMap | None, P
         )
     if scene is not None:
         try:
-            model = dry_model(scene, settings, emap, mapped=arguments.map is not None)
+            model = dry_model(scene, settings, maps, mapped=arguments.map is not None)
         except InputError as error:
             problems += error.problems
     if problems or scene is None or model is None:
         raise InputError(tuple(dict.fromkeys(problems)))
-    return model, scene, emap, settings
+    return model, scene, maps, settings
+
+
+def _read_maps(paths: list[str], scene: Scene | None, problems: list[str]) -> MapSet | None:
+    """Read --map: one map for each type of bearing."""
+    try:
+        sets = map_sets(read_maps(paths, None, problems), None if scene is None else scene.bearings)
+    except InputError as error:
+        problems += error.problems
+        return None
+    if len(sets) > 1:
+        problems.append(
+            f"--map: got {len(paths)} of them, several for one type of bearing; allowed: one for each type of bearing"
+        )
+    return sets[0][1] if sets else None
 
 
 def _margin(text: str | None, problems: list[str]) -> float:
@@ -155,7 +171,7 @@ def _described(planned: _Planned) -> list[str]:
     points = _points(job)
     lines.append(f"  points             {points}, {points - job.points} of them for the contact laws")
     solver = solvers.build(job.solver, job.solver_options)
-    lines.append(f"  time               {estimated_time(job, solver, points)}")
+    lines.append(f"  time               {estimated_time(job, solver, points).words}")
     shipped = (job.bearing.name if job.bearing else job.title).lower()
     if shipped in shipped_jobs():
         whole = _points(read_job(shipped))
@@ -192,10 +208,17 @@ def _points(job: Job) -> int:
     return job.points + (refined.points if refined else 0) + check_points(job.law_check)
 
 
-def _written(job: Job, path: Path) -> str:
-    """Write a job."""
-    write_text(path, sealed(job.text), SEALED)
-    return f"{path}: written; `ehdmaps generate {path}` makes the map"
+def _next_steps(written: Sequence[Path], scene: str) -> list[str]:
+    """What was written, and how the maps are made and used."""
+    names = " ".join(str(path) for path in written)
+    if len(written) == 1:
+        return [f"{names}: written; `ehdmaps generate {names}` makes the map"]
+    used = " ".join(f"--map {path.stem}.nc" for path in written)
+    return [
+        *(f"{path}: written" for path in written),
+        f"`ehdmaps generate {names}` makes the maps; `mbs statics {scene} {used}` and the other commands take them, "
+        "each bearing its own",
+    ]
 
 
 def _covered(lines: list[str], covers: Sequence[Coverage], name: str) -> tuple[str, int]:
@@ -207,7 +230,9 @@ def _covered(lines: list[str], covers: Sequence[Coverage], name: str) -> tuple[s
         ):
             lines.append(f"  {axis:18s} {text:28s} {_span(mapped.mapped, display):28s} {_verdict(axis, mapped)}")
     whole = all(cover.whole for cover in covers)
-    word = "covers the scene" if whole else "does not cover the scene; plan a map for it with -o JOB.toml"
+    verb = "covers" if len(covers) == 1 else "cover"
+    does = "does" if len(covers) == 1 else "do"
+    word = f"{verb} the scene" if whole else f"{does} not cover the scene; plan a map for it with -o JOB.toml"
     return "\n".join([*lines, f"{name}: {word}"]), 0 if whole else 1
 
 

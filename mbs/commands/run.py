@@ -73,7 +73,9 @@ def _folder(given: str | None) -> Path | None:
 def _words(arguments: argparse.Namespace, name: str, folder: Path | None) -> list[str]:
     """The command line of one analysis."""
     words = [name, arguments.scene]
-    for option in ("map", "clearance", "maps", "tolerance"):
+    for path in arguments.map or ():
+        words += ["--map", path]
+    for option in ("clearance", "maps", "tolerance"):
         if (value := getattr(arguments, option)) is not None:
             words += [f"--{option}", value]
     if arguments.auto:

@@ -1,36 +1,224 @@
-"""`mbs runup`: integrate the nonlinear system in time over its speed profile, from its equilibrium."""
+"""`mbs runup`: integrate the nonlinear system in time over its speed profile, from its equilibrium, with each law."""
 
 from __future__ import annotations
 
 import argparse
+import dataclasses
+from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
+from ehdmaps.figures import COLOURS
 from ehdmaps.units import RPM
+from ehdmaps.workers import available_cores
+from mbs.analyses.campbell import silent_run
+from mbs.analyses.case import Case
 from mbs.analyses.reach import Fade, axes_outside, fade_of
-from mbs.analyses.runup import runup
+from mbs.analyses.recorded import amplitudes_at, simulated
+from mbs.analyses.runup import RunUpResult, RunUps, runups
 from mbs.commands.auto import Looked, analysed
-from mbs.commands.cases import load_model
-from mbs.commands.common import Told, film_course, heading, held_lines, write
+from mbs.commands.campbell_recorded import read_source, signal_problems
+from mbs.commands.cases import load_cases
+from mbs.commands.common import Told, film_course, heading, held_lines, read_option, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.output.energy_text import energy_lines
-from mbs.output.run_plot import run_figure
-from mbs.scene.assembly import Model
-from mbs.transient.run import Recording
+from mbs.output.results import described
+from mbs.output.run_plot import run_figure, signals_figure
+from mbs.output.signal_text import signal_lines
+from mbs.output.spectrum_data import with_spectra
+from mbs.output.time_files import is_time_data, read_time_data, write_time_data
+from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
+from mbs.scene.fields import HERTZ, MILLISECOND
+from mbs.scene.scene import Scene
+from mbs.settings import HIGHEST
+from mbs.spectral.spectra import AmplitudeSpectrum
+from mbs.timedata.netcdf_file import signal_variables
+from mbs.timedata.records import TimeChannel, TimeData, TimeRecord
+from mbs.timedata.speed import SpeedSource, with_speed
+
+_MOST_SPECTRA = 4
+_LARGEST_SPEED = 1e6 / RPM.factor
+_OF_A_SCENE = (
+    "law", "map", "structure", "films", "supply", "clearance", "auto", "maps", "physics", "tolerance",
+)  # fmt: skip
+_OF_A_SPEED = ("speed_channel", "tacho", "pulses", "speed_table")
+
+
+@dataclass(frozen=True, eq=False)
+class _Spectra:
+    """About which speeds spectra are wanted [rad/s], and with which window [s] and highest frequency [Hz]."""
+
+    speeds: tuple[float, ...]
+    window: float | None
+    highest: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """Laws that are run, and which spectra are wanted."""
+
+    cases: list[Case]
+    spectra: _Spectra
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Run, and say what was found."""
-    done = analysed(arguments, load_model, lambda model: runup(model, progress=Told("step")), _looks_at)
-    found = done.result
+    """Run with each law, and say what was found; or look at a recorded run."""
+    if is_time_data(arguments.scene):
+        return _recorded(arguments)
+    workers = arguments.workers or available_cores()
+    done = analysed(
+        arguments,
+        _asked,
+        lambda asked: (runups(asked.cases, Told("step"), keep_partial=True, workers=workers), asked),
+        lambda asked: _looks_at(asked.cases[0].model.scene),
+    )
+    found, asked = done.result
+    names = tuple(label if found.runs[1:] else entry.model.label for label, entry in _pairs(found))
+    data = _signals(found, names)
+    spectra = _spectra_of(data, asked.spectra, found.runs[0].model.scene) if data else []
+    fade = fade_of(found.runs[0].model)
+    figure = _figure(found, data, spectra, fade) if arguments.plot else None
+    lines = list(done.lines)
+    outside = False
+    for label, entry in _pairs(found):
+        lines += [*([label] if found.runs[1:] else []), *_report(entry)]
+        outside = outside or any(entry.record.outside.values())
+    lines += signal_lines(data.records) if data else []
+    lines += [f"warning: {line}" for line in found.failed]
+    lines += write(arguments, with_spectra(found.dataset, spectra), figure)
+    if getattr(arguments, "signals", None) and data:
+        lines += write_time_data(arguments.signals, data)
+    return "\n".join(lines), 1 if outside or found.failed else done.status
+
+
+def _asked(arguments: argparse.Namespace) -> _Asked:
+    """Laws and spectra; all problems at once, before anything runs."""
+    problems: list[str] = []
+    wanted = _read_spectra(arguments, problems)
+    problems += [
+        f"--{name.replace('_', '-')}: stands beside a scene, whose speed is known; allowed: with a recorded run"
+        for name in _OF_A_SPEED
+        if getattr(arguments, name, None)
+    ]
+    try:
+        cases = load_cases(arguments)
+    except InputError as error:
+        raise InputError((*problems, *error.problems)) from error
+    scene = cases[0].model.scene
+    if len(cases) > len(COLOURS):
+        problems.append(
+            f"--law, --map, --films, --supply, --clearance: got {len(cases)} cases; allowed: {len(COLOURS)}"
+        )
+    read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *scene.files]
+    problems += signal_problems(arguments, read, len(cases))
+    if (getattr(arguments, "signals", None) or wanted.speeds) and not scene.sensors:
+        problems.append(f"{scene.name}: got no [[sensors]]; allowed with --signals and --spectrum-at: at least one")
+    if scene.run_up is not None and wanted.speeds and not problems:
+        course = scene.run_up
+        fine = dataclasses.replace(course, settings=dataclasses.replace(course.settings, sample=course.settings.step))
+        silent = silent_run(fine)
+        channel = TimeChannel("silent", "acceleration", "m/s2")
+        record = TimeRecord("run", silent.time, (channel,), silent.signal[:, None], silent.speed, silent.angle)
+        try:
+            amplitudes_at(record, wanted.speeds, wanted.window, wanted.highest or scene.campbell.highest)
+        except InputError as error:
+            problems += [f"--spectrum-at: {line}" for line in error.problems]
+    if problems:
+        raise InputError(tuple(dict.fromkeys(problems)))
+    return _Asked(cases, wanted)
+
+
+def _read_spectra(arguments: argparse.Namespace, problems: list[str]) -> _Spectra:
+    """Read which spectra are wanted."""
+    given = getattr(arguments, "spectrum_at", None) or []
+    limits = (0.0, _LARGEST_SPEED)
+    speeds = [read_option("--spectrum-at", text, "rad/s", limits, RPM, problems) for text in given]
+    if len(given) > _MOST_SPECTRA:
+        problems.append(f"--spectrum-at: got {len(given)} speeds; allowed: up to {_MOST_SPECTRA}")
+    window, highest = getattr(arguments, "window", None), getattr(arguments, "highest", None)
+    if not given:
+        problems += [
+            f"--{name}: stands without --spectrum-at; allowed: with it"
+            for name, value in (("window", window), ("highest", highest))
+            if value is not None
+        ]
+    return _Spectra(
+        tuple(speed for speed in speeds if speed is not None),
+        read_option("--window", window, "s", (SHORTEST, LONGEST), MILLISECOND, problems),
+        read_option("--highest", highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems),
+    )
+
+
+def _recorded(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Look at the runs of a file, without simulating anything."""
+    problems = [
+        f"--{name.replace('_', '-')}: stands beside a run that is recorded; allowed: with a scene, which is simulated"
+        for name in _OF_A_SCENE
+        if getattr(arguments, name, None)
+    ]
+    wanted, source = _read_spectra(arguments, problems), read_source(arguments, problems)
+    read = [arguments.scene, *([source.table] if source.table else [])]
+    problems += signal_problems(arguments, read, 1)
+    if problems:
+        raise InputError(tuple(dict.fromkeys(problems)))
+    data = read_time_data(arguments.scene)
+    problems = signal_problems(arguments, read, len(data.records))
+    if problems:
+        raise InputError(problems)
+    # Signals alone can be looked at, and written, without a speed.
+    speedless = data.records[0].speed is None and not wanted.speeds and source == SpeedSource()
+    turned = [] if speedless else [with_speed(record, source) for record in data.records]
+    notes = turned[0].notes if turned else ()
+    data = dataclasses.replace(data, records=tuple(entry.record for entry in turned) or data.records)
+    if not data.records[0].sensors:
+        names = ", ".join(data.records[0].names)
+        raise InputError(f"{arguments.scene}: has no channel of a motion among {names}; allowed: at least one")
+    spectra = _spectra_of(data, wanted, None)
+    first = data.records[0]
+    lines = [
+        f"{data.title or Path(arguments.scene).name}: recorded run of {first.time[-1] - first.time[0]:.4g} s, "
+        f"{first.time.size} samples",
+        *(f"  {note}" for note in notes),
+        *signal_lines(data.records),
+    ]
+    attributes = {key: words for key, words in (data.attributes or {}).items() if not key.endswith("version")}
+    dataset = described(signal_variables(data), **attributes)
+    figure = signals_figure(data, spectra) if arguments.plot else None
+    lines += write(arguments, with_spectra(dataset, spectra), figure)
+    if arguments.signals:
+        lines += write_time_data(arguments.signals, data)
+    return "\n".join(lines), 0
+
+
+def _spectra_of(data: TimeData, wanted: _Spectra, scene: Scene | None) -> list[list[tuple[AmplitudeSpectrum, ...]]]:
+    """Spectra about each speed, of each run, of each sensor."""
+    highest = wanted.highest or (scene.campbell.highest if scene else HIGHEST)
+    each = [amplitudes_at(record, wanted.speeds, wanted.window, highest) for record in data.records]
+    return [[run[place] for run in each] for place in range(len(wanted.speeds))]
+
+
+def _pairs(found: RunUps) -> list[tuple[str, RunUpResult]]:
+    """Labels and runs."""
+    return list(zip(found.labels, found.runs, strict=True))
+
+
+def _signals(found: RunUps, names: tuple[str, ...]) -> TimeData | None:
+    """Signals of all runs; None of a scene without sensors."""
+    if not found.runs[0].model.scene.sensors:
+        return None
+    return simulated([(name, entry.model, entry.record) for name, entry in zip(names, found.runs, strict=True)])
+
+
+def _report(found: RunUpResult) -> list[str]:
+    """Lines of one law."""
     model, result, outside = found.model, found.record, found.record.outside
     fade = fade_of(model)
-    figure = _figure(model, result, fade) if arguments.plot else None
     first, last = (RPM.text(float(speed)) for speed in (result.speed[0], result.speed[-1]))
     lines = [
-        *done.lines,
         *heading(model),
         *held_lines(model),
         f"from {first} to {last} in {found.course.duration:.4g} s: {result.steps} steps, {result.halved} taken back, "
@@ -50,14 +238,12 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     fastest = float(np.abs(result.speed).max())
     lines += outside_lines(outside, "{} calls outside the map", axes_outside(model, fastest))
     # The equilibria of this line are no part of the run, whose calls were counted above.
-    lines += film_course(model, (float(result.speed[0]), float(result.speed[-1])))
-    lines += write(arguments, found.dataset, figure)
-    return "\n".join(lines), 1 if any(outside.values()) else done.status
+    return lines + film_course(model, (float(result.speed[0]), float(result.speed[-1])))
 
 
-def _looks_at(model: Model) -> Looked:
+def _looks_at(scene: Scene) -> Looked:
     """What the run looks at; frequencies up to those of a Campbell diagram."""
-    return Looked(model.scene, model.scene.campbell.highest)
+    return Looked(scene, scene.campbell.highest)
 
 
 def _changes(size: FloatArray, speed: FloatArray, fade: Fade | None) -> str:
@@ -74,12 +260,19 @@ def _changes(size: FloatArray, speed: FloatArray, fade: Fade | None) -> str:
     return f"{words}, and {change[worst]:.3g} N above, at {RPM.text(float(abs(speed[worst])))}"
 
 
-def _figure(model: Model, result: Recording, fade: Fade | None) -> Figure:
-    """The figure, with the fade shaded."""
-    if fade is None:
-        return run_figure(model, result)
-    words = (
-        f"below {fade.source} (below {RPM.text(fade.speed)}, entrainment speed {fade.entrainment_speed:.4g} m/s): "
-        "the film fades to the dry contact"
-    )
-    return run_figure(model, result, fade.speed, words)
+def _figure(
+    found: RunUps,
+    data: TimeData | None,
+    spectra: list[list[tuple[AmplitudeSpectrum, ...]]],
+    fade: Fade | None,
+) -> Figure:
+    """The figure, with the fade of the first law shaded."""
+    first, *others = [(entry.model, entry.record) for entry in found.runs]
+    words = ""
+    if fade is not None:
+        words = (
+            f"below {fade.source} (below {RPM.text(fade.speed)}, entrainment speed {fade.entrainment_speed:.4g} m/s): "
+            "the film fades to the dry contact"
+        )
+    records = data.records if data else ()
+    return run_figure(*first, fade.speed if fade else 0.0, words, others, records, spectra)

@@ -22,6 +22,7 @@ from mbs.commands.reach import fade_lines
 from mbs.linearised.validity import NOTABLE
 from mbs.model.equilibrium import Equilibrium
 from mbs.output.bearing_text import flooded_note, loss_words
+from mbs.output.gear_data import gear_lines
 from mbs.output.plot import statics_figure
 from mbs.scene.assembly import Model
 
@@ -60,6 +61,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_matrix("K [N/m, N/rad; N m/m, N m/rad]", stiffness),
             *_matrix("C [the same times s]", damping),
         ]
+    lines += gear_lines(model, balance)
     lines += flooded_note(max((loss.torque for loss in found.losses), default=math.nan), model.supplies.values())
     lines += [
         f"{entry.bearing}: K and C are those of slow motion; the estimated error of the dynamic stiffness along the "

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM, quantity
+from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import film_errors, notable_from
 from mbs.analyses.operating import operating
@@ -39,8 +40,12 @@ _ROUND_OFF = 1e-12
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Sweep over speed."""
+    workers = arguments.workers or available_cores()
     done = analysed(
-        arguments, lambda given: _Asked(*_read(given)), lambda asked: sweep(asked.cases, asked.settings), _looks_at
+        arguments,
+        lambda given: _Asked(*_read(given)),
+        lambda asked: sweep(asked.cases, asked.settings, workers=workers),
+        _looks_at,
     )
     result = done.result
     cases, found = result.cases, result.sweeps
@@ -116,7 +121,7 @@ def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
     speeds: SweepRange | None = None
     cases: list[Case] = []
     try:
-        speeds = _speeds(arguments.speeds) if arguments.speeds else None
+        speeds = read_speeds(arguments.speeds) if arguments.speeds else None
     except InputError as error:
         problems += error.problems
     angles = _whole(arguments.cage_angles or "1")
@@ -133,8 +138,19 @@ def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
     return SweepSettings(speeds, angles), cases
 
 
-def _speeds(texts: Sequence[str]) -> SweepRange:
-    """Read FROM TO POINTS."""
+def read_speeds(texts: Sequence[str]) -> SweepRange:
+    """Read FROM TO POINTS of `--speeds`.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        The three texts.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
     problems = []
     ends = []
     for text in texts[:2]:

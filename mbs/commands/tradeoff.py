@@ -49,4 +49,4 @@ def _asked(arguments: argparse.Namespace) -> tuple[Scene, list[LawChoice], float
         problems += [f"{problem}; or --linear-only" for problem in campbell_problems(scene, settings)]
     if problems:
         raise InputError(tuple(dict.fromkeys(problems)))
-    return scene, [law for law in laws if law.emap is not None], clearance, TradeoffSettings(settings, runs)
+    return scene, [law for law in laws if law.maps is not None], clearance, TradeoffSettings(settings, runs)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM, closest
+from ehdmaps.workers import available_cores
 from mbs.analyses.case import clearance_text, common_supply, temperature_text
 from mbs.analyses.reach import axes_outside
 from mbs.analyses.variants import Variant, VariantsResult, Variation, variants
@@ -28,7 +29,8 @@ _COLUMNS = " median   5 to 95 % of the windows   mean energy   highest"
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Run up with two laws, and again with each change."""
     scene, laws, clearance, settings, variations = _asked(arguments)
-    found = variants(scene, laws, variations, clearance, settings, Told("step"), keep_partial=True)
+    workers = arguments.workers or available_cores()
+    found = variants(scene, laws, variations, clearance, settings, Told("step"), keep_partial=True, workers=workers)
     lines = [*_heading(found), *_tables(found), *_ranges(found), *_warnings(found)]
     title = f"{scene.title}\n{_base(found)}; one change at a time"
     lines += write(

@@ -199,6 +199,7 @@ def to_body(
     position: Sequence[float] = (0.0, 0.0, 0.0),
     damping_ratio: float = 0.0,
     spin: float = 0.0,
+    rotation: FloatArray | None = None,
 ) -> Body:
     """Put a reduced body into a system.
 
@@ -209,12 +210,15 @@ def to_body(
     name : str
         Name in the system.
     position : sequence of float, shape (3,)
-        Position of the origin of the finite-element body [m]; its axes are those of the system.
+        Position of the origin of the finite-element body [m].
     damping_ratio : float
         Damping ratio of every mode of the free body.
     spin : float
         Speed about x as a multiple of the system's. The body has no gyroscopic terms: right for housings, which do not
         turn; shafts that turn are made of beams.
+    rotation : array, shape (3, 3), optional
+        How it is turned about its origin: from its axes to those of the system, which they are if left out. Frames lie
+        and move along the axes of the system; the coordinates stay those of the body.
 
     Raises
     ------
@@ -222,6 +226,8 @@ def to_body(
         For an invalid damping ratio.
     """
     here = np.asarray(position, dtype=np.float64)
+    turn = np.eye(3) if rotation is None else rotation
+    both = np.kron(np.eye(2), turn)
     return Body(
         name=name,
         coordinates=reduced.coordinates,
@@ -230,6 +236,8 @@ def to_body(
         gyroscopic=np.zeros_like(reduced.mass),
         damping=modal_damping(reduced.mass, reduced.stiffness, damping_ratio),
         stiffness=reduced.stiffness,
-        frames={key: replace(frame, position=here + frame.position) for key, frame in reduced.frames.items()},
+        frames={
+            key: Frame(here + turn @ frame.position, both @ frame.transform) for key, frame in reduced.frames.items()
+        },
         spin=spin,
     )

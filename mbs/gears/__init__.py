@@ -1,1 +1,1 @@
-"""The mesh of a pair of spur gears."""
+"""The mesh of a pair of spur or helical gears."""

@@ -1,10 +1,11 @@
-"""A pair of spur gears on parallel shafts, as an element of a system; `mbs.gears.pair` describes the pair.
+"""A pair of spur or helical gears on parallel shafts, as an element of a system; `mbs.gears.pair` describes the pair.
 
-The gears act on each other along the line of action in their common middle plane: a force along the common normal of
-the flanks, at the pitch point. What the teeth bend and flatten is the mesh stiffness, which varies with the number of
-pairs in contact, and the transmission error is what the flanks lack of involutes. Friction, tilting of the gears
-against each other along the face width, and the parts of the bodies that turn about x by more than small angles
-besides their prescribed spin are left out.
+The gears act on each other with one force along the common normal of the flanks, at the pitch point in the middle of
+their faces. Of helical gears the normal leans out of the transverse section, so that the force has an axial part, which
+also tilts each gear by its pitch radius. What the teeth bend and flatten is the mesh stiffness, which varies with the
+number of pairs in contact, and the transmission error is what the flanks lack of involutes. Friction, the resistance of
+the face width to tilting of the gears against each other, and the parts of the bodies that turn about x by more than
+small angles besides their prescribed spin are left out.
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, P
 
 HARMONICS = 5
 """Multiples of the meshing order that are worth following."""
+
+_DISTANCE = ("m (z1 + z2)/2", "m (z1 + z2)/(2 cos(helix_angle))")
 
 PLACED = 1e-6
 """How far the distance of the centres may be off [m], and the ratio of the spins, as a part of it."""
@@ -135,7 +138,12 @@ def gear_mesh(
 
         n . (u1 - u2) + r_b1 theta_x1 + r_b2 theta_x2 - e,
 
-    the other flank n' = -cos(alpha) t + sin(alpha) c, both rotations with the opposite sign, and - backlash + e.
+    the other flank n' = -cos(alpha) t + sin(alpha) c, both rotations with the opposite sign, and - backlash + e. Angles
+    alpha are those of the transverse section. Helical flanks, with the base helix angle beta_b, have
+    n = cos(alpha) t + sin(alpha) c - tan(beta_b) x and n' = -cos(alpha) t + sin(alpha) c + tan(beta_b) x: n . u is a
+    motion in the transverse section still, and the tilts of a gear count with the moment of the axial part about its
+    centre. With the tangential force F_t on the pitch circle the axial one is F_t tan(beta), the radial one
+    F_t tan(alpha_n)/cos(beta) (G. Niemann, H. Winter, Maschinenelemente 2, Springer 2003).
 
     Parameters
     ----------
@@ -161,7 +169,8 @@ def gear_mesh(
         )
     if not abs(apart - wanted) <= PLACED:
         problems.append(
-            f"{where}: the centres are {apart * 1e3:.7g} mm apart; allowed: m (z1 + z2)/2 = {wanted * 1e3:.7g} mm; "
+            f"{where}: the centres are {apart * 1e3:.7g} mm apart; allowed: {_DISTANCE[bool(pair.helix_angle)]} = "
+            f"{wanted * 1e3:.7g} mm; "
             "move one of the shafts"
         )
     needed = -spin1 * pair.teeth[0] / pair.teeth[1]
@@ -173,10 +182,13 @@ def gear_mesh(
         raise InputError(problems)
     towards = np.array([0.0, distance[1], distance[2]]) / apart
     along = np.array([0.0, -towards[2], towards[1]])
-    radii = pair.base_radii
+    angle, lean = pair.transverse_pressure_angle, math.tan(pair.base_helix_angle)
+    first, second = pair.pitch_radii
     rows = np.zeros((2, 12))
     for row, side in zip(rows, (1.0, -1.0), strict=True):
-        normal = side * math.cos(pair.pressure_angle) * along + math.sin(pair.pressure_angle) * towards
+        normal = side * math.cos(angle) * along + math.sin(angle) * towards
+        normal[0] = -side * lean
         row[:3], row[6:9] = normal, -normal
-        row[3], row[9] = side * radii[0], side * radii[1]
+        # the pitch point moves with both gears
+        row[3:6], row[9:] = np.cross(first * towards, normal), np.cross(second * towards, normal)
     return GearMesh(pair, rows, spin1)

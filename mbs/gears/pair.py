@@ -1,4 +1,9 @@
-"""A pair of spur gears as it is described: geometry, contact ratio, varying mesh stiffness, transmission error."""
+"""A pair of gears as it is described: geometry, contact ratio, varying mesh stiffness, transmission error.
+
+Spur gears are helical gears of helix angle zero. Module and pressure angle are those of the normal section, which the
+tool has; stiffness, damping, backlash and transmission error are those along the line of action in the transverse
+section, as of ISO 6336 and ISO 21771.
+"""
 
 from __future__ import annotations
 
@@ -13,21 +18,24 @@ from ehdmaps.errors import InputError
 
 FEWEST_TEETH, MOST_TEETH = 5, 10_000
 MOST_HARMONICS = 50
+STEEPEST = math.radians(45.0)
+"""Largest helix angle, either hand [rad]."""
+
 LEAST_STIFFNESS = 0.01
 """Least of the varying stiffness, as a part of the mean."""
 
 
 def contact_ratio(teeth: tuple[int, int], pressure_angle: float, addendum: float = 1.0) -> float:
-    """Transverse contact ratio of a pair of spur gears without profile shift.
+    """Transverse contact ratio of a pair of gears without profile shift.
 
     Parameters
     ----------
     teeth : (int, int)
         Numbers of teeth of both gears.
     pressure_angle : float
-        [rad].
+        Pressure angle of the transverse section [rad].
     addendum : float
-        Addendum in modules.
+        Addendum in modules of the transverse section: the cosine of the helix angle for usual tools.
 
     Returns
     -------
@@ -66,13 +74,43 @@ def contact_ratio(teeth: tuple[int, int], pressure_angle: float, addendum: float
     return ratio
 
 
-def pair_harmonics(ratio: float, count: int) -> tuple[float, ...]:
-    """Harmonics of the number of tooth pairs in contact, over its mean.
+def overlap_ratio(face_width: float, helix_angle: float, module: float) -> float:
+    """Overlap ratio of helical gears, b sin(beta)/(pi m_n): by how many pitches the flanks lag along the face width.
+
+    Parameters
+    ----------
+    face_width : float
+        Face width b [m].
+    helix_angle : float
+        Helix angle beta [rad].
+    module : float
+        Module of the normal section m_n [m].
+
+    References
+    ----------
+    ISO 21771:2007, overlap ratio.
+
+    Examples
+    --------
+    >>> round(overlap_ratio(30e-3, math.radians(15.0), 3e-3), 4)
+    0.8239
+    """
+    return face_width * abs(math.sin(helix_angle)) / (math.pi * module)
+
+
+def pair_harmonics(ratio: float, count: int, overlap: float = 0.0) -> tuple[float, ...]:
+    """Harmonics of the length of the lines of contact, over its mean; of spur gears the number of tooth pairs.
 
     Each pair has the same stiffness along its path. So over the part f = ratio - floor(ratio) of a pitch there is one
     pair more than over the rest, and with the phase zero in the middle of that part
 
         k/k_mean = 1 + sum a_j cos(j phase),  a_j = 2 sin(pi j f)/(pi j ratio).
+
+    The flanks of helical gears lag by the overlap e along the face width, so that the mean over it is
+
+        a_j sin(pi j e)/(pi j e),
+
+    with the phase of the middle of the face. A whole number of overlaps leaves no harmonics.
 
     Parameters
     ----------
@@ -80,14 +118,19 @@ def pair_harmonics(ratio: float, count: int) -> tuple[float, ...]:
         Transverse contact ratio, at least 1.
     count : int
         How many harmonics.
+    overlap : float
+        Overlap ratio; 0 for spur gears.
     """
     part = ratio - math.floor(ratio)
-    return tuple(2.0 * math.sin(math.pi * j * part) / (math.pi * j * ratio) for j in range(1, count + 1))
+    return tuple(
+        2.0 * math.sin(math.pi * j * part) / (math.pi * j * ratio) * float(np.sinc(j * overlap))
+        for j in range(1, count + 1)
+    )
 
 
 @dataclass(frozen=True)
 class GearPair:
-    """What is known of a pair of spur gears before it is put into a system.
+    """What is known of a pair of spur or helical gears before it is put into a system.
 
     Attributes
     ----------
@@ -98,13 +141,13 @@ class GearPair:
     teeth : (int, int)
         Numbers of teeth of both gears.
     module : float
-        [m].
+        Module of the normal section [m].
     pressure_angle : float
-        [rad].
+        Pressure angle of the normal section [rad].
     face_width : float
         [m].
     stiffness : float
-        Mean mesh stiffness for each metre of face width [N/m2].
+        Mean mesh stiffness for each metre of face width [N/m2], of force and motion in the transverse section.
     backlash : float
         Play between the flanks along the line of action [m].
     damping : float
@@ -119,6 +162,8 @@ class GearPair:
         [rad]; zero if left out.
     phase : float
         Mesh phase at the beginning [rad].
+    helix_angle : float
+        Helix angle [rad]; positive where the first gear is right-handed, 0 for spur gears.
 
     Raises
     ------
@@ -141,6 +186,7 @@ class GearPair:
     transmission_error: tuple[float, ...] = ()
     transmission_error_phases: tuple[float, ...] = ()
     phase: float = 0.0
+    helix_angle: float = 0.0
 
     def __post_init__(self) -> None:
         problems = self._number_problems()
@@ -171,15 +217,48 @@ class GearPair:
             raise InputError(problems)
 
     @property
+    def transverse_module(self) -> float:
+        """m_n/cos(beta) [m]."""
+        return self.module / math.cos(self.helix_angle)
+
+    @property
+    def transverse_pressure_angle(self) -> float:
+        """Pressure angle of the transverse section, tan(alpha_t) = tan(alpha_n)/cos(beta) [rad]."""
+        return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
+
+    @property
+    def base_helix_angle(self) -> float:
+        """Helix angle beta_b on the base cylinder, tan(beta_b) = tan(beta) cos(alpha_t) [rad]."""
+        return math.atan(math.tan(self.helix_angle) * math.cos(self.transverse_pressure_angle))
+
+    @property
     def centre_distance(self) -> float:
-        """m (z1 + z2)/2 [m]."""
-        return 0.5 * self.module * sum(self.teeth)
+        """m_t (z1 + z2)/2 [m]."""
+        return 0.5 * self.transverse_module * sum(self.teeth)
+
+    @property
+    def pitch_radii(self) -> tuple[float, float]:
+        """Radii of the pitch circles of both gears [m]."""
+        first, second = (0.5 * self.transverse_module * z for z in self.teeth)
+        return first, second
 
     @property
     def base_radii(self) -> tuple[float, float]:
-        """Of both gears [m]."""
-        first, second = (0.5 * self.module * z * math.cos(self.pressure_angle) for z in self.teeth)
+        """Radii of the base circles of both gears [m]."""
+        first, second = (radius * math.cos(self.transverse_pressure_angle) for radius in self.pitch_radii)
         return first, second
+
+    @property
+    def contact_ratios(self) -> tuple[float, float]:
+        """Transverse contact ratio and overlap ratio.
+
+        Raises
+        ------
+        InputError
+            Where `contact_ratio` does.
+        """
+        transverse = contact_ratio(self.teeth, self.transverse_pressure_angle, math.cos(self.helix_angle))
+        return transverse, overlap_ratio(self.face_width, self.helix_angle, self.module)
 
     @property
     def mean_stiffness(self) -> float:
@@ -193,7 +272,8 @@ class GearPair:
             return self.harmonics
         if self.harmonics == 0:
             return ()
-        return pair_harmonics(contact_ratio(self.teeth, self.pressure_angle), self.harmonics)
+        transverse, overlap = self.contact_ratios
+        return pair_harmonics(transverse, self.harmonics, overlap)
 
     @cached_property
     def series(self) -> FloatArray:
@@ -220,6 +300,11 @@ class GearPair:
             problems.append(f"gear pair, teeth: got {len(self.teeth)} numbers; allowed: two")
         if not math.radians(1.0) <= self.pressure_angle <= math.radians(45.0):
             problems.append(f"gear pair, pressure_angle: got {self.pressure_angle!r} rad; allowed: 1 to 45 deg")
+        if not abs(self.helix_angle) <= STEEPEST:
+            problems.append(
+                f"gear pair, helix_angle: got {self.helix_angle!r} rad; allowed: -45 to 45 deg, positive where the "
+                "first gear is right-handed"
+            )
         for name, unit, zero in (
             ("module", "m", False),
             ("face_width", "m", False),

@@ -59,8 +59,12 @@ def with_peaks(frequencies: FloatArray, eigenvalues: ComplexArray) -> FloatArray
 
 def response_unit(sensor: Sensor, entry: Input) -> str:
     """Unit of the response of a sensor to an input, such as m/s2/N; rad for rotations, (N m) for moments."""
-    length = "rad" if np.any(sensor.direction[3:]) else "m"
-    return f"{length}{_PER_TIME[_ORDER[sensor.quantity]]}/{'(N m)' if np.any(entry.direction[3:]) else 'N'}"
+    return f"{sensor_unit(sensor)}/{'(N m)' if np.any(entry.direction[3:]) else 'N'}"
+
+
+def sensor_unit(sensor: Sensor) -> str:
+    """Unit of a sensor, such as m/s2; rad for rotations."""
+    return f"{'rad' if np.any(sensor.direction[3:]) else 'm'}{_PER_TIME[_ORDER[sensor.quantity]]}"
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ import warnings
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -39,6 +39,48 @@ def read_uff(path: Path) -> Measurement:
     InputError
         With everything that is wrong about it.
     """
+    found = _functions(path, (TIME, RESPONSE, COHERENCE))
+    try:
+        hits = _hits([entry for entry in found.usable if entry["func_type"] == TIME], found.factors)
+        responses = _responses(found.usable, found.factors)
+    except InputError as error:
+        raise InputError([f"{path}: {problem}" for problem in error.problems]) from error
+    return Measurement(found.title, hits, responses, tuple(found.notes))
+
+
+class _Functions(NamedTuple):
+    """What of a file is used: title, datasets 58, factors of length and force, notes."""
+
+    title: str
+    usable: list[Dataset]
+    factors: tuple[float, float]
+    notes: list[str]
+
+
+def time_records(path: Path) -> tuple[str, list[Dataset], list[float]]:
+    """Title, time records of a file as pyuff has them, and the divisor to SI of each.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        With everything that is wrong about it.
+    """
+    found = _functions(path, (TIME,))
+    places = [int(entry.get("rsp_dir", 0)) for entry in found.usable]
+    divisors = [
+        _to_si(entry, "ordinate", direction, found.factors)
+        for entry, direction in zip(found.usable, places, strict=True)
+    ]
+    return found.title, found.usable, divisors
+
+
+def _functions(path: Path, kinds: Sequence[int]) -> _Functions:
+    """The functions of some types."""
     sets = _sets(path)
     problems: list[str] = []
     notes: list[str] = []
@@ -47,25 +89,21 @@ def read_uff(path: Path) -> Measurement:
     usable = [
         entry
         for number, entry in enumerate(functions, start=1)
-        if entry["func_type"] in (TIME, RESPONSE, COHERENCE) and _sound(entry, number, problems)
+        if entry["func_type"] in kinds and _sound(entry, number, problems)
     ]
-    others = Counter(entry["func_type"] for entry in functions if entry["func_type"] not in (1, 4, 6))
+    others = Counter(entry["func_type"] for entry in functions if entry["func_type"] not in kinds)
     notes += [f"{count} functions of type {kind} are left out" for kind, count in sorted(others.items())]
     if not problems and not usable:
+        what = "time record" if tuple(kinds) == (TIME,) else "time record or a frequency response"
         problems.append(
-            f"got {len(sets)} datasets, none of them a time record or a frequency response; allowed: datasets 58 of "
-            "function type 1 or 4"
+            f"got {len(sets)} datasets, none of them a {what}; allowed: datasets 58 of "
+            f"function type {' or '.join(str(kind) for kind in kinds if kind != COHERENCE)}"
         )
     if problems:
         more = [f"and {len(problems) - _SHOWN_PROBLEMS} more"] if len(problems) > _SHOWN_PROBLEMS else []
         raise InputError([f"{path}: {problem}" for problem in (*problems[:_SHOWN_PROBLEMS], *more)])
-    try:
-        hits = _hits([entry for entry in usable if entry["func_type"] == TIME], factors)
-        responses = _responses(usable, factors)
-    except InputError as error:
-        raise InputError([f"{path}: {problem}" for problem in error.problems]) from error
     title = next((str(entry.get("model_name", "")) for entry in sets if entry.get("type") == 151), "")
-    return Measurement(title, hits, responses, tuple(notes))
+    return _Functions(title, usable, factors, notes)
 
 
 def _sets(path: Path) -> list[Dataset]:

@@ -31,12 +31,33 @@ def write_uff(path: Path, measurement: Measurement) -> None:
     InputError
         If it cannot be written, or has values that are not finite.
     """
-    pyuff = load_pyuff()
-    sets: list[Dataset] = [_header(measurement.title), _si()]
+    sets: list[Dataset] = []
     for entry in measurement.hits:
         sets += _hit_sets(entry)
     if measurement.responses is not None:
         sets += _response_sets(measurement.responses)
+    write_sets(path, measurement.title, sets)
+
+
+def write_sets(path: Path, title: str, functions: Sequence[Dataset]) -> None:
+    """Write functions in SI below a header, by the rule of all files that are written.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    title : str
+        Title of the header.
+    functions : sequence of dict
+        Datasets 58, as pyuff has them.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written, or has values that are not finite.
+    """
+    pyuff = load_pyuff()
+    sets: list[Dataset] = [_header(title), _si(), *functions]
     # The library would turn them into zeros.
     if not all(np.all(np.isfinite(entry["data"])) for entry in sets if "data" in entry):
         raise InputError(f"{path}: got values that are not finite; leave those records out")
@@ -49,10 +70,10 @@ def write_uff(path: Path, measurement: Measurement) -> None:
 
 
 def _header(title: str) -> Dataset:
-    """Dataset 151."""
+    """Dataset 151 with a title."""
     return {
         "type": 151,
-        "model_name": _ascii(title, 78) or "NONE",
+        "model_name": ascii_text(title, 78) or "NONE",
         "description": MARK,
         "db_app": "mbs",
         "program": "mbs",
@@ -110,17 +131,33 @@ def _function(
     kind: int, axis: FloatArray, values: Any, sensor: Channel, name: str, reference: Channel, reference_name: str
 ) -> Dataset:
     """A dataset 58."""
-    return {
-        "type": 58,
-        "binary": 0,
-        "func_type": kind,
-        "id1": _ascii(f"{sensor.label} by {reference.label}", 78),
+    return function_of(kind, axis, values) | {
+        "id1": ascii_text(f"{sensor.label} by {reference.label}", 78),
         "rsp_ent_name": name,
         "rsp_node": sensor.node,
         "rsp_dir": sensor.direction,
         "ref_ent_name": reference_name,
         "ref_node": reference.node,
         "ref_dir": reference.direction,
+    }
+
+
+def function_of(kind: int, axis: FloatArray, values: Any) -> Dataset:
+    """A dataset 58 without names and units.
+
+    Parameters
+    ----------
+    kind : int
+        Function type, such as `mbs.modal.uff.TIME`.
+    axis : array, shape (k,)
+        Times [s] or frequencies [Hz].
+    values : array, shape (k,)
+        Values at these.
+    """
+    return {
+        "type": 58,
+        "binary": 0,
+        "func_type": kind,
         "abscissa_spacing": int(_even(axis)),
         "x": axis,
         "data": np.array(values),
@@ -146,7 +183,7 @@ def _units(part: str, channel: Channel) -> Dataset:
 
 def _names(channels: Sequence[Channel]) -> list[str]:
     """Names of ten characters, which is what a file keeps; told apart where that makes two channels the same."""
-    short = [_ascii(channel.name, 10) or "NONE" for channel in channels]
+    short = [ascii_text(channel.name, 10) or "NONE" for channel in channels]
     same = Counter(zip(short, ((c.node, c.direction, c.quantity) for c in channels), strict=True))
     return [
         f"{name[:6]}~{index}" if same[name, (c.node, c.direction, c.quantity)] > 1 else name
@@ -154,6 +191,6 @@ def _names(channels: Sequence[Channel]) -> list[str]:
     ]
 
 
-def _ascii(text: str, length: int) -> str:
+def ascii_text(text: str, length: int) -> str:
     """Text that a record of the file can hold."""
     return "".join(letter if " " <= letter <= "~" else "?" for letter in text)[:length].strip()

@@ -169,6 +169,8 @@ class Kind:
     placed : callable or None
         Gives an element as it stands in a system, from the rows (ports, coordinates) by which its ports move: one that
         feels less, where the bodies cannot do all that it could feel. What is not felt costs nothing.
+    rare : bool
+        Whether compiled code is without the kind where there are none of it.
     """
 
     arrays: type
@@ -180,3 +182,4 @@ class Kind:
     accept: Callable[..., None] | None = None
     powers: Callable[..., None] | None = None
     placed: Callable[[Any, FloatArray], Any] | None = None
+    rare: bool = False

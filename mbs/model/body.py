@@ -65,6 +65,8 @@ class Body:
         Places at which springs, bearings, loads and sensors attach.
     spin : float
         Prescribed speed of the body about x as a multiple of the system's.
+    gravity : array, shape (n, 3), or None
+        Load on the coordinates by gravity along x, y, z of 1 m/s2 [kg or kg m]; None where `mbs.model.weight` finds it.
     """
 
     name: str
@@ -76,6 +78,7 @@ class Body:
     stiffness: FloatArray
     frames: Mapping[str, Frame] = field(default_factory=dict)
     spin: float = 0.0
+    gravity: FloatArray | None = None
 
     @property
     def size(self) -> int:
@@ -221,6 +224,7 @@ def rigid_body(
             for key, place in places.items()
         },
         spin=spin,
+        gravity=mass[free, :3],
     )
 
 

@@ -22,6 +22,9 @@ from mbs.model.system import System
 FIRST_STEP = 5e-6
 """How far a coordinate moves at most in the first step [m or rad]; doubled while steps fall short."""
 
+SKEW = 1e-8
+"""Part of the largest entry that the Jacobian may lack of symmetry for its forces to have a potential, to rounding."""
+
 FARTHEST = 0.1
 """A step that would have to be longer than this [m or rad] means that something moves freely."""
 
@@ -152,22 +155,26 @@ def _newton_step(system: System, operation: Operation, q: FloatArray, force: Flo
     for connected in system.elements:
         jacobian += connected.transform.T @ connected.evaluate(q, rest, operation).stiffness @ connected.transform
     size = max(float(np.trace(jacobian) / np.trace(system.mass)), 1.0)
-    return np.asarray(
-        np.linalg.solve(0.5 * (jacobian + jacobian.T) + 1e-9 * size * system.mass, force), dtype=np.float64
-    )
+    if np.max(np.abs(jacobian - jacobian.T)) <= SKEW * np.max(np.abs(jacobian)):
+        jacobian = 0.5 * (jacobian + jacobian.T)
+    return np.asarray(np.linalg.solve(jacobian + 1e-9 * size * system.mass, force), dtype=np.float64)
 
 
 def _along(
     residual: Callable[[FloatArray], tuple[FloatArray, float]], q: FloatArray, direction: FloatArray, slope: float
 ) -> tuple[FloatArray, FloatArray, float, bool]:
-    """Go along a descent direction until the potential rises again: place, force, scale, and whether all the way."""
+    """Go along a descent direction until the potential rises again: place, force, scale, and whether all the way.
+
+    Where a stiffness is negative Newton's direction may lead up the potential, and it is gone until that falls again.
+    """
+    sign, slope = (-1.0 if slope < 0.0 else 1.0), abs(slope)
     low, high = 0.0, 1.0
     low_slope = high_slope = slope
     part = 1.0
     for _ in range(_CUTS):
         place = q + part * direction
         force, scale = residual(place)
-        here = float(force @ direction)
+        here = sign * float(force @ direction)
         if part == 1.0 and here >= -0.1 * slope:
             return place, force, scale, True
         if abs(here) <= 0.2 * slope:

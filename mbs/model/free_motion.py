@@ -13,7 +13,7 @@ import scipy.linalg as sl
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError
-from mbs.model.equilibrium import Equilibrium
+from mbs.model.equilibrium import SKEW, Equilibrium
 
 NOTHING = 1e-16
 """Stiffness over mass of a coordinate, as a part of the largest one, up to which it is round-off."""
@@ -64,8 +64,11 @@ def free_motions(balance: Equilibrium) -> tuple[FreeMotion, ...]:
     AnalysisError
         If a load acts along one of them.
     """
-    stiffness, mass = 0.5 * (balance.stiffness + balance.stiffness.T), np.diag(balance.system.mass)
-    rate = np.diag(stiffness) / mass
+    stiffness, mass = balance.stiffness, np.diag(balance.system.mass)
+    if np.max(np.abs(stiffness - stiffness.T)) <= SKEW * np.max(np.abs(stiffness)):
+        stiffness = 0.5 * (stiffness + stiffness.T)
+    size = _size(stiffness)
+    rate = size / mass
     loose = rate <= NOTHING * max(float(np.max(rate)), 0.0)
     shapes = [np.eye(balance.system.size)[index] for index in np.flatnonzero(loose)]
     held = np.flatnonzero(~loose)
@@ -96,11 +99,28 @@ def free_lines(found: tuple[FreeMotion, ...]) -> list[str]:
     ]
 
 
+def _size(stiffness: FloatArray) -> FloatArray:
+    """Size of the stiffness of each coordinate, shape (n,).
+
+    It is the diagonal where the forces have a potential with a minimum. Where the stiffness is not symmetric, or
+    negative somewhere, a coordinate may be held by others alone.
+    """
+    diagonal = np.diag(stiffness)
+    if np.all(diagonal >= 0.0) and np.array_equal(stiffness, stiffness.T):
+        return diagonal
+    return np.asarray(np.max(np.abs(stiffness), axis=1))
+
+
 def _null_space(stiffness: FloatArray) -> FloatArray:
     """Motions (n, k) without stiffness of coordinates that each have one; each with as few coordinates as can be."""
-    scale = 1.0 / np.sqrt(np.diag(stiffness))
-    values, vectors = np.linalg.eigh(scale[:, None] * stiffness * scale)
-    free = vectors[:, values <= SINGULAR]
+    scale = 1.0 / np.sqrt(_size(stiffness))
+    scaled = scale[:, None] * stiffness * scale
+    if np.array_equal(stiffness, stiffness.T):
+        values, vectors = np.linalg.eigh(scaled)
+    else:
+        _, values, rows = np.linalg.svd(scaled)
+        vectors = rows.T
+    free = vectors[:, np.abs(values) <= SINGULAR]
     if free.shape[1] == 0:
         return free
     pivots = sl.qr(free.T, mode="r", pivoting=True)[1][: free.shape[1]]

@@ -35,6 +35,11 @@ class Places:
             return f"got the frame {short(frame or CENTRE)} of {body!r}; allowed: {', '.join(frames)}"
         return ""
 
+    def body_problem(self, body: str) -> str:
+        """Return what is wrong about the name of a body, in words; empty if it exists."""
+        names = tuple(self._by_name)
+        return "" if body in names else f"got the body {short(body)}{closest(body, names)}; allowed: {', '.join(names)}"
+
     def frame(self, place: str) -> Frame:
         """The frame of a place on a body."""
         body, _, frame = place.partition(":")

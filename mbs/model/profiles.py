@@ -181,3 +181,11 @@ class SpeedProfile:
         index = max(bisect.bisect_right(times, time) - 1, 0)
         speed = self.course(time)
         return speed, self._angles[index] + 0.5 * (speeds[index] + speed) * (time - times[index])
+
+    def rate(self, time: float) -> float:
+        """How fast the speed rises at a time >= 0 [rad/s2]; at a corner, from there on."""
+        times, speeds = self.course.times, self.course.values
+        index = max(bisect.bisect_right(times, time) - 1, 0)
+        if index + 1 == len(times):
+            return 0.0
+        return (speeds[index + 1] - speeds[index]) / (times[index + 1] - times[index])

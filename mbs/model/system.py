@@ -1,6 +1,6 @@
 """The system: bodies, springs, loads and elements put together.
 
-    M q'' + (D + speed G) q' + K q = loads(t) + forces of the elements(q, q', operation)
+    M q'' + (D + speed G) q' + K q = loads(t) + turning loads(speed, angle) + forces of the elements(q, q', operation)
 
 All displacements are small; spins are prescribed. A torque that drives a spin acts along the shaft's own axis, so
 that a change of speed brings no lateral term.
@@ -20,6 +20,8 @@ from mbs.model.body import Body
 from mbs.model.elements import GROUND, Element, Forces, Load, Operation, Port, Spring
 from mbs.model.places import Places
 from mbs.model.profiles import Constant, LoadProfile
+from mbs.model.turning import TurningLoad, put_together
+from mbs.model.weight import load_by_gravity
 
 COINCIDENT = 1e-6
 """How far two places that an element connects may lie apart [m]."""
@@ -68,6 +70,10 @@ class System:
         Prescribed forces.
     elements : sequence of Element
         Nonlinear elements: bearings, gear meshes.
+    turning : sequence of TurningLoad
+        Unbalances, and excitations by an order of a spin.
+    gravity : sequence of float, shape (3,)
+        Acceleration of gravity [m/s2], which acts on all bodies.
 
     Attributes
     ----------
@@ -81,6 +87,10 @@ class System:
         D by flexible body and spring, of those that damp.
     elements : tuple of Connected
         The nonlinear elements.
+    turning : tuple of Turning
+        Loads that follow the angle, put together.
+    weightless : tuple of str
+        Bodies on which gravity acts, but whose weight is not known, see `mbs.model.weight`.
 
     Raises
     ------
@@ -95,11 +105,13 @@ class System:
         springs: Sequence[Spring] = (),
         loads: Sequence[Load] = (),
         elements: Sequence[Element] = (),
+        turning: Sequence[TurningLoad] = (),
+        gravity: Sequence[float] = (0.0, 0.0, 0.0),
     ) -> None:
         self.bodies = tuple(bodies)
         self._by_name = {body.name: body for body in self.bodies}
         self._places = Places(self.bodies)
-        self._check(springs, loads, elements)
+        self._check(springs, loads, elements, turning)
         self._first = dict(
             zip(self._by_name, np.cumsum([0, *(body.size for body in self.bodies)])[:-1].tolist(), strict=True)
         )
@@ -134,6 +146,10 @@ class System:
         ]
         self._steady = sum((load for load, profile in given if isinstance(profile, Constant)), np.zeros(self.size))
         self._varying = tuple((load, profile) for load, profile in given if not isinstance(profile, Constant))
+        self.turning = put_together([(load, self.relative(load.on, load.against).T @ load.vector) for load in turning])
+        self.weightless: tuple[str, ...] = ()
+        if any(gravity):
+            self._add_weight(np.asarray(gravity, dtype=np.float64))
         self.elements = tuple(
             Connected(element, np.concatenate([self._port(port) for port in element.ports])) for element in elements
         )
@@ -190,6 +206,19 @@ class System:
             total += profile(time) * load
         return total
 
+    def turning_loads(self, speed: float, angle: float, rate: float) -> FloatArray:
+        """Generalised loads that follow the angle, shape (n,) [N or N m].
+
+        Parameters
+        ----------
+        speed, angle, rate : float
+            Speed of the system, its angle and the rate of its speed [rad/s, rad, rad/s2].
+        """
+        total = np.zeros(self.size)
+        for load in self.turning:
+            total += load.at(speed, angle, rate)
+        return total
+
     def relative(self, on: str, against: str = GROUND) -> FloatArray:
         """Displacement of a place against another by the coordinates, shape (6, n)."""
         return self._place(on) - self._place(against)
@@ -201,6 +230,17 @@ class System:
     def own(self, body: str) -> slice:
         """Where the coordinates of a body are."""
         return self._slice(self._by_name[body])
+
+    def _add_weight(self, gravity: FloatArray) -> None:
+        """Add the weight of all bodies to the steady loads."""
+        unknown = []
+        for body in self.bodies:
+            weight = load_by_gravity(body)
+            if weight is None:
+                unknown.append(body.name)
+            else:
+                self._steady[self._slice(body)] += weight @ gravity
+        self.weightless = tuple(unknown)
 
     def _slice(self, body: Body) -> slice:
         """Where the coordinates of a body are."""
@@ -221,11 +261,17 @@ class System:
             return np.eye(self.size)[self.own(port.on)]
         return self.relative(port.on, port.against)
 
-    def _check(self, springs: Sequence[Spring], loads: Sequence[Load], elements: Sequence[Element]) -> None:
+    def _check(
+        self,
+        springs: Sequence[Spring],
+        loads: Sequence[Load],
+        elements: Sequence[Element],
+        turning: Sequence[TurningLoad],
+    ) -> None:
         """Raise with all that does not fit together."""
         problems = [] if self.bodies else ["system, bodies: got none; allowed: at least one body"]
         seen: set[str] = {GROUND}
-        names = [thing.name for group in (self.bodies, springs, loads, elements) for thing in group]
+        names = [thing.name for group in (self.bodies, springs, loads, elements, turning) for thing in group]
         for name in names:
             if name in seen:
                 problems.append(f"{name!r}: is there twice; bodies, springs, loads and bearings have names apart")
@@ -237,7 +283,7 @@ class System:
             for member, words in (("excitation", "how often it excites"), ("relaxation", "what of it needs time"))
             if not hasattr(element, member)
         ]
-        for where, on, against in _connections(springs, loads, elements):
+        for where, on, against in _connections(springs, (*loads, *turning), elements):
             wrong = [problem for place in (on, against) if (problem := self._places.problem(place))]
             problems += [f"{where}: {problem}" for problem in wrong]
             if not wrong and GROUND not in (on, against):
@@ -252,7 +298,7 @@ class System:
 
 
 def _connections(
-    springs: Sequence[Spring], loads: Sequence[Load], elements: Sequence[Element]
+    springs: Sequence[Spring], loads: Sequence[Load | TurningLoad], elements: Sequence[Element]
 ) -> Iterator[tuple[str, str, str]]:
     """Yield name and both places of everything that connects places."""
     for spring in springs:

@@ -105,6 +105,54 @@ def campbell_dataset(
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 
+def of_sensors(parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Datasets of several sensors as one, with the dim sensor in front; that of one sensor stays as it is.
+
+    Parameters
+    ----------
+    parts : sequence of xarray.Dataset
+        Of `campbell_dataset`, one a sensor, of the same runs.
+    """
+    if len(parts) == 1:
+        return parts[0]
+    names = [str(part.attrs["sensor"]) for part in parts]
+    units = {str(part["sum_level"].attrs["units"]) for part in parts}
+    most = max(part.sizes.get("peak", 0) for part in parts)
+    # A sensor with fewer peaks than another is filled with not a number.
+    parts = [part.pad(peak=(0, most - part.sizes["peak"])) if "peak" in part.sizes else part for part in parts]
+    joined = xr.concat(parts, "sensor", data_vars="all", coords="minimal", compat="override", combine_attrs="override")
+    joined = joined.assign_coords(sensor=("sensor", np.array(names, dtype=np.str_)))
+    joined["time"] = parts[0]["time"]
+    attributes = {"long_name": "what the sensor measures, and the reference of its levels"}
+    words = [f"{part.attrs['quantity']}, {part.attrs['reference']}" for part in parts]
+    joined["sensor_reference"] = ("sensor", np.array(words, dtype=np.str_), attributes)
+    if len(units) > 1:
+        for variable in joined.data_vars.values():
+            if str(variable.attrs.get("units", "")).startswith("dB re"):
+                variable.attrs["units"] = "dB re the reference of the sensor"
+    joined.attrs = {key: value for key, value in parts[0].attrs.items() if key not in ("quantity", "reference")}
+    return joined.assign_attrs(sensor=", ".join(names))
+
+
+def with_measured(dataset: xr.Dataset, measured: xr.Dataset) -> xr.Dataset:
+    """The dataset with that of a measured run, whose variables and dims are called measured_...
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of simulated runs.
+    measured : xarray.Dataset
+        Of the measured run, from `of_sensors`; it has speeds and frequencies of its own.
+    """
+    alone = measured.isel(law=0, drop=True)
+    own = [str(name) for name in (*alone.variables, *alone.dims) if name != "sensor"]
+    renamed = alone.rename({name: f"measured_{name}" for name in dict.fromkeys(own)})
+    if "sensor" in alone.dims and "sensor" in dataset.dims:
+        renamed = renamed.drop_vars("measured_sensor_reference")
+    attributes = {f"measured_{key}": value for key, value in measured.attrs.items()}
+    return dataset.merge(renamed, join="outer", combine_attrs="override").assign_attrs(attributes)
+
+
 def _peaks(results: Sequence[RunUpSpectra], name: str) -> FloatArray:
     """A value of all peaks, shape (laws, peaks); NaN where a law has fewer than another."""
     values = np.full((len(results), max(len(result.peaks) for result in results)), np.nan)

@@ -100,7 +100,7 @@ def campbell_figure(
     reference: Reference,
     orders: Sequence[tuple[float, str]] = (),
     overlays: Sequence[Overlay | None] = (),
-    reaches: Sequence[Reach] = (),
+    reaches: Sequence[Reach | None] = (),
     bands: Sequence[FloatArray | None] = (),
 ) -> Figure:
     """Draw up to four laws.
@@ -112,14 +112,14 @@ def campbell_figure(
     laws : sequence of str
         Names of the contact laws.
     results : sequence of RunUpSpectra
-        Spectra of each law, of the same run.
+        Spectra of each law, of the same run; a measured run may stand among them.
     reference : Reference
         Reference of the levels.
     orders : sequence of (float, str)
         Lines to draw in, with their names.
     overlays : sequence of Overlay or None
         Natural frequencies to draw into the diagram of each law.
-    reaches : sequence of Reach
+    reaches : sequence of Reach or None
         How far the films of each law reach.
     bands : sequence of array, shape (windows,), or None
         Band of the sum level of each law, either way [dB].
@@ -129,24 +129,28 @@ def campbell_figure(
     bands = bands or [None] * len(laws)
     upper, lower = np.ravel(figure.subfigures(2, 1, squeeze=False, height_ratios=(1.35, 1.0)))
     panels = upper.subplots(1, len(laws), sharex=True, sharey=True, squeeze=False)[0]
-    colours = _colours(results)
+    colours = colour_scale(results)
     for index, (panel, law, result) in enumerate(zip(panels, laws, results, strict=True)):
-        _diagram(panel, result, colours)
-        _order_lines(panel, result, orders)
+        diagram(panel, result, colours)
+        order_lines(panel, result, orders)
         overlay = overlays[index] if index < len(overlays) else None
         if overlay is not None:
-            factor = _unit(result)[0]
+            factor = frequency_unit(result)[0]
             panel.plot(overlay.speeds * RPM, overlay.frequencies * factor, "--", color="w", lw=0.6, alpha=0.8)
-        if index < len(reaches):
-            _reach(panel, reaches[index], _unit(result)[0])
+        reach = reaches[index] if index < len(reaches) else None
+        if reach is not None:
+            _reach(panel, reach, frequency_unit(result)[0])
         panel.set_title(textwrap.fill(law, _LETTERS // len(laws)), fontsize=8)
         panel.set_xlabel("speed, rpm", fontsize=7)
         panel.tick_params(labelsize=7)
-    panels[0].set_ylabel(f"frequency, {_unit(results[0])[1]}", fontsize=7)
+    # A measured run has speeds of its own.
+    panels[0].set_xlim(*speed_range(results))
+    panels[0].set_ylabel(f"frequency, {frequency_unit(results[0])[1]}", fontsize=7)
     bar = upper.colorbar(ScalarMappable(colours, _MAP), ax=list(panels), pad=0.01, aspect=25, extend="min")
-    bar.set_label(f"{reference.quantity} level, {_reference(reference)}", fontsize=7)
+    bar.set_label(f"{reference.quantity} level, {reference_text(reference)}", fontsize=7)
     bar.ax.tick_params(labelsize=7)
-    handles = _handles(orders, overlays, reaches, results[0].campbell)
+    there = [reach for reach in reaches if reach is not None]
+    handles = _handles(orders, overlays, there, results[0].campbell)
     if handles:
         upper.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=6, frameon=False)
     left, right = lower.subplots(1, 2)
@@ -164,7 +168,7 @@ def campbell_figure(
         shown = (place > 2.0 / result.spectra.window) & (place <= last) & np.isfinite(spectrum)
         right.plot(place[shown], spectrum[shown], dashes, color=colour, lw=0.8)
     left.set_xlabel("speed, rpm", fontsize=7)
-    left.set_ylabel(f"sum level, {_reference(reference)}", fontsize=7)
+    left.set_ylabel(f"sum level, {reference_text(reference)}", fontsize=7)
     shaded = (
         [Patch(color="0.3", alpha=BAND_ALPHA, lw=0.0, label=BAND_WORDS)] if any(b is not None for b in bands) else []
     )
@@ -177,7 +181,7 @@ def campbell_figure(
         # So many long names would lie on the lines.
         lower.legend(handles=[*left.lines, *shaded], loc="outside lower center", ncols=2, fontsize=7, frameon=False)
     right.set_xlabel("order (periods a turn)", fontsize=7)
-    right.set_ylabel(f"mean level, {_reference(reference)}", fontsize=7)
+    right.set_ylabel(f"mean level, {reference_text(reference)}", fontsize=7)
     right.set_xlim(0.0, last)
     left.set_xlim(panels[0].get_xlim())
     for panel in (left, right):
@@ -185,6 +189,18 @@ def campbell_figure(
         panel.set_axisbelow(True)
         panel.tick_params(labelsize=7)
     return figure
+
+
+def speed_range(results: Sequence[RunUpSpectra]) -> tuple[float, float]:
+    """Lowest and highest speed of some results [rpm].
+
+    Parameters
+    ----------
+    results : sequence of RunUpSpectra
+        At least one.
+    """
+    speeds = [result.campbell.speeds for result in results]
+    return min(float(part.min()) for part in speeds) * RPM, max(float(part.max()) for part in speeds) * RPM
 
 
 def _reach(panel: Axes, reach: Reach, factor: float) -> None:
@@ -216,8 +232,14 @@ def _handles(
     return found
 
 
-def _colours(results: Sequence[RunUpSpectra]) -> Normalize:
-    """One scale for all diagrams: from the faint parts of the loudest law, or deeper for the sake of others."""
+def colour_scale(results: Sequence[RunUpSpectra]) -> Normalize:
+    """One scale for all diagrams: from the faint parts of the loudest law, or deeper for the sake of others.
+
+    Parameters
+    ----------
+    results : sequence of RunUpSpectra
+        What is drawn beside one another.
+    """
     tops = [result.campbell.level.max() for result in results]
     loudest = results[int(np.argmax(tops))].campbell.level
     top = 5.0 * np.ceil(max(tops) / 5.0)
@@ -225,15 +247,31 @@ def _colours(results: Sequence[RunUpSpectra]) -> Normalize:
     return Normalize(float(max(5.0 * np.floor(bottom / 5.0), top - _WIDEST_RANGE)), float(top))
 
 
-def _unit(result: RunUpSpectra) -> tuple[float, str]:
-    """Factor and unit of the frequency axis."""
+def frequency_unit(result: RunUpSpectra) -> tuple[float, str]:
+    """Factor and unit of the frequency axis.
+
+    Parameters
+    ----------
+    result : RunUpSpectra
+        What is drawn.
+    """
     return (1e-3, "kHz") if result.campbell.frequencies[-1] > _KILO else (1.0, "Hz")
 
 
-def _diagram(panel: Axes, result: RunUpSpectra, colours: Normalize) -> None:
-    """Levels as colours; pixels also in vector files, where each value would be a path."""
+def diagram(panel: Axes, result: RunUpSpectra, colours: Normalize) -> None:
+    """Levels as colours; pixels also in vector files, where each value would be a path.
+
+    Parameters
+    ----------
+    panel : Axes
+        The panel.
+    result : RunUpSpectra
+        Levels of a run.
+    colours : Normalize
+        Scale of the colours.
+    """
     found = result.campbell
-    frequencies = found.frequencies * _unit(result)[0]
+    frequencies = found.frequencies * frequency_unit(result)[0]
     panel.pcolormesh(
         found.speeds * RPM, frequencies, found.level.T, norm=colours, cmap=_MAP, shading="nearest", rasterized=True
     )
@@ -241,11 +279,21 @@ def _diagram(panel: Axes, result: RunUpSpectra, colours: Normalize) -> None:
     panel.set_ylim(frequencies[0], frequencies[-1])
 
 
-def _order_lines(panel: Axes, result: RunUpSpectra, orders: Sequence[tuple[float, str]]) -> None:
-    """Thin lines of the orders, each named near where it leaves the diagram if there is room."""
-    factor = _unit(result)[0] / (2.0 * np.pi)
+def order_lines(panel: Axes, result: RunUpSpectra, orders: Sequence[tuple[float, str]]) -> None:
+    """Thin lines of the orders, each named near where it leaves the diagram if there is room.
+
+    Parameters
+    ----------
+    panel : Axes
+        The panel.
+    result : RunUpSpectra
+        What is drawn there.
+    orders : sequence of (float, str)
+        Orders with their names.
+    """
+    factor = frequency_unit(result)[0] / (2.0 * np.pi)
     begin, end = float(result.campbell.speeds.min()), float(result.campbell.speeds.max())
-    top = float(result.campbell.frequencies[-1]) * _unit(result)[0]
+    top = float(result.campbell.frequencies[-1]) * frequency_unit(result)[0]
     named: list[tuple[float, float]] = []
     for order, name in orders:
         stop = min(end, top / (order * factor))
@@ -270,7 +318,13 @@ def _highest_order(result: RunUpSpectra, orders: Sequence[tuple[float, str]]) ->
     return float(2.0 * np.pi * result.campbell.frequencies[-1] / top)
 
 
-def _reference(reference: Reference) -> str:
-    """Unit of the levels as figures show it, such as dB re 1 um/s2."""
+def reference_text(reference: Reference) -> str:
+    """Unit of the levels as figures show it, such as dB re 1 um/s2.
+
+    Parameters
+    ----------
+    reference : Reference
+        Reference of the levels.
+    """
     prefix = {1e-12: "p", 1e-9: "n", 1e-6: "µ"}[reference.value]
     return f"dB re 1 {prefix}{reference.unit.replace('s2', 's²')}"

@@ -6,16 +6,22 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.figures import COLOURS
 from mbs.output.page import grid, headed, shade, shade_handle, whole_numbers
+from mbs.output.signals_plot import MOST_SENSORS, signal_panels
 from mbs.scene.assembly import Model
+from mbs.spectral.spectra import AmplitudeSpectrum
+from mbs.timedata.records import TimeData, TimeRecord
 from mbs.transient.run import Recording
 
 _RPM = 30.0 / np.pi
 _WIDTH, _COLUMN, _HEIGHT = 9.0, 2.6, 5.8
+_SENSOR, _MARGIN, _SPECTRUM = 1.25, 0.9, 3.4
+"""Height of the row of a sensor, of what is around all rows, and width of a column of spectra [inch]."""
+
 _LEAST_SPAN = 1e-6
 """Of an axis, as a part of its largest value: less is round-off."""
 
@@ -23,8 +29,18 @@ _LENGTHS = ((1e-6, "µm", 1e6), (1e-9, "nm", 1e9), (0.0, "pm", 1e12))
 _FORCES = ((1e4, "kN", 1e-3), (1e-1, "N", 1.0), (0.0, "mN", 1e3))
 
 
-def run_figure(model: Model, run: Recording, below: float = 0.0, words: str = "") -> Figure:
+def run_figure(
+    model: Model,
+    run: Recording,
+    below: float = 0.0,
+    words: str = "",
+    others: Sequence[tuple[Model, Recording]] = (),
+    records: Sequence[TimeRecord] = (),
+    spectra: Sequence[Sequence[Sequence[AmplitudeSpectrum]]] = (),
+) -> Figure:
     """Bearing force, displacement of the inner ring and speed over time; every bearing in panels of its own.
+
+    Of one law a bearing has a colour, of several laws each law has one. The signals of the sensors are below.
 
     Parameters
     ----------
@@ -36,19 +52,35 @@ def run_figure(model: Model, run: Recording, below: float = 0.0, words: str = ""
         Speed [rad/s] below which the film fades to the dry contact: these times are shaded.
     words : str
         What the shade means, for the legend.
+    others : sequence of (Model, Recording)
+        The same run with other laws.
+    records : sequence of TimeRecord
+        Signals of each law; none are drawn without.
+    spectra : sequence of sequence of sequence of AmplitudeSpectrum
+        Amplitudes about each speed, of each law, of each sensor.
     """
-    columns = max(len(model.bearings), 1)
-    figure = headed(model, "", (max(_WIDTH, _COLUMN * columns), _HEIGHT))
-    axes = figure.subplots(3, columns, sharex=True, sharey="row", squeeze=False)
-    forces = [np.hypot(force[:, 1], force[:, 2]) for force in run.forces[: len(model.bearings)]]
-    places = [_place(model, run, index) for index in range(len(model.bearings))]
-    force_unit, force_factor = _unit(forces, _FORCES)
-    length_unit, length_factor = _unit(places, _LENGTHS)
-    for index, (bearing, force, place) in enumerate(zip(model.bearings, forces, places, strict=True)):
-        colour = COLOURS[index % len(COLOURS)]
-        axes[0, index].plot(run.time, force_factor * force, color=colour, lw=0.8)
-        axes[1, index].plot(run.time, length_factor * place, color=colour, lw=0.8)
-        axes[0, index].set_title(bearing.name, fontsize=9)
+    columns, sensors = max(len(model.bearings), 1), min(len(records[0].sensors), MOST_SENSORS) if records else 0
+    width = max(_WIDTH, _COLUMN * columns, _SPECTRUM * (len(spectra) + 1) if sensors else 0.0)
+    height = _HEIGHT + (_SENSOR * sensors + _MARGIN if sensors else 0.0)
+    figure = headed(model, "", (width, height), "laws side by side" if others else None)
+    upper: FigureBase = figure
+    lower: FigureBase | None = None
+    if sensors:
+        upper, lower = np.ravel(figure.subfigures(2, 1, squeeze=False, height_ratios=(_HEIGHT, height - _HEIGHT)))
+    axes = upper.subplots(3, columns, sharex=True, sharey="row", squeeze=False)
+    everything = [(model, run), *others]
+    forces = [[np.hypot(f[:, 1], f[:, 2]) for f in one.forces[: len(model.bearings)]] for _, one in everything]
+    places = [[_place(of, one, index) for index in range(len(model.bearings))] for of, one in everything]
+    force_unit, force_factor = _unit([force for part in forces for force in part], _FORCES)
+    length_unit, length_factor = _unit([place for part in places for place in part], _LENGTHS)
+    for law, (_, one) in enumerate(everything):
+        for index, bearing in enumerate(model.bearings):
+            colour = COLOURS[(law if others else index) % len(COLOURS)]
+            for row, values in enumerate((force_factor * forces[law][index], length_factor * places[law][index])):
+                # What moves least lies on top.
+                order = 2.0 + 1.0 / (1.0 + float(np.ptp(values)))
+                axes[row, index].plot(one.time, values, color=colour, lw=0.8, zorder=order)
+            axes[0, index].set_title(bearing.name, fontsize=9)
     for panel in axes[2]:
         panel.plot(run.time, run.speed * _RPM, color="0.2", lw=1.0)
         panel.set_xlabel("time, s")
@@ -61,8 +93,29 @@ def run_figure(model: Model, run: Recording, below: float = 0.0, words: str = ""
         _room(panel)
         whole_numbers(panel)
         grid(panel)
+    panels = axes.ravel().tolist()
+    if lower is not None:
+        panels += signal_panels(lower, records, spectra)
     if np.any(slow := np.abs(run.speed) < below):
-        _shade(figure, axes.ravel().tolist(), run.time, slow, words)
+        _shade(figure, panels, run.time, slow, words)
+    return figure
+
+
+def signals_figure(data: TimeData, spectra: Sequence[Sequence[Sequence[AmplitudeSpectrum]]] = ()) -> Figure:
+    """Signals of recorded runs over time, with their amplitudes about chosen speeds.
+
+    Parameters
+    ----------
+    data : TimeData
+        The runs.
+    spectra : sequence of sequence of sequence of AmplitudeSpectrum
+        Amplitudes about each speed, of each run, of each sensor.
+    """
+    rows = min(len(data.records[0].sensors), MOST_SENSORS)
+    size = (max(_WIDTH, _SPECTRUM * (len(spectra) + 1)), 1.4 * _SENSOR * rows + _MARGIN)
+    figure = Figure(figsize=size, layout="constrained")
+    figure.suptitle(data.title or data.records[0].label, fontsize=10)
+    signal_panels(figure, data.records, spectra)
     return figure
 
 

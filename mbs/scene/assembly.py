@@ -22,12 +22,19 @@ from mbs.model.elements import Operation
 from mbs.model.places import Places
 from mbs.model.relaxation import Films
 from mbs.model.system import System
+from mbs.model.turning import TurningLoad
 from mbs.scene import kinds
+from mbs.scene.axial import axial_problems
 from mbs.scene.bodies import build_bodies
 from mbs.scene.contact_laws import ContactLaws, choose_law, supply_words, surface_label
 from mbs.scene.kinds import ElementKind
+from mbs.scene.map_set import MapSet
 from mbs.scene.scene import Scene
 from mbs.scene.surroundings import Built, Surroundings
+from mbs.scene.turning import turning_loads, with_places
+
+GivenMaps = EHDMap | str | Path | Sequence[EHDMap | str | Path] | MapSet | None
+"""What `assemble` takes as maps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +93,7 @@ class Model:
 def assemble(
     scene: Scene,
     law: str | None = None,
-    emap: EHDMap | str | Path | None = None,
+    emap: GivenMaps = None,
     clearance: float | None = None,
     films: Films | None = None,
     supply: OilSupply | None = None,
@@ -99,8 +106,8 @@ def assemble(
         Bodies, springs, loads, machine elements.
     law : str, optional
         hertz, formula, constant:NAME or map; map by default where there is one, else hertz.
-    emap : EHDMap, str or Path, optional
-        Map of the law `map`, or the path of its file.
+    emap : EHDMap, str or Path, or several of these in a list, or MapSet, optional
+        Map of the law `map`, or the path of its file; of a scene with several types of bearing one map for each.
     clearance : float, optional
         Diametral clearance of all bearings [m], in place of the scene's.
     films : {"slow", "memory"}, optional
@@ -136,26 +143,29 @@ def assemble(
     >>> model.label, model.system.size
     ('dry Hertz', 8)
     """
-    if isinstance(emap, (str, Path)):
-        emap = open_map(emap)
+    maps = _opened(emap)
     problems: list[str] = []
     if clearance is not None:
         scene = _with_clearance(scene, clearance, problems)
-    laws = ContactLaws(choose_law(law, emap), scene, emap, films, supply)
+    laws = ContactLaws(choose_law(law, maps), scene, maps, films, supply)
     wrong_law = laws.problems()
     problems = [*wrong_law, *problems]
     try:
-        bodies = build_bodies(scene.bodies)
+        bodies = build_bodies(with_places(scene.bodies, scene.unbalances))
     except InputError as error:
         raise InputError([*problems, *error.problems]) from error
     places = Places(bodies)
     built, found = _elements(scene, Surroundings(places, laws, scene.temperature), may_build=not wrong_law)
     problems += found
+    turning, found = turning_loads(scene.unbalances, scene.excitations, places)
+    problems += found
     parts = [part for group in built.values() for part in group]
     own_bodies = [body for part in parts for body in part.bodies]
     try:
-        system = System((*bodies, *own_bodies), scene.springs, scene.loads, [part.element for part in parts])
-        problems += _place_problems(places, scene) or _idle_problems(system, scene)
+        elements = [part.element for part in parts]
+        system = System((*bodies, *own_bodies), scene.springs, scene.loads, elements, turning, scene.gravity)
+        problems += _place_problems(places, scene) or _idle_problems(system, scene, turning)
+        problems += axial_problems(system, scene.gears, Operation(scene.speed))
     except InputError as error:
         problems += [*error.problems, *_place_problems(places, scene)]
     if problems:
@@ -176,6 +186,14 @@ def assemble(
         supplies=laws.supplies,
         surface=laws.surface,
     )
+
+
+def _opened(given: GivenMaps) -> MapSet | None:
+    """Maps, or the paths of their files, as a set."""
+    if given is None or isinstance(given, MapSet):
+        return given
+    several = [given] if isinstance(given, (EHDMap, str, Path)) else given
+    return MapSet([entry if isinstance(entry, EHDMap) else open_map(entry) for entry in several])
 
 
 def law_attributes(model: Model) -> Mapping[str, str]:
@@ -259,13 +277,19 @@ def _place_problems(places: Places, scene: Scene) -> list[str]:
     ]
 
 
-def _idle_problems(system: System, scene: Scene) -> list[str]:
+def _idle_problems(system: System, scene: Scene, turning: Sequence[TurningLoad]) -> list[str]:
     """What does nothing in the system, which is hardly meant: an unstrained spring, a load that moves nothing."""
     problems = [
         f"spring {spring.name!r}: {spring.on} and {spring.against} do not move against each other; allowed: places of "
         "two bodies, or of one that moves and the ground"
         for spring in scene.springs
         if not np.any(system.relative(spring.on, spring.against))
+    ]
+    problems += [
+        f"{entry.name!r}: no freedom moves its place along it; allowed: an unbalance or excitation in a direction in "
+        "which the body is free"
+        for entry in turning
+        if not np.any(system.relative(entry.on, entry.against).T @ entry.vector)
     ]
     for kind, name, direction, on, against in (
         *(("load", load.name, load.force, load.on, load.against) for load in scene.loads),

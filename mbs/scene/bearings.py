@@ -11,6 +11,8 @@ from ehdmaps.units import short
 from mbs.bearings.bearing import MOST_COUPLED
 from mbs.scene import fields
 from mbs.scene.fields import DEGREE
+from mbs.scene.matrices import MatrixSpec, read_table_bearing
+from mbs.scene.profiles import read_profile
 from mbs.scene.specs import BearingSpec
 from mbs.scene.thermal import read_mounting, read_thermal
 
@@ -18,8 +20,8 @@ if TYPE_CHECKING:
     from mbs.scene.surroundings import Built, Surroundings
 
 
-def read_bearing(section: Table, name: str) -> BearingSpec | None:
-    """Read a bearing; None where a problem was noted.
+def read_bearing(section: Table, name: str) -> BearingSpec | MatrixSpec | None:
+    """Read a bearing of rollers, or one by matrices with kind = "table"; None where a problem was noted.
 
     Parameters
     ----------
@@ -28,6 +30,8 @@ def read_bearing(section: Table, name: str) -> BearingSpec | None:
     name : str
         Name of the bearing.
     """
+    if section.choice("kind", ("rollers", "table")) == "table":
+        return read_table_bearing(section, name)
     inner, outer = fields.place(section, "inner"), fields.place(section, "outer")
     given = section.get("geometry", required='{ name = "NU308" } or dimensions, as [bearing] of a job file')
     problems: list[str] = []
@@ -36,7 +40,7 @@ def read_bearing(section: Table, name: str) -> BearingSpec | None:
         geometry, _ = read_contacts(Table({"bearing": given}, "geometry", problems), None)
     for problem in problems:
         section.note("geometry", problem.removeprefix("[bearing] ").removeprefix("[bearing]: "))
-    profile = section.choice("profile", ("iso", "straight")) or "iso"
+    profile = read_profile(section, geometry)
     slices = section.integer("slices", 1, 10000) or 41
     angle = section.quantity("start_angle", "rad", -7.0, 7.0, DEGREE) or 0.0
     rollers = section.choice("rollers", ("massless", "bodies")) or "massless"

@@ -15,6 +15,7 @@ from pathlib import Path
 from ehdmaps.errors import InputError
 from mbs.flexible.attached import attach
 from mbs.flexible.kept import file_digest, plan_key, reduced_body
+from mbs.flexible.orientation import rotation_of
 from mbs.flexible.plan import ReductionPlan, check_reduced
 from mbs.flexible.reduced_body import ReducedBody, to_body
 from mbs.flexible.reduced_file import read_reduced
@@ -132,4 +133,6 @@ def _flexible(spec: FlexibleSpec) -> Body:
         reduced = reduced_body(source)
     else:
         reduced = read_reduced(source) if isinstance(source, Path) else source
-    return attach(to_body(reduced, spec.name, spec.position, spec.damping_ratio), spec.attached)
+    turned = rotation_of(spec.rotation) if spec.rotation else None
+    body = to_body(reduced, spec.name, spec.position, spec.damping_ratio, rotation=turned)
+    return attach(body, spec.attached)

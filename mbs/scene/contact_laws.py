@@ -23,14 +23,13 @@ from mbs.bearings.bearing_force import NO_COUPLED_MEMORY
 from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import DryLaw, Law
 from mbs.model.relaxation import DEFAULT_FILMS, Films
+from mbs.scene.map_set import MapSet
 from mbs.scene.scene import Scene
 from mbs.scene.specs import BearingSpec
 
 FILM_WORDS: dict[Films, str] = {"memory": "films with memory", "slow": "slow films"}
 """How people are told that films relax, or that they have stiffness and damping of slow motion at any frequency."""
 
-_SAME = 1e-9
-_COMPARED = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
 _HERTZ, _CONSTANT = "hertz:", "constant:"
 _LONGEST_TIME, _STRONGEST = 1e-2, 1e9
 """Largest damper of a dry contact: by its ratio to the stiffness [s], and as a constant [N s/m], as in [laws.NAME]."""
@@ -39,18 +38,17 @@ HERTZ_FORMS = "hertz:TIME such as 'hertz:1.25e-5 s', hertz:DAMPING such as 'hert
 """The forms of the dry law with a damper, for messages."""
 
 _LABELS = {"hertz": "dry Hertz", "formula": "film formula"}
-_MAP_LABELS = {"reynolds": "Reynolds map", "openfoam": "OpenFOAM map", "formula": "formula map", "hertz": "Hertz map"}
 
 
-def choose_law(name: str | None, emap: EHDMap | None) -> str:
+def choose_law(name: str | None, maps: MapSet | None) -> str:
     """The law that is meant: by default the map where there is one, else Hertz."""
-    return name if name is not None else ("map" if emap is not None else "hertz")
+    return name if name is not None else ("map" if maps is not None else "hertz")
 
 
-def law_label(law: str, emap: EHDMap | None = None) -> str:
-    """A law in two words, such as "dry Hertz"; a map by the solver that made it."""
-    if law == "map" and emap is not None:
-        return _MAP_LABELS.get(str(emap.dataset.attrs.get("solver", "")), "map")
+def law_label(law: str, maps: MapSet | None = None) -> str:
+    """A law in two words, such as "dry Hertz"; maps by the solver that made them."""
+    if law == "map" and maps is not None:
+        return maps.label
     try:
         damper = hertz_damper(law)
     except InputError:
@@ -58,11 +56,6 @@ def law_label(law: str, emap: EHDMap | None = None) -> str:
     if damper is not None:
         return ", ".join(part for part in (_LABELS["hertz"], damper.words) if part)
     return _LABELS.get(law, law.replace(":", " "))
-
-
-def structure_words(emap: EHDMap) -> str:
-    """The structural law of a map as the end of a sentence; nothing where it is that of the dry law, ISO 16281."""
-    return "" if emap.structural_law == "iso16281" else f", structural law {emap.structural_law}"
 
 
 def supply_words(supplies: Mapping[str, OilSupply]) -> str:
@@ -168,8 +161,8 @@ class ContactLaws:
         hertz, hertz:TIME, hertz:DAMPING, formula, constant:NAME or map.
     scene : Scene
         Scene with its oil and its constant laws.
-    emap : EHDMap or None
-        The map of the law `map`.
+    maps : MapSet or None
+        The maps of the law `map`.
     asked : {"slow", "memory"} or None
         Which films linear analyses are to have; None for `DEFAULT_FILMS` of `mbs.model.relaxation`, where they can.
     asked_supply : OilSupply or None
@@ -178,7 +171,7 @@ class ContactLaws:
 
     chosen: str
     scene: Scene
-    emap: EHDMap | None
+    maps: MapSet | None
     asked: Films | None = None
     asked_supply: OilSupply | None = None
     _made: dict[tuple[BearingGeometry, OilSupply], BearingLaws] = field(default_factory=dict, repr=False)
@@ -195,8 +188,11 @@ class ContactLaws:
         if self.chosen not in allowed and damper is None:
             got = f"--law: got {self.chosen!r:.60}{closest(self.chosen, allowed)}"
             return [f"{got}; allowed here: {', '.join(allowed)}; {HERTZ_FORMS}"]
-        if self.chosen == "map" and self.emap is None:
+        if self.chosen == "map" and self.maps is None:
             return ["--law: got 'map' without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`"]
+        maps = self._maps_in_force if scene.surface is None else None
+        if maps is not None and (wrong := maps.surface_problems()):
+            return wrong
         if self.chosen == "formula" and scene.lubricant is None:
             return [f"--law: got 'formula', but {scene.name} has no [lubricant]; add the table to the scene"]
         centrifugal = [entry.name for entry in scene.bearings if entry.centrifugal and not entry.rollers_as_bodies]
@@ -230,13 +226,13 @@ class ContactLaws:
 
     def bearing_problems(self, name: str, geometry: BearingGeometry) -> list[str]:
         """In what the map in force was made for something else than a bearing."""
-        if self.chosen != "map" or self.emap is None:
-            return []
-        return geometry_problems(f"bearing {name!r}", geometry, self.emap)
+        maps = self._maps_in_force
+        return [] if maps is None else maps.problems(f"bearing {name!r}", geometry)
 
     def supply(self, spec: BearingSpec) -> OilSupply:
         """The oil supply of a bearing: what was asked for goes before that of the bearing, the scene, and the map."""
-        return self.asked_supply or spec.supply or self._common_supply
+        emap = self.map_of(spec.geometry)
+        return self.asked_supply or spec.supply or self.scene.supply or (emap.supply if emap is not None else FLOODED)
 
     @property
     def supplies(self) -> dict[str, OilSupply]:
@@ -244,18 +240,22 @@ class ContactLaws:
         return {spec.name: self.supply(spec) for spec in self.scene.bearings} if self._has_films else {}
 
     @property
-    def _common_supply(self) -> OilSupply:
-        """The oil supply of bearings without one of their own."""
-        of_map = self.emap.supply if self.chosen == "map" and self.emap is not None else FLOODED
-        return self.asked_supply or self.scene.supply or of_map
+    def _maps_in_force(self) -> MapSet | None:
+        """The maps, where the law is that of maps."""
+        return self.maps if self.chosen == "map" else None
+
+    def map_of(self, geometry: BearingGeometry) -> EHDMap | None:
+        """The map of a bearing, where the law is that of maps."""
+        maps = self._maps_in_force
+        return None if maps is None else maps.of(geometry)
 
     @property
     def surface(self) -> Surface | None:
         """Surfaces of all contacts: those of the scene go before those of the map; None for laws without films."""
         if not self._has_films:
             return None
-        of_map = self.emap.surface if self.chosen == "map" and self.emap is not None else SMOOTH
-        return self.scene.surface or of_map
+        maps = self._maps_in_force
+        return self.scene.surface or (SMOOTH if maps is None else maps.maps[0].surface)
 
     def of(self, bearing: Bearing, supply: OilSupply) -> BearingLaws:
         """The laws of the contacts of a bearing with an oil supply; those of the same contacts are made once."""
@@ -266,8 +266,8 @@ class ContactLaws:
 
     def films(self, bearing: Bearing, supply: OilSupply) -> FilmSource:
         """What knows the films of a bearing with an oil supply."""
-        if self.chosen == "map" and self.emap is not None:
-            return MapFilms(self.emap, supply)
+        if (emap := self.map_of(bearing.geometry)) is not None:
+            return MapFilms(emap, supply)
         contacts = bearing.geometry.contacts(bearing.material, "iso16281")
         return FormulaFilms(contacts, self.lubricant, supply) if self.chosen == "formula" else DryContacts(contacts)
 
@@ -282,7 +282,7 @@ class ContactLaws:
         """The law in a few words, as the legend of a figure has it; of its films only what is not the default."""
         films = self._film_words if self.memory != DEFAULT_FILMS else ""
         rough = "" if self.surface is None or self.surface.smooth else f", {self.surface.label}"
-        return law_label(self.chosen, self.emap) + films + self.supply_label + rough
+        return law_label(self.chosen, self.maps) + films + self.supply_label + rough
 
     @property
     def supply_label(self) -> str:
@@ -312,10 +312,8 @@ class ContactLaws:
     @property
     def _law_words(self) -> str:
         """The law without its films."""
-        if self.chosen == "map" and self.emap is not None:
-            solver = self.emap.dataset.attrs.get("solver", "")
-            made_for = self.emap.bearing.title if self.emap.bearing else ""
-            return f"map of {made_for}, {self.emap.lubricant.title}, solver {solver}{structure_words(self.emap)}"
+        if (maps := self._maps_in_force) is not None:
+            return maps.words
         if self.chosen == "formula":
             return f"film formula moes, {self.lubricant.title}"
         damper = hertz_damper(self.chosen)
@@ -365,35 +363,7 @@ class BearingLaws:
     def _of_kind(self, kind: LawKind) -> Law:
         """A law with films."""
         surface = self.given.surface
-        if self.given.chosen == "map" and self.given.emap is not None:
-            return self.given.emap.law(kind, outside="clamp", supply=self.supply, surface=surface)
+        if (emap := self.given.map_of(self.bearing.geometry)) is not None:
+            return emap.law(kind, outside="clamp", supply=self.supply, surface=surface)
         oil = self.given.lubricant
         return laws.formula(self.bearing, oil, kind=kind, outside="clamp", supply=self.supply, surface=surface)
-
-
-def geometry_problems(where: str, geometry: BearingGeometry, emap: EHDMap) -> list[str]:
-    """In what a map was made for something else than a bearing, which messages call `where`.
-
-    Parameters
-    ----------
-    where : str
-        How messages call the bearing.
-    geometry : BearingGeometry
-        Geometry of the bearing.
-    emap : EHDMap
-        The map.
-    """
-    made_for = emap.bearing
-    if made_for is None:
-        return [f"--map: is made for a bare contact; {where} needs a map of {geometry.name}"]
-    differing = [
-        f"{key} {getattr(made_for, key) * 1e3:.6g} mm and not {getattr(geometry, key) * 1e3:.6g} mm"
-        for key in _COMPARED
-        if abs(getattr(made_for, key) - getattr(geometry, key)) > _SAME
-    ]
-    if not differing:
-        return []
-    return [
-        f"--map: is made for {made_for.name}: {', '.join(differing)} as the {geometry.name} of {where}; generate a map "
-        "of that bearing"
-    ]

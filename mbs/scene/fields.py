@@ -18,10 +18,14 @@ from mbs.model.elements import GROUND
 
 FORCE = Display("N")
 MOMENT = Display("N m")
+ACCELERATION = Display("m/s^2")
 MICROMETRE = Display("um", 1e6)
 MILLISECOND = Display("ms", 1e3)
 HERTZ = Display("Hz")
 DEGREE = Display("deg", 180.0 / math.pi)
+
+LARGEST = 1e15
+"""Largest entry of a stiffness or damping that is read."""
 
 _TRANSLATIONS = FREEDOMS[:3]
 Built = TypeVar("Built")
@@ -135,7 +139,9 @@ def lengths(section: Table, key: str, value: Any) -> tuple[float, float, float] 
     return x, y, z
 
 
-def vector(section: Table, key: str, unit: str, display: Display) -> tuple[float, ...] | None:
+def vector(
+    section: Table, key: str, unit: str, display: Display, largest: float = 1e9
+) -> tuple[float, float, float] | None:
     """Read three forces or moments; zeros if absent, None if wrong.
 
     Parameters
@@ -148,6 +154,8 @@ def vector(section: Table, key: str, unit: str, display: Display) -> tuple[float
         SI unit of the result.
     display : Display
         How messages show the limits.
+    largest : float
+        Largest size of each.
     """
     value = section.get(key)
     if key not in section:
@@ -157,12 +165,19 @@ def vector(section: Table, key: str, unit: str, display: Display) -> tuple[float
             key, f'got {short(value)}; allowed: three values, x y z, such as ["0 {unit}", "1 {unit}", "0 {unit}"]'
         )
         return None
-    read = [section.quantity_of(part, f"{key}[{index}]", unit, -1e9, 1e9, display) for index, part in enumerate(value)]
-    return None if None in read else tuple(part for part in read if part is not None)
+    x, y, z = (
+        section.quantity_of(part, f"{key}[{index}]", unit, -largest, largest, display)
+        for index, part in enumerate(value)
+    )
+    return None if x is None or y is None or z is None else (x, y, z)
 
 
-def diagonal(section: Table, key: str, along: str, about: str, *, required: bool = False) -> FloatArray | None:
-    """Read stiffness or damping by freedom, such as { y = "1e5 N/m" }; shape (6,).
+def matrices(
+    section: Table, key: str, force: str, moment: str, count: int, least: float = -LARGEST
+) -> FloatArray | None:
+    """Read a matrix by names of its entries, or as many as there are speeds; shape (count, 6, 6).
+
+    The entry `y_z` is what a motion along z makes along y. `y` is short for `y_y`. What is not there is 0.
 
     Parameters
     ----------
@@ -170,23 +185,50 @@ def diagonal(section: Table, key: str, along: str, about: str, *, required: bool
         The table of the scene file.
     key : str
         Key in the table.
-    along : str
-        Unit for the translations.
-    about : str
-        Unit for the rotations.
-    required : bool
-        Whether an absent key is a problem.
+    force, moment : str
+        Unit of a force over a translation, and of a moment over a rotation.
+    count : int
+        Number of speeds; an entry is then one value for all of them, or a list of as many.
+    least : float
+        Least value on the diagonal.
+
+    Returns
+    -------
+    array or None
+        Zeros if absent; None if wrong.
     """
-    values = np.zeros(6)
-    table = section.table(key, f"{section.where} {key}", f'{{ y = "1e5 {along}", z = ... }}' if required else "")
+    found = np.zeros((count, 6, 6))
+    table = section.table(key, f"{section.where} {key}")
     if table is None:
-        return None if required else values
+        return found
     before = len(section.problems)
-    for index, freedom in enumerate(FREEDOMS):
-        unit = along if freedom in _TRANSLATIONS else about
-        values[index] = table.quantity(freedom, unit, 0.0, 1e15, Display(unit)) or 0.0
-    table.close()
-    return values if len(section.problems) == before else None
+    for i, row in enumerate(FREEDOMS):
+        for j, column in enumerate(FREEDOMS):
+            turned = (row not in _TRANSLATIONS) + (column not in _TRANSLATIONS)
+            unit = (force, force.replace("/m", "/rad"), moment)[turned]
+            if turned == 1 and row not in _TRANSLATIONS:
+                unit = moment.replace("/rad", "/m")
+            for name in (f"{row}_{column}", *((row,) if i == j else ())):
+                if name in table:
+                    found[:, i, j] = _entries(table, name, unit, count, least if i == j else -LARGEST)
+    table.close((*FREEDOMS, "y_z", "z_y", "and the like"))
+    return found if len(section.problems) == before else None
+
+
+def _entries(table: Table, name: str, unit: str, count: int, least: float) -> FloatArray:
+    """Read an entry of a matrix, at each speed; zeros where a problem was noted."""
+    value = table.get(name)
+    if not isinstance(value, list):
+        return np.full(count, table.quantity_of(value, name, unit, least, LARGEST, Display(unit)) or 0.0)
+    if len(value) != count or count == 1:
+        table.note(name, f"got {len(value)} values; allowed: one value, or a list of as many as there are speeds")
+        return np.zeros(count)
+    return np.array(
+        [
+            table.quantity_of(part, f"{name}[{k}]", unit, least, LARGEST, Display(unit)) or 0.0
+            for k, part in enumerate(value)
+        ]
+    )
 
 
 def direction(section: Table) -> FloatArray | None:

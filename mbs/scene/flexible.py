@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import LENGTH, short
+from mbs.flexible.orientation import AXES, Turn
 from mbs.flexible.plan import (
     FORMATS,
     KINDS,
@@ -26,7 +27,7 @@ from mbs.flexible.plan import (
 from mbs.model.body import FREEDOMS
 from mbs.scene import fields
 from mbs.scene.attached import read_attached
-from mbs.scene.fields import HERTZ
+from mbs.scene.fields import DEGREE, HERTZ
 from mbs.scene.specs import HIGHEST_DAMPING_RATIO, ORIGIN, FlexibleSpec
 
 _SURFACES = ("nodes", "cylinder", "plane")
@@ -41,7 +42,7 @@ def read_flexible(section: Table, name: str, folder: Path | None) -> FlexibleSpe
     ----------
     section : Table
         Keys: `reduced`, or `matrices`, `mesh`, `units`, `cutoff`, `interfaces`, `points`; and `position`,
-        `damping_ratio`, `attached`.
+        `rotation`, `damping_ratio`, `attached`.
     name : str
         Name of the body.
     folder : Path or None
@@ -70,9 +71,32 @@ def read_flexible(section: Table, name: str, folder: Path | None) -> FlexibleSpe
         for problem in source.file_problems() if source is not None else ():
             section.note("", problem)
     attached = read_attached(section)
+    rotation = _rotation(section)
     if source is None or position is None or ratio is None or attached is None or len(section.problems) > before:
         return None
-    return FlexibleSpec(name, source, position, ratio, attached)
+    return FlexibleSpec(name, source, position, ratio, attached, rotation)
+
+
+def _rotation(section: Table) -> tuple[Turn, ...]:
+    """Read how the body is turned: one turn, or several in their order; none where a problem was noted."""
+    given = section.get("rotation")
+    if "rotation" not in section:
+        return ()
+    entries = given if isinstance(given, list) else [given]
+    turns = []
+    for index, values in enumerate(entries):
+        if not isinstance(values, dict):
+            section.note(
+                "rotation", f'got {short(given)}; allowed: {{ about = "z", angle = "90 deg" }}, or a list of such'
+            )
+            return ()
+        table = Table(values, f"{section.where} rotation[{index}]", section.problems)
+        about = table.choice("about", AXES, required=True)
+        angle = table.quantity("angle", "rad", -7.0, 7.0, DEGREE, required=True)
+        table.close()
+        if about is not None and angle is not None:
+            turns.append(Turn(about, angle))
+    return tuple(turns)
 
 
 def read_reduction(

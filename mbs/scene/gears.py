@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import LENGTH, STIFFNESS, Display, short
-from mbs.gears.pair import FEWEST_TEETH, MOST_HARMONICS, MOST_TEETH, GearPair
+from mbs.gears.pair import FEWEST_TEETH, MOST_HARMONICS, MOST_TEETH, STEEPEST, GearPair
 from mbs.model.elements import GROUND
 from mbs.scene import fields
 from mbs.scene.fields import DEGREE, MICROMETRE
@@ -39,6 +39,7 @@ def read_gears(section: Table, name: str) -> GearPair | None:
     pressure_angle = section.quantity(
         "pressure_angle", "rad", math.radians(1.0), math.radians(45.0), DEGREE, required=True
     )
+    helix_angle = section.quantity("helix_angle", "rad", -STEEPEST, STEEPEST, DEGREE)
     face_width = section.quantity("face_width", "m", 1e-5, 10.0, LENGTH, required=True)
     stiffness = section.quantity("stiffness", "N/m^2", 1e6, 1e13, STIFFNESS, required=True)
     backlash = section.quantity("backlash", "m", 0.0, 1.0, LENGTH, required=True)
@@ -77,6 +78,7 @@ def read_gears(section: Table, name: str) -> GearPair | None:
             transmission_error=error,
             transmission_error_phases=error_phases,
             phase=phase or 0.0,
+            helix_angle=helix_angle or 0.0,
         ),
     )
 

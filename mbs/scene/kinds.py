@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ehdmaps.jobs.table import Table
 from mbs.gears.pair import GearPair
 from mbs.scene import bearings, gears
+from mbs.scene.matrices import MatrixSpec, build_matrices, matrix_problems, read_spring
 from mbs.scene.specs import BearingSpec
 from mbs.scene.surroundings import Built, Surroundings
 
@@ -27,7 +28,7 @@ class ElementKind:
     Attributes
     ----------
     key : str
-        Key of its tables in a scene file, which begin with [[key]].
+        Key of its tables in a scene file, which begin with [[key]]; empty of a kind that is read under other keys.
     word : str
         How messages call one of them.
     spec : type
@@ -69,6 +70,15 @@ KINDS = (
         places=lambda spec: (spec.on, spec.against),
         problems=gears.gear_problems,
         build=gears.build_gears,
+    ),
+    ElementKind(
+        key="",
+        word="spring or bearing by matrices",
+        spec=MatrixSpec,
+        read=read_spring,
+        places=lambda spec: (spec.on, spec.against),
+        problems=matrix_problems,
+        build=build_matrices,
     ),
 )
 """All kinds, in the order of the elements of a system."""

@@ -27,10 +27,12 @@ from mbs.scene import fields, kinds
 from mbs.scene.campbell import read_campbell
 from mbs.scene.fields import DEGREE, FORCE, HERTZ, MICROMETRE, MILLISECOND, MOMENT, Built
 from mbs.scene.flexible import read_flexible
+from mbs.scene.matrices import MatrixSpec, read_spring
 from mbs.scene.scene import Scene
 from mbs.scene.shaft import read_shaft
 from mbs.scene.specs import ORIGIN, BodySpec, FlexibleSpec, RigidSpec
 from mbs.scene.sweep import read_sweep
+from mbs.scene.turning import read_excitation, read_unbalance
 from mbs.settings import CampbellSettings, RunUp, Settings
 
 LONGEST_FILE = 1_000_000
@@ -112,11 +114,12 @@ class _Reader:
         if "schema" in top and (isinstance(schema, bool) or schema != 1):
             top.note("schema", f"got {short(schema)}; allowed: 1; this version of mbs reads no other")
         title = fields.text(top, "title") or name
-        speed = temperature = None
+        speed = temperature = gravity = None
         operation = top.table("operation", "[operation]", required="a table with speed and temperature")
         if operation:
             speed = operation.quantity("speed", "rad/s", 0.0, 1e5, RPM, required=True)
             temperature = operation.quantity("temperature", "K", *OIL_TEMPERATURES, TEMPERATURE, required=True)
+            gravity = fields.vector(operation, "gravity", "m/s^2", fields.ACCELERATION, 1e4)
             self._close(operation)
         section = top.table("lubricant", "[lubricant]")
         lubricant = read_lubricant(section) if section else None
@@ -127,9 +130,12 @@ class _Reader:
             *self._all("shafts", read_shaft),
             *self._all("flexible", self._flexible),
         ]
-        springs = self._all("springs", self._spring)
+        springs = self._all("springs", read_spring)
         loads = self._all("loads", self._load)
-        elements = [entry for kind in kinds.KINDS for entry in self._all(kind.key, kind.read)]
+        unbalances = self._all("unbalances", read_unbalance)
+        excitations = self._all("excitations", read_excitation)
+        elements = [entry for kind in kinds.KINDS if kind.key for entry in self._all(kind.key, kind.read)]
+        elements += [spring for spring in springs if isinstance(spring, MatrixSpec)]
         inputs = self._all("inputs", self._input)
         sensors = self._all("sensors", self._sensor)
         laws = self._laws()
@@ -155,8 +161,11 @@ class _Reader:
             supply=supply,
             surface=surface,
             bodies=bodies,
-            springs=springs,
+            springs=[spring for spring in springs if isinstance(spring, Spring)],
             loads=loads,
+            unbalances=unbalances,
+            excitations=excitations,
+            gravity=gravity or ORIGIN,
             elements=elements,
             inputs=inputs,
             sensors=sensors,
@@ -244,15 +253,6 @@ class _Reader:
         elif "cylinders" not in section:
             section.note("cylinders", f"missing; allowed: cylinders, or {', '.join(keys)}, or both")
         return [part for part in found if part is not None]
-
-    def _spring(self, section: Table, name: str) -> Spring | None:
-        """Read a spring."""
-        on, against = fields.places(section)
-        stiffness = fields.diagonal(section, "stiffness", "N/m", "N m/rad", required=True)
-        damping = fields.diagonal(section, "damping", "N s/m", "N m s/rad")
-        if on is None or stiffness is None or damping is None:
-            return None
-        return Spring(name, on, against, np.diag(stiffness), np.diag(damping))
 
     def _load(self, section: Table, name: str) -> Load | None:
         """Read a load."""

@@ -15,10 +15,22 @@ from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from ehdmaps.physics.roughness import Surface
 from mbs.gears.pair import GearPair
 from mbs.model.elements import Input, Load, Sensor, Spring
-from mbs.scene.specs import BearingSpec, BodySpec, ElementSpec, FlexibleSpec
+from mbs.scene.specs import ORIGIN, BearingSpec, BodySpec, ElementSpec, FlexibleSpec, Triple
+from mbs.scene.turning import OrderLoad, Unbalance
 from mbs.settings import CampbellSettings, RunUp, SweepRange
 
-_SEQUENCES = ("bodies", "springs", "loads", "elements", "inputs", "sensors", "frequencies", "assumed")
+_SEQUENCES = (
+    "bodies",
+    "springs",
+    "loads",
+    "unbalances",
+    "excitations",
+    "elements",
+    "inputs",
+    "sensors",
+    "frequencies",
+    "assumed",
+)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -47,6 +59,12 @@ class Scene:
         Linear springs.
     loads : tuple of Load
         Prescribed forces.
+    unbalances : tuple of Unbalance
+        Masses off the axes of bodies that spin.
+    excitations : tuple of OrderLoad
+        Loads that pulsate by an order of a spin.
+    gravity : (float, float, float)
+        Acceleration of gravity [m/s2], which acts on all bodies.
     elements : tuple of BearingSpec, GearPair and others
         Machine elements, of the classes that `mbs.scene.kinds` lists.
     inputs, sensors : tuple
@@ -90,6 +108,9 @@ class Scene:
     bodies: Sequence[BodySpec]
     springs: Sequence[Spring] = ()
     loads: Sequence[Load] = ()
+    unbalances: Sequence[Unbalance] = ()
+    excitations: Sequence[OrderLoad] = ()
+    gravity: Triple = ORIGIN
     elements: Sequence[ElementSpec] = ()
     inputs: Sequence[Input] = ()
     sensors: Sequence[Sensor] = ()

@@ -14,9 +14,11 @@ from typing import TYPE_CHECKING, Protocol
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.profiles import CrownedProfile, TabulatedProfile
 from mbs.bearings.fits import Mounting
 from mbs.bearings.heat import GivenTemperatures, HeatPaths
 from mbs.flexible.attached import Attached
+from mbs.flexible.orientation import Turn
 from mbs.flexible.plan import ReductionPlan
 from mbs.flexible.shaft_layout import shaft_problems
 from mbs.flexible.shaft_parts import Disc, Section
@@ -147,7 +149,9 @@ class FlexibleSpec:
     damping_ratio : float
         Damping ratio of every mode of the free body.
     attached : tuple of Attached
-        Rigid parts on its frames.
+        Rigid parts on its frames, along the x of the system.
+    rotation : tuple of Turn
+        How it is turned about its origin, the first turn first.
     """
 
     name: str
@@ -155,9 +159,10 @@ class FlexibleSpec:
     position: Triple = ORIGIN
     damping_ratio: float = 0.0
     attached: Sequence[Attached] = ()
+    rotation: Sequence[Turn] = ()
 
     def __post_init__(self) -> None:
-        _freeze(self, "attached")
+        _freeze(self, "attached", "rotation")
 
     @property
     def spin(self) -> float:
@@ -197,7 +202,7 @@ class BearingSpec:
         Places of its rings.
     geometry : BearingGeometry
         Raceways, rollers and the clearance of the scene.
-    profile : {"iso", "straight"}
+    profile : {"iso", "straight"}, CrownedProfile or TabulatedProfile
         Profile of the rollers.
     slices : int
         Slices of a roller.
@@ -222,7 +227,7 @@ class BearingSpec:
     inner: str
     outer: str
     geometry: BearingGeometry
-    profile: str = "iso"
+    profile: str | CrownedProfile | TabulatedProfile = "iso"
     slices: int = 41
     start_angle: float = 0.0
     rollers_as_bodies: bool = False

@@ -49,8 +49,12 @@ class Reference:
     @classmethod
     def of(cls, sensor: Sensor) -> Reference:
         """Reference of the quantity of a sensor."""
-        length = "rad" if np.any(sensor.direction[3:]) else "m"
-        return cls(sensor.quantity, REFERENCES[sensor.quantity], f"{length}{_PER_TIME[sensor.quantity]}")
+        return cls.of_quantity(sensor.quantity, bool(np.any(sensor.direction[3:])))
+
+    @classmethod
+    def of_quantity(cls, quantity: Quantity, rotational: bool = False) -> Reference:
+        """Reference of a quantity, of translations or rotations."""
+        return cls(quantity, REFERENCES[quantity], f"{'rad' if rotational else 'm'}{_PER_TIME[quantity]}")
 
     @property
     def text(self) -> str:

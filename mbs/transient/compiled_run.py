@@ -1,13 +1,12 @@
 """A run in compiled code: what `run_kernel` needs, prepared for a batch of steps, and the steps between.
 
-Steps that an element has no compiled answer for (speeds below the map, where films fade; loads above it) are made by
+Steps that an element has no compiled answer for (such as loads above a map whose law refuses them) are made by
 `mbs.transient.stepping`, from the same state: motion, and what elements have of their own.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -47,9 +46,11 @@ class CompiledRun:
     orders : array, shape (k,)
         Whether of displacement, velocity or acceleration: 0, 1, 2.
     samples : int
-        How many records there will be.
+        How many records of forces there will be.
     states : bool
-        Whether all coordinates are recorded.
+        Whether all coordinates are recorded with them.
+    stride : int
+        How many records of outputs there will be from one of forces to the next.
     """
 
     def __init__(
@@ -62,6 +63,7 @@ class CompiledRun:
         orders: IntArray,
         samples: int,
         states: bool,
+        stride: int = 1,
     ) -> None:
         self._speed, self._settings, self._stepper = speed, settings, stepper
         values, modes = scipy.linalg.eigh(system.stiffness, system.mass)
@@ -81,13 +83,15 @@ class CompiledRun:
             self._elements.alone,
         )
         self._steady, self._varying, self._profiles = _loads(system, modes)
+        self._turning = system.turning
         self._state = State(np.zeros((4, system.size)), np.zeros((3, expand.shape[0])))
         self._records = Records(
             rows=np.ascontiguousarray(outputs @ modes),
             orders=orders,
-            outputs=np.zeros((samples, outputs.shape[0])),
+            outputs=np.zeros(((samples - 1) * stride + 1, outputs.shape[0])),
             forces=np.zeros((samples, expand.shape[0])),
             motions=np.zeros((samples if states else 0, 3, system.size)),
+            stride=stride,
         )
         self._transform, self._expand = ports, expand
         self._energies = _energies(system, modes, self._elements)
@@ -126,7 +130,7 @@ class CompiledRun:
         """
         courses = np.array([self._speed.at(time) for time in times.tolist()])
         speeds, angles = np.ascontiguousarray(courses[:, 0]), np.ascontiguousarray(courses[:, 1])
-        factors = _factors(self._profiles, times)
+        factors = self._factors(times, speeds, angles)
         self._elements.begin(speeds)
         numbers = self._numbers(h)
         self._state.forces[1:] = self._state.forces[0]  # the steps before may have had another length
@@ -230,6 +234,16 @@ class CompiledRun:
             powers=powers,
         )
 
+    def _factors(self, times: FloatArray, speeds: FloatArray, angles: FloatArray) -> FloatArray:
+        """Factors of all loads that vary, shape (times, loads)."""
+        columns = [np.array([profile(time) for time in times.tolist()]) for profile in self._profiles]
+        if self._turning:
+            rates = np.array([self._speed.rate(time) for time in times.tolist()])
+            for load in self._turning:
+                factors = load.factors(speeds, angles, rates)
+                columns += [factors.real, factors.imag]
+        return np.ascontiguousarray(np.array(columns).reshape(len(columns), times.size).T)
+
     def _numbers(self, h: float) -> Numbers:
         """Numbers of the method."""
         method = self._method
@@ -278,13 +292,10 @@ def _energies(system: System, modes: FloatArray, elements: RunElements) -> Energ
 
 
 def _loads(system: System, modes: FloatArray) -> tuple[FloatArray, FloatArray, list[LoadProfile]]:
-    """Loads by mode: the steady ones, the varying ones and their profiles."""
+    """Loads by mode: the steady ones; the varying ones, then both parts of the turning ones; profiles of the former."""
     varying = [modes.T @ load for load, _ in system.varying_loads]
+    for turning in system.turning:
+        vector = modes.T @ turning.vector
+        varying += [vector.real, -vector.imag]
     rows = np.array(varying).reshape(len(varying), system.size)
     return modes.T @ system.steady_loads, rows, [profile for _, profile in system.varying_loads]
-
-
-def _factors(profiles: Sequence[LoadProfile], times: FloatArray) -> FloatArray:
-    """Factors of loads at times, shape (times, loads)."""
-    columns = [[profile(time) for time in times.tolist()] for profile in profiles]
-    return np.ascontiguousarray(np.array(columns).reshape(len(profiles), times.size).T)

@@ -46,9 +46,22 @@ def unbalanced(
     port_force: FloatArray,
     force: FloatArray,
 ) -> tuple[float, float]:
-    """Forces that are out of balance, into `force` (n,); their weighted size, and that of the forces that balance.
+    """Forces that are out of balance; their weighted size, and that of the forces that balance.
 
-    `state` is displacement, velocity, acceleration; `weight` makes forces and moments comparable.
+    Parameters
+    ----------
+    mass, damping, stiffness : ndarray, shape (n, n)
+        Of the linear part.
+    transform : ndarray, shape (m, n)
+        Motion of the ports from that of the coordinates.
+    weight : ndarray, shape (n,)
+        Makes forces and moments comparable.
+    state : tuple of ndarray
+        Displacement, velocity and acceleration, shape (n,) each.
+    loads, port_force : ndarray
+        Loads on the coordinates, shape (n,), and forces of the elements at the ports, shape (m,).
+    force : ndarray, shape (n,)
+        Result.
     """
     q, v, a = state
     size = by_load = by_contact = by_inertia = 0.0

@@ -21,6 +21,8 @@ from mbs.gears.gear import GearMesh
 from mbs.gears.gear_block import GEAR_MESHES
 from mbs.model.blocks import Kind
 from mbs.model.elements import Element
+from mbs.model.matrices import MatrixElement
+from mbs.model.matrix_block import MATRICES
 
 KINDS: dict[type, Kind] = {
     BearingElement: BEARINGS,
@@ -28,6 +30,7 @@ KINDS: dict[type, Kind] = {
     RollerElement: ROLLERS,
     MemoryRollers: MEMORY_ROLLERS,
     GearMesh: GEAR_MESHES,
+    MatrixElement: MATRICES,
 }
 """Kind by the class of its elements. ``KINDS[Coupling] = COUPLINGS`` adds one."""
 

@@ -62,8 +62,10 @@ class Recording:
     ----------
     time, speed, angle : array, shape (samples,)
         [s], [rad/s], [rad].
-    signals : array, shape (samples, sensors)
-        Signals of the sensors [m or rad, per s, per s2].
+    signals : array, shape (rows, sensors)
+        Signals of the sensors [m or rad, per s, per s2], at the samples or at every step.
+    signal_time, signal_speed, signal_angle : array, shape (rows,)
+        When that was [s], [rad/s], [rad].
     forces : tuple of array, shape (samples, m)
         Forces of each element in its ports [N or N m].
     motions : tuple of array, shape (samples, m)
@@ -86,6 +88,9 @@ class Recording:
     speed: FloatArray
     angle: FloatArray
     signals: FloatArray
+    signal_time: FloatArray
+    signal_speed: FloatArray
+    signal_angle: FloatArray
     forces: tuple[FloatArray, ...]
     motions: tuple[FloatArray, ...]
     steps: int
@@ -97,10 +102,19 @@ class Recording:
     states: States
     account: Callable[[], EnergyBalance]
 
+    def __getstate__(self) -> dict[str, Any]:
+        """For other processes, which have no system to account for: with the balance made."""
+        return {**self.__dict__, "account": functools.partial(_the_same, self.energy)}
+
     @functools.cached_property
     def energy(self) -> EnergyBalance:
         """Energy balance: what came in, where it went, what does not close. It is made when it is first asked for."""
         return self.account()
+
+
+def _the_same(balance: EnergyBalance) -> EnergyBalance:
+    """A balance that has been made."""
+    return balance
 
 
 @dataclass(frozen=True)
@@ -111,11 +125,14 @@ class Options:
     ----------
     states : bool
         Whether the motion of all coordinates is recorded, for runs that are short enough.
+    every_step : bool
+        Whether sensors are recorded at every step instead of at the samples, so that nothing is folded into their band.
     compiled : bool
         False: the reference, step by step in Python.
     """
 
     states: bool = False
+    every_step: bool = False
     compiled: bool = True
 
 
@@ -162,28 +179,30 @@ def run(
     AnalysisError
         If a step finds no solution although it was halved ten times.
     """
-    plan = _Plan.of(system, sensors, duration, settings, options.states)
+    plan = _Plan.of(system, sensors, duration, settings, options)
     start = [_start(name, given, system) for name, given in (("displacement", displacement), ("velocity", velocity))]
     stepper = Stepper(system, speed, settings, start[0], start[1])
     engine: _Engine
     notes = _notes(system) if options.compiled else ()
     if options.compiled and not notes:
-        engine = CompiledRun(system, speed, settings, stepper, plan.rows, plan.orders, plan.samples + 1, plan.states)
+        records = (plan.rows, plan.orders, plan.samples + 1, plan.states, plan.stride)
+        engine = CompiledRun(system, speed, settings, stepper, *records)
     else:
         engine = _Reference(stepper, plan, settings)
     begin = stored_energy(system, stepper.q, stepper.v, stepper.states, Operation(*speed.at(0.0), 0.0))
-    steps, halved = _drive(engine, settings, plan.samples, progress)
+    steps, halved = _drive(engine, settings, plan, progress)
     last = plan.samples * settings.sample
     end = stored_energy(system, *engine.ends(), Operation(*speed.at(last), last))
     outputs, forces, motions = engine.recorded()
-    times = np.asarray(np.arange(plan.samples + 1) * settings.sample, dtype=np.float64)
-    courses = np.array([speed.at(time) for time in times])
+    fine = plan.times(settings)
+    seen_at = np.array([speed.at(time) for time in fine.tolist()])
+    times, courses = fine[:: plan.stride], seen_at[:: plan.stride]
     ports = [connected.transform.shape[0] for connected in system.elements]
     ends = np.cumsum([0, *ports]).tolist()
     parts = [slice(begin, end) for begin, end in pairwise(ends)]
     count = len(sensors)
     operations = [Operation(w, angle, at) for (w, angle), at in zip(courses.tolist(), times.tolist(), strict=True)]
-    seen = tuple(outputs[:, count + part.start : count + part.stop] for part in parts)
+    seen = tuple(outputs[:: plan.stride, count + part.start : count + part.stop] for part in parts)
 
     def account() -> EnergyBalance:
         """The balance; what changes of the speed brought takes a second or two, whatever the length of the run."""
@@ -198,6 +217,9 @@ def run(
         speed=courses[:, 0],
         angle=courses[:, 1],
         signals=outputs[:, :count],
+        signal_time=fine,
+        signal_speed=seen_at[:, 0],
+        signal_angle=seen_at[:, 1],
         forces=tuple(forces[:, part] for part in parts),
         motions=seen,
         steps=steps,
@@ -220,9 +242,12 @@ class _Plan:
     orders: IntArray
     ports: FloatArray
     states: bool
+    stride: int
 
     @classmethod
-    def of(cls, system: System, sensors: Sequence[Sensor], duration: float, settings: Settings, states: bool) -> _Plan:
+    def of(
+        cls, system: System, sensors: Sequence[Sensor], duration: float, settings: Settings, options: Options
+    ) -> _Plan:
         """Plan a run, or say what is wrong."""
         if not (math.isfinite(duration) and duration > 0.0):
             raise InputError(f"run, duration: got {duration!r} s; allowed: finite and > 0")
@@ -231,13 +256,20 @@ class _Plan:
         rows = np.concatenate([np.zeros((0, system.size)), *(row[None, :] for row in seen), ports])
         orders = [*(_ORDERS[sensor.quantity] for sensor in sensors), *([0] * ports.shape[0])]
         samples = math.ceil(duration / settings.sample - 1e-9)
-        width = rows.shape[0] + ports.shape[0] + (3 * system.size if states else 0)
+        stride = settings.steps_per_sample if options.every_step else 1
+        width = rows.shape[0] * stride + ports.shape[0] + (3 * system.size if options.states else 0)
         if (samples + 1) * max(width, 1) > MOST_RECORDED:
             raise InputError(
                 f"run, sample: got {settings.sample!r} s over {duration!r} s, which makes {samples + 1:.4g} samples of "
                 f"{width} numbers; allowed: {MOST_RECORDED:.4g} numbers; choose longer samples or a shorter run"
             )
-        return cls(samples, rows, np.array(orders, dtype=np.int64), ports, states)
+        return cls(samples, rows, np.array(orders, dtype=np.int64), ports, options.states, stride)
+
+    def times(self, settings: Settings) -> FloatArray:
+        """Times of the rows of outputs [s], shape (rows,)."""
+        row, stride = np.arange(self.samples * self.stride + 1), self.stride
+        # At the samples just what they are without rows between.
+        return np.asarray(row // stride * settings.sample + row % stride * settings.step, dtype=np.float64)
 
 
 class _Engine(Protocol):
@@ -273,20 +305,19 @@ class _Engine(Protocol):
         ...
 
 
-def _drive(
-    engine: _Engine, settings: Settings, samples: int, progress: Callable[[int], None] | None
-) -> tuple[int, int]:
+def _drive(engine: _Engine, settings: Settings, plan: _Plan, progress: Callable[[int], None] | None) -> tuple[int, int]:
     """Step to the end, with halved steps where they are needed; steps made, and steps taken back."""
     finest = 1 << HALVINGS
     tick = settings.step / finest
     sample = settings.steps_per_sample * finest
-    ticks, end = 0, samples * sample
+    row = sample // plan.stride
+    ticks, end = 0, plan.samples * sample
     level = steps = halved = told = 0
     while ticks < end:
         stride = finest >> level
         count = min(CHUNK, (end - ticks) // finest) if level == 0 else 1
         reached = ticks + stride * np.arange(1, count + 1)
-        rows = np.where(reached % sample == 0, reached // sample, -1)
+        rows = np.where(reached % row == 0, reached // row, -1)
         done, error = engine.steps(np.asarray(reached * tick, dtype=np.float64), stride * tick, rows)
         ticks += done * stride
         steps += done
@@ -312,7 +343,7 @@ class _Reference:
 
     def __init__(self, stepper: Stepper, plan: _Plan, settings: Settings) -> None:
         self._stepper, self._plan, self._tolerance = stepper, plan, settings.tolerance
-        self._outputs = np.empty((plan.samples + 1, plan.rows.shape[0]))
+        self._outputs = np.empty((plan.samples * plan.stride + 1, plan.rows.shape[0]))
         self._forces = np.empty((plan.samples + 1, plan.ports.shape[0]))
         self._motions = np.empty((plan.samples + 1 if plan.states else 0, 3, plan.rows.shape[1]))
         self.compiled = 0
@@ -357,9 +388,10 @@ class _Reference:
         stepper, plan = self._stepper, self._plan
         state = np.stack((stepper.q, stepper.v, stepper.acceleration))
         self._outputs[row] = np.einsum("kn,kn->k", plan.rows, state[plan.orders])
-        self._forces[row] = stepper.forces
-        if plan.states:
-            self._motions[row] = state
+        if row % plan.stride == 0:
+            self._forces[row // plan.stride] = stepper.forces
+            if plan.states:
+                self._motions[row // plan.stride] = state
 
 
 def _notes(system: System) -> tuple[str, ...]:

@@ -113,12 +113,14 @@ class Records(NamedTuple):
         What is seen of the modes.
     orders : array (outputs,), of int
         Whether of their displacement, velocity or acceleration.
-    outputs : array (samples, outputs)
+    outputs : array (rows, outputs)
         Outputs, filled row by row.
     forces : array (samples, m)
-        Forces, filled row by row.
+        Forces, filled sample by sample.
     motions : array (samples, 3, n)
-        Motions, filled row by row; of no samples where not asked for.
+        Motions, filled sample by sample; of no samples where not asked for.
+    stride : int
+        Rows from sample to sample: forces and motions are kept less often than outputs where it is above 1.
     """
 
     rows: FloatArray
@@ -126,6 +128,7 @@ class Records(NamedTuple):
     outputs: FloatArray
     forces: FloatArray
     motions: FloatArray
+    stride: int
 
 
 class Energies(NamedTuple):

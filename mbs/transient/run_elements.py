@@ -18,7 +18,7 @@ from mbs.transient.kinds import KINDS, is_ours, kind_of
 
 def _is_common(kind: Kind) -> bool:
     """Whether compiled code has a kind even where there are none: neither states nor coordinates of their own."""
-    return kind.accept is None and kind.alone is None
+    return kind.accept is None and kind.alone is None and not kind.rare
 
 
 def in_python(connected: Sequence[Connected]) -> list[str]:

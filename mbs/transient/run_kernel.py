@@ -278,7 +278,7 @@ def observe(state: State, records: Records, row: int) -> None:
     records : Records
         What is recorded.
     row : int
-        Index of the sample.
+        Index of the row of outputs.
     """
     for i in range(records.orders.size):
         seen, motion = records.rows[i], state.motion[records.orders[i]]
@@ -286,10 +286,13 @@ def observe(state: State, records: Records, row: int) -> None:
         for j in range(motion.size):
             total += seen[j] * motion[j]
         records.outputs[row, i] = total
-    put(state.forces[0], records.forces[row])
+    if row % records.stride != 0:
+        return
+    sample = row // records.stride
+    put(state.forces[0], records.forces[sample])
     if records.motions.shape[0] > 0:
         for order in range(3):
-            put(state.motion[order], records.motions[row, order])
+            put(state.motion[order], records.motions[sample, order])
 
 
 @njit(cache=True, error_model="numpy")

@@ -173,7 +173,7 @@ class Stepper:
             found = element.powers(state, force[rows], x[rows], rate[rows], operation)
             if found is not None:
                 row[:] = found
-        load = self._system.loads(time)
+        load = self._load(time)
         return Instant(self.q, self.v, self.acceleration, load, x, rate, force, powers)
 
     def _residual(self, q: FloatArray, v: FloatArray, acceleration: FloatArray, time: float) -> tuple[float, float]:
@@ -196,10 +196,15 @@ class Stepper:
                 self.outside[index] += 1
         matrices = (system.mass, self._damping, system.stiffness, self._transform, self._weight)
         state = (q, v, acceleration)
-        sizes: tuple[float, float] = unbalanced(
-            *matrices, state, system.loads(time), self._port_force, self._unbalanced
-        )
+        sizes: tuple[float, float] = unbalanced(*matrices, state, self._load(time), self._port_force, self._unbalanced)
         return sizes
+
+    def _load(self, time: float) -> FloatArray:
+        """All loads at a time."""
+        load = self._system.loads(time)
+        if self._system.turning:
+            load += self._system.turning_loads(*self._speed.at(time), self._speed.rate(time))
+        return load
 
     def _correction(self, by_q: float, by_v: float) -> FloatArray | None:
         """Newton's change of the acceleration at the end of the step, for the last residual; None if there is none."""

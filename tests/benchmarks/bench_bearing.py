@@ -34,10 +34,10 @@ LOAD = 2e3 * np.array([1.0, 1.0]) / math.sqrt(2.0)
 
 
 @njit
-def many(times, state, sizes, slices, angles, numbers, cells, rows, states, out):
+def many(times, state, sizes, slices, angles, numbers, cells, knots, rows, states, out):
     """Call the kernel many times from compiled code."""
     for _ in range(times):
-        force_of_arrays(state, sizes, slices, angles, numbers, cells, rows, states, out)
+        force_of_arrays(state, sizes, slices, angles, numbers, cells, knots, rows, states, out)
 
 
 def best_of(call: Callable[[], object], times: int, repeats: int = 15) -> float:

@@ -72,6 +72,7 @@ def main() -> None:
     ways = options.ways.split(";")
     print(f"{options.columns} x {options.rows} cells, and half as many each way for the estimates")
     print(HEADING)
+    grid = {"columns": options.columns, "rows": options.rows}
     found = {(way, flow): Found() for way in ways for flow in FLOWS}
     groups = {f"{options.random} points, seed {options.seed}": at_random(options.random, options.seed)}
     for title, places in (groups if options.random else GROUPS).items():
@@ -81,7 +82,7 @@ def main() -> None:
             print(title)
         for place in chosen:
             for way in ways:
-                solved(place, way, {"columns": options.columns, "rows": options.rows}, found, options.random or places is PLACES)
+                solved(place, way, grid, found, counted=bool(options.random) or places is PLACES)
     print()
     for (way, flow), each in found.items():
         print(summary(way, flow, each))
@@ -177,7 +178,8 @@ def summary(way: str, flow: Flow, found: Found) -> str:
     seconds, reynolds = _median(found.seconds), _median(found.reynolds_seconds)
     return (
         f"{way}, {flow}: {found.solved} of {found.asked} solved, median {seconds:.2f} s a point, "
-        f"{seconds / reynolds:.0f} times reynolds; median differences of the {len(found.compared)} that reynolds solves: film {100 * film:.3f} %, "
+        f"{seconds / reynolds:.0f} times reynolds; median differences of the {len(found.compared)} that reynolds solves: "
+        f"film {100 * film:.3f} %, "
         f"c {100 * damping:.2f} %; beyond the bars (!): {beyond}"
     )
 

@@ -149,7 +149,7 @@ def test_all_stresses_with_heat() -> None:
     for name in ("film_temperature", "surface_temperature"):
         rise, thin_rise = (getattr(found, name) - POINT.temperature for found in (full, thin))
         assert rise == pytest.approx(thin_rise, rel=0.01), name
-    # not so what is made in all: the inlet of all stresses is cut at half a radius, and backflow before it dissipates
+    # not so what is made in all: the inlet of all stresses begins at half a radius, and backflow before it heats too
     assert full.wall_heat == pytest.approx(thin.wall_heat, rel=5e-3)
     # responses are of first order along the film: 3 % x 100/columns each
     for name in ("film_compliance", "loss_compliance"):

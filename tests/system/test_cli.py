@@ -42,6 +42,23 @@ def names(folder):
     return sorted(path.name for path in folder.iterdir())
 
 
+def test_generate_takes_several_jobs_and_looks_at_all_of_them_first(here, capsys):
+    (here / "other.toml").write_text(TEXT.replace("NU308", "N1014"))
+    status, _, err = run(capsys, "generate", "mine.toml", "nowhere.toml", "mine.toml", "-o", "one.nc")
+    assert status == 2
+    assert "-o: stands beside several jobs; allowed: with one" in err
+    assert "nowhere.toml" in err
+    status, _, err = run(capsys, "generate", "mine.toml", "mine.toml")
+    assert "mine.toml: its map mine.nc is that of another job, too" in err
+    assert names(here) == ["mine.toml", "other.toml"]
+    status, out, _ = run(capsys, "generate", "mine.toml", "other.toml", "--workers", "1")
+    assert status == 0
+    assert [open_map(name).bearing.name for name in ("mine.nc", "other.nc")] == ["NU308", "N1014"]
+    assert out.count("solved now, 0 without a solution") == 2
+    status, _, err = run(capsys, "generate", "mine.nc", "other.toml")
+    assert "mine.nc is a map itself; give its job" in err
+
+
 def test_generate_show_plot_compare(here, capsys):
     status, out, err = run(capsys, "generate", "mine.toml", "--workers", "1")
     assert status == 0

@@ -228,10 +228,6 @@ def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys, formula_
         (["modes", "nu308_rigid", "--films", "fast"], "--films: got 'fast'; allowed: memory, slow, dry"),
         (["sweep", "nu308_rigid", "--films", "dry", "--films", "dry"], "--films: got 'dry' twice; allowed: each once"),
         (["modes", "nu308_rigid", "--films", "dry", "--films", "slow"], "--films: got 2 of them; allowed: one"),
-        (
-            ["lsa", "nu308_rigid", "--films", "dry", "--films", "slow", "-o", "a.nc"],
-            "-o: got 2 kinds of films; allow",
-        ),
         (["sweep", "nu308_rigid"], "no speeds; allowed: --speeds"),
         (["statics", "nu308_rigid", "--plot", "a.xyz"], "--plot: got a.xyz; allowed: a file that ends in .png"),
     ):

@@ -30,6 +30,8 @@ ALLOWED = {
     "ehdmaps.version": {"ehdmaps.provenance"},
     "ehdmaps.interrupts": set(),
     "ehdmaps.program": {"ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.version"},
+    "ehdmaps.compiling": set(),
+    "ehdmaps.workers": {"ehdmaps.compiling", "ehdmaps.program"},
     "ehdmaps.physics": {"ehdmaps.arrays", "ehdmaps.errors"},
     "ehdmaps.ehl": {"ehdmaps.arrays", "ehdmaps.copies", "ehdmaps.errors", "ehdmaps.physics"},
     "ehdmaps.maps": {
@@ -60,6 +62,8 @@ ALLOWED = {
     "ehdmaps.jobs": {
         "ehdmaps",
         "ehdmaps.arrays",
+        "ehdmaps.compiling",
+        "ehdmaps.workers",
         "ehdmaps.errors",
         "ehdmaps.extras",
         "ehdmaps.figures",
@@ -80,6 +84,8 @@ ALLOWED = {
     },
     "mbs": {
         "ehdmaps.arrays",
+        "ehdmaps.interrupts",
+        "ehdmaps.workers",
         "ehdmaps.copies",
         "ehdmaps.errors",
         "ehdmaps.extras",
@@ -98,6 +104,8 @@ ALLOWED = {
     },
     "mbs.scene.scene": {
         "ehdmaps.arrays",
+        "ehdmaps.interrupts",
+        "ehdmaps.workers",
         "ehdmaps.copies",
         "ehdmaps.errors",
         "ehdmaps.extras",

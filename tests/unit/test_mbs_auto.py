@@ -28,7 +28,7 @@ from mbs.analyses.film_criteria import (
     memory_effect,
     supply_effect,
 )
-from mbs.analyses.film_verdicts import heat_verdict, visited
+from mbs.analyses.film_verdicts import heat_verdict, shear_verdict, visited
 from mbs.analyses.planning import Needed
 from mbs.commands.auto import read_tolerance
 from mbs.scene.changes import with_loads
@@ -155,11 +155,22 @@ def test_stated_physics_is_off_where_it_does_not_matter(folder):
     assert found.subject.model().supplies["bearing_left"] == supply
 
 
-def test_bearings_of_two_geometries_are_refused(folder):
+def test_bearings_of_two_types_have_a_map_each_and_one_alone_is_widened(folder, monkeypatch):
     first, _, second = SHORT.rpartition('{ name = "NU308"')
     two = scene(f'{first}{{ name = "N1014"{second}')
-    with pytest.raises(InputError, match=r"got bearings of 2 geometries \(.*\); allowed with --auto: one"):
-        automatic(two, statics, AutoSettings(folder=folder))
+    outside = iter([{"bearing_right": 1}, {}])
+    monkeypatch.setattr(auto, "outside_calls", lambda result: next(outside))
+    found = automatic(two, statics, AutoSettings(folder=folder, highest=0.0))
+    assert [kept.emap.bearing.name for kept in found.maps] == ["NU308", "N1014", "NU308", "N1014"]
+    assert found.margins == (3.0, 3.0, 3.0, 9.0)
+    assert found.maps[2].reused
+    assert [kept.emap.bearing.name for kept in found.kept] == ["NU308", "N1014"]
+    assert "map of NU308" in found.subject.model().law
+    assert "; map of N1014" in found.subject.model().law
+    supply, *heats_and_shears = found.verdicts[1], *found.verdicts[3:]
+    # the layer that matters is the thicker film's, told with its bearing
+    assert supply.words.startswith(("NU308: none is stated", "N1014: none is stated"))
+    assert [verdict.words[:7] for verdict in heats_and_shears] == ["NU308: ", "N1014: "] * 2
 
 
 def test_options_that_do_not_go_together_are_refused_before_a_map_is_made(file, capsys, by_formula):
@@ -308,3 +319,14 @@ def test_physics_belong_to_auto(file, capsys):
     assert status == 2 and "--physics: stands without --auto; allowed: with it" in err
     status, _, err = run(capsys, "statics", file, "--auto", "--physics", "therma")
     assert status == 2 and "--physics: got 'therma' (did you mean 'thermal'?); allowed: isothermal" in err
+
+
+def test_a_limiting_stress_is_in_the_map_where_it_matters():
+    hot, cold = there(1.0, 373.15, (1e3, 1e4)), there(4.0, 313.15, (1e3, 3.5e4))
+    assert not shear_verdict(hot).on and "not more than 5 %" in shear_verdict(hot).words
+    assert shear_verdict(cold).solver == {"shear": "limiting"}
+    asked = shear_verdict(hot, "eyring")
+    assert asked.on and asked.solver == {"shear": "eyring"} and asked.words.startswith("as asked, eyring; ")
+    assert not shear_verdict(cold, "newtonian").on
+    with pytest.raises(InputError, match="auto, shear: got 'thin'; allowed: newtonian, eyring, carreau, limiting"):
+        AutoSettings(shear="thin")

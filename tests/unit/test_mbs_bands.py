@@ -261,7 +261,7 @@ def test_the_band_of_a_level_is_the_largest_difference_of_its_runs(models, monke
     expected = 20.0 * np.abs(np.log10(np.array(told[1:]))).max()
     # Both films and k of a sample have the same sign; a film of a thousandth of the approach counts as k does.
     assert expected > 20.0 * np.log10(1.0 + change.stiffness)
-    np.testing.assert_allclose(found.runs[0].level_error, expected, rtol=1e-6)
+    np.testing.assert_allclose(found.runs[0].level_error[0], expected, rtol=1e-6)
     np.testing.assert_allclose(found.dataset["sum_level_error"][0], expected, rtol=1e-6)
     assert campbell(model).runs[0].level_error is None
     assert len(told) == 4

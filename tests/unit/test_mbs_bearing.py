@@ -184,10 +184,10 @@ def test_other_compiled_code_calls_the_kernel():
     expected = point(POSE, VELOCITY, 0.3)
 
     @njit
-    def twice(state, sizes, slices, angles, numbers, cells, rows, states, out):
+    def twice(state, sizes, slices, angles, numbers, cells, knots, rows, states, out):
         status = 0
         for _ in range(2):
-            status += force_of_arrays(state, sizes, slices, angles, numbers, cells, rows, states, out)
+            status += force_of_arrays(state, sizes, slices, angles, numbers, cells, knots, rows, states, out)
         return status
 
     out = np.empty((13, 6))

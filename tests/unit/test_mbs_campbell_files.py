@@ -176,13 +176,13 @@ def test_a_highest_level_below_the_map_is_said_to_be_one(spectra, monkeypatch, l
     loud[0] = 300.0
     changed = dataclasses.replace(spectra, campbell=dataclasses.replace(spectra.campbell, sum_level=loud))
     run = ramp()
-    entry = types.SimpleNamespace(spectra=changed, record=run, case=types.SimpleNamespace(model=None))
+    entry = types.SimpleNamespace(spectra=(changed,), record=run, case=types.SimpleNamespace(model=None))
     fading = command._fading(entry)
     speeds, half = changed.campbell.speeds, 0.5 * changed.campbell.window * 300.0 / RPM
     # The speed rises by 300 rpm a second; windows that begin within a sample of the edge are left open.
     assert np.all(fading[speeds - half < 0.99 * lowest / RPM])
     assert not np.any(fading[speeds - half > 1.01 * lowest / RPM])
-    said = command._elsewhere(entry, 0)
+    said = command._elsewhere(entry)
     assert words in said and bool(said) == bool(lowest)
     if lowest == 400.0:
         best = int(np.argmax(np.where(fading, -np.inf, loud)))

@@ -219,6 +219,9 @@ def trajectory(model, force, speed=None):
         speed=speed,
         angle=speed,
         signals=np.zeros((count, 0)),
+        signal_time=time,
+        signal_speed=speed,
+        signal_angle=speed,
         forces=(forces, 2.0 * forces),
         motions=(),
         steps=count - 1,
@@ -314,7 +317,7 @@ class TestModes:
 
     def given(self, **more):
         names = ("law", "map", "clearance", "output", "plot", "highest")
-        return argparse.Namespace(**{**dict.fromkeys(names), "scene": "n1014_rigid", **more})
+        return argparse.Namespace(**{**dict.fromkeys(names), "scene": "n1014_rigid", "workers": 1, **more})
 
     def test_text_has_the_modes_up_to_the_highest_frequency(self):
         text, status = modes_command.run(self.given(highest="1 kHz"))

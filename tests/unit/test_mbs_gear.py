@@ -55,6 +55,7 @@ class TestPair:
             ({"backlash": math.nan}, "backlash: got nan m; allowed: finite and >= 0"),
             ({"pressure_angle": 20.0}, "pressure_angle: got 20.0 rad; allowed: 1 to 45 deg"),
             ({"phase": math.nan}, "phase: got nan rad"),
+            ({"helix_angle": 1.0}, "helix_angle: got 1.0 rad; allowed: -45 to 45 deg"),
             ({"harmonics": -1}, "harmonics: got -1; allowed: 0 to 50, or a list"),
             ({"harmonics": 51}, "harmonics: got 51; allowed: 0 to 50, or a list"),
             ({"harmonics": (math.nan,)}, "harmonics: got "),

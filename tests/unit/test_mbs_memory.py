@@ -184,9 +184,9 @@ def test_steps_in_python_go_on_with_the_films_of_compiled_ones_and_back():
     """A law that refuses what is outside its map has no table beside its highest speed: such steps are in Python."""
     element = dataclasses.replace(bearing("error"), outer="ground", temperature=315.0)
     system, highest = rotor(element), law("error").speed_range[1] / element.rates[1]
-    speed = SpeedProfile(Course((0.0, 5e-4, 1e-3), (0.997 * highest, 0.9999 * highest, 0.997 * highest)))
+    speed = SpeedProfile(Course((0.0, 5e-4, 1e-3), (0.994 * highest, 0.9999 * highest, 0.994 * highest)))
     settings = Settings(1e-5, 1e-5)
-    start = equilibrium(system, Operation(0.997 * highest)).displacement
+    start = equilibrium(system, Operation(0.994 * highest)).displacement
     mixed, python = (
         run(system, speed, 1e-3, settings, (), start, options=Options(states=True, compiled=how))
         for how in (True, False)

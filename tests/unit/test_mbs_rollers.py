@@ -58,10 +58,10 @@ def displaced(seed=1):
 class Compiled:
     """The block of one bearing, asked step by step."""
 
-    def __init__(self, element, kind):
+    def __init__(self, element, kind, speed=SPEED):
         self.kind, self.rows = kind, np.concatenate((kind.alone(element), kind.feels(element)))
         self.block = kind.gather([Member(element, 0, first=BEARING.geometry.rollers, alone=0)])
-        self.block.begin(np.full(20, SPEED))
+        self.block.begin(np.full(20, speed))
         self.arrays, sound = self.block.prepare(0, 20)
         assert sound.all()
         size = self.rows.shape[0]
@@ -172,14 +172,22 @@ def test_closed_ways_give_no_work():
         assert work < 0.0 and abs(work) > 1e-6 * turned
 
 
-def test_loads_above_the_map_are_refused_or_left_to_python():
+def test_loads_above_the_map_are_refused_or_counted():
     deep = np.zeros(24)
     deep[1] = 2e-4
     with pytest.raises(OutsideMapError, match="above the map"):
         element("memory", "error").advance(None, deep, np.zeros(24), Operation(SPEED))
     answer, _ = element("memory").advance(None, deep, np.zeros(24), Operation(SPEED))
     assert np.all(np.isfinite(answer.force))
-    assert Compiled(element("slow"), ROLLERS)(0, deep, np.zeros(24), Operation(SPEED))[0] == IN_PYTHON
+    # The law is called for each slice in Python and read from its table in compiled code, 1e-8 of the force apart.
+    given = element("slow")
+    for speed in (0.0, 5.0, SPEED):  # at rest, with a part of the film, with all of it
+        wanted, compiled = given.evaluate(deep, np.zeros(24), Operation(speed)), Compiled(given, ROLLERS, speed)
+        status, got, _ = compiled(0, deep, np.zeros(24), Operation(speed))
+        assert (status, compiled.answers.outside[0], wanted.outside) == (FOUND, 1, True)
+        np.testing.assert_allclose(got, wanted.force, rtol=0.0, atol=1e-7 * np.abs(wanted.force).max())
+    strict = Compiled(element("slow", "error"), ROLLERS)
+    assert strict(0, deep, np.zeros(24), Operation(SPEED))[0] == IN_PYTHON
 
 
 def test_memory_needs_films():

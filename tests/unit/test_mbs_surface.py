@@ -16,6 +16,7 @@ from ehdmaps.physics.roughness import SMOOTH, Surface
 from mbs import assemble
 from mbs.scene.assembly import law_attributes
 from mbs.scene.contact_laws import ContactLaws
+from mbs.scene.map_set import MapSet
 from mbs.scene.reader import parse_scene
 from tests.cases.commands import run
 from tests.cases.laws import dataset_of
@@ -47,13 +48,13 @@ def test_the_scene_goes_before_the_map_and_dry_laws_have_no_surface(emaps):
         (scene(ROUGH), plain, Surface(2e-7)),
         (scene(ROUGH), stated, Surface(2e-7)),
     ):
-        assert ContactLaws("map", given, emap).surface == expected
+        assert ContactLaws("map", given, MapSet([emap])).surface == expected
     assert ContactLaws("hertz", scene(ROUGH), None).surface is None
 
 
 def test_every_result_says_whether_its_films_are_rough(emaps):
     plain, _ = emaps
-    smooth, rough = (ContactLaws("map", given, plain) for given in (scene(), scene(ROUGH)))
+    smooth, rough = (ContactLaws("map", given, MapSet([plain])) for given in (scene(), scene(ROUGH)))
     assert ", smooth surfaces, " in smooth.words and "roughness" not in smooth.label
     assert ", roughness 0.2 um, " in rough.words and rough.label.endswith(", roughness 0.2 um")
     model = assemble(scene(ROUGH), emap=plain)

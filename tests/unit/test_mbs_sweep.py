@@ -273,7 +273,9 @@ class TestRange:
 
 def given(**options):
     plain = {"scene": "nu308_rigid", "output": None, "plot": None, "speeds": None, "cage_angles": None}
-    return argparse.Namespace(**{**plain, "law": None, "map": None, "clearance": None, "load_factor": None, **options})
+    return argparse.Namespace(
+        **{**plain, "law": None, "map": None, "clearance": None, "load_factor": None, "workers": 1, **options}
+    )
 
 
 class TestCases:

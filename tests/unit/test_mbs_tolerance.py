@@ -130,7 +130,7 @@ class TestChoosing:
         assert found.numerics.slices is found.numerics.cutoff is None
         assert "chosen: step" in "\n".join(found.lines)
         finest = Numerics(10e-6, None, None).applied(Subject(swinging, DRY))
-        coarse, fine = (campbell(one.model()).runs[0].spectra.campbell for one in (found.subject, finest))
+        coarse, fine = (campbell(one.model()).runs[0].spectra[0].campbell for one in (found.subject, finest))
         levels = np.interp(coarse.speeds, fine.speeds, fine.sum_level)
         # The tolerance itself, which is of 95 % of the windows.
         assert np.quantile(np.abs(levels - coarse.sum_level), 0.95) <= 0.5

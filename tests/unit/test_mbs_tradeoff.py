@@ -18,6 +18,7 @@ from mbs.analyses.tradeoff import TradeoffSettings, tradeoff
 from mbs.analyses.varied import LawChoice
 from mbs.cli import main
 from mbs.scene import changes
+from mbs.scene.map_set import MapSet
 from tests.cases.laws import dataset_of
 from tests.unit.test_mbs_tolerance import SWINGING
 
@@ -66,7 +67,7 @@ class TestTradeoff:
         scene = changes.with_slices(read_scene("nu308_rigid"), 5)
         course = dataclasses.replace(scene.run_up, speed=scene.run_up.speed.part(0.1, 0.12), duration=0.02)
         scene = dataclasses.replace(scene, run_up=course, frequencies=scene.frequencies[::20])
-        law = LawChoice("map", "map", EHDMap(dataset_of()))
+        law = LawChoice("map", "map", MapSet([EHDMap(dataset_of())]))
         found = tradeoff(scene, [law], settings=TradeoffSettings(scene.campbell))
         rows = {(choice.group, choice.label): choice for choice in found.choices}
         assert {group for group, _ in rows} == {

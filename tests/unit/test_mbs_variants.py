@@ -23,6 +23,7 @@ from mbs.cli import VARIED_KEYS
 from mbs.output.variants_plot import variants_figure
 from mbs.scene import changes
 from mbs.scene.bodies import build_body
+from mbs.scene.map_set import MapSet
 from mbs.spectral.levels import LevelDifference, difference_text
 from tests.cases.laws import dataset_of
 from tests.cases.run_up import refused
@@ -87,7 +88,7 @@ def levels(monkeypatch):
 
 def run_command(scene, **values):
     names = ("law", "map", "films", "clearance", "structure", "output", "plot", "highest", "window")
-    given = argparse.Namespace(**{**dict.fromkeys(names), "vary": [], "scene": str(scene), **values})
+    given = argparse.Namespace(**{**dict.fromkeys(names), "vary": [], "workers": 1, "scene": str(scene), **values})
     return importlib.import_module("mbs.commands.variants").run(given)
 
 
@@ -157,7 +158,7 @@ class TestTable:
             Variation("films", "slow"),
             Variation("law", "hertz:1e-5 s"),
         ]
-        film = LawChoice("map", "map", EHDMap(dataset_of()), "slow")
+        film = LawChoice("map", "map", MapSet([EHDMap(dataset_of())]), "slow")
         found = variants(scene, (DRY, film), changed)
         # dry, film; film at another temperature; the other dry law, which the fake makes as quiet as the film
         assert found.runs == len(levels) == 4

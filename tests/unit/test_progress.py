@@ -2,7 +2,9 @@ import io
 import sys
 
 import pytest
+from numba import njit
 
+from ehdmaps.compiling import NOTE, Compiling
 from ehdmaps.jobs import progress
 from ehdmaps.jobs.progress import Bar, Lines, Pace, duration
 
@@ -144,3 +146,40 @@ def test_nobody_to_tell_is_no_reason_to_stop(monkeypatch, stream, kind):
     told.taken_over(0)
     told.solved(1)
     told.solved(1)
+
+
+def test_what_this_process_compiles_is_said_once_and_counts_for_no_rate():
+    clock, said = Clock(), []
+    compiling = Compiling(said.append, clock)
+    pace = Pace(100, clock, lambda: compiling.seconds)
+    for _ in range(3):
+        clock.now += 1.0
+        pace.solved(1)
+    compiling.on_start(None)
+    clock.now += 0.9
+    compiling.on_start(None)  # a function that the first one calls
+    clock.now += 500.0
+    assert said == []
+    compiling.on_end(None)
+    compiling.on_start(None)
+    assert said == [NOTE]
+    compiling.on_end(None)
+    compiling.on_end(None)
+    clock.now += 1.0
+    pace.solved(1)
+    assert compiling.seconds == pytest.approx(500.9)
+    assert pace.text("step") == "1 steps/s, 96 s left"  # one a second, as before
+
+
+def test_numba_is_heard_while_it_compiles(capsys):
+    heard = []
+    compiling = Compiling(heard.append)
+    compiling.listen()
+    njit(lambda x: x + 1.0)(1.0)
+    spent = compiling.seconds
+    compiling.end()
+    compiling.end()  # of no harm
+    njit(lambda x: x + 2.0)(1.0)
+    assert spent > 0.0
+    assert compiling.seconds == spent
+    assert heard == []  # that was no long wait

@@ -130,3 +130,11 @@ def test_shipped_jobs_keep_their_keys():
         bearing=read_job("nu308").bearing, lubricant=read_job("nu308").lubricant, loads=[1e4, 2e4],
         entrainment_speeds=[1.0], temperatures=[313.15], solver_options={"physics": "inlet-heat"},
     ).solver_options == {"physics": "inlet-heat"}  # fmt: skip
+
+
+def test_a_solver_in_place_of_the_jobs_keeps_what_the_film_is():
+    job = read_job("nu308_openfoam", "reynolds")
+    assert job.solver_options == {"physics": "thermal", "shear": "limiting", "slide_to_roll": 0.0}
+    assert read_job("nu308_openfoam", "formula").solver_options == {}
+    with pytest.raises(InputError, match="--solver: got 'openfoam', which knows no physics = 'inlet-heat'"):
+        parse_job(JOB + 'physics = "inlet-heat"\n', "job", "job", "openfoam")

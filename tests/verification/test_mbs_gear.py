@@ -139,6 +139,100 @@ class TestStatics:
             assert turn == pytest.approx(expected, rel=2e-4)  # the mounts, as above
 
 
+HELIX = math.radians(17.0)
+HELICAL = dataclasses.replace(PAIR, helix_angle=HELIX, module=3e-3, face_width=30e-3, damping=1e3)
+
+
+def helical_mesh(hand=1.0, angle=0.7):
+    """A helical pair with the second centre at an angle from y; the centre of that gear."""
+    pair = dataclasses.replace(HELICAL, helix_angle=hand * HELIX)
+    place = pair.centre_distance * np.array([0.0, math.cos(angle), math.sin(angle)])
+    return gear_mesh(pair, (0.0, 0.0, 0.0), place, 1.0, SPIN2), place
+
+
+class TestHelical:
+    @pytest.mark.parametrize(("hand", "turn"), [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)])
+    def test_forces_are_those_of_the_textbook(self, hand, turn):
+        """F_t tan(beta) axially, F_t tan(alpha_n)/cos(beta) apart, and the moment of the axial force about the centre.
+
+        A right-handed gear that drives with a torque +x pushes itself along +x: right-hand rule of the thrust.
+        """
+        mesh, place = helical_mesh(hand)
+        motion = np.zeros(12)
+        motion[3] = turn * 6e-3  # more than the backlash: the first gear turns by itself, and presses a flank
+        force = mesh.evaluate(motion, np.zeros(12), Operation(0.0)).force
+        towards = place / np.linalg.norm(place)
+        along = np.cross([1.0, 0.0, 0.0], towards)
+        first, second = HELICAL.pitch_radii
+        tangential = force[6:9] @ along
+        assert first == pytest.approx(0.5 * 21 * 3e-3 / math.cos(HELIX), rel=1e-14)
+        assert math.copysign(1.0, tangential) == turn
+        size = abs(tangential)
+        assert force[6:9] @ towards == pytest.approx(size * math.tan(ALPHA) / math.cos(HELIX), rel=1e-12)
+        assert force[0] == pytest.approx(hand * turn * size * math.tan(HELIX), rel=1e-12)
+        assert force[3] == pytest.approx(-tangential * first, rel=1e-12)
+        # the whole force over the tangential one, by the normal section
+        assert np.linalg.norm(force[:3]) == pytest.approx(size / (math.cos(ALPHA) * math.cos(HELIX)), rel=1e-12)
+        for moment, arm, part in ((force[3:6], first, force[:3]), (force[9:], -second, force[6:9])):
+            np.testing.assert_allclose(moment, np.cross(arm * towards, part), atol=1e-12 * size * second)
+        assert np.linalg.norm(force[4:6]) == pytest.approx(abs(force[0]) * first, rel=1e-12)
+
+    def test_momentum_and_angular_momentum_balance(self):
+        mesh, place = helical_mesh()
+        rng = np.random.default_rng(3)
+        for _ in range(5):
+            force = mesh.evaluate(1e-4 * rng.standard_normal(12), rng.standard_normal(12), Operation(3.0, 0.2)).force
+            np.testing.assert_allclose(force[:3] + force[6:9], 0.0, atol=1e-12 * np.abs(force).max())
+            moment = force[3:6] + force[9:] + np.cross(place, force[6:9])
+            np.testing.assert_allclose(moment, 0.0, atol=1e-12 * np.abs(force).max())
+
+    def test_force_is_the_slope_of_the_energy(self):
+        """The second method: central differences of the stored energy by all twelve displacements, 1e-8 apart."""
+        mesh, _ = helical_mesh()
+        motion = 1e-5 * np.random.default_rng(1).standard_normal(12) + 2e-3 * np.eye(12)[3]
+        operation = Operation(0.0, 0.3)
+        slopes = []
+        for unit in np.eye(12):
+            high, low = (mesh.stored(None, motion + side * 1e-8 * unit, operation) for side in (1.0, -1.0))
+            slopes.append((high - low) / 2e-8)
+        force = mesh.evaluate(motion, np.zeros(12), operation).force
+        # round-off of the energy, 1e-16 of it over 1e-8
+        np.testing.assert_allclose(force, -np.array(slopes), rtol=1e-6, atol=1e-6 * np.abs(force).max())
+
+    def test_a_turn_and_the_travel_along_the_helix_belong_together(self):
+        """A gear that moves along x by s as it turns by s tan(beta)/r, a screw on its helix, meets no resistance."""
+        mesh, _ = helical_mesh()
+        screw = np.zeros(12)
+        screw[0], screw[3] = 1.0, math.tan(HELIX) / HELICAL.pitch_radii[0]
+        np.testing.assert_allclose(mesh.rows @ screw, 0.0, atol=1e-15)
+
+    def test_harmonics_are_those_of_the_mean_over_the_face(self):
+        """Spur slices that lag along the face, averaged; the midpoint rule with 2000 slices leaves 1e-6."""
+        transverse, overlap = HELICAL.contact_ratios
+        assert overlap == pytest.approx(30e-3 * math.sin(HELIX) / (math.pi * 3e-3), rel=1e-14)
+        lag = 2.0 * math.pi * overlap * ((np.arange(2000) + 0.5) / 2000 - 0.5)
+        for order, (spur, helical) in enumerate(
+            zip(pair_harmonics(transverse, 6), pair_harmonics(transverse, 6, overlap), strict=True), start=1
+        ):
+            assert helical == pytest.approx(spur * np.mean(np.cos(order * lag)), abs=1e-6)
+        assert max(np.abs(pair_harmonics(transverse, 6, 2.0))) < 1e-15  # whole overlaps leave nothing
+
+    def test_contact_ratio_is_that_of_the_transverse_section(self):
+        """Tip circles of the normal addendum, on coordinates of the transverse section, by Pythagoras."""
+        angle = math.atan(math.tan(ALPHA) / math.cos(HELIX))
+        module = 3e-3 / math.cos(HELIX)
+        reach = -0.5 * 44 * module * math.sin(angle)
+        for z in (21, 23):
+            tip, base = 0.5 * z * module + 3e-3, 0.5 * z * module * math.cos(angle)
+            reach += math.sqrt(tip**2 - base**2)
+        assert HELICAL.contact_ratios[0] == pytest.approx(reach / (math.pi * module * math.cos(angle)), rel=1e-12)
+
+    def test_a_spur_pair_is_a_helical_pair_of_angle_zero(self):
+        mesh = gear_mesh(PAIR, (0.0, 0.0, 0.0), (0.0, 99e-3, 0.0), 1.0, SPIN2)
+        assert not np.any(mesh.rows[:, [0, 4, 5, 6, 10, 11]])
+        assert PAIR.contact_ratios[1] == 0.0
+
+
 def single(pair, torque=0.0, stiffness=0.0):
     """One gear that only turns, against a gear that does not give way."""
     bodies = [rigid_body("one", [GEAR], ["theta_x"], spin=1.0)]

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from ehdmaps.errors import OutsideMapError
 from mbs.bearings import slice_table, speed_tables
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_block import Films, blend
@@ -208,14 +209,51 @@ class TestFilmsOverSpeed:
             np.testing.assert_allclose(got, wanted, rtol=0.0, atol=1e-6 * np.abs(wanted).max())
 
     def test_fading_films(self):
-        """Below the map each slice calls the law, in Python, and the run goes on from there to and fro."""
+        """Below the map both read the same table of what is left of the film; above it the blend leaves its 4e-8."""
         system = gearbox(map_law())
         slowest = 0.3 / system.elements[2].element.rates[1]  # of the second shaft, which is slower
+        settings = Settings(2e-5, 1e-4, residual=1e-13)
         speed = SpeedProfile(Course((0.0, 0.002, 0.003), (1.05 * slowest, 0.98 * slowest, 1.05 * slowest)))
-        first, second = both(system, speed, 0.003, Settings(2e-5, 1e-4, residual=1e-13))
-        assert 0 < first.compiled < first.steps
+        first, second = both(system, speed, 0.003, settings)
+        assert first.compiled == first.steps
         for got, wanted in zip((*first.forces, *first.motions), (*second.forces, *second.motions), strict=True):
             np.testing.assert_allclose(got, wanted, rtol=0.0, atol=1e-6 * np.abs(wanted).max())
+
+    @pytest.mark.parametrize("centrifugal", [False, True])
+    def test_from_rest(self, centrifugal):
+        """They differ by what Newton leaves over, as above; at rest itself one law is a formula, the other a table."""
+        system = gearbox(map_law(), centrifugal=centrifugal)
+        slowest = 0.3 / system.elements[0].element.rates[1]
+        found = both(system, SpeedProfile.ramp(1e-3, 0.95 * slowest, 2e-3), 2e-3, Settings(2e-5, 1e-4, residual=1e-13))
+        assert found[0].compiled == found[0].steps
+        compare(found, 1e-9)
+
+    @pytest.mark.parametrize("outside", ["clamp", "asymptote"])
+    @pytest.mark.parametrize("part", [0.0, 0.5, 3.0])
+    def test_loads_above_the_map(self, outside, part):
+        """Slices beyond the hold are its tangent in both; each evaluation with one is counted."""
+        system = gearbox(map_law(outside), loads=[Load("push", "shaft_1", np.array([0.0, 4e5, 0.0, 0.0, 0.0, 0.0]))])
+        slowest = 0.3 / system.elements[0].element.rates[1]
+        found = both(system, SpeedProfile.constant(part * slowest), 1e-3, Settings(2e-5, 1e-4, residual=1e-13))
+        assert found[0].compiled == found[0].steps
+        counted = [list(each.outside.values()) for each in found]
+        assert min(counted[0][:2]) >= found[0].steps
+        assert max(counted[0][2:]) == max(counted[1][2:]) == 0
+        for got, wanted in zip(
+            (*found[0].forces, *found[0].motions), (*found[1].forces, *found[1].motions), strict=True
+        ):
+            np.testing.assert_allclose(got, wanted, rtol=0.0, atol=1e-9 * np.abs(wanted).max())
+
+    def test_a_strict_law_refuses_loads_above_its_map(self):
+        """In compiled runs as in Python."""
+        system = gearbox(map_law("error"))
+        push = Load("push", "shaft_1", np.array([0.0, 4e5, 0.0, 0.0, 0.0, 0.0]), profile=Course((0.0, 1e-4), (0, 1)))
+        pushed = gearbox(map_law("error"), loads=[push])
+        speed = SpeedProfile.constant(1000.0 * RPM)
+        start = equilibrium(system, Operation(speed.at(0.0)[0])).displacement
+        for how in BOTH:
+            with pytest.raises(OutsideMapError, match="bearing force, load: got about"):
+                run(pushed, speed, 2e-3, Settings(2e-5, 1e-4), SENSORS, start, options=how)
 
     def test_centrifugal_loads(self):
         system = gearbox(map_law(), centrifugal=True)
@@ -232,7 +270,7 @@ class TestFilmsOverSpeed:
         rows, numbers = 2 * slice_table.ROWS, len(slice_table.LawNumbers._fields)
         films = Films(
             np.zeros((1, NODES, rows, 8)), np.zeros((1, NODES, numbers)), np.zeros((1, rows, 8)),
-            np.zeros((1, numbers)), np.full((1, 2), -1.0),
+            np.zeros((1, rows)), np.zeros((1, numbers)), np.full((1, 2), -1.0),
         )  # fmt: skip
         nodes, weights = tables.places(speeds)
         slots, sound, _ = tables.prepare(speeds, nodes, weights, films.tables[0], films.numbers[0])

@@ -8,13 +8,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ehdmaps.ehl.energy import wall_weights
 from ehdmaps.ehl.line import GroupSolution, Resolution, solve_groups
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.ehl.warm_column import BEND, HEIGHTS, WEIGHTS, empty_columns, fill_column, gradient_asked
+from ehdmaps.ehl.wall_heat import wall_weights
+from ehdmaps.ehl.warm_column import (
+    CONDUCTION,
+    HEIGHTS,
+    WEIGHTS,
+    empty_columns,
+    fill_column,
+    gradient_asked,
+    lower_stress,
+)
 from ehdmaps.ehl.warm_oil import STEP, heat_groups, warm_viscosity
 from ehdmaps.ehl.warm_response import WarmLinearisation
-from ehdmaps.errors import InputError
 from ehdmaps.physics.heat import HeatData
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.operating_point import OperatingPoint
@@ -42,10 +49,8 @@ def test_strip_of_heat_on_a_moving_solid() -> None:
     """Jaeger: 2 sqrt(X) below a strip of constant flux, 2 sqrt(X) - 2 sqrt(X - 1) behind it; exact but for its end."""
     x = np.concatenate([np.linspace(0.0, 1.0, 60) ** 1.5, [1.0 + 1e-9], np.linspace(1.02, 3.0, 40)])
     flux = (x <= 1.0).astype(float)
-    slow, late = wall_weights(x, 0)
     behind = np.sqrt(np.maximum(x - 1.0, 0.0))
-    assert slow @ flux == pytest.approx(2.0 * np.sqrt(x) - 2.0 * behind, abs=1e-4)
-    assert late @ flux == pytest.approx(2.0 / 3.0 * (x**1.5 - behind**3), abs=1e-7)
+    assert wall_weights(x, 0) @ flux == pytest.approx(2.0 * np.sqrt(x) - 2.0 * behind, abs=1e-4)
 
 
 @pytest.mark.parametrize("nahme", [0.1, 1.0, 10.0])
@@ -57,7 +62,7 @@ def test_nahme_couette(nahme: float) -> None:
     theta = np.zeros_like(HEIGHTS)
     for _ in range(200):
         stress = 1.0 / (WEIGHTS @ np.exp(theta))
-        inside = np.linalg.solve(BEND[1:-1, 1:-1], -nahme * stress**2 * np.exp(theta[1:-1]))
+        inside = np.linalg.solve(CONDUCTION[1:-1, 1:-1], nahme * stress**2 * (WEIGHTS * np.exp(theta))[1:-1])
         theta[1:-1] += 0.5 * (inside - theta[1:-1])
     middle = theta[HEIGHTS.size // 2]
     assert middle == pytest.approx(math.log1p(nahme / 8.0), rel=1e-6)
@@ -136,11 +141,37 @@ def test_against_a_prototype(load: float, speed: float, celsius: float, film_fac
 
 
 def test_energy_balance() -> None:
-    """Heat into the walls and out with the oil is the heat that shear and compression make, within 0.1 % of shear."""
-    for load, speed, celsius in ((5e4, 2.0, 60.0), (2e5, 10.0, 100.0)):
-        linear = groups(load, speed, celsius).linear
-        assert isinstance(linear, WarmLinearisation)
-        assert abs(linear.balance) < 1e-3
+    """Heat into the walls and out with the oil is the heat of shear and compression: to rounding, on any grid."""
+    for load, speed, celsius in ((5e3, 10.0, 60.0), (2e5, 10.0, 100.0)):
+        for linear in (groups(load, speed, celsius).linear, groups(load, speed, celsius).rough_linear):
+            assert isinstance(linear, WarmLinearisation)
+            assert abs(linear.balance) < 1e-11
+
+
+def test_heat_goes_with_the_oil_of_the_eddies() -> None:
+    """A light, fast contact in cold oil, whose inlet carries a thousand times the heat that it conducts.
+
+    Film and loss of `ehlFoam`, finite volumes in OpenFOAM, 400 x 24 cells: 6959.5 nm and 8.223e-14, with 200 x 24 cells
+    by 0.05 and 1 % different. The films' grids and inlets leave 0.7 %, the coarsest rows that were tried 4 % of the
+    loss. Isothermal they are 8160 nm and 7.8e-14.
+    """
+    warm = film(5e3, 5.0, 20.0)
+    assert warm.central_film == pytest.approx(6959.5e-9, rel=0.01)
+    assert warm.loss_compliance == pytest.approx(8.223e-14, rel=0.03)
+
+
+@pytest.mark.parametrize("guess", [0.0, 1000.0, 3000.0])
+def test_walls_that_yield_both_ways(guess: float) -> None:
+    """The stress at the lower wall of a column in pure rolling is half of the rise, wherever the search begins."""
+    problem = LIMITING._problem(INNER, OIL, OperatingPoint(2e5, 10.0, 373.15))[0]
+    fluid = np.full(HEIGHTS.size, 1e-8)
+    assert lower_stress(problem.shear, 0.8, -2168.25, 0.0, fluid, guess) == pytest.approx(1084.125, rel=1e-8)
+
+
+def test_no_traction_in_pure_rolling() -> None:
+    """Equal walls, equal stresses: what is left of them is rounding, of a rolling force of 30 N/m here."""
+    rolling = film(5e4, 2.0, 60.0, ReynoldsSolver(physics="thermal", shear="eyring"))
+    assert abs(rolling.traction) < 1e-6
 
 
 def test_film_compliance_is_the_slope_of_the_film() -> None:
@@ -160,9 +191,28 @@ def test_any_point_has_an_answer(load: float, speed: float, celsius: float) -> N
     assert found.status is not Status.FAILED
 
 
-def test_frequencies_are_refused() -> None:
-    """The response of a film with temperatures is that of slow motion."""
-    with pytest.raises(InputError, match="slow motion only"):
-        THERMAL.film_spectrum(INNER, OIL, OperatingPoint(5e4, 2.0, 333.15), np.array([100.0]))
+def test_slow_end_of_the_spectrum() -> None:
+    """At a low frequency S is film compliance - i omega loss, to the next order of omega b/u = 0.01."""
+    point = OperatingPoint(5e4, 2.0, 333.15)
+    omega = 0.01 * 2.0 / float(half_width(5e4, INNER.radius, INNER.reduced_modulus))
+    found = THERMAL.film_spectrum(INNER, OIL, point, np.array([omega / (2.0 * math.pi)]))
+    assert found.compliance[0].real == pytest.approx(found.film.film_compliance, rel=2e-3)
+    assert -found.compliance[0].imag / omega == pytest.approx(found.film.loss_compliance, rel=2e-3)
+
+
+def test_spectrum_of_a_film_that_heat_leaves_alone() -> None:
+    """So slow that nothing warms: the isothermal spectrum, with the temperatures among the unknowns.
+
+    The columns take the oil's flow by another quadrature: 1e-4 of the film.
+    """
+    point, frequencies = OperatingPoint(5e4, 0.02, 333.15), np.array([20.0, 100.0, 300.0])
+    warm, cold = (
+        solver.film_spectrum(INNER, OIL, point, frequencies).compliance for solver in (THERMAL, ReynoldsSolver())
+    )
+    assert np.abs(warm / cold - 1.0) == pytest.approx(0.0, abs=5e-3)
+
+
+def test_maps_have_slow_motion_only() -> None:
+    """Maps with heat have no natural frequencies, and say what they are made with."""
     assert THERMAL.natural_frequencies == ()
     assert THERMAL.settings()["physics"] == "thermal"

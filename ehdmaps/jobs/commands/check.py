@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.generate import available_cores
 from ehdmaps.jobs.job import CorrectedBy, Job
 from ehdmaps.jobs.law_check import check_points
 from ehdmaps.jobs.reader import read_job
@@ -20,6 +19,7 @@ from ehdmaps.jobs.tasks import LineTask, line_tasks
 from ehdmaps.physics.sensitivity import film_change
 from ehdmaps.physics.solution import ContactSolver, Status
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
+from ehdmaps.workers import available_cores
 
 _BYTES_PER_POINT = 800
 _SECONDS_PER_POINT = 1e-4

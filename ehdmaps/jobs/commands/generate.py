@@ -1,4 +1,4 @@
-"""`ehdmaps generate`: make a map, or go on with one."""
+"""`ehdmaps generate`: make maps, or go on with them."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.correction_report import unsolved
 from ehdmaps.jobs.generate import generate
+from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.law_check import unmet
 from ehdmaps.jobs.progress import progress
 from ehdmaps.jobs.reader import is_map, read_job
@@ -27,13 +28,46 @@ INTERRUPTED = 130
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Make the map; status 1 if points of it or of its correction have no solution, or a law is not good enough."""
+    """Make the maps, one after the other; status 1 if one has points without a solution, or a law not good enough."""
     tolerance = None if arguments.tolerance is None else read_tolerance(arguments.tolerance)
-    job = read_job(arguments.job, arguments.solver, to_run=True)
-    if arguments.output is None and is_map(arguments.job):
-        raise InputError(f"-o: missing; {arguments.job} is a map itself; give the map to write with -o")
-    output = Path(arguments.output or f"{job.name}.nc")
-    check_outputs([Output("-o", output, MAP)], [arguments.job])
+    texts, status = [], 0
+    for job, output in _planned(arguments):
+        text, found = _made(job, output, arguments, tolerance)
+        texts.append(text)
+        status = max(status, found)
+        if found == INTERRUPTED:
+            break
+    return "\n\n".join(text for text in texts if text), status
+
+
+def _planned(arguments: argparse.Namespace) -> list[tuple[Job, Path]]:
+    """All jobs with the maps that they become; all problems at once, before the first one is made."""
+    several = len(arguments.jobs) > 1
+    problems = []
+    if several and arguments.output is not None:
+        problems.append("-o: stands beside several jobs; allowed: with one; each map is called after its job")
+    planned: list[tuple[Job, Path]] = []
+    for source in arguments.jobs:
+        try:
+            job = read_job(source, arguments.solver, to_run=True)
+            if arguments.output is None and is_map(source):
+                advice = "give its job" if several else "give the map to write with -o"
+                raise InputError(f"-o: missing; {source} is a map itself; {advice}")
+            output = Path(arguments.output or f"{job.name}.nc")
+            check_outputs([Output("-o", output, MAP)], [source])
+            if output in (other for _, other in planned):
+                raise InputError(f"{source}: its map {output} is that of another job, too; give each another name")
+        except InputError as error:
+            problems += error.problems
+        else:
+            planned.append((job, output))
+    if problems:
+        raise InputError(tuple(problems))
+    return planned
+
+
+def _made(job: Job, output: Path, arguments: argparse.Namespace, tolerance: float | None) -> tuple[str, int]:
+    """Make one map."""
     by = job.corrected_by
     kept = solvers.case_options(by.solver if by and _keeps_cases(by.solver) else job.solver, arguments.keep_cases)
     solver = _built(job.solver, job.solver_options, kept)

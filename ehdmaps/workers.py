@@ -1,0 +1,69 @@
+"""What all worker processes share: who ends them, how many there are, who says that they compile."""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import os
+import signal
+import threading
+from multiprocessing.connection import wait as wait_for_process
+from typing import Any
+
+from ehdmaps.compiling import Compiling
+from ehdmaps.program import tell
+
+MOST_WORKERS = 1024
+
+
+def available_cores() -> int:
+    """Return the cores that this process may use, which may be fewer than the machine has."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def processes(text: str) -> int:
+    """Read a number of processes of a command line.
+
+    Parameters
+    ----------
+    text : str
+        What was given.
+
+    Raises
+    ------
+    ArgumentTypeError
+        For anything but a whole number from 1 to 1024.
+    """
+    if not (text.isascii() and text.isdigit() and 1 <= int(text[:6]) <= MOST_WORKERS and len(text) <= 4):
+        raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 1 to {MOST_WORKERS}")
+    return int(text)
+
+
+def start_worker(told: Any = None) -> None:
+    """Leave Ctrl-C to the parent, and end with it even when it is killed.
+
+    Parameters
+    ----------
+    told : multiprocessing.Value, optional
+        Whether some worker has said that it compiles: the first one does, once for all.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    if told is not None:
+        Compiling(lambda note: _say_once(note, told)).listen()
+
+
+def _say_once(note: str, told: Any) -> None:
+    """Say something that no other worker has said."""
+    with told.get_lock():
+        first, told.value = not told.value, True
+    if first:
+        tell(note)
+
+
+def _end_with_parent() -> None:
+    """Wait for the parent's end; without this, the workers of a killed job would wait for tasks for ever."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        wait_for_process([parent.sentinel])
+        os._exit(1)

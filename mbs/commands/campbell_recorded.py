@@ -1,0 +1,337 @@
+"""Recorded runs in `mbs campbell`: alone, in place of a scene, or measured ones beside simulated ones."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from ehdmaps.errors import InputError
+from ehdmaps.outputs import FIGURE, Output, output_problems
+from ehdmaps.units import RPM, short
+from mbs.analyses.campbell import ALL_SENSORS, CampbellResult, chosen_sensors, followed_orders, rehearsed, run_course
+from mbs.analyses.recorded import (
+    RecordedResult,
+    RecordedRun,
+    at_speeds_of,
+    channels_beside,
+    recorded_campbell,
+    recorded_run_of,
+)
+from mbs.commands.common import read_option, write
+from mbs.output.campbell_plot import MOST_LAWS, campbell_figure
+from mbs.output.campbell_text import highest_line, peak_lines, resolution_lines, sensor_line
+from mbs.output.results import RESULT
+from mbs.output.sensors_plot import sensors_figure
+from mbs.output.time_files import is_time_data, read_time_data, signal_outputs, write_time_data
+from mbs.scene.assembly import Model
+from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
+from mbs.scene.fields import HERTZ, MILLISECOND
+from mbs.settings import CampbellSettings
+from mbs.spectral.campbell import RunUpSpectra
+from mbs.spectral.levels import Reference, difference_text
+from mbs.timedata.records import TimeChannel, TimeData
+from mbs.timedata.speed import AS_IT_IS, SpeedSource, with_speed
+
+_MOST_ORDERS, _LARGEST_ORDER = 50, 1e4
+_OF_A_SCENE = (
+    "law", "map", "structure", "films", "supply", "clearance", "load_factor", "start_angle", "bands", "tolerance",
+    "modes", "auto", "maps", "physics", "measured", "channel",
+)  # fmt: skip
+"""Options that say something of a simulation, and nothing of a run that is recorded."""
+
+_OF_A_SPEED = ("speed_channel", "tacho", "pulses", "speed_table")
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """What the command line says of what is looked at.
+
+    Attributes
+    ----------
+    sensors : list of str
+        Names of sensors; none for that of the scene.
+    highest, window : float or None
+        Highest frequency [Hz], and length of the windows [s].
+    orders : tuple of float
+        Orders to follow; none for those of the machine.
+    source : SpeedSource
+        Where the speed of a record is.
+    measured : str or None
+        File of a measured run.
+    channels : list of str
+        Its channels, in the order of the sensors.
+    """
+
+    sensors: list[str]
+    highest: float | None
+    window: float | None
+    orders: tuple[float, ...]
+    source: SpeedSource
+    measured: str | None
+    channels: list[str]
+
+    @property
+    def files(self) -> list[str | Path]:
+        """Files that are read besides scene and maps."""
+        return [entry for entry in (self.measured, self.source.table) if entry is not None]
+
+    def settings(self, given: CampbellSettings) -> CampbellSettings:
+        """Settings of a scene, with what the command line says instead."""
+        return dataclasses.replace(
+            given,
+            sensor=self.sensors[0] if self.sensors and ALL_SENSORS not in self.sensors else given.sensor,
+            highest=given.highest if self.highest is None else self.highest,
+            window=given.window if self.window is None else self.window,
+            orders=self.orders or given.orders,
+        )
+
+
+def read_look(arguments: argparse.Namespace, problems: list[str]) -> Look:
+    """Read the options of what is looked at.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Arguments of the command.
+    problems : list of str
+        What is wrong is appended.
+    """
+    highest = read_option("--highest", arguments.highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
+    window = read_option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems)
+    source = read_source(arguments, problems)
+    measured = getattr(arguments, "measured", None)
+    if measured is None:
+        problems += [
+            f"--{name.replace('_', '-')}: stands without --measured; allowed: with it, or with a recorded run"
+            for name in ("channel", *_OF_A_SPEED)
+            if _is_scene(arguments) and getattr(arguments, name, None)
+        ]
+    sensors, channels = (_list(arguments, name) for name in ("sensor", "channel"))
+    return Look(sensors, highest, window, _orders(arguments, problems), source, measured, channels)
+
+
+def read_source(arguments: argparse.Namespace, problems: list[str]) -> SpeedSource:
+    """Read where the speed of a recorded run is.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Arguments of the command.
+    problems : list of str
+        What is wrong is appended.
+    """
+    channel, tacho, pulses, table = (getattr(arguments, name, None) for name in _OF_A_SPEED)
+    try:
+        count = 1.0 if pulses is None else float(pulses)
+    except ValueError:
+        count = math.nan
+    if pulses is not None and tacho is None:
+        problems.append("--pulses: stands without --tacho; allowed: with it")
+    try:
+        return SpeedSource(channel, tacho, count, None if table is None else Path(table))
+    except InputError as error:
+        problems += [f"--speed-channel, --tacho, --pulses, --speed-table: {line}" for line in error.problems]
+        return AS_IT_IS
+
+
+def signal_problems(arguments: argparse.Namespace, read: list[str | Path], laws: int) -> list[str]:
+    """What is wrong about all files that are written, those of --signals among them.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Arguments of the command.
+    read : list of str or Path
+        All files that are read.
+    laws : int
+        How many records --signals would hold.
+    """
+    outputs, problems = signal_outputs("--signals", getattr(arguments, "signals", None), laws)
+    others = [Output("-o", arguments.output, RESULT), Output("--plot", arguments.plot, FIGURE)]
+    return problems + output_problems([*others, *outputs], read)
+
+
+def measured_run(look: Look, model: Model, settings: CampbellSettings) -> RecordedRun:
+    """The measured run, with windows as long as those of the simulated ones.
+
+    Parameters
+    ----------
+    look : Look
+        What is asked for, with a measured file.
+    model : Model
+        Model that is simulated.
+    settings : CampbellSettings
+        What is looked at.
+
+    Raises
+    ------
+    InputError
+        With what is wrong about the file, or does not fit.
+    """
+    assert look.measured is not None
+    problems: list[str] = []
+    sensors = chosen_sensors(model.scene, settings, look.sensors, problems)
+    course = run_course(model.scene, settings.highest, problems)
+    if problems or course is None:
+        raise InputError(problems)
+    orders = followed_orders(model, settings, course)
+    window = rehearsed(settings, course, orders).campbell.window
+    (record, *others) = read_time_data(look.measured).records
+    if others:
+        raise InputError(f"--measured: {look.measured} has {1 + len(others)} runs; allowed: one")
+    try:
+        turned = with_speed(record, look.source)
+        channels = channels_beside(turned.record, sensors, look.channels)
+        alike = dataclasses.replace(settings, window=window, orders=tuple(order for order, _ in orders))
+        found = recorded_run_of(turned.record, channels, alike)
+    except InputError as error:
+        raise InputError([f"--measured {look.measured}: {line}" for line in error.problems]) from error
+    return dataclasses.replace(found, notes=turned.notes)
+
+
+def measured_lines(measured: RecordedRun, found: CampbellResult) -> list[str]:
+    """Lines on a measured run, and on how far each simulated one is from it.
+
+    Parameters
+    ----------
+    measured : RecordedRun
+        The measured run.
+    found : CampbellResult
+        The simulated ones.
+    """
+    lines = _run_lines(f"measured: {measured.record.label}", measured)
+    lines.append("sum level at the same speed, simulated less measured")
+    for entry in found.runs:
+        for sensor, one, other in zip(found.sensors, entry.spectra, measured.spectra, strict=True):
+            pair = at_speeds_of(one, other)
+            text = "no speed in common" if pair is None else difference_text(pair[1], pair[0])
+            lines.append(f"  {entry.case.label}{f', {sensor.name}' if found.sensors[1:] else ''}: {text}")
+    return lines
+
+
+def recorded_runs(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Look at the runs of a file, without simulating anything.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Arguments of the command; `scene` is the file.
+    """
+    data, look = recorded_data(arguments, _OF_A_SCENE)
+    found = recorded_campbell(data, look.settings(CampbellSettings()), look.sensors, look.source)
+    runs = found.runs
+    speeds = runs[0].record.speed
+    assert speeds is not None  # spectra were made with them
+    names = ", ".join(f"{channel.name} ({_reference(channel).text})" for channel in runs[0].channels)
+    lines = [
+        f"{data.title or Path(arguments.scene).name}: recorded run from {RPM.text(float(speeds[0]))} to "
+        f"{RPM.text(float(speeds[-1]))}; {'sensors' if runs[0].channels[1:] else 'sensor'} {names}",
+        *resolution_lines(runs[0].spectra[0], look.settings(CampbellSettings()).highest),
+    ]
+    for run in runs:
+        lines += _run_lines(run.record.label, run)
+    if runs[1:]:
+        lines.append("sum level at the same speed")
+    for run in runs[1:]:
+        for channel, one, other in zip(run.channels, runs[0].spectra, run.spectra, strict=True):
+            text = difference_text(one.campbell.sum_level, other.campbell.sum_level)
+            at = f", {channel.name}" if run.channels[1:] else ""
+            lines.append(f"  {run.record.label} beside {runs[0].record.label}{at}: {text}")
+    lines += write(arguments, found.dataset, _figure(data, found) if arguments.plot else None)
+    if arguments.signals:
+        lines += write_time_data(arguments.signals, dataclasses.replace(data, records=tuple(r.record for r in runs)))
+    return "\n".join(lines), 0
+
+
+def recorded_data(arguments: argparse.Namespace, of_a_scene: tuple[str, ...]) -> tuple[TimeData, Look]:
+    """Read a file of recorded runs that stands in place of a scene; all problems of the options at once.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Arguments of the command.
+    of_a_scene : tuple of str
+        Options that say nothing of a recorded run.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
+    problems = [
+        f"--{name.replace('_', '-')}: stands beside {short(arguments.scene)}, a run that is recorded; allowed: with a "
+        "scene, which is simulated"
+        for name in of_a_scene
+        if getattr(arguments, name, None)
+    ]
+    look = read_look(arguments, problems)
+    problems += signal_problems(arguments, [arguments.scene, *look.files], 1)
+    if problems:
+        raise InputError(tuple(dict.fromkeys(problems)))
+    data = read_time_data(arguments.scene)
+    problems += signal_outputs("--signals", arguments.signals, len(data.records))[1]
+    if len(data.records) > MOST_LAWS and arguments.plot:
+        problems.append(f"--plot: got {len(data.records)} runs in {arguments.scene}; allowed: up to {MOST_LAWS}")
+    if problems:
+        raise InputError(problems)
+    return data, look
+
+
+def _run_lines(label: str, run: RecordedRun) -> list[str]:
+    """Lines of one recorded run."""
+    lines = [label, *(f"  {note}" for note in run.notes)]
+    if run.channels[1:]:
+        pairs = zip(run.channels, run.spectra, strict=True)
+        return lines + [sensor_line(channel.name, _reference(channel), found) for channel, found in pairs]
+    return [*lines, f"  {highest_line(run.spectra[0])}", *peak_lines(run.spectra[0])]
+
+
+def _figure(data: TimeData, found: RecordedResult) -> Figure:
+    """The figure of recorded runs."""
+    labels = [run.record.label for run in found.runs]
+    channels = found.runs[0].channels
+    results: list[tuple[RunUpSpectra, ...]] = [run.spectra for run in found.runs]
+    if channels[1:]:
+        sensors = [(channel.name, _reference(channel)) for channel in channels]
+        return sensors_figure(data.title, labels, results, sensors, found.orders)
+    title = f"{data.title}\nsensor {channels[0].name}; recorded run"
+    return campbell_figure(title, labels, [spectra[0] for spectra in results], _reference(channels[0]), found.orders)
+
+
+def _reference(channel: TimeChannel) -> Reference:
+    """Reference of a channel that has levels."""
+    reference = channel.reference
+    assert reference is not None  # channels are chosen by it
+    return reference
+
+
+def _orders(arguments: argparse.Namespace, problems: list[str]) -> tuple[float, ...]:
+    """Read --orders."""
+    found = []
+    for text in _list(arguments, "orders"):
+        try:
+            order = float(text)
+        except ValueError:
+            order = math.nan
+        if not 0.0 < order <= _LARGEST_ORDER:
+            problems.append(f"--orders: got {text!r:.40}; allowed: numbers above 0 up to {_LARGEST_ORDER:g}")
+        found.append(order)
+    if len(found) > _MOST_ORDERS:
+        problems.append(f"--orders: got {len(found)}; allowed: up to {_MOST_ORDERS}")
+    return () if problems else tuple(found)
+
+
+def _list(arguments: argparse.Namespace, name: str) -> list[str]:
+    """What was given for an option that takes one or more."""
+    value = getattr(arguments, name, None)
+    return [] if value is None else [value] if isinstance(value, str) else list(value)
+
+
+def _is_scene(arguments: argparse.Namespace) -> bool:
+    """Whether the command is about a scene, which is simulated."""
+    return not is_time_data(arguments.scene)

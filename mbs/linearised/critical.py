@@ -1,0 +1,274 @@
+"""Critical speeds, and the response to loads that turn, over speed.
+
+A speed is critical for an order where the frequency of a damped mode is that order times the speed: there an unbalance
+(order: spin of its body), or an excitation by that order, meets a resonance. The response to such loads is solved at
+their own frequency at each speed, with all of stiffness, damping, gyroscopic terms and films that relax.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.arrays import ComplexArray, FloatArray
+from mbs.linearised.dynamic import dynamic_stiffness, element_dynamic_stiffness
+from mbs.linearised.steady import steady_system
+from mbs.linearised.sweep_point import Point, solve_modes
+from mbs.linearised.sweep_result import ComplexSweep
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.system import System
+
+CLOSE = 1e-7
+"""Distance of the frequency of a mode from order times speed, as a part of it, at which a critical speed is found."""
+
+AROUND = (-4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0)
+"""Speeds around a critical one at which responses are found besides, in damping ratios of it."""
+
+_EVALUATIONS = 12
+_WIDEST = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class CriticalSpeed:
+    """A speed at which an order meets a mode.
+
+    Attributes
+    ----------
+    order : float
+        Oscillations for each turn of the system.
+    speed : float
+        Speed of the system [rad/s].
+    eigenvalue : complex
+        Eigenvalue of the mode there [1/s]; its imaginary part is order times speed.
+    whirl : float
+        Direction in which the places of turning bodies go round: 1 with their spin on circles, -1 against it, 0 in a
+        plane. NaN where no turning body takes part.
+    mode : int
+        Undamped mode, from 0 on, that the mode is nearest to where its track begins.
+    """
+
+    order: float
+    speed: float
+    eigenvalue: complex
+    whirl: float
+    mode: int
+
+    @property
+    def damping_ratio(self) -> float:
+        """-real part over magnitude."""
+        return -self.eigenvalue.real / abs(self.eigenvalue)
+
+
+@dataclass(frozen=True, eq=False)
+class OrderResponse:
+    """Response to all loads of an order over speed.
+
+    Attributes
+    ----------
+    order : float
+        Oscillations for each turn of the system.
+    names : tuple of str
+        Names of the loads.
+    motion : array, shape (speeds, n), complex
+        Amplitudes of the coordinates [m or rad]: q = Re[motion exp(i order angle)].
+    forces : array, shape (speeds, elements, 2), complex
+        Amplitudes of the forces along y and z of each element in its first port [N].
+    """
+
+    order: float
+    names: tuple[str, ...]
+    motion: ComplexArray
+    forces: ComplexArray
+
+
+def critical_speeds(
+    system_at: Callable[[float], System], speeds: FloatArray, damped: ComplexSweep, orders: Sequence[float]
+) -> tuple[CriticalSpeed, ...]:
+    """Find the critical speeds between the speeds of a sweep.
+
+    Parameters
+    ----------
+    system_at : callable
+        System at a speed [rad/s].
+    speeds : array, shape (speeds,)
+        Speeds of the sweep, rising [rad/s].
+    damped : ComplexSweep
+        Complex modes of the sweep.
+    orders : sequence of float
+        Positive orders.
+
+    Returns
+    -------
+    tuple of CriticalSpeed
+        Critical speeds in rising order, for each order in turn. A mode that is overdamped at an end of a step of the
+        sweep has none in it.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no equilibrium at a speed.
+    """
+    found = []
+    for order in sorted(orders):
+        apart = damped.eigenvalues.imag - order * speeds[:, None]
+        here: list[CriticalSpeed] = []
+        for mode in range(apart.shape[1]):
+            for index in range(speeds.size - 1):
+                ends = apart[index : index + 2, mode]
+                if not np.all(np.isfinite(ends)) or ends[0] * ends[1] > 0.0 or (ends[1] == 0.0 and ends[0] != 0.0):
+                    continue
+                values = damped.eigenvalues[index : index + 2, mode].tolist()
+                number = int(damped.number[mode])
+                here.append(_refined(system_at, (speeds[index], speeds[index + 1]), values, order, number))
+        found += sorted(here, key=lambda entry: entry.speed)
+    return tuple(found)
+
+
+def order_responses(system_at: Callable[[float], System], speeds: FloatArray) -> tuple[OrderResponse, ...]:
+    """Respond to the loads of a system that follow its angle, at each speed.
+
+    Parameters
+    ----------
+    system_at : callable
+        System at a speed [rad/s].
+    speeds : array, shape (speeds,)
+        [rad/s].
+
+    Returns
+    -------
+    tuple of OrderResponse
+        One for each order, of loads that may differ in what they are.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no equilibrium at a speed.
+    """
+    motions: dict[float, list[ComplexArray]] = {}
+    forces: dict[float, list[ComplexArray]] = {}
+    names: dict[float, dict[str, None]] = {}
+    start = None
+    for speed in speeds.tolist():
+        system = steady_system(system_at(speed))
+        balance = equilibrium(system, Operation(speed), start)
+        start = balance.displacement
+        for order in sorted({abs(load.order) for load in system.turning}):
+            loads = [load for load in system.turning if abs(load.order) == order]
+            size = np.sum([load.amplitude(speed) for load in loads], axis=0)
+            rate = np.array([1j * order * speed])
+            moved = np.linalg.solve(dynamic_stiffness(balance, rate)[0], size)
+            motions.setdefault(order, []).append(moved)
+            forces.setdefault(order, []).append(_forces(balance, rate, moved))
+            names.setdefault(order, {}).update(dict.fromkeys(name for load in loads for name in load.names))
+    return tuple(
+        OrderResponse(order, tuple(names[order]), np.array(motions[order]), np.array(forces[order]))
+        for order in motions
+    )
+
+
+def with_critical(speeds: FloatArray, found: Sequence[CriticalSpeed]) -> FloatArray:
+    """The speeds and some around each critical one that is lightly damped, rising [rad/s].
+
+    Parameters
+    ----------
+    speeds : array, shape (speeds,)
+        Rising [rad/s].
+    found : sequence of CriticalSpeed
+        Critical speeds between them.
+    """
+    added = [
+        entry.speed * (1.0 + min(entry.damping_ratio, _WIDEST) * part)
+        for entry in found
+        for part in AROUND
+        if entry.damping_ratio > 0.0
+    ]
+    inside = [speed for speed in added if speeds[0] < speed < speeds[-1]]
+    return np.asarray(np.unique(np.concatenate([speeds, inside])))
+
+
+def orbit(along_y: ComplexArray, along_z: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    """Semi-axes of the ellipse that two complex amplitudes make.
+
+    Parameters
+    ----------
+    along_y, along_z : array
+        Amplitudes of both directions, of one shape.
+
+    Returns
+    -------
+    major, minor : array
+        Semi-axes; the minor one is negative where the motion goes from z to y.
+    """
+    ahead, back = 0.5 * np.abs(along_y + 1j * along_z), 0.5 * np.abs(along_y - 1j * along_z)
+    return np.asarray(ahead + back), np.asarray(ahead - back)
+
+
+def _refined(
+    system_at: Callable[[float], System],
+    ends: tuple[float, float],
+    values: Sequence[complex],
+    order: float,
+    number: int,
+) -> CriticalSpeed:
+    """Find a critical speed between two speeds by the false position (Illinois), on the mode between their values."""
+    low, high = ends
+    low_value, high_value = values
+    low_apart, high_apart = (value.imag - order * speed for value, speed in zip(values, ends, strict=True))
+    for _ in range(_EVALUATIONS):
+        part = low_apart / (low_apart - high_apart) if low_apart != high_apart else 0.5
+        speed = low + part * (high - low)
+        point = solve_modes(equilibrium(steady_system(system_at(speed)), Operation(speed)))
+        guess = low_value + (high_value - low_value) * (speed - ends[0]) / (ends[1] - ends[0])
+        which = int(np.argmin(np.abs(point.damped.eigenvalues - guess)))
+        value = complex(point.damped.eigenvalues[which])
+        apart = value.imag - order * speed
+        if abs(apart) <= CLOSE * abs(value):
+            break
+        if apart * high_apart < 0.0:
+            low, low_apart = high, high_apart
+        else:
+            low_apart *= 0.5
+        high, high_apart = speed, apart
+    return CriticalSpeed(order, speed, value, _whirl(point, which), number)
+
+
+def _whirl(point: Point, which: int) -> float:
+    """How round the places of turning bodies go in a complex mode, and whether with their spin."""
+    system = point.balance.system
+    shape = point.states.right[: system.size, point.kept[which]]
+    area = size = 0.0
+    for place, spin in turning_places(system):
+        y, z = system.relative(place)[1:3] @ shape
+        area += math.copysign(2.0, spin) * (y * z.conjugate()).imag
+        size += abs(y) ** 2 + abs(z) ** 2
+    return float(area / size) if size > 0.0 else math.nan
+
+
+def turning_places(system: System) -> list[tuple[str, float]]:
+    """All frames of bodies that spin, each with the spin of its body.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    """
+    return [
+        (f"{body.name}:{frame}", body.spin)
+        for body in system.bodies
+        if body.spin
+        for frame in body.frames
+        if frame != "centre" or len(body.frames) == 1
+    ]
+
+
+def _forces(balance: Equilibrium, rate: ComplexArray, moved: ComplexArray) -> ComplexArray:
+    """Amplitudes of the forces of all elements along y and z in their first ports, shape (elements, 2)."""
+    found = np.zeros((len(balance.system.elements), 2), dtype=np.complex128)
+    for index, connected in enumerate(balance.system.elements):
+        stiffness = element_dynamic_stiffness(balance, index, rate)[0]
+        found[index] = -(stiffness @ (connected.transform @ moved))[1:3]
+    return found

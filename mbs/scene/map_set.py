@@ -1,0 +1,255 @@
+"""The contact maps of a scene: one for each type of bearing, and how maps that are given together are sorted into sets.
+
+A map is made for raceways and rollers, not for a bearing by name. So each bearing takes the map that was made for its
+contacts. Maps for different types of bearing belong together and make one law; of several maps for the same type each
+makes a law of its own, to be compared.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from ehdmaps.errors import InputError
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.physics.bearing import BearingGeometry
+from mbs.scene.specs import BearingSpec
+
+_SAME = 1e-9
+_COMPARED = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
+
+_LABELS = {"reynolds": "Reynolds map", "openfoam": "OpenFOAM map", "formula": "formula map", "hertz": "Hertz map"}
+
+
+@dataclass(frozen=True, eq=False)
+class MapSet:
+    """Maps that make one law: one for each type of bearing.
+
+    Attributes
+    ----------
+    maps : tuple of EHDMap
+        The maps, at least one; no two for the same contacts.
+
+    Raises
+    ------
+    InputError
+        If there is none, two are made for the same contacts, or their jobs state different surfaces.
+    """
+
+    maps: Sequence[EHDMap]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "maps", tuple(self.maps))
+        problems = [] if self.maps else ["--map: got none; allowed: at least one map"]
+        problems += [
+            f"--map: got two maps for the same contacts ({_made_for(first)}, {_made_for(second)}); allowed: one map "
+            "for each type of bearing; assemble a model for each map to compare them"
+            for first, second in itertools.combinations(self.maps, 2)
+            if _same_type(first, second)
+        ]
+        if problems:
+            raise InputError(problems)
+
+    def of(self, geometry: BearingGeometry) -> EHDMap | None:
+        """The map that was made for the contacts of a bearing; None if there is none.
+
+        Parameters
+        ----------
+        geometry : BearingGeometry
+            Geometry of the bearing.
+        """
+        return next((emap for emap in self.maps if suits(emap, geometry)), None)
+
+    def problems(self, where: str, geometry: BearingGeometry) -> list[str]:
+        """Why a bearing, which messages call `where`, gets no map of these.
+
+        Parameters
+        ----------
+        where : str
+            How messages call the bearing.
+        geometry : BearingGeometry
+            Geometry of the bearing.
+        """
+        if self.of(geometry) is not None:
+            return []
+        if len(self.maps) == 1:
+            return geometry_problems(where, geometry, self.maps[0])
+        given = ", ".join(_made_for(emap) for emap in self.maps)
+        return [
+            f"--map: {where}, {geometry.name}, has no map; given are maps of {given}; allowed: one map for each "
+            "type of bearing; `mbs plan SCENE -o JOB.toml` writes the jobs, and `ehdmaps generate` makes the maps"
+        ]
+
+    def surface_problems(self) -> list[str]:
+        """What is wrong about the surfaces of the maps, where the scene states none."""
+        found = {emap.surface for emap in self.maps}
+        if len(found) <= 1:
+            return []
+        words = ", ".join(
+            f"{_made_for(emap)}: {'smooth' if emap.surface.smooth else emap.surface.label}" for emap in self.maps
+        )
+        return [f"--map: the jobs of the maps state different surfaces ({words}); state [surface] in the scene"]
+
+    def each(self, change: Callable[[EHDMap], EHDMap]) -> MapSet:
+        """The set with each map changed.
+
+        Parameters
+        ----------
+        change : callable
+            Gives another map for one of these.
+        """
+        return MapSet([change(emap) for emap in self.maps])
+
+    @property
+    def label(self) -> str:
+        """By which solvers they were made, such as "Reynolds map"."""
+        solvers = (str(emap.dataset.attrs.get("solver", "")) for emap in self.maps)
+        return " and ".join(dict.fromkeys(_LABELS.get(solver, "map") for solver in solvers))
+
+    @property
+    def words(self) -> str:
+        """The maps, for people."""
+        return "; ".join(f"map of {_made_for(emap)}, {emap.lubricant.title}, {_made_by(emap)}" for emap in self.maps)
+
+
+def as_map_set(given: EHDMap | MapSet | Sequence[EHDMap] | None) -> MapSet | None:
+    """One map, or several, as a set.
+
+    Parameters
+    ----------
+    given : EHDMap, MapSet, sequence of EHDMap, or None
+        What was given.
+
+    Raises
+    ------
+    InputError
+        If they are no set.
+    """
+    if given is None or isinstance(given, MapSet):
+        return given
+    return MapSet((given,) if isinstance(given, EHDMap) else tuple(given))
+
+
+def map_sets(maps: Sequence[tuple[str, EHDMap]], bearings: Sequence[BearingSpec] | None) -> list[tuple[str, MapSet]]:
+    """Sort maps that are given together into sets, each with what tells it from the others.
+
+    Parameters
+    ----------
+    maps : sequence of (str, EHDMap)
+        Maps with names for people, in the order in which they were given.
+    bearings : sequence of BearingSpec or None
+        Bearings of the scene; None where it could not be read.
+
+    Returns
+    -------
+    list of (str, MapSet)
+        One map of each type in every combination; those of one oil where there are such. The words name the maps of
+        types that have more than one, and are empty where there is one set.
+
+    Raises
+    ------
+    InputError
+        With each map that suits no bearing, where there are several.
+    """
+    if not maps:
+        return []
+    groups: list[list[tuple[str, EHDMap]]] = []
+    for name, emap in maps:
+        group = next((group for group in groups if _same_type(group[0][1], emap)), None)
+        if group is None:
+            groups.append([(name, emap)])
+        else:
+            group.append((name, emap))
+    if bearings is not None and len(groups) > 1:
+        _check_all_suit(maps, bearings)
+    several = [len(group) > 1 for group in groups]
+    found = []
+    for members in itertools.product(*groups):
+        words = " ".join(name for (name, _), more in zip(members, several, strict=True) if more)
+        found.append((words, MapSet([emap for _, emap in members])))
+    of_one_oil = [(words, one) for words, one in found if all(m.lubricant == one.maps[0].lubricant for m in one.maps)]
+    return of_one_oil or found
+
+
+def suits(emap: EHDMap, geometry: BearingGeometry) -> bool:
+    """Whether a map was made for the contacts of a bearing.
+
+    Parameters
+    ----------
+    emap : EHDMap
+        The map.
+    geometry : BearingGeometry
+        Geometry of the bearing; clearance and number of rollers are no part of its contacts.
+    """
+    return emap.bearing is not None and not _differing(emap.bearing, geometry)
+
+
+def geometry_problems(where: str, geometry: BearingGeometry, emap: EHDMap) -> list[str]:
+    """In what a map was made for something else than a bearing, which messages call `where`.
+
+    Parameters
+    ----------
+    where : str
+        How messages call the bearing.
+    geometry : BearingGeometry
+        Geometry of the bearing.
+    emap : EHDMap
+        The map.
+    """
+    made_for = emap.bearing
+    if made_for is None:
+        return [f"--map: is made for a bare contact; {where} needs a map of {geometry.name}"]
+    differing = [
+        f"{key} {getattr(made_for, key) * 1e3:.6g} mm and not {getattr(geometry, key) * 1e3:.6g} mm"
+        for key in _differing(made_for, geometry)
+    ]
+    if not differing:
+        return []
+    return [
+        f"--map: is made for {made_for.name}: {', '.join(differing)} as the {geometry.name} of {where}; generate a map "
+        "of that bearing"
+    ]
+
+
+def structure_words(emap: EHDMap) -> str:
+    """The structural law of a map as the end of a sentence; nothing where it is that of the dry law, ISO 16281."""
+    return "" if emap.structural_law == "iso16281" else f", structural law {emap.structural_law}"
+
+
+def _check_all_suit(maps: Iterable[tuple[str, EHDMap]], bearings: Sequence[BearingSpec]) -> None:
+    """Raise with each map that no bearing takes."""
+    types: dict[str, list[str]] = {}
+    for spec in bearings:
+        types.setdefault(spec.geometry.name, []).append(spec.name)
+    there = "; ".join(f"{kind} ({', '.join(names)})" for kind, names in types.items())
+    problems = [
+        f"--map: {name} is made for {_made_for(emap)}, which no bearing of the scene is; there are {there}; "
+        "leave it out"
+        for name, emap in maps
+        if not any(suits(emap, spec.geometry) for spec in bearings)
+    ]
+    if problems:
+        raise InputError(problems)
+
+
+def _differing(first: BearingGeometry, second: BearingGeometry) -> list[str]:
+    """In which lengths the contacts of two bearings differ."""
+    return [key for key in _COMPARED if abs(getattr(first, key) - getattr(second, key)) > _SAME]
+
+
+def _same_type(first: EHDMap, second: EHDMap) -> bool:
+    """Whether two maps are made for the same contacts; those of bare contacts count as one type."""
+    if first.bearing is None or second.bearing is None:
+        return first.bearing is second.bearing
+    return suits(first, second.bearing)
+
+
+def _made_for(emap: EHDMap) -> str:
+    """What a map was made for."""
+    return emap.bearing.title if emap.bearing else "a bare contact"
+
+
+def _made_by(emap: EHDMap) -> str:
+    """How a map was made."""
+    return f"solver {emap.dataset.attrs.get('solver', '')}{structure_words(emap)}"

@@ -1,0 +1,14 @@
+"""Time data of runs, simulated or measured: in, out, and with the speed that belongs to them.
+
+===========  ====================================================================================
+records      channels over time, with speed and angle where they are known
+quantities   which units a channel may have, and what was measured by them
+csv_file     tables of numbers with names and units in their first line
+uff_file     universal files, datasets 58
+wav_file     sound files, with a table beside them that says the scale
+netcdf_file  results of `mbs runup`, and signals alone
+speed        speed and angle of a record: a channel, pulses of a tacho, a table
+===========  ====================================================================================
+
+`mbs.output.time_files` reads and writes them by the ending of a name.
+"""

@@ -1,0 +1,127 @@
+"""Several maps for one scene: each bearing takes the one that was made for it; what is missing or too much is named."""
+
+from __future__ import annotations
+
+import argparse
+from importlib import resources
+from pathlib import Path
+
+import pytest
+
+from ehdmaps.errors import InputError
+from ehdmaps.maps import schema
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.solids import STEEL
+from mbs import assemble
+from mbs.bearings.bearing import Bearing
+from mbs.commands.cases import load_cases, read_compared
+from mbs.scene.contact_laws import ContactLaws
+from mbs.scene.map_set import MapSet, map_sets
+from mbs.scene.reader import parse_scene
+from tests.cases.laws import dataset_of
+
+TEXT = (resources.files("mbs") / "systems" / "nu308_rigid.toml").read_text(encoding="utf-8").replace("= 41", "= 5")
+N1014 = BearingGeometry.named("N1014")
+
+
+def two_types():
+    """The shipped rigid shaft with an N1014 on its right."""
+    before, begin, after = TEXT.partition('name = "bearing_right"')
+    return before + begin + after.replace('name = "NU308"', 'name = "N1014"', 1)
+
+
+def scene(text=""):
+    return parse_scene(text or two_types(), "two", "two.toml")
+
+
+@pytest.fixture(scope="module")
+def small():
+    """Small maps by the film formula of both types; the second one states grease."""
+    axes = {"loads": (1e3, 1e4, 1e5), "speeds": (0.3, 1.2), "temperatures": (313.15, 333.15)}
+    first = dataset_of(**axes).assign_attrs(solver="formula")
+    second = dataset_of(contacts=N1014.contacts(STEEL, "iso16281"), bearing=N1014, **axes)
+    grease = {schema.OIL_SUPPLY: '{"lubrication": "grease", "oil_layer": 7e-07}', "solver": "reynolds"}
+    return EHDMap(first), EHDMap(second.assign_attrs(grease))
+
+
+def test_each_bearing_has_law_supply_and_films_of_its_own_map(small):
+    laws = ContactLaws("map", scene(), MapSet(small[::-1]))
+    assert laws.problems() == []
+    left, right = scene().bearings
+    assert (laws.supply(left), laws.supply(right)) == (FLOODED, OilSupply.named("grease"))
+    assert laws.label == "Reynolds map and formula map, supply by bearing"
+    assert "map of N1014, FVA3, solver reynolds; map of NU308, FVA3, solver formula" in laws.words
+    for spec, emap in zip((left, right), small, strict=True):
+        bearing = Bearing(spec.geometry, slices=5)
+        assert laws.films(bearing, FLOODED).emap is emap
+        law, own = laws.of(bearing, FLOODED).series, emap.law("series", outside="clamp", supply=FLOODED)
+        assert law(1e-6, 0.0, 0.6, 313.15)[0] == own(1e-6, 0.0, 0.6, 313.15)[0]  # the same arithmetic
+
+
+def test_maps_of_one_type_are_compared_and_those_of_several_belong_together(small):
+    first, second = small
+    other = EHDMap(first.dataset)
+    bearings = scene().bearings
+    assert [(words, one.maps) for words, one in map_sets([("a", first), ("b", second)], bearings)] == [
+        ("", (first, second))
+    ]
+    assert [(words, one.maps) for words, one in map_sets([("a", first), ("b", second), ("c", other)], bearings)] == [
+        ("a", (first, second)),
+        ("c", (other, second)),
+    ]
+
+
+def test_of_several_oils_those_belong_together_that_are_the_same(small):
+    def thin(emap):
+        text = emap.dataset.attrs["lubricant"].replace("FVA3", "thin")
+        return EHDMap(emap.dataset.assign_attrs(lubricant=text))
+
+    names = "abcd"
+    given = [small[0], small[1], thin(small[0]), thin(small[1])]
+    found = map_sets(list(zip(names, given, strict=True)), scene().bearings)
+    assert [words for words, _ in found] == ["a b", "c d"]
+    mixed = map_sets([("a", given[0]), ("d", given[3])], scene().bearings)
+    assert len(mixed) == 1  # two oils in one machine, where nothing else is given
+
+
+def test_what_is_missing_or_too_much_is_named(small):
+    first, second = small
+    with pytest.raises(InputError, match=r"--map: is made for NU308: .* as the N1014 of bearing 'bearing_right'"):
+        assemble(scene(), emap=[first])
+    with pytest.raises(InputError, match=r"b is made for N1014, which no bearing .* NU308 \(bearing_left, bearing_ri"):
+        map_sets([("a", first), ("b", second)], scene(TEXT).bearings)
+    with pytest.raises(InputError, match="two maps for the same contacts"):
+        MapSet((first, first))
+    with pytest.raises(InputError, match="got none; allowed: at least one map"):
+        MapSet(())
+    by_hand = two_types().replace('name = "N1014"', 'estimate = "NU2210"', 1)
+    with pytest.raises(InputError, match="bearing 'bearing_right', NU2210, has no map; given are maps of NU308, N1014"):
+        assemble(scene(by_hand), emap=MapSet(small))
+    rough = EHDMap(second.dataset.assign_attrs({schema.SURFACE: '{"roughness": 3e-07}'}))
+    with pytest.raises(InputError, match=r"different surfaces .*; state \[surface\] in the scene"):
+        assemble(scene(), emap=[first, rough])
+
+
+def test_commands_take_several_maps_as_one_case_or_more(tmp_path, formula_maps):
+    path = tmp_path / "two.toml"
+    path.write_text(two_types(), encoding="utf-8")
+
+    def given(*maps):
+        texts = {"output": None, "plot": None, "law": None, "clearance": "0 um", "films": "dry"}
+        return argparse.Namespace(scene=str(path), map=list(maps), **texts)
+
+    def labels(*maps):
+        problems = []
+        _, laws, _ = read_compared(argparse.Namespace(**{**vars(given(*maps)), "films": None}), problems)
+        assert problems == []
+        return [law.label for law in laws]
+
+    assert labels(formula_maps["NU308"], formula_maps["N1014"]) == ["formula map"]
+    again = tmp_path / "again.nc"
+    again.write_bytes(Path(formula_maps["NU308"]).read_bytes())
+    maps = formula_maps["NU308"], formula_maps["N1014"], str(again)
+    assert labels(*maps) == ["formula map map", "formula map again"]
+    with pytest.raises(InputError, match="got 3 of them, several for one type of bearing; allowed: one for each type"):
+        load_cases(given(*maps), several=False)  # dry films: no law is made of the maps

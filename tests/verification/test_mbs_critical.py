@@ -1,0 +1,163 @@
+"""Critical speeds, unbalance response and bearings by matrices: beside ROSS and closed forms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from mbs import SweepRange, SweepSettings, assemble, critical, parse_scene
+from mbs.linearised.critical import order_responses
+from mbs.linearised.modes import modes
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import SpeedProfile
+from mbs.settings import Settings
+from mbs.transient.run import Options, run
+from tests.cases.rotors import OVERHUNG, overhung
+
+RPM = math.pi / 30.0
+
+
+class TestBesideRoss:
+    """An overhung rotor on cross-coupled bearings whose matrices change with the speed."""
+
+    @pytest.fixture(scope="class")
+    @staticmethod
+    def model():
+        return assemble(overhung())
+
+    def test_critical_speeds(self, model):
+        found = critical(model, SweepSettings(SweepRange(10.0, 6000.0 * RPM, 25))).found
+        # Shaft elements are the same; the reduction to modes up to 5 kHz, and the figures printed, are left: 1e-6.
+        np.testing.assert_allclose([c.speed / RPM for c in found], OVERHUNG["critical_speeds"], rtol=2e-6)
+        np.testing.assert_allclose([c.damping_ratio for c in found], OVERHUNG["critical_damping_ratios"], rtol=1e-5)
+        # Backward before forward.
+        assert [c.whirl > 0.0 for c in found] == [False, True, False, True]
+
+    def test_unbalance_response(self, model):
+        speeds = np.array(OVERHUNG["response_speeds"]) * RPM
+        (response,) = order_responses(lambda speed: model.system, speeds)
+        found = response.motion @ model.system.relative("shaft:disc")[1:3].T
+        wanted = np.array(OVERHUNG["amplitudes"]) @ np.array([[1, 0], [1j, 0], [0, 1], [0, 1j]])
+        # Near resonances an error of 1e-6 in frequency over a damping ratio of 0.003 is one of some 1e-4.
+        np.testing.assert_allclose(found, wanted, rtol=1e-4, atol=1e-6 * np.abs(wanted).max())
+
+
+JEFFCOTT = """
+schema = 1
+[operation]
+speed = "3000 rpm"
+temperature = "40 degC"
+[[bodies]]
+name = "disc"
+freedoms = ["y", "z"]
+spin = 1
+mass = "2 kg"
+polar_inertia = "0.01 kg m^2"
+transverse_inertia = "0.005 kg m^2"
+[[springs]]
+name = "shaft"
+on = "disc"
+stiffness = { y = "2e5 N/m", z = "2e5 N/m" }
+damping = { y = "40 N s/m", z = "40 N s/m" }
+"""
+MASS, STIFFNESS, DAMPING = 2.0, 2e5, 40.0
+NATURAL = math.sqrt(STIFFNESS / MASS)
+
+SEAL = """
+[[springs]]
+name = "seal"
+on = "disc"
+speeds = ["0 rad/s", "2000 rad/s"]
+stiffness = { y_z = ["0 N/m", "4e4 N/m"], z_y = ["0 N/m", "-4e4 N/m"] }
+"""
+SLOPE = 20.0
+
+
+class TestJeffcott:
+    def test_unbalance_of_a_closed_form(self):
+        text = JEFFCOTT + '[[unbalances]]\nname = "u"\non = "disc"\nmass = "20 g"\nradius = "10 mm"\n'
+        found = critical(assemble(parse_scene(text, "jeffcott", "jeffcott")), SweepSettings(SweepRange(50.0, 600.0, 8)))
+        ratio = found.speeds / NATURAL
+        zeta = DAMPING / (2.0 * math.sqrt(MASS * STIFFNESS))
+        wanted = 2e-4 / MASS * ratio**2 / np.hypot(1.0 - ratio**2, 2.0 * zeta * ratio)
+        axes = found.dataset["orbit_major"].sel(order=1.0, place="disc:centre").values
+        np.testing.assert_allclose(axes, wanted, rtol=1e-9)
+        # Circles with the spin.
+        np.testing.assert_allclose(found.dataset["orbit_minor"].values.ravel(), wanted, rtol=1e-9)
+        assert [c.speed for c in found.found] == pytest.approx([NATURAL * math.sqrt(1.0 - zeta**2)] * 2, rel=1e-7)
+
+    @pytest.mark.parametrize(("part", "grows"), [(0.98, False), (1.02, True)])
+    def test_whirl_sets_in_where_cross_coupling_beats_damping(self, part, grows):
+        # m s^2 + c s + k - i kc = 0 has a root on the imaginary axis at kc = c sqrt(k/m).
+        system = assemble(parse_scene(JEFFCOTT + SEAL, "seal", "seal")).system
+        threshold = DAMPING * NATURAL / SLOPE
+        found = modes(equilibrium(system, Operation(part * threshold)))
+        assert bool(min(found.damping_ratio) < 0.0) is grows
+        wanted = np.roots([MASS, DAMPING, STIFFNESS - 1j * SLOPE * part * threshold])
+        for value in wanted[wanted.imag > 0.0]:
+            assert np.min(np.abs(found.eigenvalues - value)) <= 1e-9 * abs(value)
+
+    @pytest.mark.parametrize("compiled", [True, False])
+    def test_whirl_in_time(self, compiled):
+        system = assemble(parse_scene(JEFFCOTT + SEAL, "seal", "seal")).system
+        speed = 2.0 * DAMPING * NATURAL / SLOPE
+        start = np.array([1e-6, 0.0])
+        record = run(
+            system,
+            SpeedProfile.constant(speed),
+            0.2 if compiled else 0.02,
+            Settings(2e-5, 1e-3, 1.0),
+            displacement=start,
+            options=Options(states=True, compiled=compiled),
+        )
+        # y + i z follows m s^2 + c s + k - i kc, from rest by both roots.
+        roots = np.roots([MASS, DAMPING, STIFFNESS - 1j * SLOPE * speed])
+        parts = np.linalg.solve(np.array([[1.0, 1.0], roots]), [1e-6, 0.0])
+        whirl = (parts * np.exp(np.multiply.outer(record.time, roots))).sum(axis=1)
+        found = record.states.displacement
+        size = np.abs(whirl).max()
+        # The trapezoidal rule: phase (w h)^2/12 w t, 1e-4 here, and growth likewise.
+        np.testing.assert_allclose(found[:, 0], whirl.real, atol=5e-4 * size)
+        np.testing.assert_allclose(found[:, 1], whirl.imag, atol=5e-4 * size)
+        energy = record.energy
+        assert energy.driven > 0.0
+        assert energy.relative_residual <= 1e-4
+
+
+def test_energy_of_a_table_over_a_run_up():
+    text = (
+        JEFFCOTT
+        + SEAL.replace("y_z", 'y = ["1e5 N/m", "-5e4 N/m"], y_z').replace("20 N s/m", "")
+        + '[[unbalances]]\nname = "u"\non = "disc"\nmoment = "200 g mm"\n'
+    )
+    system = assemble(parse_scene(text, "table", "table")).system
+    record = run(system, SpeedProfile.ramp(0.0, 400.0, 0.1), 0.1, Settings(1e-5, 1e-4, 1.0))
+    # What is left is the trapezoidal rule, of the samples for what the speed brings.
+    assert record.energy.relative_residual <= 1e-3
+    assert sum(element.by_speed for element in record.energy.elements) < 0.0
+
+
+def test_negative_stiffness_in_statics_and_beyond_a_table():
+    text = (
+        JEFFCOTT
+        + """
+[[loads]]
+name = "f"
+on = "disc"
+force = ["0 N", "30 N", "0 N"]
+[[springs]]
+name = "pull"
+on = "disc"
+stiffness = { y = "-5e4 N/m" }
+"""
+    )
+    q = equilibrium(assemble(parse_scene(text, "pull", "pull")).system).displacement
+    assert q[0] == pytest.approx(30.0 / 1.5e5, rel=1e-9)
+    q = equilibrium(assemble(parse_scene(text.replace('"-5e4', '"-5e5'), "pull", "pull")).system).displacement
+    assert q[0] == pytest.approx(-30.0 / 3e5, rel=1e-9)
+    found = equilibrium(assemble(parse_scene(text + SEAL, "seal", "seal")).system, Operation(3000.0))
+    assert found.outside == {"seal": True}
+    np.testing.assert_allclose(found.displacement, np.linalg.solve([[1.5e5, 4e4], [-4e4, 2e5]], [30.0, 0.0]), rtol=1e-9)
