@@ -178,7 +178,7 @@ def summary(way: str, flow: Flow, found: Found) -> str:
     seconds, reynolds = _median(found.seconds), _median(found.reynolds_seconds)
     return (
         f"{way}, {flow}: {found.solved} of {found.asked} solved, median {seconds:.2f} s a point, "
-        f"{seconds / reynolds:.0f} times reynolds; median differences of the {len(found.compared)} that reynolds solves: "
+        f"{seconds / reynolds:.0f} times reynolds; median differences of {len(found.compared)} by both: "
         f"film {100 * film:.3f} %, "
         f"c {100 * damping:.2f} %; beyond the bars (!): {beyond}"
     )
