@@ -12,7 +12,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.energy import ROWS, EnergyEquations, energy
-from ehdmaps.ehl.newton import CONVERGED, DIVERGED, SOFT_ABOVE, STAGNATED, lifted, relaxed, solve_scaled, step_length
+from ehdmaps.ehl.newton import CONVERGED, DIVERGED, SOFT_ABOVE, STAGNATED, YIELDING_STEP, lifted, relaxed, solve_scaled, step_length
 from ehdmaps.ehl.newton import step_size as size_of
 from ehdmaps.ehl.reynolds import Factors, LineProblem, film, node_pressure, residual_with
 from ehdmaps.ehl.wall_heat import wall_weights
@@ -245,7 +245,8 @@ def warm_newton(
         if not math.isfinite(last):
             return WarmResult(unknowns, rises, first, DIVERGED, count, last)
         relaxation = relaxed(move, old, relaxation) if last > SOFT_ABOVE else 1.0
-        length = step_length(problem, x, kernel, unknowns, move, lowest, relaxation)
+        most = min(relaxation, YIELDING_STEP / last) if problem.shear.form == LIMITING else relaxation
+        length = step_length(problem, x, kernel, unknowns, move, lowest, most)
         before, warm_before, taken = unknowns, rises, length * move
         warming = (following[:, :, :size].reshape((n * POINTS, size)) @ taken).reshape((n, POINTS))
         if follows:
