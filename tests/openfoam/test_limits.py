@@ -127,7 +127,7 @@ def test_martin_limit_with_all_stresses() -> None:
     3 % x 100/columns; on 400 they are 1e-4 and 2e-4 apart.
     """
     thin, full = (_martin(100, 4, flow, 50.0) for flow in ("thin_film", "full_stress"))
-    # h/R is 4e-5. The film's minimum has an error of 4e-3 on these columns, of second order, with inlets of both lengths
+    # h/R is 4e-5. The film's minimum has an error of 4e-3 on these columns, of second order
     assert full["film"] == pytest.approx(thin["film"], abs=2e-3)
     assert full["offset"] == pytest.approx(thin["offset"], abs=1e-6)
     for name in ("stiffness", "damping"):
