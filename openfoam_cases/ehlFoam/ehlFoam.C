@@ -29,6 +29,7 @@
 #include "sigFpe.H"
 #include "Time.H"
 #include "clockTime.H"
+#include <malloc.h>
 
 using namespace Foam;
 
@@ -79,6 +80,9 @@ int main(int argc, char* argv[])
     Time runTime(Time::controlDictName, args);
     // a number that overflows, or a pivot that is zero, ends a solve with a status
     const sigFpe::ignore withoutTraps;
+    // matrices come and go: their pages are kept, not fetched anew from the system each time
+    mallopt(M_MMAP_THRESHOLD, 1 << 30);
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
     const clockTime clock;
 
     // the problem
@@ -135,7 +139,7 @@ int main(int argc, char* argv[])
     // how it moves: linear response, and the check in time
     if (solved.end == outcome::converged && frequencies.size())
     {
-        reportResponse(results, s, solved.state, frequencies, meshDict);
+        reportResponse(results, s, solved.state, frequencies, meshDict, found.tangent);
     }
     if (solved.end == outcome::converged && dict.found("oscillation"))
     {

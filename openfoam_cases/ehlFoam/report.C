@@ -152,7 +152,8 @@ void Foam::reportResponse
     slice& s,
     const slice::unknowns& solution,
     const scalarField& frequencies,
-    const dictionary& meshDict
+    const dictionary& meshDict,
+    std::unique_ptr<linearisation>& tangent
 )
 {
     const scalar place = meshDict.get<scalar>("spikePosition"), width = meshDict.get<scalar>("spikeWidth");
@@ -164,7 +165,7 @@ void Foam::reportResponse
         shifted.set("spikePosition", place + step);
         s.follow(s.contact().halfWidth*columnLayout(shifted).faces(s.columns()), step);
     }
-    const List<filmResponse> found(response(s, solution, frequencies, isobar));
+    const List<filmResponse> found(response(s, solution, frequencies, isobar, tangent));
     scalarField compliance(found.size()), loss(found.size()), residual(found.size());
     forAll(found, f)
     {

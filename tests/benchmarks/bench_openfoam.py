@@ -1,6 +1,10 @@
 """The CFD of the film against `reynolds` with the same physics, at points of both maps: differences and cost.
 
 Run: python -m tests.benchmarks.bench_openfoam [--columns N] [--rows N] [--ways "WAY;..."] [--points N] [--only TEXT]
+     python -m tests.benchmarks.bench_openfoam --random N [--seed N] [--ways "WAY;..."]
+
+With --random the points are drawn even in the logarithms over the axes of the shipped jobs nu308 and n1014, as in
+`bench_physics`; what has no solution is listed with its reason.
 
 newtonian: isothermal, Newtonian. limiting: with the limiting shear stress of `ehdmaps.physics.rheology`, isothermal.
 thermal, limiting: with heat besides. A combination that a solver does not know is a row that says so.
@@ -22,6 +26,7 @@ import numpy as np
 from ehdmaps.openfoam.installation import installation
 from ehdmaps.openfoam.parameters import Flow
 from ehdmaps.physics.operating_point import OperatingPoint
+from tests.benchmarks.bench_physics import drawn
 from tests.cases.openfoam_points import OIL, PLACES, SPIKED, THICK, Comparison, Place, agrees
 from tests.cases.physics_ways import Answer, answer, solver_of
 
@@ -47,7 +52,9 @@ class Found:
     seconds: list[float] = field(default_factory=list)
     reynolds_seconds: list[float] = field(default_factory=list)
     asked: int = 0
+    solved: int = 0
     known: bool = True
+    unsolved: list[str] = field(default_factory=list)
 
 
 def main() -> None:
@@ -57,23 +64,43 @@ def main() -> None:
     parser.add_argument("--rows", type=int, default=6)
     parser.add_argument("--ways", default=";".join(WAYS), help="separated by semicolons")
     parser.add_argument("--points", type=int, default=len(PLACES), help="how many points of each group")
+    parser.add_argument("--random", type=int, default=0, metavar="N", help="N points at random instead")
+    parser.add_argument("--seed", type=int, default=15, help="of the random points")
     parser.add_argument("--only", default="", help="points with this text in their line")
     options = parser.parse_args()
     installation()  # what is missing is said before anything is solved
     ways = options.ways.split(";")
     print(f"{options.columns} x {options.rows} cells, and half as many each way for the estimates")
     print(HEADING)
+    grid = {"columns": options.columns, "rows": options.rows}
     found = {(way, flow): Found() for way in ways for flow in FLOWS}
-    for title, places in GROUPS.items():
-        chosen = [place for place in places[: options.points] if options.only in str(place)]
+    groups = {f"{options.random} points, seed {options.seed}": at_random(options.random, options.seed)}
+    for title, places in (groups if options.random else GROUPS).items():
+        most = len(places) if options.random else options.points
+        chosen = [place for place in places[:most] if options.only in str(place)]
         if chosen:
             print(title)
         for place in chosen:
             for way in ways:
-                solved(place, way, {"columns": options.columns, "rows": options.rows}, found, places is PLACES)
+                solved(place, way, grid, found, counted=bool(options.random) or places is PLACES)
     print()
     for (way, flow), each in found.items():
         print(summary(way, flow, each))
+        for line in each.unsolved:
+            print(f"    {line}")
+
+
+def at_random(count: int, seed: int) -> tuple[Place, ...]:
+    """Places over the axes of the shipped jobs, of three digits."""
+    return tuple(
+        Place(
+            case.bearing,
+            case.side,
+            *(float(f"{value:.3g}") for value in (case.point.load, case.point.entrainment_speed)),
+            float(f"{case.point.temperature - 273.15:.3g}"),
+        )
+        for case in drawn(count, seed)
+    )
 
 
 def solved(place: Place, way: str, grid: dict[str, int], found: dict[tuple[str, Flow], Found], counted: bool) -> None:
@@ -89,6 +116,10 @@ def solved(place: Place, way: str, grid: dict[str, int], found: dict[tuple[str, 
         if counted:
             here.asked += 1
             here.known = solver is not None
+        if counted and cfd.usable:
+            here.solved += 1
+        elif counted and cfd.film is not None:
+            here.unsolved.append(f"{place}: {cfd.word}: {cfd.film.reason:.300}")
         if not cfd.usable or not reynolds.usable:
             cells.append(unlike_cell(cfd, place))
             continue
@@ -140,14 +171,15 @@ def summary(way: str, flow: Flow, found: Found) -> str:
     if not found.known:
         return f"{way}, {flow}: not there"
     if not found.compared:
-        return f"{way}, {flow}: none of {found.asked} solved by both"
+        return f"{way}, {flow}: {found.solved} of {found.asked} solved, none of them by reynolds"
     film = _median([abs(each.difference("central_film")) for each in found.compared])
     damping = _median([abs(each.damping) for each in found.compared])
     beyond = sum(bool(agrees(each)) for each in found.compared)
     seconds, reynolds = _median(found.seconds), _median(found.reynolds_seconds)
     return (
-        f"{way}, {flow}: {len(found.compared)} of {found.asked} solved, median {seconds:.2f} s a point, "
-        f"{seconds / reynolds:.0f} times reynolds; median differences: film {100 * film:.3f} %, "
+        f"{way}, {flow}: {found.solved} of {found.asked} solved, median {seconds:.2f} s a point, "
+        f"{seconds / reynolds:.0f} times reynolds; median differences of {len(found.compared)} by both: "
+        f"film {100 * film:.3f} %, "
         f"c {100 * damping:.2f} %; beyond the bars (!): {beyond}"
     )
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from ehdmaps.openfoam.parameters import Flow
+from ehdmaps.openfoam.run import RunError
 from ehdmaps.physics.solution import Status
 from tests.cases import openfoam_runs
 
@@ -31,3 +34,12 @@ def test_balances(point: str, flow: Flow) -> None:
     if flow == "full_stress":
         # of the film's mass flux: the same remainder, cell by cell
         assert results.cell_continuity < 1e-6
+
+
+def test_a_pivot_of_zero_is_a_status(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A load whose numbers vanish makes the matrix singular: no crash, though OpenFOAM traps divisions by zero."""
+    monkeypatch.setenv("FOAM_SIGFPE", "true")
+    settings = openfoam_runs.parameters(5.0, 5.0, 60, 4, hertz=True)
+    with pytest.raises(RunError, match="Newton's step has no finite length") as caught:
+        openfoam_runs.run(replace(settings, load=1e-200 * settings.load))
+    assert caught.value.status is Status.DIVERGED

@@ -45,9 +45,8 @@ SOLVED = [
     pytest.param(point, flow, id=f"M{point['M']:g}-L{point['L']:g}-{flow}")
     for point in POINTS
     for flow in ("thin_film", "full_stress")
-    # behind the spike at L = 10 shear stress rises half as fast as pressure, and Newton's method with all stresses
-    # stagnates; the light film at L = 0 is held with all stresses to Martin's limit below
-    if flow == "thin_film" or 0.0 < point["L"] < 10.0
+    # the light film at L = 0 is held with all stresses to Martin's limit below
+    if flow == "thin_film" or point["L"] > 0.0
 ]
 
 
@@ -122,10 +121,14 @@ def test_length_of_the_inlet_hardly_matters() -> None:
 
 
 def test_martin_limit_with_all_stresses() -> None:
-    thin, full = (_martin(200, 4, flow, 50.0) for flow in ("thin_film", "full_stress"))
-    # h/R is 4e-5; films are of second order
-    for name in ("film", "offset"):
-        assert full[name] == pytest.approx(thin[name], abs=2e-3), name
-    # responses are of first order: each has an envelope of 3 % x 100/columns, of the place of rupture among the columns
+    """On columns among which the films of both flows rupture at the same place.
+
+    On 200 columns one ruptures a column after the other, and responses differ by 3 %, as each has an envelope of
+    3 % x 100/columns; on 400 they are 1e-4 and 2e-4 apart.
+    """
+    thin, full = (_martin(100, 4, flow, 50.0) for flow in ("thin_film", "full_stress"))
+    # h/R is 4e-5. The film's minimum has an error of 4e-3 on these columns, of second order
+    assert full["film"] == pytest.approx(thin["film"], abs=2e-3)
+    assert full["offset"] == pytest.approx(thin["offset"], abs=1e-6)
     for name in ("stiffness", "damping"):
-        assert full[name] == pytest.approx(thin[name], abs=2 * 1.5e-2), name
+        assert full[name] == pytest.approx(thin[name], abs=1e-3), name

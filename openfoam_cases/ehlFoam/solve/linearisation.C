@@ -26,8 +26,7 @@ Foam::linearisation::linearisation
     slice& s,
     const slice::unknowns& state,
     const slice::unknowns* rate,
-    const scalar rateFactor,
-    const label isobar
+    const scalar rateFactor
 )
 :
     slice_(s),
@@ -38,7 +37,7 @@ Foam::linearisation::linearisation
         blockTridiagonal::rightSides::Zero
         (
             (s.columns() + group - 1)/group*group*s.flow().blockSize(),
-            s.columns() + 1 + (isobar >= 0) + s.wallSize()
+            s.columns() + 1 + s.wallSize()
         )
     )
 {
@@ -56,14 +55,13 @@ Foam::linearisation::linearisation
     addCellUnknowns(film, base, rateFactor, here);
     addColumnUnknowns(film, base, rateFactor, here);
     addFilms(film, base, rateFactor, here);
-    if (isobar >= 0) addShift(here);
     if (s.wallSize()) addWalls(film, base, here);
     // a last column without a partner
     for (label i = s.columns(); i % group != 0; ++i)
     {
         block(i, i).setIdentity();
     }
-    reduce(isobar);
+    reduce();
 }
 
 
@@ -118,10 +116,11 @@ void Foam::linearisation::addCellUnknowns
 {
     filmFlow& flow = slice_.flow();
     const label rows = flow.film().rows(), size = flow.cellSize(), n = slice_.columns();
-    const label across = flow.rowReach(), along = flow.columnReach();
+    const label across = flow.rowReach();
 
     for (label kind = 0; kind < size; ++kind)
     {
+        const label along = flow.columnReach(kind);
         for (label firstColumn = 0; firstColumn <= 2*along; ++firstColumn)
         {
             for (label firstRow = 0; firstRow <= 2*across; ++firstRow)
@@ -248,16 +247,45 @@ void Foam::linearisation::addFilms
 }
 
 
-void Foam::linearisation::addShift(const List<scalarField>& here)
+void Foam::linearisation::follow(const label isobar)
 {
     filmFlow& flow = slice_.flow();
+    const List<scalarField> here(flow.residual(slice_.film(state_), nullptr));
     const List<scalarField> there(flow.residual(slice_.shiftedFilm(state_), nullptr));
-    const label size = flow.blockSize();
-    for (label row = 0; row < slice_.columns(); ++row)
+    const label size = flow.blockSize(), n = slice_.columns();
+    isobar_ = isobar;
+    blockTridiagonal::rightSides inner = blockTridiagonal::rightSides::Zero(outer_.rows(), 1);
+    for (label row = 0; row < n; ++row)
     {
-        outer_.block(row*size, slice_.columns() + 1, size, 1) =
+        inner.block(row*size, 0, size, 1) =
             difference(there, here, row, 0, flow.film().rows(), slice_.shiftStep());
     }
+    inner_.solve(inner);
+    shift_ = inner.col(0);
+    Eigen::VectorXd column = sources(inner);
+    column[n] = slice_.loadByShift(state_)/slice_.contact().load;
+    for (label side = 0; side < 2 && slice_.wallSize(); ++side)
+    {
+        column.segment(firstWall() + side*n, n) =
+            wallByFlux_[side]*wallFlux(inner, side) - slice_.wallByShift(state_, side);
+    }
+    outerByShift_ = reduced_.solve(rowScale_.cwiseProduct(column));
+}
+
+
+Eigen::VectorXd Foam::linearisation::sources(const blockTridiagonal::rightSides& inner) const
+{
+    Eigen::VectorXd reduced = Eigen::VectorXd::Zero(outer_.cols());
+    for (label i = 0; i < slice_.columns(); ++i) reduced[i] = inner(slice_.flow().sourcePlace(i), 0);
+    return reduced;
+}
+
+
+Eigen::VectorXd Foam::linearisation::wallFlux(const blockTridiagonal::rightSides& inner, const label side) const
+{
+    Eigen::VectorXd flux(slice_.columns());
+    for (label i = 0; i < slice_.columns(); ++i) flux[i] = inner(slice_.flow().fluxPlace(i, side), 0);
+    return flux;
 }
 
 
@@ -287,34 +315,28 @@ void Foam::linearisation::addWalls
 
 
 // d(local) = A^-1 (residual - B d(outer)); its rows of the sources have to be what is asked of them
-void Foam::linearisation::reduce(const label isobar)
+void Foam::linearisation::reduce()
 {
     const filmFlow& flow = slice_.flow();
     const label n = slice_.columns();
     inner_.factorise();
-    blockTridiagonal::rightSides response(outer_);
-    inner_.solve(response);
+    inner_.solve(outer_);
 
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(outer_.cols(), outer_.cols());
     for (label i = 0; i < n; ++i)
     {
-        matrix.row(i) = response.row(flow.sourcePlace(i));
+        matrix.row(i) = outer_.row(flow.sourcePlace(i));
     }
     for (label side = 0; side < 2 && slice_.wallSize(); ++side)
     {
         const label first = firstWall() + side*n;
         Eigen::MatrixXd flux(n, outer_.cols());
-        for (label i = 0; i < n; ++i) flux.row(i) = response.row(flow.fluxPlace(i, side));
-        matrix.middleRows(first, n) = wallByFlux_[side]*flux;
+        for (label i = 0; i < n; ++i) flux.row(i) = outer_.row(flow.fluxPlace(i, side));
+        // heat goes downstream in the walls
+        matrix.middleRows(first, n) = wallByFlux_[side].triangularView<Eigen::Lower>()*flux;
         matrix.block(first, first, n, n).diagonal().array() += 1;
-        if (isobar >= 0) matrix.block(first, n + 1, n, 1) -= slice_.wallByShift(state_, side);
     }
     matrix.row(n).head(n) = slice_.loadByColumn(state_)/slice_.contact().load;
-    if (isobar >= 0)
-    {
-        matrix(n, n + 1) = slice_.loadByShift(state_)/slice_.contact().load;
-        matrix(n + 1, isobar) = 1;
-    }
     rowScale_ = matrix.cwiseAbs().rowwise().maxCoeff().cwiseMax(VSMALL).cwiseInverse();
     reduced_.compute(rowScale_.asDiagonal()*matrix);
 }
@@ -328,34 +350,32 @@ Foam::slice::unknowns Foam::linearisation::solve
     const Eigen::VectorXd& wall
 ) const
 {
-    const filmFlow& flow = slice_.flow();
     const label n = slice_.columns();
     blockTridiagonal::rightSides inner = blockTridiagonal::rightSides::Zero(outer_.rows(), 1);
     inner.col(0).head(residual.size()) = residual;
-    const blockTridiagonal::rightSides right(inner);
     inner_.solve(inner);
 
-    Eigen::VectorXd reduced = Eigen::VectorXd::Zero(outer_.cols());
-    for (label i = 0; i < n; ++i)
-    {
-        reduced[i] = inner(flow.sourcePlace(i), 0) - source[i];
-    }
+    Eigen::VectorXd reduced = sources(inner);
+    reduced.head(n) -= source;
     reduced[n] = load;
     for (label side = 0; side < 2 && slice_.wallSize(); ++side)
     {
-        Eigen::VectorXd flux(n);
-        for (label i = 0; i < n; ++i) flux[i] = inner(flow.fluxPlace(i, side), 0);
-        reduced.segment(firstWall() + side*n, n) = wall.segment(side*n, n) + wallByFlux_[side]*flux;
+        reduced.segment(firstWall() + side*n, n) = wall.segment(side*n, n) + wallByFlux_[side]*wallFlux(inner, side);
     }
-    const Eigen::VectorXd outer = reduced_.solve(rowScale_.cwiseProduct(reduced));
+    Eigen::VectorXd outer = reduced_.solve(rowScale_.cwiseProduct(reduced));
 
     slice::unknowns change;
+    if (isobar_ >= 0)
+    {
+        // the shift that leaves the pressure of its column
+        change.shift = outer[isobar_]/outerByShift_[isobar_];
+        outer -= change.shift*outerByShift_;
+    }
     change.column = outer.head(n);
     change.offset = outer[n];
-    change.shift = firstWall() > n + 1 ? outer[n + 1] : 0;
     change.wall = outer.tail(slice_.wallSize());
-    inner = right - outer_*outer;
-    inner_.solve(inner);
+    inner.noalias() -= outer_*outer;
+    if (isobar_ >= 0) inner.col(0) -= change.shift*shift_;
     change.local = inner.col(0).head(residual.size());
     return change;
 }

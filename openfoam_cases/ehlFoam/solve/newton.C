@@ -26,6 +26,9 @@ static constexpr scalar mostDefect = 1e-8;
 //  given up; and steps in which none is half as long as the shortest before
 static constexpr label mostCuts = 12, mostIdle = 3, mostLost = 15;
 
+//- Length of a step up to which the law of shear is as good as its tangent
+static constexpr scalar straight = 1e-3;
+
 //- Length of a step that is none
 static constexpr scalar noLength = 1e-12;
 
@@ -219,7 +222,8 @@ Foam::newtonResult Foam::newton
         Eigen::Index most = 0;
         (next.column - u.column).cwiseAbs().maxCoeff(&most);
         const bool edge = crossed(s, u, next);
-        u = s.settled(u, next);
+        // short steps are met by the tangent itself
+        u = part == 1 && moved < straight ? next : s.settled(u, next);
         Info<< "  " << (fresh ? "Newton" : "chord ") << " step " << iteration
             << ": length " << moved << ", part taken " << part
             << ", most at x/b " << s.flow().film().x()[most]/s.contact().halfWidth

@@ -17,6 +17,19 @@ static constexpr label mostVectors = 120;
 static constexpr scalar smallResidual = 1e-8;
 
 
+//- Distance of a linearisation from the solution, in the unknowns, at which it is that of the solution
+static constexpr scalar atSolution = 1e-6;
+
+
+//- Largest difference of an unknown
+static scalar distance(const slice::unknowns& a, const slice::unknowns& b)
+{
+    const slice::unknowns d(a.plus(-1, b));
+    const scalar walls = d.wall.size() ? d.wall.cwiseAbs().maxCoeff() : 0;
+    return max(max(d.local.cwiseAbs().maxCoeff(), d.column.cwiseAbs().maxCoeff()), max(walls, mag(d.offset)));
+}
+
+
 //- All unknowns in one vector
 static Eigen::VectorXd packed(const slice::unknowns& u)
 {
@@ -71,11 +84,14 @@ Foam::List<Foam::filmResponse> Foam::response
     slice& s,
     const slice::unknowns& solution,
     const scalarField& frequencies,
-    const label isobar
+    const label isobar,
+    std::unique_ptr<linearisation>& tangent
 )
 {
     const label n = s.columns(), locals = s.localSize();
-    const linearisation linear(s, solution, nullptr, 0, isobar);
+    if (!tangent || !(distance(tangent->state(), solution) < atSolution)) tangent.reset(new linearisation(s, solution));
+    linearisation& linear = *tangent;
+    if (isobar >= 0) linear.follow(isobar);
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(n);
     const Eigen::VectorXd atRest = s.residual(solution, nullptr);
     const scalar halfWidthTime = s.contact().halfWidth/s.contact().entrainment();

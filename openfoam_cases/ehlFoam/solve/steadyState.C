@@ -63,6 +63,7 @@ Foam::solvedFilm Foam::steadyState
         stage.set("shear", law);
         if (heated > 0) stage.subDict("heat").set("share", heated);
         else stage.remove("heat");
+        found.tangent.reset();
         found.contact.reset();
         found.flow = filmFlow::New(type, stage, film, contact);
         found.contact.reset(new slice(*found.flow, contact, x, filmScale));
@@ -70,7 +71,6 @@ Foam::solvedFilm Foam::steadyState
         if (law.found("stress")) Info<< " " << law.get<scalar>("stress") << " Pa";
         if (heated > 0) Info<< ", " << heated << " of the heat";
         Info<< endl;
-        std::unique_ptr<linearisation> none;
         slice::unknowns start(found.contact->start(from.pressure, from.central));
         if (from.local.size() == start.local.size())
         {
@@ -104,7 +104,7 @@ Foam::solvedFilm Foam::steadyState
         {
             start = found.contact->balanced(start);
         }
-        found.result = newton(*found.contact, start, contact.load, stageControls, none);
+        found.result = newton(*found.contact, start, contact.load, stageControls, found.tangent);
         iterations += found.result.iterations;
         found.result.iterations = iterations;
         const bool converged = found.result.end == outcome::converged;
