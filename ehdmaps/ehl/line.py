@@ -219,15 +219,15 @@ def solve_groups(
         resolution = replace(resolution, density=VALLEY_REFINEMENT * resolution.density)
     solution = _solve_once(problem, M, L, resolution, previous)
     steps = solution.steps
-    nearby = OTHER_PLACES if problem.shear.form == LIMITING and problem.heat.log_eta.size == 0 else ()
-    others = [replace(resolution, density=factor * resolution.density) for factor in (*nearby, 2.0)]
-    for again in (*others[:-1], resolution.with_wide_spike, others[-1]):
+    nearby = OTHER_PLACES if problem.shear.form == LIMITING else ()
+    others = [replace(resolution, density=factor * resolution.density) for factor in nearby]
+    if problem.heat.log_eta.size == 0:  # with temperatures these take minutes, for few points
+        others += [resolution.with_wide_spike, replace(resolution, density=2.0 * resolution.density)]
+    for again in others:
         if solution.outcome == CONVERGED and (solution.loss > 0.0 or M < THIN_FILM):
             break
         if again == resolution:
             continue
-        if problem.heat.log_eta.size > 0:  # minutes where an oil yields, for few points
-            break
         # a front that is narrower than Newton finds its way to; a grid too coarse for the inlet of a heavily loaded
         # contact, which does not converge either, or shows a negative loss
         trial = _solve_once(problem, M, L, again, solution.profile)
