@@ -179,8 +179,8 @@ def _bearings(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
     """Stiffness and damping of each bearing over speed; bearings that do the same lie on each other."""
     rpm = entry.speeds * RPM.factor
     for index, dashes in zip(range(len(entry.bearings.names)), _DASHES * 16, strict=False):
-        axes[0].plot(rpm, 1e-6 * entry.bearings.stiffness[:, index], dashes, color=colour, lw=1.3)
-        axes[1].plot(rpm, entry.bearings.damping[:, index], dashes, color=colour, lw=1.3)
+        axes[0].plot(rpm, 1e-6 * entry.bearings.stiffness[:, index], ls=dashes, color=colour, lw=1.3)
+        axes[1].plot(rpm, entry.bearings.damping[:, index], ls=dashes, color=colour, lw=1.3)
         of = entry.bearings
         _band(axes[0], rpm, 1e-6 * of.stiffness[:, index], 1e-6 * of.stiffness_error[:, index], colour)
         _band(axes[1], rpm, of.damping[:, index], of.damping_error[:, index], colour)
