@@ -14,6 +14,7 @@ from ehdmaps.units import LOAD
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
 from mbs.model.elements import Operation
+from mbs.model.matrices import MatrixElement
 from mbs.scene.assembly import Model
 
 
@@ -49,6 +50,23 @@ def source_of(model: Model) -> str:
         Model with its law.
     """
     return "the map" if model.law.startswith("map ") else "the table of the film formula"
+
+
+SPEED_TABLE = "its table of speeds"
+"""What is left by a bearing or spring of matrices over speed."""
+
+
+def sources_of(model: Model) -> dict[str, str]:
+    """What each element reads, in words: `source_of` the laws of bearings, `SPEED_TABLE` of matrices over speed.
+
+    Parameters
+    ----------
+    model : Model
+        Model with its law.
+    """
+    elements = [entry.element for entry in model.system.elements]
+    source = source_of(model)
+    return {entry.name: SPEED_TABLE if isinstance(entry, MatrixElement) else source for entry in elements}
 
 
 def fade_of(model: Model) -> Fade | None:

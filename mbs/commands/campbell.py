@@ -18,7 +18,7 @@ from ehdmaps.workers import available_cores
 from mbs.analyses.campbell import MODE_SPEEDS, MOST_BANDS, CampbellResult, LawRun, campbell, campbell_problems
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import notable_from
-from mbs.analyses.reach import axes_outside, fade_of, source_of
+from mbs.analyses.reach import axes_outside, fade_of, sources_of
 from mbs.analyses.recorded import RecordedRun, simulated_campbell
 from mbs.analyses.resolution import resolution
 from mbs.analyses.tolerance import Tolerated, read_tolerance, within
@@ -247,7 +247,7 @@ def _report(entry: LawRun, sensors: Sequence[Sensor]) -> list[str]:
         "{} calls outside the map",
         axes_outside(entry.case.model, float(np.abs(record.speed).max())),
         entry.case.label,
-        source_of(entry.case.model),
+        sources_of(entry.case.model),
     )
     lines += [f"  {line}" for line in (*drive_lines(record.drive), *energy_lines(record.energy))]
     ends = (float(found.speeds[0]), float(found.speeds[-1]))

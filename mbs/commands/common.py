@@ -18,7 +18,7 @@ from ehdmaps.outputs import write_figure
 from ehdmaps.units import RPM, Display, quantity
 from mbs.analyses.case import clearance_text, temperature_text
 from mbs.analyses.film_errors import notable_from
-from mbs.analyses.reach import axes_outside, source_of
+from mbs.analyses.reach import axes_outside, sources_of
 from mbs.analyses.resolution import Resolution
 from mbs.analyses.rings import ring_motions
 from mbs.bearings.bearing_force import BearingForce
@@ -280,7 +280,7 @@ def outside_at(model: Model, balance: Equilibrium) -> list[str]:
         if isinstance(bearing.force, BearingForce)
     }
     axes = axes_outside(model, balance.operation.speed, loads)
-    return outside_lines(balance.outside, "lies outside the map", axes, source=source_of(model))
+    return outside_lines(balance.outside, "lies outside the map", axes, sources=sources_of(model))
 
 
 def write(arguments: argparse.Namespace, dataset: xr.Dataset, figure: Figure | None) -> list[str]:

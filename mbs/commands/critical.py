@@ -12,7 +12,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.units import RPM
 from mbs.analyses.critical import CriticalResult, critical, orders
 from mbs.analyses.operating import operating
-from mbs.analyses.reach import axes_outside
+from mbs.analyses.reach import axes_outside, sources_of
 from mbs.analyses.sweep import SweepSettings
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_model
@@ -35,7 +35,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     model = result.model
     fastest = float(np.abs(result.speeds).max())
     words = f"lies outside the map at {{}} of {result.sweep.speeds.size} speeds"
-    outside = outside_lines(result.outside, words, axes_outside(operating(model, fastest), fastest))
+    outside = outside_lines(
+        result.outside, words, axes_outside(operating(model, fastest), fastest), sources=sources_of(model)
+    )
     lines = [
         *done.lines,
         *heading(model),

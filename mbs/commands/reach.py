@@ -8,7 +8,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.units import RPM
-from mbs.analyses.reach import fade_of, share_below
+from mbs.analyses.reach import SPEED_TABLE, fade_of, share_below
 from mbs.scene.assembly import Model
 
 
@@ -38,8 +38,15 @@ def fade_lines(model: Model, speeds: FloatArray, of: str = "the speeds") -> list
     ]
 
 
+_ADVICE = {"the map": "make a map that reaches there", SPEED_TABLE: "give it these speeds too"}
+
+
 def outside_lines(
-    calls: Mapping[str, int], words: str, axes: Mapping[str, str], case: str = "", source: str = "the map"
+    calls: Mapping[str, int],
+    words: str,
+    axes: Mapping[str, str],
+    case: str = "",
+    sources: Mapping[str, str] | None = None,
 ) -> list[str]:
     """A line for each bearing whose law was called outside its map: every command says it by this function.
 
@@ -53,20 +60,21 @@ def outside_lines(
         How it is left, as `axes_outside` says it.
     case : str
         Begins the line, where several are compared.
-    source : str
-        What is left, as `mbs.analyses.reach.source_of` calls it.
+    sources : mapping of str to str
+        What is left, by bearing, as `mbs.analyses.reach.sources_of` calls it; "the map" if left out.
     """
     begin = f"{case}: " if case else ""
-    advice = (
-        "make a map that reaches there" if source == "the map" else "a map may reach there, `mbs plan` writes its job"
-    )
-    return [
-        f"warning: {begin}{name}: {words.format(count)}".replace("the map", source)
-        + (f" ({axes[name]})" if name in axes else "")
-        + f", where the law is held at its edge; {advice}"
-        for name, count in calls.items()
-        if count
-    ]
+    lines = []
+    for name, count in calls.items():
+        if not count:
+            continue
+        source = (sources or {}).get(name, "the map")
+        left = words.format(count).replace("the map", source)
+        axis = f" ({axes[name]})" if name in axes else ""
+        held = "the law" if source != SPEED_TABLE else "it"
+        advice = _ADVICE.get(source, "a map may reach there, `mbs plan` writes its job")
+        lines.append(f"warning: {begin}{name}: {left}{axis}, where {held} is held at its edge; {advice}")
+    return lines
 
 
 def _percent(part: float) -> str:

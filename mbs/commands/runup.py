@@ -17,7 +17,7 @@ from ehdmaps.units import RPM
 from ehdmaps.workers import available_cores
 from mbs.analyses.campbell import silent_run
 from mbs.analyses.case import Case
-from mbs.analyses.reach import Fade, axes_outside, fade_of, source_of
+from mbs.analyses.reach import Fade, axes_outside, fade_of, sources_of
 from mbs.analyses.recorded import amplitudes_at, simulated
 from mbs.analyses.resolution import resolution
 from mbs.analyses.runup import RunUpResult, RunUps, runup_problems, runups
@@ -238,7 +238,7 @@ def _report(found: RunUpResult) -> list[str]:
     lines += drive_lines(result.drive) + energy_lines(result.energy)
     lines += fade_lines(model, result.speed, "the run")
     fastest = float(np.abs(result.speed).max())
-    lines += outside_lines(outside, "{} calls outside the map", axes_outside(model, fastest), source=source_of(model))
+    lines += outside_lines(outside, "{} calls outside the map", axes_outside(model, fastest), sources=sources_of(model))
     # The equilibria of this line are no part of the run, whose calls were counted above.
     return lines + film_course(model, (float(result.speed[0]), float(result.speed[-1])))
 

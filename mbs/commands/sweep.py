@@ -18,7 +18,7 @@ from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import film_errors, notable_from
 from mbs.analyses.operating import operating
-from mbs.analyses.reach import axes_outside, fade_of, source_of
+from mbs.analyses.reach import axes_outside, fade_of, sources_of
 from mbs.analyses.sweep import SweepSettings, sweep, sweep_problems
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
@@ -356,7 +356,7 @@ def _outside(case: Case, result: Sweep, calls: Mapping[str, int]) -> list[str]:
     words = f"lies outside the map at {{}} of {result.speeds.size} speeds"
     fastest = float(np.abs(result.speeds).max())
     return outside_lines(
-        calls, words, axes_outside(operating(case.model, fastest), fastest), case.label, source_of(case.model)
+        calls, words, axes_outside(operating(case.model, fastest), fastest), case.label, sources_of(case.model)
     )
 
 

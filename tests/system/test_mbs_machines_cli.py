@@ -327,7 +327,8 @@ class TestCampbell:
             return whole(*arguments, **keywords)
 
         monkeypatch.setattr(campbell, "run_system", stopped)
-        status, out, err = run(capsys, *self.arguments(), "-o", "c.nc")
+        # in this process, where the run is stopped; side by side it is that of `test_side_by_side`
+        status, out, err = run(capsys, *self.arguments(), "-o", "c.nc", "--workers", "1")
         if at == 0:
             assert status == 130
             assert "stopped" in err

@@ -67,7 +67,7 @@ def test_a_speed_beyond_a_table_is_a_warning(here, capsys):
     )
     status, out, _ = run(capsys, "statics", "own.toml", *DAMPED)
     assert status == 1
-    assert "warning: locating: lies outside the map" in out
+    assert "warning: locating: lies outside its table of speeds, where it is held at its edge; give it" in out
 
 
 def test_no_critical_speed_without_spin_or_speeds(here, capsys):
