@@ -10,7 +10,6 @@ import threading
 from multiprocessing.connection import wait as wait_for_process
 from typing import Any
 
-from ehdmaps.compiling import Compiling
 from ehdmaps.program import tell
 
 MOST_WORKERS = 1024
@@ -50,6 +49,8 @@ def start_worker(told: Any = None) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     if told is not None:
+        from ehdmaps.compiling import Compiling  # with numba, which the parent's command line does without
+
         Compiling(lambda note: _say_once(note, told)).listen()
 
 

@@ -140,7 +140,9 @@ def _energy(
         along = heat.convection * film_here / face_step[f]
         made = heat.dissipation * film_here * film_here
         total, matrix = out[f], itself[f]
-        own[:], by_one[:], by_two[:] = 0.0, 0.0, 0.0
+        own[:] = 0.0
+        by_one[:] = 0.0
+        by_two[:] = 0.0
         for j in range(k):
             weight, y = WEIGHTS[j], flow[f, j]
             share = along * weight

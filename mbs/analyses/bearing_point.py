@@ -204,10 +204,12 @@ def bearing_point(
     operation = Operation(speed)
     try:
         balance = equilibrium(system, operation)
-    except InputError as error:  # the ring went further than small displacements allow
-        raise AnalysisError(
-            f"no equilibrium of {force.bearing.geometry.name} under {np.hypot(*given):.4g} N: {error}; the load is "
-            "beyond what the bearing can carry"
+    except AnalysisError as error:
+        if not isinstance(error.__cause__, InputError):
+            raise
+        raise AnalysisError(  # the ring went further than small displacements allow
+            f"no equilibrium of {force.bearing.geometry.name} under {np.hypot(*given):.4g} N: {error.__cause__}; the "
+            "load is beyond what the bearing can carry"
         ) from error
     pose = np.array([0.0, *balance.displacement, 0.0, 0.0, 0.0])
     rollers, u = element.rollers(pose, operation), element.entrainment_speed(operation)
