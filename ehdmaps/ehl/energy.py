@@ -118,6 +118,14 @@ def energy(
     return found
 
 
+@njit(cache=True, forceinline=True)
+def _add_product(matrix: FloatArray, vector: FloatArray, out: FloatArray) -> None:
+    """Add a product of matrix and vector to the first entries of a row."""
+    for i in range(matrix.shape[0]):
+        for j in range(matrix.shape[1]):
+            out[i] += matrix[i, j] * vector[j]
+
+
 @njit(cache=True)
 def _energy(
     problem: LineProblem, columns: Columns, face_step: FloatArray, walls: FloatArray, rises: FloatArray, first: int
@@ -227,9 +235,9 @@ def _energy(
         if f - 2 > first:
             before_that[f] += by_two @ columns.flow_warm[f - 2]
         for v in range(4):
-            slopes[f, 0, v, :k] += own @ columns.flow_slopes[f, v]
-            slopes[f, 1, v, :k] += by_one @ columns.flow_slopes[f - 1, v]
-            slopes[f, 2, v, :k] += by_two @ columns.flow_slopes[f - 2, v]
+            _add_product(own, columns.flow_slopes[f, v], slopes[f, 0, v])
+            _add_product(by_one, columns.flow_slopes[f - 1, v], slopes[f, 1, v])
+            _add_product(by_two, columns.flow_slopes[f - 2, v], slopes[f, 2, v])
         # what the cell at a wall has left over flows into the wall
         for side in range(2):
             row = 0 if side == 0 else k - 1

@@ -9,6 +9,7 @@ modes          complex modes at the equilibrium
 lsa            state space and frequency responses at the equilibrium
 sweep          modes, bearings and responses over speed, of one or more models
 critical       critical speeds, and the response to unbalances and orders over speed
+drive          the speed of a run by torques, the rolling torque of the bearings among those that resist
 runup          the nonlinear system in time over its speed profile
 resolution     what the steps of a run resolve, and what the method of integration takes from oscillations
 campbell       run-ups with one or more laws as levels over speed, frequency and order

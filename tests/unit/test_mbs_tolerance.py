@@ -184,7 +184,7 @@ class TestCommand:
             "sensor",
             "bands",
         )
-        given = argparse.Namespace(**dict.fromkeys(names), scene=str(scene), tolerance="20 dB", modes=False)
+        given = argparse.Namespace(**dict.fromkeys(names), scene=str(scene), tolerance="20 dB", modes=False, workers=1)
         given.load_factor = given.start_angle = None
         text, status = importlib.import_module("mbs.commands.campbell").run(given)
         assert status == 0

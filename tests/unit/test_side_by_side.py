@@ -13,6 +13,7 @@ import pytest
 
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.analyses.side_by_side import Failed, side_by_side
+from tests.cases.interruptible import start
 
 LAMBDA = {"a function that cannot be pickled": lambda value: value * value}
 
@@ -106,9 +107,7 @@ except KeyboardInterrupt:
 
 
 def test_ctrl_c_ends_all_processes():
-    child = subprocess.Popen(
-        [sys.executable, "-c", INTERRUPTED], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+    child = start([sys.executable, "-c", INTERRUPTED], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     workers = [int(child.stdout.readline()) for _ in range(2)]
     stopping = threading.Timer(60.0, child.kill)
     stopping.start()

@@ -45,7 +45,7 @@ def _wait(folder: Path) -> str:
 
 
 def _fill(folder: Path) -> str:
-    return "" if np.ones(20_000_000).all() else "no"
+    return "" if np.ones(8_000_000).all() else "no"
 
 
 def _ask(folder: Path) -> str:
