@@ -68,7 +68,7 @@ COLD_START_BELOW = 1.0
 VALLEY_REFINEMENT = 1.2
 """Density of cells at the bottom of the damping valley, relative to the density elsewhere."""
 
-OTHER_PLACES = 0.85, 1.05, 1.1
+OTHER_PLACES = 0.85, 0.75, 1.1
 """Densities of cells, relative to the one asked for, that are tried besides where an oil has a limiting stress: on some
 grids Newton goes round in circles, as its front stands between two cells."""
 
