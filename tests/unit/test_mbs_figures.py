@@ -134,7 +134,7 @@ class TestReach:
         ]
 
     def test_the_table_of_a_film_formula_is_no_map(self):
-        (line,) = outside_lines({"a": 1}, "lies outside the map", {}, source="the table of the film formula")
+        (line,) = outside_lines({"a": 1}, "lies outside the map", {}, sources={"a": "the table of the film formula"})
         assert line.startswith("warning: a: lies outside the table of the film formula, where the law is held at its")
         assert line.endswith("; a map may reach there, `mbs plan` writes its job")
 

@@ -539,7 +539,7 @@ def test_the_folder_of_the_build():
 
 
 def test_the_shipped_job():
-    assert JOB.shape == (2, 5, 4, 2)
+    assert JOB.shape == (2, 6, 4, 2)
     assert JOB.solver_options["flow"] == "thin_film"
     assert JOB.solver_options["columns"] == 400
 
