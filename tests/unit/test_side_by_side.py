@@ -96,7 +96,7 @@ import os, time
 from mbs.analyses.side_by_side import side_by_side
 
 def work(index, told):
-    print(os.getpid(), flush=True)
+    os.write(1, f"{os.getpid()}\\n".encode())
     time.sleep(60.0)
 
 try:
