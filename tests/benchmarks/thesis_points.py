@@ -10,6 +10,8 @@ taken as isothermal and Newtonian, then with the limiting shear stress that real
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
 from ehdmaps.physics.contact import LineContact
@@ -19,7 +21,9 @@ from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import ContactSolver, contact_solution
 from tests.cases.physics_ways import NOT_THERE, solver_of
 
-THIN = Lubricant.roelands(viscosity=16e-6 * 870.0, pressure_viscosity=2e-8, density=870.0)
+THIN = replace(
+    Lubricant.roelands(viscosity=16e-6 * 870.0, pressure_viscosity=2e-8, density=870.0), thermal_conductivity=0.134
+)
 OILS = {"FVA 3": Lubricant.named("FVA3"), "16 mm^2/s": THIN}
 WAYS = ("newtonian", "limiting", "thermal, limiting")
 CLOSED: dict[str, ContactSolver] = {"hertz": HertzSolver(), "formula": FormulaSolver()}
