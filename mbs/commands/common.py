@@ -39,7 +39,7 @@ RESOLUTION = 150
 MICROSECOND = Display("us", 1e6)
 
 ROUND_OFF = 1e-12
-"""Size of a part or ratio that is none."""
+"""Size below which a part or a ratio is shown as zero: round-off."""
 
 
 class Told:

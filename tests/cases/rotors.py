@@ -92,3 +92,24 @@ moment = "{OVERHUNG["unbalance"]!r} kg m"
         "overhung",
         "overhung",
     )
+
+
+DISC = """
+schema = 1
+[operation]
+speed = "3000 rpm"
+temperature = "40 degC"
+[[bodies]]
+name = "disc"
+freedoms = ["y", "z"]
+spin = 1
+mass = "2 kg"
+polar_inertia = "0.01 kg m^2"
+transverse_inertia = "0.005 kg m^2"
+[[springs]]
+name = "shaft"
+on = "disc"
+stiffness = { y = "2e5 N/m", z = "2e5 N/m" }
+damping = { y = "40 N s/m", z = "40 N s/m" }
+"""
+"""Scene of a disc of 2 kg between springs of 2e5 N/m and dampers of 40 N s/m."""

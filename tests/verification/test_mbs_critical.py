@@ -15,7 +15,7 @@ from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.settings import Settings
 from mbs.transient.run import Options, run
-from tests.cases.rotors import FAN, OVERHUNG, fan, overhung
+from tests.cases.rotors import DISC, FAN, OVERHUNG, fan, overhung
 
 RPM = math.pi / 30.0
 
@@ -53,24 +53,6 @@ class TestBesideRoss:
         np.testing.assert_allclose(found, wanted, rtol=1e-3, atol=1e-6 * np.abs(wanted).max())
 
 
-JEFFCOTT = """
-schema = 1
-[operation]
-speed = "3000 rpm"
-temperature = "40 degC"
-[[bodies]]
-name = "disc"
-freedoms = ["y", "z"]
-spin = 1
-mass = "2 kg"
-polar_inertia = "0.01 kg m^2"
-transverse_inertia = "0.005 kg m^2"
-[[springs]]
-name = "shaft"
-on = "disc"
-stiffness = { y = "2e5 N/m", z = "2e5 N/m" }
-damping = { y = "40 N s/m", z = "40 N s/m" }
-"""
 MASS, STIFFNESS, DAMPING = 2.0, 2e5, 40.0
 NATURAL = math.sqrt(STIFFNESS / MASS)
 
@@ -86,7 +68,7 @@ SLOPE = 20.0
 
 class TestJeffcott:
     def test_unbalance_of_a_closed_form(self):
-        text = JEFFCOTT + '[[unbalances]]\nname = "u"\non = "disc"\nmass = "20 g"\nradius = "10 mm"\n'
+        text = DISC + '[[unbalances]]\nname = "u"\non = "disc"\nmass = "20 g"\nradius = "10 mm"\n'
         found = critical(assemble(parse_scene(text, "jeffcott", "jeffcott")), SweepSettings(SweepRange(50.0, 600.0, 8)))
         ratio = found.speeds / NATURAL
         zeta = DAMPING / (2.0 * math.sqrt(MASS * STIFFNESS))
@@ -100,7 +82,7 @@ class TestJeffcott:
     @pytest.mark.parametrize(("part", "grows"), [(0.98, False), (1.02, True)])
     def test_whirl_sets_in_where_cross_coupling_beats_damping(self, part, grows):
         # m s^2 + c s + k - i kc = 0 has a root on the imaginary axis at kc = c sqrt(k/m).
-        system = assemble(parse_scene(JEFFCOTT + SEAL, "seal", "seal")).system
+        system = assemble(parse_scene(DISC + SEAL, "seal", "seal")).system
         threshold = DAMPING * NATURAL / SLOPE
         found = modes(equilibrium(system, Operation(part * threshold)))
         assert bool(min(found.damping_ratio) < 0.0) is grows
@@ -110,7 +92,7 @@ class TestJeffcott:
 
     @pytest.mark.parametrize("compiled", [True, False])
     def test_whirl_in_time(self, compiled):
-        system = assemble(parse_scene(JEFFCOTT + SEAL, "seal", "seal")).system
+        system = assemble(parse_scene(DISC + SEAL, "seal", "seal")).system
         speed = 2.0 * DAMPING * NATURAL / SLOPE
         start = np.array([1e-6, 0.0])
         record = run(
@@ -137,7 +119,7 @@ class TestJeffcott:
 
 def test_energy_of_a_table_over_a_run_up():
     text = (
-        JEFFCOTT
+        DISC
         + SEAL.replace("y_z", 'y = ["1e5 N/m", "-5e4 N/m"], y_z').replace("20 N s/m", "")
         + '[[unbalances]]\nname = "u"\non = "disc"\nmoment = "200 g mm"\n'
     )
@@ -150,7 +132,7 @@ def test_energy_of_a_table_over_a_run_up():
 
 def test_negative_stiffness_in_statics_and_beyond_a_table():
     text = (
-        JEFFCOTT
+        DISC
         + """
 [[loads]]
 name = "f"

@@ -13,31 +13,18 @@ from mbs import assemble, parse_scene
 from mbs.model.drive import Drive, DrivenSpeed, TorqueCurve
 from mbs.settings import Settings
 from mbs.transient.run import Options, run
+from tests.cases.rotors import DISC
 
 INERTIA = 0.02
 
-ROTOR = """
-schema = 1
-[operation]
-speed = "3000 rpm"
-temperature = "40 degC"
-[[bodies]]
-name = "disc"
-freedoms = ["y", "z"]
-spin = 1
-mass = "2 kg"
-polar_inertia = "0.01 kg m^2"
-transverse_inertia = "0.005 kg m^2"
-[[springs]]
-name = "shaft"
-on = "disc"
-stiffness = { y = "2e5 N/m", z = "2e5 N/m" }
-damping = { y = "40 N s/m", z = "40 N s/m" }
-[[unbalances]]
+ROTOR = (
+    DISC
+    + """[[unbalances]]
 name = "u"
 on = "disc"
 moment = "2 g m"
 """
+)
 MASS, STIFFNESS, DAMPING, MOMENT = 2.0, 2e5, 40.0, 2e-3
 
 
