@@ -10,7 +10,6 @@ from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.copies import put
-from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.lines import FAST
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_element import BearingElement
@@ -260,7 +259,7 @@ def _force_of(element: BearingElement) -> BearingForce:
 
 def is_strict(law: Law) -> bool:
     """Whether a law refuses loads above its map."""
-    return isinstance(law, ContactLaw) and law.outside == "error"
+    return law.outside == "error"
 
 
 def room_of(films: int, varies: bool) -> Films:
