@@ -235,7 +235,7 @@ class BearingBlock(FilmBlock[Bearings]):
             for element in (elements[first] for first in firsts)
         ]
         rings = gather_rings(members, films_of)
-        films = room_of(len(tables), any(table.varies for table in tables))
+        films = room_of(tables)
         course = CourseOfFilms(
             [table.places for table in tables],
             lambda film, *places: tables[film].prepare(*places, films.tables[film], films.numbers[film]),
@@ -262,9 +262,10 @@ def is_strict(law: Law) -> bool:
     return law.outside == "error"
 
 
-def room_of(films: int, varies: bool) -> Films:
-    """Room for tables."""
-    nodes, cells = (NODES + 1, 2 * table.ROWS) if varies else (1, 1)
+def room_of(tables: Sequence[SpeedTables]) -> Films:
+    """Room for tables; dry laws have one for all speeds, and power laws none."""
+    films, nodes = len(tables), NODES + 1 if any(one.varies for one in tables) else 1
+    cells = 2 * table.ROWS if any(one.has_cells for one in tables) else 1
     return Films(
         tables=np.zeros((films, nodes, cells, 8)),
         numbers=np.zeros((films, nodes, table.NUMBERS)),

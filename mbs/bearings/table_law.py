@@ -1,9 +1,9 @@
 """A dry law by points that a user has measured or computed: approach, line load and damping of a roller.
 
-Between the points the curve is a monotone cubic (PCHIP: F. N. Fritsch and R. E. Carlson, SIAM Journal on Numerical Analysis 17
-(1980) 238). It is brought into the cells of `mbs.bearings.slice_table`, centred where the load begins, so that
-compiled code reads it as it reads the table of a map. Cells are 3 % of their distance from the first point wide, but
-not less than 4e-6 of the whole range: a bend of the curve that is sharper than a cell is rounded within it.
+Between the points the curve is a monotone cubic (PCHIP: F. N. Fritsch and R. E. Carlson, SIAM Journal on Numerical
+Analysis 17 (1980) 238). It is brought into the cells of `mbs.bearings.slice_table`, centred where the load begins, so
+that compiled code reads it as it reads the table of a map. Cells are 3 % of their distance from the first point wide,
+but not less than 4e-6 of the whole range: a bend of the curve that is sharper than a cell is rounded within it.
 """
 
 from __future__ import annotations
