@@ -60,9 +60,9 @@ def parser() -> argparse.ArgumentParser:
     _films(sweep, compares=True)
     _sweep(sweep)
     critical = _scene_command(
-        commands, "critical", "critical speeds, and the response to unbalances and orders over speed", compares=False
+        commands, "critical", "critical speeds, and the response to unbalances and orders over speed", compares=True
     )
-    _films(critical, compares=False)
+    _films(critical, compares=True)
     _speeds(critical)
     campbell = _scene_command(
         commands,
