@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs.reader import parse_job
 from mbs import cli
+from mbs.analyses.plan import plan
 from mbs.analyses.planned_job import job_text
 from mbs.analyses.planning import (
     LIGHT,
@@ -378,3 +379,19 @@ def test_command_tells_whether_a_map_covers_the_scene(here, capsys, light, load,
     status, _, err = run(capsys, "nu308_rigid", "--map", "holed.nc")
     assert status == 2
     assert "1 holes" in err
+
+
+def test_an_unbalance_is_planned_for_with_its_force_on_a_stiff_rotor():
+    """Beside the same force as a load that stands still, along the load, where it is largest."""
+    before = plan(parse_scene(TEXT, "own", "own"))
+    moment = 50.0 * math.sqrt(2.0) / before.speeds[1] ** 2
+    unbalance = f'name = "u"\non = "shaft:left"\nmoment = "{moment!r} kg m"\nangle = "45 deg"\n'
+    load = 'name = "more"\non = "shaft:left"\nforce = ["0 N", "50 N", "50 N"]\n'
+    turning, standing = (
+        plan(parse_scene(f"{TEXT}\n[[{key}]]\n{words}", "own", "own")).needed[0].static_load
+        for key, words in (("unbalances", unbalance), ("loads", load))
+    )
+    # 1e-7: the equilibria begin elsewhere; the first of the angles is that of the load.
+    assert turning == pytest.approx(standing, rel=1e-7)
+    # Films that fill the clearance load the rollers, too; half of the load more is not half of the whole.
+    assert 1.1 < turning / before.needed[0].static_load < 1.5
