@@ -138,7 +138,9 @@ def speed_range(steady: Iterable[float], ramp: Sequence[float] = ()) -> tuple[fl
     return (min(low, SLOWEST * high) if passes_rest else low), high
 
 
-def largest_loads(system: System, bearings: Sequence[BearingElement], speed: float) -> tuple[float, ...]:
+def largest_loads(
+    system: System, bearings: Sequence[BearingElement], speed: float, turning: bool = True
+) -> tuple[float, ...]:
     """Largest load per unit length of a slice of each bearing at rest [N/m].
 
     Parameters
@@ -149,6 +151,8 @@ def largest_loads(system: System, bearings: Sequence[BearingElement], speed: flo
         Those of the system.
     speed : float
         Speed of the system [rad/s].
+    turning : bool
+        Whether unbalances and excitations count.
 
     Raises
     ------
@@ -173,7 +177,7 @@ def largest_loads(system: System, bearings: Sequence[BearingElement], speed: flo
     largest = np.zeros(len(places))
     profiles = [profile for _, profile in system.varying_loads]
     times = sorted({0.0, *(time for profile in profiles for time in _extremes(profile))})
-    for turned, time in itertools.product(_turned(system, speed), times):
+    for turned, time in itertools.product(_turned(system, speed) if turning else (system,), times):
         start = None
         for part in range(ANGLES if pitches else 1):
             operation = Operation(speed, max(pitches, default=0.0) * part / ANGLES, time)
