@@ -24,7 +24,8 @@ from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.memory import FilmState
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.force_at_point import Arrays, FlatLaw, ForceAtPoint, Triple, check_conditions, coupling_beside
+from mbs.bearings.flat_law import FlatLaw
+from mbs.bearings.force_at_point import Arrays, ForceAtPoint, Triple, check_conditions, coupling_beside
 from mbs.bearings.force_in_time import ForceInTime
 from mbs.bearings.kinematics import RingState
 from mbs.bearings.laws import DryLaw, Law
