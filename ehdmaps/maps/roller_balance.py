@@ -1,27 +1,41 @@
 """A roller in equilibrium between its two contacts, of which the outer one carries its centrifugal load besides.
 
 The approach delta of both contacts together divides into a and delta - a so that W_i(a) + q = W_o(delta - a). Newton's
-method in the logarithm of the loads, inside a closing bracket, finds a from any start; from a neighbouring approach,
-whose solution is carried on to the second order, in two steps.
+method in the logarithm of the loads, inside a closing bracket, finds a from any start. Of many approaches only some are
+solved so, each from the one before, carried on to the second order; the others start on the cubic between these, and
+take their steps together, in loops that the processor overlaps.
 """
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.elementary import log
-from ehdmaps.maps.lines import FAST, State, bent_state, line_approach, line_load
-from ehdmaps.maps.tables import Point
+from ehdmaps.maps.lines import (
+    FAST,
+    State,
+    bent_state,
+    cell_of,
+    line_approach,
+    line_load,
+    place_within,
+    stretched,
+)
+from ehdmaps.maps.tables import Line, Point
 
 LEAST_LOAD = 1e-200
 """Load that is none [N/m]."""
 
-_STEPS = 100
+_STEPS, _ROUNDS = 100, 4
 _LIGHT = 0.3
 
 _CLOSE = 1e-8
 """How far the logarithms of both loads may be apart before the last step, which leaves the square of that."""
+
+_REACH = 0.25
+"""How far apart approaches that are solved first may be, as a part of the scale and of how far they are from it."""
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -96,35 +110,99 @@ def balanced_state(point: Point, delta: float) -> State:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
+def _starts(point: Point, delta: FloatArray, a: FloatArray) -> None:
+    """Starts for the equilibria at rising approaches above lift-off: some are solved, the others lie between these."""
+    centre, scale = point.inner.offset + point.outer.offset, 1.0 / point.inner.inverse_scale
+    a[0] = _divided(point, delta[0], _start(point, delta[0]))
+    _, part, change = _joined(point, delta[0], a[0])
+    here = 0
+    while here < delta.size - 1:
+        reach = delta[here] + _REACH * (scale + abs(delta[here] - centre))
+        ahead = here + 1
+        while ahead + 1 < delta.size and delta[ahead + 1] <= reach:
+            ahead += 1
+        h = delta[ahead] - delta[here]
+        a[ahead] = _divided(point, delta[ahead], a[here] + h * (part + 0.5 * h * change))
+        _, next_part, change = _joined(point, delta[ahead], a[ahead])
+        secant = (a[ahead] - a[here]) / h if h > 0.0 else part
+        for i in range(here + 1, ahead):
+            t = (delta[i] - delta[here]) / h if h > 0.0 else 0.0
+            bend = (1.0 - t) * (part - secant) - t * (next_part - secant)
+            a[i] = a[here] + t * h * (secant + (1.0 - t) * bend)
+        here, part = ahead, next_part
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _roots(line: Line, at: FloatArray, g: FloatArray, dg: FloatArray) -> None:
+    """Cube roots of the loads of a line at many approaches, and their slopes."""
+    offset, inverse, start, step, c = line.offset, line.inverse_scale, line.start, line.step, line.coefficients
+    cells = c.shape[0]
+    for i in range(at.size):
+        s, ds = stretched((at[i] - offset) * inverse)
+        g[i], dg[i] = place_within((s - start) * step, cells), step * ds * inverse
+    for i in range(at.size):
+        cell = cell_of(g[i], cells)
+        k, t = np.uint64(cell), g[i] - cell
+        a1, a2, a3 = c[k, np.uint64(1)], c[k, np.uint64(2)], c[k, np.uint64(3)]
+        g[i] = c[k, np.uint64(0)] + t * (a1 + t * (a2 + t * a3))
+        dg[i] *= a1 + t * (2.0 * a2 + 3.0 * t * a3)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _approached(point: Point, delta: FloatArray, a: FloatArray, work: FloatArray) -> bool:
+    """A step of Newton's method at all approaches; whether it was the last."""
+    q, other, g_i, dg_i, g_o, dg_o = point.centrifugal_load, work[0], work[1], work[2], work[3], work[4]
+    for i in range(delta.size):
+        other[i] = delta[i] - a[i]
+    _roots(point.inner, a, g_i, dg_i)
+    _roots(point.outer, other, g_o, dg_o)
+    left = 0.0
+    for i in range(delta.size):
+        x = g_i[i] if g_i[i] > 0.0 else 0.0
+        y = g_o[i] if g_o[i] > 0.0 else 0.0
+        load_i, load_o = x * x * x + q, y * y * y
+        excess = log(load_i / load_o)
+        a[i] -= excess / (3.0 * x * x * dg_i[i] / load_i + 3.0 * y * y * dg_o[i] / load_o)
+        left += 0.0 if abs(excess) <= _CLOSE else 1.0
+    return left == 0.0
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def balanced_states(point: Point, delta: FloatArray, states: FloatArray) -> None:
-    """States of the roller at rest, each from the one before; fast where approaches rise in small steps.
+    """States of the roller at rest, at approaches that rise; fast where they rise in small steps.
 
     Parameters
     ----------
     point : Point
         The law, with a centrifugal load.
     delta : array (n,)
-        Approaches of both contacts together [m].
+        Approaches of both contacts together, rising [m].
     states : array (4, n)
         Filled: w [N/m], dw/ddelta [N/m2], c [N s/m2], dc/ddelta [N s/m3].
     """
     w, dw, c, dc = states[0], states[1], states[2], states[3]
-    a = part = change = 0.0
-    fresh = True
-    for i in range(delta.size):
-        if delta[i] <= point.lift_off:
-            w[i] = dw[i] = c[i] = dc[i] = 0.0
-            fresh = True
-            continue
-        if fresh:
-            a = _start(point, delta[i])
-        else:
-            more = delta[i] - delta[i - 1]
-            a += more * (part + 0.5 * more * change)
-        a = _divided(point, delta[i], a)
-        state, part, change = _joined(point, delta[i], a)
-        w[i], dw[i], c[i], dc[i] = state[0], state[1], state[0] * state[2], state[3]
-        fresh = state[0] == 0.0
+    first = 0
+    while first < delta.size and delta[first] <= point.lift_off:
+        w[first] = dw[first] = c[first] = dc[first] = 0.0
+        first += 1
+    if first == delta.size:
+        return
+    loaded = delta[first:]
+    a, work = np.empty(loaded.size), np.empty((5, loaded.size))
+    _starts(point, loaded, a)
+    found = False
+    for _ in range(_ROUNDS):
+        found = _approached(point, loaded, a, work)
+        if found:
+            break
+    for i in range(loaded.size):
+        if not found:
+            a[i] = _divided(point, loaded[i], a[i])
+        # the bracket is exact but for the rounding of the lines
+        between = min(max(a[i], point.inner_lift_off), loaded[i] - point.outer_start)
+        state, _, _ = _joined(point, loaded[i], between)
+        k = first + i
+        w[k], dw[k], c[k], dc[k] = state[0], state[1], state[0] * state[2], state[3]
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
