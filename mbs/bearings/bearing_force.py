@@ -66,8 +66,8 @@ class BearingForce:
     Notes
     -----
     A call is for one pose; `evaluate` says besides whether it was outside the map. Speed, temperature and centrifugal
-    load may change from call to call, which costs some 15 microseconds more, 50 with a centrifugal load; `at` gives the element at fixed ones. Both
-    give the same numbers. An object is for one thread.
+    load may change from call to call, which costs some 20 microseconds more, 50 with a centrifugal load; `at` gives the
+    element at fixed ones. Both give the same numbers. An object is for one thread.
     """
 
     def __init__(self, bearing: Bearing, law: Law, slices: int | None = None, outside: str | None = None) -> None:
