@@ -16,12 +16,13 @@ from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.bearing_kernel import bearing_force, ring_powers
+from mbs.bearings.faded_table import fade
 from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
 from mbs.bearings.laws import Law
 from mbs.bearings.level_kernel import level_force
 from mbs.bearings.rings import LEVEL, Rings, answer_ring, feels, gather_rings, motion_of, placed, shape_of
 from mbs.bearings.roller_motion import Work
-from mbs.bearings.slice_table import CELLS, KNOTS, LawNumbers, PreparedLaw, fade, law_numbers, store_numbers
+from mbs.bearings.slice_table import CELLS, KNOTS, LawNumbers, PreparedLaw, law_numbers, store_numbers
 from mbs.bearings.speed_tables import NODES, SpeedTables
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
 from mbs.model.elements import Element

@@ -38,9 +38,9 @@ from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, result_kind
 from mbs.scene.contact_laws import HERTZ_FORMS, hertz_damper
 from mbs.scene.fields import FORCE, MICROMETRE
 from mbs.scene.map_set import geometry_problems, structure_words
+from mbs.scene.profiles import profile_from_text
 
 LAWS = ("hertz", "formula", "map")
-PROFILES = ("iso", "straight")
 OIL, CELSIUS_40, ROUGHNESS = "FVA3", 313.15, 0.3e-6
 """Assumed where nothing is given: the oil, the temperature of the raceways [K], the combined rms roughness [m]."""
 
@@ -292,11 +292,7 @@ def _sliced(
 ) -> Bearing | None:
     """The bearing with clearance, profile and slices; without the last three where they are wrong."""
     before = len(problems)
-    if arguments.profile not in PROFILES:
-        problems.append(
-            f"--profile: got {short(arguments.profile)}{closest(arguments.profile, PROFILES)}; allowed: "
-            f"{', '.join(PROFILES)}"
-        )
+    profile = profile_from_text(arguments.profile, given.geometry if given else None, problems)
     slices = _whole("--slices", arguments.slices, 1, MOST_COUPLED if arguments.coupled else MOST_SLICES, problems)
     if given is None:
         return None
@@ -308,7 +304,7 @@ def _sliced(
             problems += [f"--clearance: {problem}" for problem in error.problems]
     if len(problems) > before:
         return Bearing(given.geometry, "iso", 41, given.material)
-    return Bearing(geometry, arguments.profile, slices, given.material, arguments.coupled)
+    return Bearing(geometry, profile, slices, given.material, arguments.coupled)
 
 
 def _map(path: str | None, structure: str | None, problems: list[str]) -> EHDMap | None:
