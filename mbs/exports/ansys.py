@@ -2,7 +2,8 @@
 
 Format: Ansys Rotordynamic Analysis Guide, appendix A, "Bearing Characteristics File Format": three titles (A80),
 number of steps and keys of units (3I10), and for each speed its number and value (I10, F10.2), K11, K12, K21, K22 and
-C11, C12, C21, C22 (4E15.7). Both keys are 0 here: SI, no conversion. A number with its point may have more digits than F10.2 says.
+C11, C12, C21, C22 (4E15.7). Both keys are 0 here: SI, no conversion. A number with its point may have more digits than
+F10.2 says.
 """
 
 from __future__ import annotations

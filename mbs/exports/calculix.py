@@ -65,7 +65,7 @@ def _text(table: LinearTable, header: tuple[str, ...], arguments: argparse.Names
     lines += [f"*NODE, NSET=EHD_{name}_GROUND"]
     for index, direction in enumerate(_DIRECTIONS):
         x, y, z = (p - _LENGTH * d for p, d in zip(place, direction, strict=True))
-        lines.append(f"{first + index}, {x!r}, {y!r}, {z!r}")
+        lines.append(f"{first + index}, {_decimal(x)}, {_decimal(y)}, {_decimal(z)}")
     for kind, offset, card, rows in (
         ("SPRINGA", 0, "SPRING", [[f"{_decimal(value)}"] for value in _along_lines(k[0])]),
         (
@@ -101,9 +101,8 @@ def _along_lines(matrix: FloatArray) -> tuple[float, float, float]:
 
 
 def _decimal(value: float) -> str:
-    """Write a number with its point, without which CalculiX takes it for a whole one."""
-    mantissa, exponent = f"{value:.15e}".split("e")
-    return f"{mantissa}e{int(exponent):+03d}"
+    """Write a number within the 20 characters that CalculiX reads, with its point: without one it is a whole number."""
+    return f"{value:.12e}"
 
 
 def _place(text: str, problems: list[str]) -> tuple[float, ...]:

@@ -1,7 +1,8 @@
 """Target `ross`: a bearing for ROSS, the rotordynamics library, as the file that `BearingElement.load` reads.
 
 In ROSS x and y are radial and z is axial. ROSS 2 calls the axis of spin speeds `frequency`; ROSS 3 has both axes,
-`speed` and `frequency`, and tables over both. Source: documentation of ross-rotordynamics 2.3 and 3.1, class BearingElement.
+`speed` and `frequency`, and tables over both. Source: documentation of ross-rotordynamics 2.3 and 3.1, class
+BearingElement.
 """
 
 from __future__ import annotations
