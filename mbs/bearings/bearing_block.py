@@ -10,7 +10,6 @@ from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.copies import put
-from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.lines import FAST
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_element import BearingElement
@@ -237,7 +236,7 @@ class BearingBlock(FilmBlock[Bearings]):
             for element in (elements[first] for first in firsts)
         ]
         rings = gather_rings(members, films_of)
-        films = room_of(len(tables), any(table.varies for table in tables))
+        films = room_of(tables)
         course = CourseOfFilms(
             [table.places for table in tables],
             lambda film, *places: tables[film].prepare(*places, films.tables[film], films.numbers[film]),
@@ -261,12 +260,13 @@ def _force_of(element: BearingElement) -> BearingForce:
 
 def is_strict(law: Law) -> bool:
     """Whether a law refuses loads above its map."""
-    return isinstance(law, ContactLaw) and law.outside == "error"
+    return law.outside == "error"
 
 
-def room_of(films: int, varies: bool) -> Films:
-    """Room for tables."""
-    nodes, cells = (NODES + 1, 2 * table.ROWS) if varies else (1, 1)
+def room_of(tables: Sequence[SpeedTables]) -> Films:
+    """Room for tables; dry laws have one for all speeds, and power laws none."""
+    films, nodes = len(tables), NODES + 1 if any(one.varies for one in tables) else 1
+    cells = 2 * table.ROWS if any(one.has_cells for one in tables) else 1
     return Films(
         tables=np.zeros((films, nodes, cells, 8)),
         numbers=np.zeros((films, nodes, table.NUMBERS)),

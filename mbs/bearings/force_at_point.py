@@ -137,15 +137,10 @@ class ForceAtPoint:
                     f"bearing force, centrifugal_load: got {centrifugal_load!r} N/m with the law {law.name!r}; "
                     "allowed: 0; only a map's law brings rollers into equilibrium"
                 )
-            length = bearing.geometry.roller_length
-            _set_power(
-                numbers,
-                law.coefficient / length,
-                law.exponent,
-                math.inf,
-                damping=law.damping / length,
-                damping_time=law.damping_time,
-            )
+            numbers[:], cells = law.prepared(bearing.geometry.roller_length)
+            if cells is not None:
+                self._work.make_room()
+                self._work.cells[:] = cells
         else:
             self._prepare(law)
         self._apart = self._by_slices or self._coupled
@@ -321,12 +316,16 @@ class ForceAtPoint:
             )
         if status < 0:
             raise_state(work.state, work.sizes, status == NOT_FINITE)
-        if not isinstance(law, ContactLaw):
-            return False
         if status == 0 and not self._outside:
             return False
         if status > 0 and law.outside == "error":
             highest = float(np.max(work.states[0]))
+            if isinstance(law, DryLaw):
+                raise OutsideMapError(
+                    f"bearing force, load: got about {highest:.6g} N/m in a slice at the pose "
+                    f"{work.state[:6].tolist()}; the law {law.name!r} has points up to "
+                    f"{table.LawNumbers(*work.numbers).held_load:.6g} N/m; give it points that reach there"
+                )
             raise OutsideMapError(
                 f"bearing force, load: got about {highest:.6g} N/m in a slice at the pose {work.state[:6].tolist()}; "
                 f"mapped: up to {law.load_range[1]:.6g} N/m\n"
@@ -407,15 +406,11 @@ def _set_power(
     exponent: float,
     highest: float,
     point: Point | None = None,
-    damping: float = 0.0,
-    damping_time: float = 0.0,
 ) -> None:
-    """Write a law w = a delta^b, with its dampers; held where that of a point is."""
+    """Write a law w = a delta^b; held where that of a point is."""
     power = _POWER._replace(
         coefficient=coefficient,
         exponent=exponent,
-        damping=damping,
-        damping_time=damping_time,
         highest=highest,
         safe_approach=(highest / coefficient) ** (1.0 / exponent),
     )

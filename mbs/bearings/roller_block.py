@@ -171,7 +171,7 @@ class RollerBlock(FilmBlock[RollerBearings]):
             plain, law = pairs[first]
             tables.append(SpeedTables(plain.bearing, FlatLaw(law), plain.temperature, (plain.rates[1], 0.0)))
         rollers = gather_rollers(members, films_of)
-        films = room_of(len(tables), any(table.varies for table in tables))
+        films = room_of(tables)
         course = CourseOfFilms(
             [table.places for table in tables],
             lambda film, *places: tables[film].prepare(*places, films.tables[film], films.numbers[film]),

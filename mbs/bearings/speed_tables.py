@@ -54,11 +54,14 @@ class SpeedTables:
     ----------
     varies : bool
         Whether the law changes with speed; a dry one has one table for all.
+    has_cells : bool
+        Whether the law is read from cells; a power law is not.
     """
 
     def __init__(self, bearing: Bearing, law: FlatLaw, temperature: float, rates: tuple[float, float]) -> None:
         self._bearing, self._law, self._temperature, self._rates = bearing, law, temperature, rates
         self.varies = isinstance(law.law, ContactLaw)
+        self.has_cells = isinstance(law.law, ContactLaw) or law.law.prepared(1.0)[1] is not None
         lowest, self._faded_below = 1.0, 0.0
         if isinstance(law.law, ContactLaw):
             lowest, self._faded_below = _limits(law.law, abs(rates[0]))

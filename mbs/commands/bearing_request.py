@@ -127,8 +127,8 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     given = _bearing(arguments.bearing, problems)
     emap = _map(arguments.map, arguments.structure, problems)
     law = _law(arguments.law, emap is not None or arguments.map is not None, problems)
-    loads = _values("--load", arguments.load, "N", _LOADS, FORCE, problems)
-    speeds = _values("--speed", arguments.speed, "rad/s", _SPEEDS, RPM, problems)
+    loads = read_values("--load", arguments.load, "N", _LOADS, FORCE, problems)
+    speeds = read_values("--speed", arguments.speed, "rad/s", _SPEEDS, RPM, problems)
     if len(loads) * len(speeds) > MOST_POINTS:
         problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
     if _all_slices(given, arguments.slices) * len(loads) * len(speeds) > MOST_SLICES_IN_ALL:
@@ -409,7 +409,7 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def _values(
+def read_values(
     option: str,
     given: Sequence[Sequence[str]],
     unit: str,
@@ -417,7 +417,23 @@ def _values(
     display: Display,
     problems: list[str],
 ) -> tuple[float, ...]:
-    """Rising values of an option: single ones, and ranges FROM TO POINTS, evenly spaced, wide ones in the logarithm."""
+    """Rising values of an option: single ones, and ranges FROM TO POINTS, evenly spaced, wide ones in the logarithm.
+
+    Parameters
+    ----------
+    option : str
+        Name of the option; begins the messages.
+    given : sequence of sequences of str
+        What was given for it, once for each time that it was given.
+    unit : str
+        Unit of the values.
+    limits : (float, float)
+        Smallest and largest allowed value [unit].
+    display : Display
+        How messages show values.
+    problems : list of str
+        Takes what is wrong.
+    """
     found: list[float] = []
     for texts in given:
         if len(texts) not in (1, 3):
