@@ -4,4 +4,5 @@
 |---|---|
 | `target` | what a target of `ehdmaps export` is, and which ones are registered |
 | `header` | what every export says of itself: axes, signs, range, provenance |
+| `mat` | points of a map as a struct for MATLAB and Octave |
 """
