@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 RPM = math.pi / 30.0
-SPEEDS = (500.0, 1500.0, 2500.0, 3500.0, 4500.0, 5500.0, 6500.0, 7500.0)
+SPEEDS = (500.0, 1500.0, 2500.0, 3500.0, 4500.0, 5500.0, 6000.0)
 """Speeds of the tables, at which both are compared too [rpm]."""
 
 LOAD, CLEARANCE, TEMPERATURE = "2 kN", "20 um", "40 degC"
@@ -91,9 +91,9 @@ def rotor(ross: Any, path: Path) -> Any:
     place, mass, polar, transverse = FAN["disc"]
     disc = ross.DiskElement(n=round(place / element), m=mass, Ip=polar, Id=transverse)
     bearings = []
-    for at in PLACES.values():
+    for name, at in PLACES.items():
         bearing = ross.BearingElement.load(path)
-        bearing.n = round(at / element)
+        bearing.n, bearing.tag = round(at / element), name
         bearing.n_l = bearing.n_r = bearing.n
         bearings.append(bearing)
     return ross.Rotor(elements, [disc], bearings)
