@@ -4,4 +4,6 @@
 |---|---|
 | `target` | what a target of `ehdmaps export` is, and which ones are registered |
 | `header` | what every export says of itself: axes, signs, range, provenance |
+| `folder` | exports that are folders: written whole or not at all |
+| `c` | the law and the bearing in C99 |
 """
