@@ -6,4 +6,5 @@
 | `header` | what every export says of itself: axes, signs, range, provenance |
 | `folder` | exports that are folders: written whole or not at all |
 | `c` | the law and the bearing in C99 |
+| `fmu` | a bearing as a Functional Mock-up Unit |
 """

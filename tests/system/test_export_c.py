@@ -35,15 +35,15 @@ def exported(path, folder, *options):
 
 
 @pytest.fixture(scope="module")
-def strict(formula_map, tmp_path_factory):
+def strict(small_map, tmp_path_factory):
     """The export of a map of NU308 that refuses whatever is outside."""
-    return exported(formula_map, tmp_path_factory.mktemp("strict") / "c")
+    return exported(small_map, tmp_path_factory.mktemp("strict") / "c")
 
 
 @pytest.fixture(scope="module")
-def centrifugal(formula_map, tmp_path_factory):
+def centrifugal(small_map, tmp_path_factory):
     """The library of one that holds at the edges of the map, with centrifugal loads."""
-    folder = exported(formula_map, tmp_path_factory.mktemp("held") / "c", "--outside", "clamp", "--centrifugal")
+    folder = exported(small_map, tmp_path_factory.mktemp("held") / "c", "--outside", "clamp", "--centrifugal")
     return Kernel(compiled(folder, "-shared", "-fPIC"))
 
 
@@ -53,8 +53,8 @@ def refusing(strict):
 
 
 @pytest.fixture(scope="module")
-def law(formula_map):
-    return open_map(formula_map).law("series", "clamp")
+def law(small_map):
+    return open_map(small_map).law("series", "clamp")
 
 
 def conditions(law, count, q=(0.0,), seed=3):
@@ -100,9 +100,10 @@ def test_law(centrifugal, law):
 def test_other_laws(tmp_path, job, options):
     """The law of a half-space of a bare contact, and of dry contacts of a bearing."""
     path = made_map(tmp_path, job)
-    folder = exported(path, tmp_path / "c", "--outside", "asymptote", *options)
+    outside = "asymptote" if options else "clamp"
+    folder = exported(path, tmp_path / "c", "--outside", outside, *options)
     kernel = Kernel(compiled(folder, "-shared", "-fPIC"))
-    law = open_map(path).law("line" if options else "series", "asymptote")
+    law = open_map(path).law("line" if options else "series", outside)
     T = law.temperature_range[0]
     for u in (0.0, 0.3, 1.0, 7.0):
         assert_law(kernel, law, u, T, 0.0)
@@ -131,9 +132,9 @@ def assert_bearing(kernel, force, rng, size, u, T, q):
 
 
 @pytest.mark.parametrize(("clearance", "slices", "q"), [(0.0, 41, 0.0), (20e-6, 5, 0.0), (-5e-6, 12, 300.0)])
-def test_bearing(centrifugal, law, formula_map, clearance, slices, q):
+def test_bearing(centrifugal, law, small_map, clearance, slices, q):
     """Force, stiffness and damping: above and below the lowest speed, at standstill, above the map."""
-    geometry = dataclasses.replace(open_map(formula_map).bearing, diametral_clearance=clearance)
+    geometry = dataclasses.replace(open_map(small_map).bearing, diametral_clearance=clearance)
     force, rng = BearingForce(Bearing(geometry, slices=slices), law), np.random.default_rng(slices)
     assert centrifugal.make(clearance, slices) == 0
     for u, T, own in conditions(law, 12, q=(0.0, q)):
@@ -141,9 +142,9 @@ def test_bearing(centrifugal, law, formula_map, clearance, slices, q):
             assert_bearing(centrifugal, force, rng, size, u, T, own)
 
 
-def test_profile(centrifugal, law, formula_map):
+def test_profile(centrifugal, law, small_map):
     """Rollers of another profile, and numbers of slices that are not allowed."""
-    bearing = Bearing(open_map(formula_map).bearing, slices=7, profile=tuple(np.linspace(0.0, 6e-6, 7)))
+    bearing = Bearing(open_map(small_map).bearing, slices=7, profile=tuple(np.linspace(0.0, 6e-6, 7)))
     assert centrifugal.make(0.0, 7, bearing.profile_depths) == 0
     assert_bearing(
         centrifugal, BearingForce(bearing, law), np.random.default_rng(0), 1e-5, 1.0, law.temperature_range[0], 0.0
@@ -152,9 +153,9 @@ def test_profile(centrifugal, law, formula_map):
         assert centrifugal.make(0.0, slices) == BAD_ARGUMENT
 
 
-def test_refused(refusing, formula_map):
+def test_refused(refusing, small_map):
     """Whatever is outside has a status of its own and gives NaN, never a number; Python raises there."""
-    law = open_map(formula_map).law("series")
+    law = open_map(small_map).law("series")
     (_, fast), (cold, hot) = law.speed_range, law.temperature_range
     inside = (1e-6, 0.0, 1.0, cold, 0.0)
     asked = {
@@ -197,9 +198,9 @@ def test_hostile(strict, tmp_path):
     assert result.returncode == 0, result.stdout + result.stderr
 
 
-def test_prefix_and_cplusplus(formula_map, tmp_path, capsys):
+def test_prefix_and_cplusplus(small_map, tmp_path, capsys):
     """Another prefix leaves no name of the first; the header is one of C++ too; a folder of others is left alone."""
-    folder = exported(formula_map, tmp_path / "c", "--prefix", "left", "--clearance", "20 um", "--slices", "5")
+    folder = exported(small_map, tmp_path / "c", "--prefix", "left", "--clearance", "20 um", "--slices", "5")
     assert sorted(file.name for file in folder.iterdir()) == ["left.c", "left.h"]
     head = (folder / "left.h").read_text()
     assert "ehd_" not in head and "EHD_" not in head
@@ -209,5 +210,5 @@ def test_prefix_and_cplusplus(formula_map, tmp_path, capsys):
     )
     subprocess.run(["g++", "-Wall", "-Werror", "-c", "use.cpp", "-o", "use.o"], cwd=folder, check=True)
     capsys.readouterr()
-    assert main(["export", str(formula_map), "--to", "c", "-o", str(folder)]) == 2
+    assert main(["export", str(small_map), "--to", "c", "-o", str(folder)]) == 2
     assert "which no export made" in capsys.readouterr().err
