@@ -17,7 +17,20 @@ from pathlib import Path
 
 import numpy as np
 
-POINT = "--load,2 kN,--direction,20 deg,--speed,500 rpm,--clearance,20 um,--frequency,100 Hz,2 kHz,9".split(",")
+POINT = [
+    "--load",
+    "2 kN",
+    "--direction",
+    "20 deg",
+    "--speed",
+    "500 rpm",
+    "--clearance",
+    "20 um",
+    "--frequency",
+    "100 Hz",
+    "2 kHz",
+    "9",
+]
 NAME = "bearing.bdf"
 
 
