@@ -17,20 +17,8 @@ from pathlib import Path
 
 import numpy as np
 
-POINT = [
-    "--load",
-    "2 kN",
-    "--direction",
-    "20 deg",
-    "--speed",
-    "500 rpm",
-    "--clearance",
-    "20 um",
-    "--frequency",
-    "100 Hz",
-    "2 kHz",
-    "9",
-]
+POINT = ["--load", "2 kN", "--direction", "20 deg", "--speed", "500 rpm", "--clearance", "20 um"]
+POINT += ["--frequency", "100 Hz", "2 kHz", "9"]
 NAME = "bearing.bdf"
 
 

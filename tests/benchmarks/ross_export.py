@@ -6,9 +6,9 @@ Run twice, in one folder for what passes between both environments:
     python -m tests.benchmarks.ross_export compare FOLDER          in an environment of ROSS (2.3 on Python 3.11, or
                                                                    3.1 on 3.13): reads the files, prints differences
 
-The rotor is the shaft and the wheel of the shipped overhung rotor on two NU308 with 20 um clearance, each with a static
-load of 2 kN, without weight; MAP.nc is a map of the NU308. The bearings of ROSS have no stiffness against tilting, those
-of mbs have: that is part of the differences.
+The rotor is the shaft and the wheel of the shipped overhung rotor on two NU308 with 20 um clearance, each with a
+static load of 2 kN, without weight; MAP.nc is a map of the NU308. The bearings of ROSS have no stiffness against
+tilting, those of mbs have: that is part of the differences.
 """
 
 from __future__ import annotations
