@@ -23,7 +23,8 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.solution import Status
 from ehdmaps.report.axis import Axis, log_axis, symlog_axis
 from ehdmaps.report.chart import GREY, SEQUENCE, Chart, Curve, Points, Shade, figure
-from ehdmaps.report.markup import Markup, number, tag
+from ehdmaps.report.markup import Markup, tag
+from ehdmaps.report.numbers import number, shown
 from ehdmaps.units import DAMPING, FILM, LOAD, SPEED, STIFFNESS, TEMPERATURE, Display
 
 MOST_CURVES = 6
@@ -269,21 +270,6 @@ def _chart(
         _shades(of, contact, temperature) if speed is None else [],
         [(BOUNDARY, "Λ = 1"), (MIXED, "Λ = 3")] if name == FILM_PARAMETER else [],
     )
-
-
-def shown(display: Display, value: float, digits: int = 3) -> str:
-    """Return a number with its unit as a report writes it.
-
-    Parameters
-    ----------
-    display : Display
-        Its unit.
-    value : float
-        In SI.
-    digits : int
-        How many digits count.
-    """
-    return typeset(f"{number(display.value(value), digits)} {display.unit}".rstrip())
 
 
 def _load_axis(loads: FloatArray) -> Axis:

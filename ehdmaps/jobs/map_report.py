@@ -17,13 +17,14 @@ from ehdmaps.jobs.describe import (
     roughness_lines,
     stated_rows,
 )
-from ehdmaps.jobs.map_charts import MapCurves, Operated, contact_charts, shown, shown_speed, shown_temperature
+from ehdmaps.jobs.map_charts import MapCurves, Operated, contact_charts, shown_speed, shown_temperature
 from ehdmaps.jobs.map_limits import limits
 from ehdmaps.jobs.plot import contact_words, what_is_mapped
 from ehdmaps.jobs.report import AXES, NONE_STATED, error_rows, holes, law_rows, plain, span, tolerance_lines
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.report.markup import Markup, joined, tag
+from ehdmaps.report.numbers import shown
 from ehdmaps.report.page import Section, document
 from ehdmaps.report.tables import pairs, sentences, table
 from ehdmaps.units import DAMPING, FILM, LOAD, SPEED, STIFFNESS, TEMPERATURE

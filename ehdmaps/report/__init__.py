@@ -4,6 +4,7 @@ The modules in the order in which data pass through them:
 
 =============  ====================================================================================
 markup         text and tags; whatever is no markup is escaped
+numbers        numbers as people read them
 axis           linear, logarithmic and two-sided logarithmic axes: places and ticks
 chart          curves over a common axis as inline SVG, with the numbers that a cursor reads off
 tables         tables of rows, and pairs of names and values

@@ -79,13 +79,14 @@ class Axis:
 
 
 def _log_ticks(low: float, high: float) -> list[float]:
-    """Decades; also 2 and 5 where there are few of them, and every second one where there are many."""
+    """Decades; also 2 and 5 where there are few of them, every second one where there are many, even steps in one."""
     first, last = math.floor(math.log10(low)), math.ceil(math.log10(high))
     steps = (1.0, 2.0, 5.0) if math.log10(high / low) < 2.0 else (1.0,)
     every = max(math.ceil((last - first) / _MOST_TICKS), 1)
     powers = [power for power in range(first, last + 1) if power % every == 0]
     found = [step * 10.0**power for power in powers for step in steps]
-    return [value for value in found if low * (1.0 - _ROUND_OFF) <= value <= high * (1.0 + _ROUND_OFF)]
+    inside = [value for value in found if low * (1.0 - _ROUND_OFF) <= value <= high * (1.0 + _ROUND_OFF)]
+    return inside if len(inside) > 1 else [value for value in _linear_ticks(low, high) if value > 0.0]
 
 
 def _linear_ticks(low: float, high: float) -> list[float]:

@@ -19,14 +19,64 @@ from ehdmaps.report.markup import Markup, joined, tag
 DIGITS = 5
 """Digits of the numbers that are read off."""
 
-WIDTH, HEIGHT = 460.0, 300.0
 LEFT, RIGHT, TOP, BOTTOM = 58.0, 18.0, 10.0, 42.0
-"""Size of a chart, and its margins [px of the drawing]."""
+"""Margins of a chart [px of the drawing]."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Size of a chart with its margins [px of the drawing]."""
+
+    width: float = 460.0
+    height: float = 300.0
+
+    @property
+    def right(self) -> float:
+        """Right end of the curves."""
+        return self.width - RIGHT
+
+    @property
+    def bottom(self) -> float:
+        """Lower end of the curves."""
+        return self.height - BOTTOM
+
+    def across(self, axis: Axis, values: FloatArray) -> FloatArray:
+        """Return the places of values on the horizontal axis [px].
+
+        Parameters
+        ----------
+        axis : Axis
+            The axis.
+        values : ndarray
+            In its unit.
+        """
+        part = axis.places(np.asarray(values, dtype=np.float64))
+        return np.asarray(LEFT + part * (self.right - LEFT))
+
+    def along(self, axis: Axis, values: FloatArray) -> FloatArray:
+        """Return the places of values on the vertical axis [px].
+
+        Parameters
+        ----------
+        axis : Axis
+            The axis.
+        values : ndarray
+            In its unit.
+        """
+        part = axis.places(np.asarray(values, dtype=np.float64))
+        return np.asarray(self.bottom - part * (self.bottom - TOP))
+
+
+USUAL, WIDE = Frame(), Frame(820.0, 420.0)
+"""Charts of which two stand side by side, and a single one."""
 
 SEQUENCE = ("#440154", "#453781", "#33638d", "#238a8d", "#20a387", "#55b030", "#a8a800")
 """Colours of a family of curves in their order, from dark to light, each legible on white."""
 
 GREY = "#5c5c5c"
+
+_FAR = 4000.0
+"""Places beyond a drawing at which lines are held [px]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +97,8 @@ class Curve:
         Its width [px].
     read : bool
         Whether the cursor reads it off; it needs a label then.
+    note : str
+        Text at its last place inside the chart.
     """
 
     label: str
@@ -55,6 +107,7 @@ class Curve:
     dash: str = ""
     width: float = 1.6
     read: bool = True
+    note: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +165,9 @@ class Chart:
     levels : sequence of (float, str)
         Horizontal lines with their names.
     behind : Markup or None
-        What is drawn first, in the places that `pixels` gives.
+        What is drawn first, in the places of the frame.
+    frame : Frame
+        Its size.
     """
 
     name: str
@@ -126,6 +181,7 @@ class Chart:
     shades: Sequence[Shade] = ()
     levels: Sequence[tuple[float, str]] = ()
     behind: Markup | None = None
+    frame: Frame = USUAL
 
 
 _SHAPES = {
@@ -150,7 +206,7 @@ def figure(chart: Chart) -> Markup:
         "figure",
         tag("figcaption", chart.title),
         drawing(chart),
-        tag("p", f"{chart.x.label}: ", tag("output", "-"), f" {chart.x.unit}", class_="cursor"),
+        tag("p", f"{chart.x.label}: ", tag("output", "-"), f" {chart.x.unit}", class_="cursor") if readable else None,
         _legend(chart),
         tag("p", chart.description, class_="says") if chart.description else None,
         _data(chart, readable) if readable and chart.places.size else None,
@@ -168,9 +224,9 @@ def drawing(chart: Chart) -> Markup:
         The chart.
     """
     inside = f"{chart.name}-inside"
-    across, along = WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM
+    across, along = chart.frame.right - LEFT, chart.frame.bottom - TOP
     frame = {"x": LEFT, "y": TOP, "width": across, "height": along}
-    known = any(np.isfinite(pixels(chart.y, curve.values, vertical=True)).any() for curve in chart.curves) or any(
+    known = any(np.isfinite(chart.frame.along(chart.y, curve.values)).any() for curve in chart.curves) or any(
         points.across.size for points in chart.points
     )
     parts = [
@@ -187,6 +243,7 @@ def drawing(chart: Chart) -> Markup:
             clip_path=f"url(#{inside})",
         ),
         *(_marks(chart, points) for points in chart.points),
+        *(_note(chart, curve) for curve in chart.curves if curve.note),
         tag("rect", class_="frame", **frame),
         tag("path", d=f"M{LEFT:g} {TOP:g}v{along:g}", class_="line"),
         None if known else tag("text", "no values", x=LEFT + across / 2.0, y=TOP + along / 2.0, text_anchor="middle"),
@@ -194,48 +251,33 @@ def drawing(chart: Chart) -> Markup:
     return tag(
         "svg",
         *parts,
-        viewBox=f"0 0 {WIDTH:g} {HEIGHT:g}",
+        viewBox=f"0 0 {chart.frame.width:g} {chart.frame.height:g}",
         role="img",
         tabindex="0",
         aria_labelledby=f"{chart.name}-title {chart.name}-desc",
     )
 
 
-def pixels(axis: Axis, values: FloatArray, vertical: bool = False) -> FloatArray:
-    """Return the places of values in the drawing [px].
-
-    Parameters
-    ----------
-    axis : Axis
-        The axis.
-    values : ndarray
-        In its unit.
-    vertical : bool
-        Whether it is the vertical one.
-    """
-    part = axis.places(np.asarray(values, dtype=np.float64))
-    if vertical:
-        return np.asarray(HEIGHT - BOTTOM - part * (HEIGHT - TOP - BOTTOM))
-    return np.asarray(LEFT + part * (WIDTH - LEFT - RIGHT))
-
-
 def _grid(chart: Chart) -> list[Markup]:
     """Lines of the grid, the numbers beside them, and the titles of both axes."""
-    bottom, right = HEIGHT - BOTTOM, WIDTH - RIGHT
+    bottom, right = chart.frame.bottom, chart.frame.right
     parts, lines = [], []
     for value, text in chart.x.ticks:
-        place = float(pixels(chart.x, np.array([value]))[0])
+        place = float(chart.frame.across(chart.x, np.array([value]))[0])
         lines.append(f"M{place:.1f} {TOP:g}V{bottom:g}")
         parts.append(tag("text", text, x=f"{place:.1f}", y=bottom + 15.0, text_anchor="middle"))
     for value, text in chart.y.ticks:
-        place = float(pixels(chart.y, np.array([value]), vertical=True)[0])
+        place = float(chart.frame.along(chart.y, np.array([value]))[0])
         lines.append(f"M{LEFT:g} {place:.1f}H{right:g}")
         parts.append(tag("text", text, x=LEFT - 5.0, y=f"{place + 3.5:.1f}", text_anchor="end"))
     middle = TOP + (bottom - TOP) / 2.0
     return [
         tag("path", d="".join(lines), class_="grid"),
         *parts,
-        tag("text", chart.x.title, x=LEFT + (right - LEFT) / 2.0, y=HEIGHT - 8.0, text_anchor="middle", class_="axis"),
+        tag(
+            "text", chart.x.title, x=LEFT + (right - LEFT) / 2.0, y=chart.frame.height - 8.0, text_anchor="middle",
+            class_="axis",
+        ),
         tag(
             "text", chart.y.title, transform=f"translate(13 {middle:g}) rotate(-90)", text_anchor="middle",
             class_="axis",
@@ -249,11 +291,10 @@ def path_of(across: FloatArray, along: FloatArray) -> str:
     Parameters
     ----------
     across, along : ndarray, shape (n,)
-        The points; beyond a few times the size of a drawing they are held there.
+        The points; far beyond a drawing they are held.
     """
     found, pen = [], False
-    limit = 4.0 * max(WIDTH, HEIGHT)
-    for x, y in zip(np.clip(across, -limit, limit).tolist(), np.clip(along, -limit, limit).tolist(), strict=True):
+    for x, y in zip(np.clip(across, -_FAR, _FAR).tolist(), np.clip(along, -_FAR, _FAR).tolist(), strict=True):
         if not (np.isfinite(x) and np.isfinite(y)):
             pen = False
             continue
@@ -264,19 +305,30 @@ def path_of(across: FloatArray, along: FloatArray) -> str:
 
 def _line(chart: Chart, curve: Curve) -> Markup | None:
     """A curve."""
-    path = path_of(pixels(chart.x, chart.places), pixels(chart.y, curve.values, vertical=True))
+    path = path_of(chart.frame.across(chart.x, chart.places), chart.frame.along(chart.y, curve.values))
     if not path:
         return None
     dash = curve.dash or None
     return tag("path", d=path, stroke=curve.colour, stroke_width=curve.width, stroke_dasharray=dash, class_="curve")
 
 
+def _note(chart: Chart, curve: Curve) -> Markup | None:
+    """The text of a curve at its last place inside the chart."""
+    inside = np.flatnonzero((curve.values >= chart.y.low) & (curve.values <= chart.y.high))
+    if not inside.size:
+        return None
+    last = inside[-1:]
+    x = float(chart.frame.across(chart.x, chart.places[last])[0])
+    y = float(chart.frame.along(chart.y, curve.values[last])[0])
+    return tag("text", curve.note, x=f"{x - 3.0:.1f}", y=f"{max(y - 4.0, TOP + 10.0):.1f}", text_anchor="end")
+
+
 def _marks(chart: Chart, points: Points) -> Markup | None:
     """Marks of one kind, as one path; those beyond the axes are left out."""
-    across, along = pixels(chart.x, points.across), pixels(chart.y, points.along, vertical=True)
-    along = np.where(np.isfinite(along), along, HEIGHT - BOTTOM - 6.0)
-    inside = np.isfinite(across) & (across > LEFT - 1.0) & (across < WIDTH - RIGHT + 1.0)
-    inside &= (along > TOP - 1.0) & (along < HEIGHT - BOTTOM + 1.0)
+    across, along = chart.frame.across(chart.x, points.across), chart.frame.along(chart.y, points.along)
+    along = np.where(np.isfinite(along), along, chart.frame.bottom - 6.0)
+    inside = np.isfinite(across) & (across > LEFT - 1.0) & (across < chart.frame.right + 1.0)
+    inside &= (along > TOP - 1.0) & (along < chart.frame.bottom + 1.0)
     path = "".join(
         f"M{x:.1f} {y:.1f}{_SHAPES[points.shape]}"
         for x, y in zip(across[inside].tolist(), along[inside].tolist(), strict=True)
@@ -286,18 +338,18 @@ def _marks(chart: Chart, points: Points) -> Markup | None:
 
 def _level(chart: Chart, value: float, words: str) -> Markup:
     """A horizontal line with its name."""
-    place = float(pixels(chart.y, np.array([value]), vertical=True)[0])
+    place = float(chart.frame.along(chart.y, np.array([value]))[0])
     return joined(
-        tag("path", d=f"M{LEFT:g} {place:.1f}H{WIDTH - RIGHT:g}", class_="level"),
-        tag("text", words, x=WIDTH - RIGHT - 4.0, y=f"{place - 4.0:.1f}", text_anchor="end", class_="level"),
+        tag("path", d=f"M{LEFT:g} {place:.1f}H{chart.frame.right:g}", class_="level"),
+        tag("text", words, x=chart.frame.right - 4.0, y=f"{place - 4.0:.1f}", text_anchor="end", class_="level"),
     )
 
 
 def _shade(chart: Chart, shade: Shade) -> Markup:
     """A shaded range."""
-    ends = np.clip(pixels(chart.x, np.array([shade.begin, shade.end])), LEFT, WIDTH - RIGHT)
+    ends = np.clip(chart.frame.across(chart.x, np.array([shade.begin, shade.end])), LEFT, chart.frame.right)
     width = max(float(ends[1] - ends[0]), 1.0)
-    return tag("rect", x=f"{ends[0]:.1f}", y=TOP, width=f"{width:.1f}", height=HEIGHT - TOP - BOTTOM, class_="shade")
+    return tag("rect", x=f"{ends[0]:.1f}", y=TOP, width=f"{width:.1f}", height=chart.frame.bottom - TOP, class_="shade")
 
 
 def _legend(chart: Chart) -> Markup | None:
@@ -335,9 +387,9 @@ def _data(chart: Chart, curves: Sequence[Curve]) -> Markup:
     record = {
         "x": {
             "values": _numbers(chart.places),
-            "pixels": [round(p, 1) for p in pixels(chart.x, chart.places).tolist()],
+            "pixels": [round(p, 1) for p in chart.frame.across(chart.x, chart.places).tolist()],
         },
-        "frame": [LEFT, TOP, WIDTH - RIGHT, HEIGHT - BOTTOM],
+        "frame": [LEFT, TOP, chart.frame.right, chart.frame.bottom],
         "unit": chart.y.unit,
         "curves": [_numbers(curve.values) for curve in curves],
     }

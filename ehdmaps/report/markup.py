@@ -76,21 +76,3 @@ def tag(element: str, /, *children: Child, **attributes: str | float | None) -> 
             words.append(f'{_NAMES.get(key, key.replace("_", "-"))}="{escaped(text)}"')
     head = f"<{' '.join(words)}>"
     return Markup(head if element in _VOID else f"{head}{joined(*children)}</{element}>")
-
-
-def number(value: float, digits: int = 3) -> str:
-    """Return a number with some digits, without an exponent where people do not need one.
-
-    Parameters
-    ----------
-    value : float
-        The number.
-    digits : int
-        How many digits count.
-
-    Examples
-    --------
-    >>> number(14123.4), number(0.01239), number(1.2e-7)
-    ('14100', '0.0124', '1.2e-07')
-    """
-    return f"{float(f'{value:.{digits}g}'):.10g}"
