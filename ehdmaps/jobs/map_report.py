@@ -20,9 +20,10 @@ from ehdmaps.jobs.describe import (
 from ehdmaps.jobs.map_charts import MapCurves, Operated, contact_charts, shown_speed, shown_temperature
 from ehdmaps.jobs.map_limits import limits
 from ehdmaps.jobs.plot import contact_words, what_is_mapped
-from ehdmaps.jobs.report import AXES, NONE_STATED, error_rows, holes, law_rows, plain, span, tolerance_lines
+from ehdmaps.jobs.report import AXES, NONE_STATED, error_rows, holes, law_rows, span, tolerance_lines
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.program import plain
 from ehdmaps.report.markup import Markup, joined, tag
 from ehdmaps.report.numbers import shown
 from ehdmaps.report.page import Section, document

@@ -8,7 +8,7 @@ import xarray as xr
 
 from ehdmaps.figures import typeset
 from ehdmaps.jobs.map_report import job, provenance, written_by
-from ehdmaps.jobs.report import plain
+from ehdmaps.program import plain
 from ehdmaps.report.markup import Markup, joined, tag
 from ehdmaps.report.page import Section, document
 from ehdmaps.report.tables import pairs, sentences

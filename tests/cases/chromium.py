@@ -13,6 +13,7 @@ import selectors
 import shutil
 import signal
 import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -33,6 +34,15 @@ FLAGS = (
     "--force-color-profile=srgb",
     "--remote-debugging-pipe",
 )
+
+_LAUNCH = """
+import fcntl, os, sys
+read, write = (fcntl.fcntl(int(number), fcntl.F_DUPFD, 10) for number in sys.argv[1:3])
+os.dup2(read, 3)
+os.dup2(write, 4)
+os.execv(sys.argv[3], sys.argv[3:])
+"""
+"""Puts the pipes in the places that Chromium looks for, and becomes Chromium."""
 
 PATIENCE = 60.0
 """Seconds for one answer; a busy machine takes some."""
@@ -137,9 +147,8 @@ def browser(folder: Path) -> Iterator[Page]:
     assert program is not None
     to_read, write = os.pipe()
     read, to_write = os.pipe()
-    shell = 'exec "$0" "$@" 3<&"$IN" 4>&"$OUT"'
     process = subprocess.Popen(
-        ["sh", "-c", shell.replace('"$IN"', str(to_read)).replace('"$OUT"', str(to_write)), program, *FLAGS,
+        [sys.executable, "-c", _LAUNCH, str(to_read), str(to_write), program, *FLAGS,
          f"--user-data-dir={folder / 'profile'}"],
         pass_fds=(to_read, to_write),
         stdin=subprocess.DEVNULL,
