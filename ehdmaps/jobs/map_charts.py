@@ -162,7 +162,7 @@ def contact_charts(of: MapCurves, contact: LineContact, operated: Sequence[Opera
     contact : LineContact
         One of its contacts.
     operated : sequence of Operated
-        Where a machine uses it; may be empty.
+        Operating points of a machine that uses the map; may be empty.
     prefix : str
         Begins the names of the charts: letters, digits and hyphens.
     """
@@ -190,7 +190,7 @@ def shown_temperature(of: MapCurves, operated: Sequence[Operated]) -> float:
     of : MapCurves
         The map.
     operated : sequence of Operated
-        Where a machine uses it; the first one decides.
+        Operating points of a machine; the first one decides.
     """
     axis = of.temperatures
     if operated and of.field is not None:
@@ -207,7 +207,7 @@ def shown_speed(of: MapCurves, operated: Sequence[Operated]) -> float:
     of : MapCurves
         The map.
     operated : sequence of Operated
-        Where a machine uses it; the first one decides.
+        Operating points of a machine; the first one decides.
     """
     axis = of.speeds
     if operated and of.field is not None:

@@ -190,7 +190,7 @@ def curve_sections(of: MapCurves, operated: Sequence[Operated], prefix: str, tit
     of : MapCurves
         The map.
     operated : sequence of Operated
-        Where a machine uses it; may be empty.
+        Operating points of a machine that uses the map; may be empty.
     prefix : str
         Begins the names of sections and charts.
     title : str

@@ -26,9 +26,9 @@ class Axis:
     label, unit : str
         What it shows.
     kind : {"linear", "log", "symlog"}
-        Spacing; symlog is logarithmic both ways from zero, and linear within `linear`.
+        Spacing of the values; symlog is logarithmic both ways from zero, and linear within `linear`.
     low, high : float
-        Its ends, in its unit; low < high, and above 0 where it is logarithmic.
+        Ends of the axis in its unit; low < high, and above 0 where it is logarithmic.
     linear : float
         Values up to which symlog is linear.
     """
@@ -51,7 +51,7 @@ class Axis:
         Parameters
         ----------
         values : ndarray
-            In the unit of the axis.
+            Values in the unit of the axis.
         """
         low, high = self._scaled(np.array([self.low, self.high]))
         return np.asarray((self._scaled(values) - low) / (high - low))

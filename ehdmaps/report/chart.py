@@ -48,7 +48,7 @@ class Frame:
         axis : Axis
             The axis.
         values : ndarray
-            In its unit.
+            Values in its unit.
         """
         part = axis.places(np.asarray(values, dtype=np.float64))
         return np.asarray(LEFT + part * (self.right - LEFT))
@@ -61,7 +61,7 @@ class Frame:
         axis : Axis
             The axis.
         values : ndarray
-            In its unit.
+            Values in its unit.
         """
         part = axis.places(np.asarray(values, dtype=np.float64))
         return np.asarray(self.bottom - part * (self.bottom - TOP))
@@ -86,15 +86,15 @@ class Curve:
     Attributes
     ----------
     label : str
-        Its name in the legend, where it has none if empty; may be foreign text.
+        Name in the legend, where an empty one has no place; may be foreign text.
     values : ndarray, shape (n,)
-        In the unit of the vertical axis; NaN where there is none.
+        Values in the unit of the vertical axis; NaN where there is none.
     colour : str
-        Its colour.
+        Colour of the line.
     dash : str
         Dashes as SVG writes them; empty for none.
     width : float
-        Its width [px].
+        Width of the line [px].
     read : bool
         Whether the cursor reads it off; it needs a label then.
     note : str
@@ -123,7 +123,7 @@ class Points:
     shape : {"dot", "ring", "cross", "triangle", "diamond"}
         What marks them.
     colour : str
-        Their colour.
+        Colour of the marks.
     """
 
     label: str
@@ -149,17 +149,17 @@ class Chart:
     Attributes
     ----------
     name : str
-        Its name in the document: letters, digits and hyphens, the only one of its kind.
+        Name in the document: letters, digits and hyphens, the only one of its kind.
     title, description : str
         What it shows, and what that says.
     x, y : Axis
-        Its axes.
+        Both axes of the chart.
     places : ndarray, shape (n,)
         Values on the horizontal axis at which the curves are known, rising.
     curves : sequence of Curve
         The curves.
     points : sequence of Points
-        Marks.
+        Marks at single places.
     shades : sequence of Shade
         Ranges that are shaded.
     levels : sequence of (float, str)
@@ -167,7 +167,7 @@ class Chart:
     behind : Markup or None
         What is drawn first, in the places of the frame.
     frame : Frame
-        Its size.
+        Size of the drawing.
     """
 
     name: str

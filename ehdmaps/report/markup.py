@@ -46,7 +46,7 @@ def joined(*children: Child) -> Markup:
 
     Parameters
     ----------
-    children : str or Markup or None
+    *children : str or Markup or None
         Texts are escaped.
     """
     return Markup("".join(escaped(child) for child in children if child is not None))
@@ -58,11 +58,11 @@ def tag(element: str, /, *children: Child, **attributes: str | float | None) -> 
     Parameters
     ----------
     element : str
-        Its name.
-    children : str or Markup or None
+        Name of the element.
+    *children : str or Markup or None
         What it contains; texts are escaped.
-    attributes : str or float or None
-        Its attributes; underscores in their names become hyphens, numbers have four digits, None leaves one out.
+    **attributes : str or float or None
+        Attributes of the element; underscores in names become hyphens, numbers have four digits, None leaves one out.
 
     Examples
     --------

@@ -30,9 +30,9 @@ def shown(display: Display, value: float, digits: int = 3) -> str:
     Parameters
     ----------
     display : Display
-        Its unit.
+        Unit of the number.
     value : float
-        In SI.
+        Value in SI.
     digits : int
         How many digits count.
 

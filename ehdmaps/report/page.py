@@ -27,9 +27,9 @@ class Section:
     Attributes
     ----------
     name : str
-        Its name in addresses: letters, digits and hyphens.
+        Name in addresses: letters, digits and hyphens.
     title : str
-        Its heading.
+        Heading of the section.
     content : sequence of str or Markup
         What it holds.
     """

@@ -76,7 +76,7 @@ def bearings(found: Examination) -> Iterator[Markup]:
             tag(
                 "div",
                 *(_matrix(words, matrix) for words, matrix in zip(("Stiffness K", "Damping C"), matrices, strict=True)),
-                class_="charts",
+                class_="matrices",
             ),
         )
 

@@ -31,9 +31,9 @@ class Examination:
     Attributes
     ----------
     statics : StaticsResult
-        Its equilibrium.
+        Equilibrium of the scene.
     modes : ModesResult or str
-        Its modes, or why there are none.
+        Modes at the equilibrium, or why there are none.
     sweep : SweepResult or str
         Modes over speed, or why there are none.
     maps : MapSet or None

@@ -25,7 +25,7 @@ class UsedMap:
     emap : EHDMap
         The map, with the surfaces of the model.
     operated : tuple of Operated
-        Its bearings in operation; those at the same speed and temperature together.
+        Operating points of its bearings; those at the same speed and temperature together.
     """
 
     emap: EHDMap
