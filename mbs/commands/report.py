@@ -45,7 +45,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     found = Examination(*done.result, _maps(asked))
     saved = None if asked.saved is None else (Path(arguments.result).name, asked.saved)
     maps = [Path(path).name for path in arguments.map or ()]
-    text = scene_report(found, _command(arguments), maps, saved, [line.strip() for line in done.lines])
+    # a page that is sent need not tell the folders of who made it
+    remarks = [line.strip().replace(f"{Path(arguments.maps or '.')}/", "") for line in done.lines]
+    text = scene_report(found, _command(arguments), maps, saved, remarks)
     write_report(arguments.output, text)
     failed = [reason for reason in (found.modes, found.sweep) if isinstance(reason, str) and reason]
     told = [f"warning: {line}" for line in (*warnings(found), *failed)]

@@ -23,9 +23,9 @@ from mbs.scene.fields import FORCE
 
 _SHOWN = (1, 2, 4, 5)
 _NAMES = ("y", "z", "θy", "θz")
-_ROUND_OFF = 1e-9
+_ROUND_OFF = 1e-8
 _LEAST_LOAD = 0.01
-_MIDDLE, _PITCH, _LONGEST = 150.0, 62.0, 62.0
+_MIDDLE, _PITCH, _LONGEST = 172.0, 62.0, 62.0
 """Middle, pitch circle and longest bar of a drawing [px]."""
 
 
@@ -43,12 +43,14 @@ def bearings(found: Examination) -> Iterator[Markup]:
         rollers = bearing.rollers(motion, balance.operation)
         matrices = ring_matrices(balance.element_stiffness[index], balance.element_damping[index])
         size = float(np.hypot(force[1], force[2]))
+        moves = 1e6 * motion[1:3]
+        path = float(np.hypot(*moves))
         inner, outer = contacts.sides
         rows = [
             ("force on the inner ring", f"{shown(FORCE, size)} (y {_part(force[1], size)}, z {_part(force[2], size)})"),
             (
                 "inner ring moves by",
-                f"{_part(1e6 * motion[1])} um in y, {_part(1e6 * motion[2])} um in z against the outer one",
+                f"{_part(moves[0], path)} um in y, {_part(moves[1], path)} um in z against the outer one",
             ),
             ("entrainment speed", shown(SPEED, float(bearing.entrainment_speed(balance.operation)))),
             ("loaded rollers", f"{loaded(rollers).size} of {rollers.load.size} (above 1 % of the highest load)"),
@@ -123,9 +125,9 @@ def roller_drawing(rollers: RollerLoads, load: FloatArray, name: str, title: str
     outside = _PITCH + radius + _LONGEST
     parts += [
         *_arrow(load),
-        tag("text", "y, 0°", x=_MIDDLE + outside - 4.0, y=_MIDDLE - 5.0, text_anchor="end"),
-        tag("text", "z, 90°", x=_MIDDLE + 4.0, y=_MIDDLE - outside + 12.0),
-        tag("text", f"{shown(FORCE, most)}", x=_MIDDLE, y=_MIDDLE + outside + 11.0, text_anchor="middle"),
+        tag("text", "y, 0°", x=_MIDDLE + outside + 4.0, y=_MIDDLE + 4.0),
+        tag("text", "z, 90°", x=_MIDDLE, y=_MIDDLE - outside - 5.0, text_anchor="middle"),
+        tag("text", f"{shown(FORCE, most)}", x=_MIDDLE, y=_MIDDLE + outside + 14.0, text_anchor="middle"),
     ]
     return tag(
         "svg",

@@ -42,7 +42,7 @@ def scene_report(
     saved : (str, xarray.Dataset) or None
         A result for the Campbell diagram and the name of its file, in place of the sweep.
     remarks : sequence of str
-        What else is to be told first, such as how maps were made.
+        Notes besides, such as how maps were made.
     """
     scene = found.model.scene
     used = list(used_maps(found))
@@ -52,7 +52,7 @@ def scene_report(
             "summary",
             "In short",
             [
-                sentences(map(typeset, [*in_short(found), *remarks])),
+                sentences(map(typeset, in_short(found))),
                 *(tag("p", typeset(f"Warning: {line}"), class_="warning") for line in told),
             ],
         ),
@@ -68,7 +68,7 @@ def scene_report(
     sections += [
         Section("modes", f"Modes at {RPM.text(scene.speed)}", [_modes(found)]),
         Section("campbell-diagram", "Campbell diagram", [_campbell(found, saved)]),
-        Section("limits", "What limits these numbers", [_limits(told, notes(found))]),
+        Section("limits", "What limits these numbers", [_limits(told, [*notes(found), *remarks])]),
         Section("provenance", "Provenance", [_provenance(found, command, maps)]),
     ]
     lead = f"{RPM.text(scene.speed)}; law {found.model.law}."
