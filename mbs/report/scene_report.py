@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import xarray as xr
@@ -13,7 +14,7 @@ from ehdmaps.report.markup import Markup, joined, tag
 from ehdmaps.report.page import Section, document
 from ehdmaps.report.tables import pairs, sentences
 from ehdmaps.units import RPM
-from mbs.analyses.campbell import excited_orders
+from mbs.analyses.followed import excited_orders
 from mbs.report.bearings import bearings
 from mbs.report.campbell import campbell, lines_of, saved_campbell
 from mbs.report.examination import Examination
@@ -92,7 +93,9 @@ def _campbell(found: Examination, saved: tuple[str, xr.Dataset] | None) -> Marku
     """The diagram, or why there is none."""
     model = found.model
     given = model.scene.campbell.orders
-    orders = [(order, f"{order:g}") for order in given] if given else [(1.0, "1"), *excited_orders(model)]
+    # modes of a linear system, not of a run: no order is too slow for it
+    excited = {1.0: "1", **dict(excited_orders(model, math.inf))}
+    orders = [(order, f"{order:g}") for order in given] if given else sorted(excited.items())
     if saved is not None:
         name, dataset = saved
         return saved_campbell(dataset, orders, _highest(found), name)
