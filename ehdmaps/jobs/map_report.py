@@ -182,7 +182,9 @@ def cross_section(bearing: BearingGeometry, name: str) -> Markup:
     )
 
 
-def curve_sections(of: MapCurves, operated: Sequence[Operated], prefix: str, title: str = "") -> list[Section]:
+def curve_sections(
+    of: MapCurves, operated: Sequence[Operated], prefix: str, title: str = "", capped: bool | None = None
+) -> list[Section]:
     """Return a section of curves for each contact.
 
     Parameters
@@ -195,6 +197,8 @@ def curve_sections(of: MapCurves, operated: Sequence[Operated], prefix: str, tit
         Begins the names of sections and charts.
     title : str
         Ends the headings.
+    capped : bool or None
+        Whether an oil supply caps the films in use; as the map's job states it if None.
     """
     known = (
         "Lines are the contact laws of the map, dots its solved points."
@@ -203,6 +207,8 @@ def curve_sections(of: MapCurves, operated: Sequence[Operated], prefix: str, tit
     )
     if of.field is not None and not of.emap.surface.smooth:
         known += " Lines of k, c and approach are of rough surfaces, dots and films of smooth ones."
+    if capped or (capped is None and not of.emap.supply.flooded):
+        known += " All curves and dots are of flooded contacts; the oil supply that is stated gives thinner films."
     marked = " Red curves and diamonds are the machine in operation." if operated else ""
     return [
         Section(

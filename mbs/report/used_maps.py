@@ -26,10 +26,13 @@ class UsedMap:
         The map, with the surfaces of the model.
     operated : tuple of Operated
         Operating points of its bearings; those at the same speed and temperature together.
+    capped : bool
+        Whether an oil supply caps the films of some bearing.
     """
 
     emap: EHDMap
     operated: tuple[Operated, ...]
+    capped: bool
 
 
 def used_maps(found: Examination) -> Iterator[UsedMap]:
@@ -56,7 +59,8 @@ def used_maps(found: Examination) -> Iterator[UsedMap]:
             label = bearing.name if before is None else f"{before.label}, {bearing.name}"
             points[place] = Operated(label, loads, speed, bearing.temperature)
         surface = model.surface
-        yield UsedMap(emap if surface is None else emap.with_surface(surface), tuple(points.values()))
+        capped = any(not supply.flooded for supply in model.supplies.values())
+        yield UsedMap(emap if surface is None else emap.with_surface(surface), tuple(points.values()), capped)
 
 
 def map_sections(used: UsedMap, prefix: str, several: bool) -> list[Section]:
@@ -73,7 +77,7 @@ def map_sections(used: UsedMap, prefix: str, several: bool) -> list[Section]:
     """
     title = f" ({what_is_mapped(used.emap)[0]})" if several else ""
     return [
-        *curve_sections(MapCurves(used.emap), used.operated, prefix, title),
+        *curve_sections(MapCurves(used.emap), used.operated, prefix, title, used.capped),
         Section(f"{prefix}-limits", typeset(f"Where the map is limited, and why{title}"), [limits(used.emap, prefix)]),
         Section(f"{prefix}-accuracy", f"How accurate the map is{title}", [accuracy(used.emap)]),
     ]
