@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from os import PathLike, fspath
 from pathlib import Path
 
@@ -39,6 +40,7 @@ def generate(
     progress: Callable[[int], Progress] | None = None,
     tolerance: float | None = None,
     corrector: ContactSolver | None = None,
+    executor: Executor | None = None,
 ) -> xr.Dataset:
     """Make a map.
 
@@ -69,6 +71,9 @@ def generate(
         what was found. It needs an output file.
     corrector : ContactSolver, optional
         Solver in place of the one that the job names in `corrected_by`.
+    executor : concurrent.futures.Executor, optional
+        What solves the points in place of processes that are started here, with ``workers`` of no account then: a pool
+        of threads or processes, or that of a cluster, such as dask's ``Client().get_executor()``. It stays open.
 
     Returns
     -------
@@ -89,9 +94,12 @@ def generate(
         )
     if output is None:
         plain = dataclasses.replace(chosen, backbone="none")
-        return generating.generate_in_memory(plain, workers, progress, made_by, corrector).dataset
+        return generating.generate_in_memory(plain, workers, progress, made_by, corrector, executor).dataset
     check_outputs([Output("output", Path(output), MAP)], [] if isinstance(job, Job) else [fspath(job)])
-    return generating.generate(chosen, Path(output), workers, fresh, progress, made_by, tolerance, corrector).dataset
+    generated = generating.generate(
+        chosen, Path(output), workers, fresh, progress, made_by, tolerance, corrector, executor
+    )
+    return generated.dataset
 
 
 def _with_solver(job: Job, name: str | None) -> Job:

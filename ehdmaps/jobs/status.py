@@ -94,18 +94,21 @@ class StatusFile:
     ----------
     output : Path
         The map.
-    job : Job
-        What is made.
+    about : str
+        What is made, see `about`.
     total : int
         Number of points.
     workers : int
         Number of processes.
+    stays : bool
+        Whether it stays at the end of a run that finishes: of a shard, which leaves no map that would say so.
     """
 
-    def __init__(self, output: Path, job: Job, total: int, workers: int) -> None:
+    def __init__(self, output: Path, about: str, total: int, workers: int, stays: bool = False) -> None:
         self._path = status_path(output)
+        self._stays = stays
         self._about = {
-            "job": f"{job.title}, {job.lubricant.name}, solver {job.solver}",
+            "job": about,
             "process": os.getpid(),
             "host": platform.node(),
             "workers": workers,
@@ -126,7 +129,7 @@ class StatusFile:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if kind is not None:
+        if kind is not None or self._stays:
             self.write()
         elif self._held is not None:
             with contextlib.suppress(OSError):
@@ -194,6 +197,11 @@ class StatusFile:
         if self._held is not None:
             os.close(self._held)
         self._held = descriptor
+
+
+def about(job: Job) -> str:
+    """What is made, in words."""
+    return f"{job.title}, {job.lubricant.name}, solver {job.solver}"
 
 
 def status_path(output: Path) -> Path:

@@ -10,7 +10,7 @@ import pytest
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import cli, status
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.jobs.status import RunStatus, StatusFile, look, status_path
+from ehdmaps.jobs.status import RunStatus, StatusFile, about, look, status_path
 from ehdmaps.physics.solution import Status
 from tests.cases.jobs import DRY
 
@@ -47,7 +47,7 @@ def seen(output):
 
 def test_a_run_can_be_looked_at_and_leaves_nothing_behind(output, job, monkeypatch):
     monkeypatch.setattr(status, "WRITE_SECONDS", 0.0)
-    with StatusFile(output, job, 12, workers=3) as written:
+    with StatusFile(output, about(job), 12, workers=3) as written:
         assert seen(output)[0].done == 0
         written.found(Line(), arrays(*[Status.CONVERGED] * 3, Status.STAGNATED), now=False)
         written.found(Line(), arrays(Status.FAILED, Status.STAGNATED, Status.ASYMPTOTE, Status.CONVERGED), now=True)
@@ -62,7 +62,7 @@ def test_a_run_can_be_looked_at_and_leaves_nothing_behind(output, job, monkeypat
 
 
 def test_a_run_that_ends_early_leaves_its_last_status(output, job):
-    with pytest.raises(KeyboardInterrupt), StatusFile(output, job, 12, workers=1) as written:
+    with pytest.raises(KeyboardInterrupt), StatusFile(output, about(job), 12, workers=1) as written:
         written.found(Line(), arrays(*[Status.CONVERGED] * 4), now=True)
         raise KeyboardInterrupt
     found, running = seen(output)
@@ -70,7 +70,7 @@ def test_a_run_that_ends_early_leaves_its_last_status(output, job):
 
 
 def test_it_is_written_now_and_then_and_after_every_point_that_took_long(output, job):
-    with StatusFile(output, job, 100, workers=1) as written:
+    with StatusFile(output, about(job), 100, workers=1) as written:
         for _ in range(5):
             written.found(Line(), arrays(*[Status.CONVERGED] * 4), now=True)
         assert seen(output)[0].done == 0  # the first one is younger than WRITE_SECONDS
@@ -80,7 +80,7 @@ def test_it_is_written_now_and_then_and_after_every_point_that_took_long(output,
 
 def test_who_looks_does_not_disturb(output, job, monkeypatch):
     monkeypatch.setattr(status, "WRITE_SECONDS", 0.0)
-    with StatusFile(output, job, 100, workers=1) as written:
+    with StatusFile(output, about(job), 100, workers=1) as written:
         held = [status_path(output).open("rb") for _ in range(3)]
         for file in held:
             with pytest.raises(BlockingIOError):
@@ -98,7 +98,7 @@ def test_who_looks_does_not_disturb(output, job, monkeypatch):
 def test_a_status_that_cannot_be_written_is_no_reason_to_stop(output, job, obstacle):
     path = status_path(output)
     path.mkdir() if obstacle == "folder" else path.write_text("mine")
-    with StatusFile(output, job, 4, workers=1) as written:
+    with StatusFile(output, about(job), 4, workers=1) as written:
         written.found(Line(), arrays(*[Status.CONVERGED] * 4), now=True)
     assert path.is_dir() if obstacle == "folder" else path.read_text() == "mine"
 
@@ -148,7 +148,7 @@ def test_an_interrupted_run_by_all_its_names(output, capsys, name):
 
 
 def test_a_running_one(output, job, capsys):
-    with StatusFile(output, job, 12, workers=3):
+    with StatusFile(output, about(job), 12, workers=3):
         code, out, _ = command(capsys, "mine.nc")
     assert code == 0
     assert f"mine.nc: running, process {os.getpid()} on " in out and "with 3 workers" in out
