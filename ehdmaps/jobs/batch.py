@@ -44,6 +44,9 @@ MOST_MEMBERS = 20_000
 LONGEST_NAME = 120
 """Characters of the name of a member, which becomes the name of a file."""
 
+SUMMARY = "summary.csv"
+"""File with the table of all maps of a batch, in their folder."""
+
 SHARED, OWN = "shared", "own"
 """Whether maps are read from the lines that they share with others, or solved at their own points."""
 

@@ -35,10 +35,10 @@ MADE, KEPT, FAILED = "made", "kept", "failed"
 BATCH, FINGERPRINT = "batch", "batch_fingerprint"
 """Attributes of a map of a batch: the name of the batch, and the hash of all that shapes the map."""
 
-_PIECES = 4
+_PIECES = 16
 """Pieces of work for each worker, into which the maps of a family are cut."""
 
-_LONGEST_PIECE = 25
+_LONGEST_PIECE = 10
 """Maps of one piece, which is lost as a whole when its process is killed."""
 
 _DIED = "the worker process died (killed, or out of memory); the same command tries again"
@@ -310,6 +310,7 @@ class _Run:
                 Outcome(m, self.folder / f"{m.name}.nc", FAILED, SHARED, reason=_DIED) for _, m, _ in piece.members
             ]
             outcomes.update({outcome.member.name: outcome for outcome in made})
+            self.status.write()
             if counter:
                 counter.solved(len(made))
         return solved.family.lines.points, []

@@ -8,14 +8,13 @@ from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
+from ehdmaps.jobs.batch import SUMMARY
 from ehdmaps.jobs.batch_generate import FAILED, BatchResult, Outcome
 from ehdmaps.jobs.progress import duration
 from ehdmaps.outputs import MARK, TABLE, write_text
 
 _SHOWN = 30
 """Maps that are not good and that are named on a terminal; all stand in the table."""
-
-SUMMARY = "summary.csv"
 
 _COLUMNS = ("map", "bearing", "oil", "override", "state", "films", "points_without_solution", "laws_miss", "seconds")
 

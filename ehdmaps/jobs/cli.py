@@ -59,7 +59,13 @@ def parser() -> argparse.ArgumentParser:
 
     status = commands.add_parser("status", help="how far a map is that is being made, or was interrupted")
     status.add_argument(
-        "map", metavar="MAP.nc", nargs="?", help="or its store, or its JOB; default: all maps in this folder"
+        "map",
+        metavar="MAP.nc",
+        nargs="?",
+        help="or its store, its JOB, or a batch file, with its shards; default: all maps in this folder",
+    )
+    status.add_argument(
+        "-o", "--output", metavar="MAP.nc", help="of the job, or the folder of the batch, as for generate"
     )
 
     check = commands.add_parser("check", help="list every problem of a job; estimate points, time, memory")

@@ -31,7 +31,7 @@ MOST_SHARDS = 100_000
 ABOUT = "about"
 """Key of the entry that says what a store of a shard belongs to."""
 
-_NAME = re.compile(r"(?P<output>.+)\.shard-(?P<index>\d+)-of-(?P<of>\d+)\.store")
+_NAME = re.compile(r"(?P<output>.+)\.shard-(?P<index>\d{1,6})-of-(?P<of>\d{1,6})\.store(?P<status>\.status)?")
 _SHOWN = 20
 
 
@@ -116,9 +116,34 @@ def found_shards(output: Path) -> dict[Shard, Path]:
     found = {}
     for path in output.parent.iterdir() if output.parent.is_dir() else ():
         match = _NAME.fullmatch(path.name)
-        if match and match["output"] == output.name and path.is_file():
+        if match and match["output"] == output.name and not match["status"] and path.is_file():
             found[Shard(int(match["of"]), int(match["index"]))] = path
     return dict(sorted(found.items()))
+
+
+def whole_of(name: str) -> str | None:
+    """What the store or the status of a shard belongs to: the name of the map or the batch; None of other files.
+
+    Parameters
+    ----------
+    name : str
+        Name of a file.
+    """
+    match = _NAME.fullmatch(name)
+    return None if match is None else match["output"]
+
+
+def not_begun(shards: Iterable[Shard]) -> tuple[Shard, ...]:
+    """Shards that are missing among those of the same counts.
+
+    Parameters
+    ----------
+    shards : iterable of Shard
+        Those that are there.
+    """
+    there = set(shards)
+    counts = sorted({shard.of for shard in there})
+    return tuple(Shard(of, index) for of in counts for index in range(1, of + 1) if Shard(of, index) not in there)
 
 
 def solve_shard(
@@ -243,9 +268,7 @@ def merge_shards(tasks: Sequence[Task], output: Path, sha256: str, store: Store)
             incomplete.append((shard, had, len(part)))
     store.commit()
     taken = sum(store.get(task.key) is not None for task in all_tasks)
-    counts = sorted({shard.of for shard in found})
-    missing = tuple(Shard(of, index) for of in counts for index in range(1, of + 1) if Shard(of, index) not in found)
-    return Merged(tuple(found), missing, tuple(incomplete), taken, len(all_tasks))
+    return Merged(tuple(found), not_begun(found), tuple(incomplete), taken, len(all_tasks))
 
 
 def _refuse_foreign(found: dict[Shard, Path], tasks: Sequence[Task], sha256: str) -> None:
@@ -288,7 +311,7 @@ def merged_text(merged: Merged, source: str) -> str:
     """
     lines = [f"{source}: {merged.taken} of {merged.wanted} tasks from the stores of {len(merged.shards)} shards"]
     if merged.missing:
-        lines.append(f"missing shards: {_listed(merged.missing)}")
+        lines.append(f"missing shards: {listed(merged.missing)}")
     for shard, had, wanted in merged.incomplete[:_SHOWN]:
         lines.append(f"shard {shard}: not finished, {had} of {wanted} tasks; run `--shard {shard}` again")
     if len(merged.incomplete) > _SHOWN:
@@ -296,7 +319,13 @@ def merged_text(merged: Merged, source: str) -> str:
     return "\n".join(lines)
 
 
-def _listed(shards: Sequence[Shard]) -> str:
-    """Name some shards."""
+def listed(shards: Sequence[Shard]) -> str:
+    """Name some shards, and say how many more there are.
+
+    Parameters
+    ----------
+    shards : sequence of Shard
+        The shards.
+    """
     more = f", and {len(shards) - _SHOWN} more" if len(shards) > _SHOWN else ""
     return ", ".join(map(str, shards[:_SHOWN])) + more

@@ -9,10 +9,10 @@ from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.batch import is_batch, read_batch
+from ehdmaps.jobs.batch import SUMMARY, is_batch, read_batch
 from ehdmaps.jobs.batch_generate import batch_path, generate_batch, make_folder
-from ehdmaps.jobs.batch_table import SUMMARY, write_table
 from ehdmaps.jobs.batch_table import summary as batch_summary
+from ehdmaps.jobs.batch_table import write_table
 from ehdmaps.jobs.correction_report import unsolved
 from ehdmaps.jobs.generate import generate
 from ehdmaps.jobs.job import Job
