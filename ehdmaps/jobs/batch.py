@@ -95,7 +95,7 @@ class Batch:
     films : {"shared", "own"}
         Whether maps of one oil are read from the lines that they share, see `ehdmaps.jobs.family`.
     checked : int
-        Of how many maps that share lines the laws are checked, as the jobs say.
+        Number of maps of those that share lines whose laws are checked as the jobs say.
     """
 
     name: str

@@ -56,7 +56,7 @@ class Outcome:
     member : Member
         Which one.
     output : Path
-        Its file.
+        File of the map.
     state : str
         `MADE`, `KEPT` or `FAILED`.
     films : str
@@ -151,7 +151,7 @@ def generate_batch(
     batch : Batch
         The batch.
     folder : Path
-        Where the maps go, and the store; made if it is not there.
+        Folder of the maps and of the store; made if it is not there.
     workers : int, optional
         Number of processes; all cores if left out.
     fresh : bool

@@ -7,6 +7,10 @@ import io
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
 
 from ehdmaps.jobs.batch import SUMMARY
 from ehdmaps.jobs.batch_generate import FAILED, BatchResult, Outcome
@@ -27,7 +31,7 @@ def write_table(result: BatchResult, folder: Path) -> Path:
     result : BatchResult
         What became of the maps.
     folder : Path
-        Where it goes.
+        Folder of the maps.
 
     Raises
     ------
@@ -72,6 +76,34 @@ def table(result: BatchResult) -> str:
             ]
         )
     return out.getvalue()
+
+
+def table_dataset(result: BatchResult) -> xr.Dataset:
+    """Return the table as a dataset over the names of the maps.
+
+    Parameters
+    ----------
+    result : BatchResult
+        What became of the maps.
+    """
+    outcomes = result.outcomes
+    texts = {
+        "file": [str(outcome.output) for outcome in outcomes],
+        "bearing": [outcome.member.bearing for outcome in outcomes],
+        "oil": [outcome.member.oil for outcome in outcomes],
+        "override": [outcome.member.override for outcome in outcomes],
+        "state": [outcome.state for outcome in outcomes],
+        "films": [outcome.films for outcome in outcomes],
+        "laws_miss": ["; ".join(outcome.missed) for outcome in outcomes],
+        "reason": [outcome.reason for outcome in outcomes],
+    }
+    values: dict[str, tuple[str, Any, dict[str, str]]] = {name: ("map", column, {}) for name, column in texts.items()}
+    values["points_without_solution"] = ("map", [outcome.lost for outcome in outcomes], {})
+    values["seconds"] = ("map", [outcome.seconds for outcome in outcomes], {"units": "s"})
+    for name in next((tuple(outcome.figures) for outcome in outcomes if outcome.figures), ()):
+        word, _, unit = name.removesuffix("]").partition(" [")
+        values[word] = ("map", [outcome.figures.get(name, np.nan) for outcome in outcomes], {"units": unit})
+    return xr.Dataset(values, coords={"map": [outcome.member.name for outcome in outcomes]})
 
 
 def summary(result: BatchResult, written: Path) -> str:

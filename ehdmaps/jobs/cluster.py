@@ -32,7 +32,7 @@ class Array:
     cpus : int
         Cores of each.
     time, partition : str or None
-        As Slurm has them; those of the cluster where they are None.
+        Time limit and partition, as Slurm has them; those of the cluster where they are None.
     """
 
     shards: int
@@ -105,7 +105,7 @@ def script(work: Work, solver: str | None, array: Array, folder: Path) -> str:
     array : Array
         The array.
     folder : Path
-        Where the commands run, on every node.
+        Folder in which the commands run, on every node.
     """
     shard, merge = (shlex.join(command) for command in commands(work, solver, array))
     wants = [f"--cpus-per-task={array.cpus}"]

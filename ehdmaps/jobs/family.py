@@ -144,7 +144,7 @@ def family(jobs: Sequence[Job], solver: ContactSolver, checked: int) -> Family:
     solver : ContactSolver
         What solves the lines.
     checked : int
-        Of how many members, from the smallest radius to the largest, the laws are checked as their jobs say.
+        Number of members, from the smallest radius to the largest, whose laws are checked as their jobs say.
     """
     by_radius = sorted(range(len(jobs)), key=lambda index: (jobs[index].contacts[0].radius, index))
     places = np.unique(np.linspace(0, len(jobs) - 1, min(checked, len(jobs))).round().astype(int)) if checked else ()
@@ -185,7 +185,7 @@ def own_part(group: xr.Dataset, reference: LineContact, job: Job) -> xr.Dataset:
     group : xarray.Dataset
         Group "backbone" of the whole family.
     reference : LineContact
-        Its reference contact.
+        Reference contact of the group.
     job : Job
         The member.
     """

@@ -318,7 +318,17 @@ def _grid_reader(
 
 
 def rolling_units(contact: LineContact, lubricant: Lubricant, speed: float, T: float) -> tuple[float, float]:
-    """Rolling force [N/m] and mass flow [kg/(m s)] whose numbers f and g are one."""
+    """Rolling force [N/m] and mass flow [kg/(m s)] whose numbers f and g are one.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    lubricant : Lubricant
+        The oil.
+    speed, T : float
+        Entrainment speed [m/s], > 0, and temperature [K].
+    """
     state = lubricant.at(float(T))
     number = moes_speed_number(speed, state.viscosity, contact.radius, contact.reduced_modulus)
     force = contact.reduced_modulus * contact.radius * number**0.75

@@ -1,4 +1,4 @@
-"""Slurm for tests: a cluster of one node, made by `.ci/slurm` in a temporary folder; skipped without it, but not in CI."""
+"""A Slurm of one node for tests, which `.ci/slurm` makes in a temporary folder; skipped without it, but not in CI."""
 
 from __future__ import annotations
 
@@ -23,9 +23,7 @@ class Slurm:
 
     def run(self, *command: str) -> str:
         """What a command of Slurm prints."""
-        done = subprocess.run(
-            command, env=self.environment, capture_output=True, text=True, timeout=60, check=False
-        )
+        done = subprocess.run(command, env=self.environment, capture_output=True, text=True, timeout=60, check=False)
         assert done.returncode == 0, done.stderr
         return done.stdout.strip()
 

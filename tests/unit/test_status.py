@@ -2,6 +2,7 @@ import dataclasses
 import fcntl
 import json
 import os
+import platform
 from dataclasses import dataclass
 
 import numpy as np
@@ -136,15 +137,39 @@ def left(output, **changes):
 @pytest.mark.parametrize("name", ["mine.nc", "mine.nc.store", "mine.nc.store.status", "mine.toml", None])
 def test_an_interrupted_run_by_all_its_names(output, capsys, name):
     (output.parent / "mine.toml").write_text(DRY)
-    left(output, failed={"outside_validity": 3, "failed": 1})
+    left(output, host=platform.node(), failed={"outside_validity": 3, "failed": 1})
     code, out, err = command(capsys, *([name] if name else []))
     assert (code, err) == (1, "")
     lines = out.splitlines()
-    assert lines[0] == "mine.nc: interrupted, process 12 on here has ended; the same command goes on"
+    assert lines[0] == f"mine.nc: interrupted, process 12 on {platform.node()} has ended; the same command goes on"
     assert lines[2] == "  points   40 of 100 (40.0 %), 10 of them taken over"
     assert lines[3] == "  rate     not known"
     assert lines[4] == "  failed   1 failed, 3 outside validity"
     assert lines[6].startswith("  written  2026-01-01T01:00:00+00:00, ")
+
+
+def test_of_another_machine_only_the_last_sign_is_known(output, capsys):
+    left(output, host="node7")
+    code, out, _ = command(capsys, "mine.nc")
+    assert code == 0
+    assert "mine.nc: process 12 on node7: only there it can be told whether it runs; it was heard of " in out
+
+
+def test_a_file_system_without_locks_is_no_reason_to_stop(output, job, capsys, monkeypatch):
+    def refuse(*_):
+        raise OSError(38, "Function not implemented")
+
+    monkeypatch.setattr(status.fcntl, "flock", refuse)
+    with StatusFile(output, about(job), 12, workers=3):
+        code, out, _ = command(capsys, "mine.nc")
+    assert code == 0
+    assert "only there it can be told whether it runs" in out
+
+
+def test_the_status_of_a_shard_stays(output, job):
+    with StatusFile(output, about(job), 4, workers=1, stays=True) as written:
+        written.found(Line(), arrays(0, 0, 0, 0), now=True)
+    assert look(output).finished
 
 
 def test_a_running_one(output, job, capsys):

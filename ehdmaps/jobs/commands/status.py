@@ -54,12 +54,10 @@ def _output(name: str, output: str | None) -> Path:
     for ending in (_STATUS, _STORE):
         if name.endswith(ending):
             return Path(name.removesuffix(ending))
-    output = Path(whole_of(name) or name)
-    if found_shards(output):
-        return output
-    if store_path(output).exists() or status_path(output).exists() or is_map(name):
-        return output
-    if name in shipped_jobs() or output.is_file():
+    place = Path(name)
+    if found_shards(place) or store_path(place).exists() or status_path(place).exists() or is_map(name):
+        return place
+    if name in shipped_jobs() or place.is_file():
         return Path(f"{read_job(name).name}.nc")
     raise InputError(
         f"{name}: is not there, nor its store; allowed: a map, its store, or a job whose map is made in this folder"
