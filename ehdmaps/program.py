@@ -29,7 +29,21 @@ _ESCAPES = _CONTROLS | _DIRECTIONS
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser of arguments that prints as the rest of the program does."""
+    """A parser of arguments that prints as the rest of the program does.
+
+    Attributes
+    ----------
+    complete : callable or None
+        Adds the arguments that depend on others; it is given all arguments before they are parsed.
+    """
+
+    complete: Callable[[Sequence[str]], None] | None = None
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse the arguments, those included that depend on others."""
+        if self.complete is not None:
+            self.complete([] if args is None else args)
+        return super().parse_known_args(args, namespace)
 
     def error(self, message: str) -> NoReturn:
         """Say what is wrong about the arguments, and end."""
@@ -98,6 +112,14 @@ def shown(text: str) -> str:
     visible escapes such as ``\x1b``.
     """
     return text.translate(_ESCAPES)
+
+
+def plain(text: object) -> str:
+    """Return a foreign text as part of a line: what is not printable, line breaks too, is a question mark.
+
+    `shown` looks after whole outputs, whose line breaks stay; figures, tables and exports do not pass it.
+    """
+    return "".join(character if character.isprintable() else "?" for character in str(text))
 
 
 def deliver(name: str, text: str, status: int) -> int:

@@ -7,6 +7,7 @@ import importlib
 import sys
 from collections.abc import Sequence
 
+from ehdmaps.errors import InputError
 from ehdmaps.program import Parser, run
 from ehdmaps.workers import processes
 
@@ -17,6 +18,8 @@ _SOLVER = (
 )
 
 _STRUCTURE = "law of the solids in approach, k and c: iso16281 | palmgren | half_space | fe; default: that of the job"
+
+_TARGET = "csv"
 
 _ROUGHNESS = 'combined rms roughness, "0.2 um", or smooth; default: that of the job'
 
@@ -149,18 +152,7 @@ def parser() -> argparse.ArgumentParser:
         "--solve", metavar="FILE.json", help="solve the finite elements anew and write them; needs CalculiX (ccx)"
     )
 
-    export = commands.add_parser("export", help="curves over load as a table (csv)")
-    export.add_argument("map", metavar="MAP.nc")
-    export.add_argument("-o", "--output", metavar="CURVES.csv", help="default: the map's name with .csv")
-    export.add_argument("--speed", help='entrainment speed, such as "1.7 m/s"; default: all of the map')
-    export.add_argument("--temperature", help='of the raceways, such as "40 degC"; default: all of the map')
-    export.add_argument(
-        "--contact", metavar="NAME", help="series | inner | outer | line; default: series, of a bare contact line"
-    )
-    export.add_argument("--points", metavar="N", type=processes, default=200, help="loads of a curve; default: 200")
-    export.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
-    export.add_argument("--roughness", metavar="LENGTH", help=_ROUGHNESS)
-
+    _add_export(commands)
     _add_solids(commands)
     _add_compare(commands)
     _add_tradeoff(commands)
@@ -187,6 +179,35 @@ def _add_shards(commands: argparse._SubParsersAction[Parser]) -> None:
     submit.add_argument(
         "--submit", action="store_true", help="submit the array and the merge by submitit, instead of printing a script"
     )
+
+
+def _add_export(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Add the arguments of `ehdmaps export`: those of all targets, and, once the target is known, its own."""
+    export = commands.add_parser(
+        "export",
+        help="a map in the format of another program",
+        epilog="`ehdmaps export --list` names the targets, `ehdmaps export --to TARGET --help` their options.",
+    )
+    export.add_argument("map", metavar="MAP.nc", nargs="?")
+    export.add_argument("--list", action="store_true", help="list the targets")
+    export.add_argument("--to", metavar="TARGET", default=_TARGET, help="default: csv, curves over load as a table")
+    export.add_argument("-o", "--output", metavar="PATH", help="default: the map's name with the target's ending")
+    export.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
+    export.add_argument("--roughness", metavar="LENGTH", help=_ROUGHNESS)
+
+    def add_arguments_of_target(argv: Sequence[str]) -> None:
+        from ehdmaps.exports.target import find
+
+        chosen = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+        chosen.add_argument("--to", nargs="?", default=_TARGET)
+        name = chosen.parse_known_args(argv)[0].to
+        if name and "--list" not in argv:
+            try:
+                find(name).add_arguments(export)
+            except InputError as error:
+                export.error(error.problems[0])
+
+    export.complete = add_arguments_of_target
 
 
 def _add_solids(commands: argparse._SubParsersAction[Parser]) -> None:

@@ -11,10 +11,10 @@ import xarray as xr
 
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.correction import JUDGED
-from ehdmaps.jobs.report import plain
 from ehdmaps.maps import schema
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.maps.structure import MODEL_ERRORS
+from ehdmaps.program import plain
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 _LEVELS = ("median", "95 %", "largest")

@@ -16,7 +16,6 @@ from ehdmaps.jobs.report import (
     error_lines,
     extrapolated_lines,
     law_lines,
-    plain,
     span,
     status_lines,
     tolerance_lines,
@@ -34,6 +33,7 @@ from ehdmaps.physics.approach import FE_LOAD
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solution import Status
+from ehdmaps.program import plain
 from ehdmaps.units import FILM, LENGTH, LOAD, PRESSURE, TEMPERATURE, Display
 
 SHOWN_TEMPERATURES = (313.15, 373.15)

@@ -9,13 +9,13 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.jobs.curves import curves, rough_layers
-from ehdmaps.jobs.report import plain
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.rough_films import FILM_PARAMETER, FILM_SHARE, film_share
 from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.maps.usable import check_grid
 from ehdmaps.outputs import MARK
+from ehdmaps.program import plain
 
 COLUMNS = (
     "entrainment_speed [m/s]",

@@ -30,13 +30,14 @@ from ehdmaps.jobs.plot_curves import (
     keep_corners_free,
     spread,
 )
-from ehdmaps.jobs.report import fitted_pressure, plain, span, status_counts
+from ehdmaps.jobs.report import fitted_pressure, span, status_counts
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.outputs import write_figure
 from ehdmaps.physics.film_limits import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
 from ehdmaps.physics.solution import Status
+from ehdmaps.program import plain
 from ehdmaps.units import DAMPING, FILM, LOAD, SPEED, STIFFNESS, TEMPERATURE, Display
 
 A4_LANDSCAPE = (11.69, 8.27)

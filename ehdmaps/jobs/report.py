@@ -12,6 +12,7 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.physics.film_limits import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
 from ehdmaps.physics.solution import Status
+from ehdmaps.program import plain
 from ehdmaps.units import (
     DAMPING,
     FILM,
@@ -149,14 +150,6 @@ def fitted_pressure(dataset: xr.Dataset) -> str:
     if not isinstance(value, (int, float)):
         return "those of its data"
     return f"{PRESSURE.text(value)}, to which {oil.get('label') or oil.get('name')} was fitted"
-
-
-def plain(text: object) -> str:
-    """Return a foreign text as part of a line: what is not printable, line breaks too, is a question mark.
-
-    `ehdmaps.program.shown` looks after whole outputs, whose line breaks stay; figures and tables do not pass it.
-    """
-    return "".join(character if character.isprintable() else "?" for character in str(text))
 
 
 def error_lines(dataset: xr.Dataset) -> Iterator[str]:

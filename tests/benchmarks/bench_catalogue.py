@@ -2,9 +2,9 @@
 
     python -m tests.benchmarks.bench_catalogue [BATCH.toml] [--oil FVA3] [--maps 3] [--every 1]
 
-Some maps of one oil of a batch, from the smallest to the largest radius, are read from the lines of all its bearings and
-solved at their own points; times are processor times of one process. On its own a map has lines of its own besides:
-their time is that of every tenth of them, times ten.
+Some maps of one oil of a batch, from the smallest to the largest radius, are read from the lines of all its bearings
+and solved at their own points; times are processor times of one process. On its own a map has lines of its own
+besides: their time is that of every tenth of them, times ten.
 """
 
 import argparse

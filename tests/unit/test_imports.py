@@ -1,4 +1,4 @@
-"""Imports run one way: errors <- physics <- (ehl | openfoam | maps | solids) <- jobs; maps, physics <- mbs.
+"""Imports run one way: errors <- physics <- (ehl | openfoam | maps | solids) <- exports <- jobs; maps, physics <- mbs.
 
 Scenes call jobs. Nothing imports the examples.
 """
@@ -59,8 +59,19 @@ ALLOWED = {
     },
     "ehdmaps.trade": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.figures", "ehdmaps.outputs", "ehdmaps.units"},
     "ehdmaps.stability": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.inputs", "ehdmaps.outputs", "ehdmaps.units"},
+    "ehdmaps.exports": {
+        "ehdmaps.arrays",
+        "ehdmaps.errors",
+        "ehdmaps.outputs",
+        "ehdmaps.program",
+        "ehdmaps.units",
+        "ehdmaps.version",
+        "ehdmaps.physics",
+        "ehdmaps.maps",
+    },
     "ehdmaps.jobs": {
         "ehdmaps",
+        "ehdmaps.exports",
         "ehdmaps.arrays",
         "ehdmaps.compiling",
         "ehdmaps.workers",
@@ -83,6 +94,7 @@ ALLOWED = {
         "ehdmaps.trade",
     },
     "mbs": {
+        "ehdmaps.exports",
         "ehdmaps.arrays",
         "ehdmaps.interrupts",
         "ehdmaps.workers",

@@ -1,4 +1,4 @@
-"""`ehdmaps export`: curves over load of a contact law, as a table."""
+"""`ehdmaps export`: a map in the format of another program."""
 
 from __future__ import annotations
 
@@ -6,52 +6,18 @@ import argparse
 from pathlib import Path
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.export import Chosen, table
+from ehdmaps.exports.target import find, listing
 from ehdmaps.jobs.opening import open_given
-from ehdmaps.maps.emap import EHDMap
-from ehdmaps.outputs import TABLE, Output, check_outputs, write_text
-from ehdmaps.units import SPEED, TEMPERATURE, Display, quantity
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Write the table; by default beside the map."""
+    """Write the map as the target that is asked for, or list the targets."""
+    if arguments.list:
+        return listing(), 0
+    if arguments.map is None:
+        raise InputError("MAP.nc: it is missing; allowed: the path of a map, or --list for the targets alone")
     path = Path(arguments.map)
-    output = Path(arguments.output) if arguments.output else path.with_suffix(".csv")
-    check_outputs([Output("-o", output, TABLE)], [path])
+    target = find(arguments.to)
     emap = open_given(path, arguments.structure, arguments.roughness)
-    text = table(emap, _chosen(arguments, emap), path.name)
-    write_text(output, text, TABLE)
-    return f"{output}: written", 0
-
-
-def _chosen(arguments: argparse.Namespace, emap: EHDMap) -> Chosen:
-    """Read what is asked for; all problems at once."""
-    problems: list[str] = []
-    names = [contact.name for contact in emap.contacts]
-    kinds = ["series", *names] if "inner" in names else names
-    kind = arguments.contact or kinds[0]
-    if kind not in kinds:
-        problems.append(f"--contact: got {kind!r:.60}; allowed in this map: {', '.join(kinds)}")
-
-    def read(option: str, text: str | None, unit: str, axis: str, display: Display) -> tuple[float, ...]:
-        values = emap.dataset[axis].values
-        if text is None:
-            return tuple(map(float, values))
-        try:
-            value = quantity(text, unit)
-        except InputError as error:
-            problems.append(f"{option}: {error.problems[0]}")
-            return ()
-        # A standstill is a point of some maps, but between it and the lowest speed films fade by another rule.
-        low, high = float(min(values[values > 0.0], default=0.0)), float(values[-1])
-        if not low <= value <= high and value not in values:
-            problems.append(f"{option}: got {text!r}; allowed in this map: {display.text(low)} to {display.text(high)}")
-        return (value,)
-
-    speeds = read("--speed", arguments.speed, "m/s", "entrainment_speed", SPEED)
-    temperatures = read("--temperature", arguments.temperature, "K", "temperature", TEMPERATURE)
-    if arguments.points < 2:
-        problems.append(f"--points: got {arguments.points}; allowed: 2 to 1024")
-    if problems:
-        raise InputError(problems)
-    return Chosen(kind, speeds, temperatures, arguments.points)
+    output = Path(arguments.output) if arguments.output else None
+    return target.write(emap, path, output, arguments), 0
