@@ -30,7 +30,7 @@ def parser() -> argparse.ArgumentParser:
         prog="ehdmaps",
         description="Elastohydrodynamic contact maps for roller bearings.",
         epilog="JOB is a job file, a map (its job is repeated), or the name of a shipped job: nu308, n1014, "
-        "nu308_openfoam; for generate, merge, status and submit also a batch file, of many maps. "
+        "nu308_openfoam; for generate, check, merge, status and submit also a batch file, of many maps. "
         "Exit status: 0 done; 1 done, with failed points or an unmet tolerance; 2 bad input, nothing "
         "written; 130 stopped with Ctrl-C.",
     )

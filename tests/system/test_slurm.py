@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import time
 
@@ -11,6 +12,7 @@ import pytest
 import ehdmaps
 from ehdmaps.jobs import cli
 from ehdmaps.jobs.status import status_path
+from tests.cases.batches import SMALL_LISTS, batch_text
 from tests.cases.jobs import map_job, spaced
 from tests.cases.slurm import running_slurm
 
@@ -24,7 +26,7 @@ SAME = 1e-8
 """What maps of shards may differ by: nothing but the order of sums could differ, and nothing does."""
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def slurm():
     with running_slurm() as cluster:
         yield cluster
@@ -83,3 +85,27 @@ def test_an_array_with_a_killed_task_gives_the_map_of_one_process(slurm, tmp_pat
                 np.testing.assert_array_equal(one[name].values, other[name].values, err_msg=name)
     checks = {name: value for name, value in whole.dataset.attrs.items() if name.startswith("law_")}
     assert checks == {name: shards.dataset.attrs[name] for name in checks}
+
+
+@pytest.mark.slow  # six short processes, one after the other
+def test_submitit_submits_the_array_and_the_merge(slurm, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("SLURM_CONF", slurm.environment["SLURM_CONF"])
+    (tmp_path / "cat.toml").write_text(batch_text(SMALL_LISTS))
+    assert cli.main(["submit", "cat.toml", "--array", "2", "--submit", "--time", "10"]) == 0
+    array, last = re.findall(r"array (\d+) of 2 shards, and merge (\d+) after it", capsys.readouterr().out)[0]
+    assert slurm.wait(array) == {"COMPLETED"}
+    assert slurm.wait(last) == {"COMPLETED"}
+    for name in ("NU308_FVA3", "N1014_FVA3"):
+        assert ehdmaps.open_map(tmp_path / "cat" / f"{name}.nc").dataset.attrs["job_name"] == name
+    assert cli.main(["status", "cat.toml"]) == 0
+    assert "2 of 2 shards finished" in capsys.readouterr().out
+
+
+def test_a_machine_without_slurm_is_told_so(tmp_path, monkeypatch, capsys):
+    pytest.importorskip("submitit")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    (tmp_path / "cat.toml").write_text(batch_text(SMALL_LISTS))
+    assert cli.main(["submit", "cat.toml", "--array", "2", "--submit"]) == 2
+    assert "the cluster does not take the job" in capsys.readouterr().err

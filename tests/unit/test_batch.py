@@ -1,6 +1,7 @@
 """Batch files: what is read, what is refused, what becomes of members that fail, and of a run that goes on."""
 
 import csv
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,12 +9,14 @@ import xarray as xr
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import cli
-from ehdmaps.jobs.batch import MOST_MEMBERS, is_batch, parse_batch
+from ehdmaps.jobs.batch import MOST_MEMBERS, is_batch, parse_batch, read_batch
 from ehdmaps.jobs.batch_generate import generate_batch
 from ehdmaps.jobs.batch_plan import plan_batch
 from ehdmaps.jobs.reader import parse_job
 from tests.cases.batches import SMALL_LISTS, batch_text
 from tests.cases.jobs import SMALL
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue.toml"
 
 OIL = (
     '{ label = "own", viscosity_law = "barus", viscosity = "80 mPa s", pressure_viscosity = "20 1/GPa", '
@@ -213,3 +216,25 @@ def test_which_maps_share_lines(films):
     assert [len(shared.members) for shared in plan.shared] == ([2] if films == "shared" else [])
     assert len(plan.alone) == (2 if films == "shared" else 4)
     assert plan_batch(read(batch_text(lists))).shared == ()  # formulas have no lines
+
+
+def test_the_example_is_a_catalogue_of_five_families():
+    batch = read_batch(EXAMPLE)
+    assert len(batch.members) == 1000
+    plan = plan_batch(batch)
+    assert [len(shared.members) for shared in plan.shared] == [200] * 5
+    assert not plan.alone
+    points = sum(shared.family.lines.points for shared in plan.shared)
+    assert points < 0.02 * sum(member.job.points for member in batch.members)  # what sharing saves
+
+
+def test_check_tells_what_maps_share_and_other_commands_refuse_a_batch(tmp_path, capsys):
+    source = str(tmp_path / "cat.toml")
+    (tmp_path / "cat.toml").write_text(batch_text(SMALL_LISTS))
+    assert cli.main(["check", source]) == 0
+    told = capsys.readouterr().out
+    assert "2 maps, from NU308_FVA3 to N1014_FVA3" in told
+    assert "2 maps are solved at their own points" in told
+    assert "32 in 8 tasks, which is what shards can be made of" in told
+    assert cli.main(["length", source]) == 2
+    assert "is a batch file, of many jobs; allowed: one job" in capsys.readouterr().err
