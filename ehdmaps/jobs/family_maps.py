@@ -25,10 +25,6 @@ from ehdmaps.maps.checksum import content_sha256
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.validation import validate
 
-FAMILY = "family"
-"""Attribute of a map whose points were read from the lines of a family, JSON: what lines, and how the laws of some of
-its members were found to be."""
-
 
 @dataclass(frozen=True)
 class Solved:
@@ -145,7 +141,7 @@ def make_map(solved: Solved, member: int, output: Path, attributes: Mapping[str,
     dataset, group = read_map(solved, member)
     name = solved.family.jobs[member].name
     dataset.attrs.update(solved.checked.get(name, {}))
-    dataset.attrs[FAMILY] = record_json({**solved.family.record(), "checked": _shares(solved.checked)})
+    dataset.attrs[schema.FAMILY] = record_json({**solved.family.record(), "checked": _shares(solved.checked)})
     dataset.attrs.update(attributes)
     dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, group)
     write_map(dataset, output, {schema.BACKBONE: group})

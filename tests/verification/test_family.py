@@ -11,13 +11,15 @@ from ehdmaps.jobs import batch_generate, family_maps
 from ehdmaps.jobs.batch import parse_batch
 from ehdmaps.jobs.batch_generate import generate_batch
 from ehdmaps.jobs.batch_plan import plan_batch
+from ehdmaps.jobs.describe import describe
 from ehdmaps.jobs.family import own_part
-from ehdmaps.jobs.family_maps import FAMILY, Solved
+from ehdmaps.jobs.family_maps import Solved
 from ehdmaps.jobs.law_points import COMPLIANCE_BARS, DAMPING_BARS
 from ehdmaps.jobs.refinement import line_field
 from ehdmaps.jobs.store import Store
 from ehdmaps.jobs.sweep import SweepResult, sweep
 from ehdmaps.jobs.tasks import LineTask, line_tasks
+from ehdmaps.maps import schema
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.solution import Status
 from tests.cases.batches import batch_text
@@ -111,7 +113,8 @@ def test_maps_of_a_family_make_laws_and_say_what_they_are(store_file, tmp_path, 
     for outcome in result.outcomes:
         emap = ehdmaps.open_map(outcome.output)
         assert emap.film_field().contacts == ("inner", "outer")  # lines that a law can be made from
-        assert '"members": 3' in emap.dataset.attrs[FAMILY]
+        assert '"members": 3' in emap.dataset.attrs[schema.FAMILY]
+        assert "points read from refinement lines" in describe(emap, "map.nc")
         checked += "law_check_points" in emap.dataset.attrs
     assert checked == 1
     again = generate_batch(BATCH, folder, workers=1)
