@@ -224,6 +224,28 @@ class Merged:
         return self.taken == self.wanted
 
 
+def check_found(output: Path) -> dict[Shard, Path]:
+    """Stores of shards, of which there must be some.
+
+    Parameters
+    ----------
+    output : Path
+        What those of the whole are named after.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    found = found_shards(output)
+    if not found:
+        raise InputError(
+            f"{output}: no store of a shard is beside it; allowed: stores that `ehdmaps generate --shard i/n` made in "
+            "that folder"
+        )
+    return found
+
+
 def merge_shards(tasks: Sequence[Task], output: Path, sha256: str, store: Store) -> Merged:
     """Take what the stores of shards have into the store of the whole; they stay as they are.
 
@@ -246,12 +268,7 @@ def merge_shards(tasks: Sequence[Task], output: Path, sha256: str, store: Store)
         If a store cannot be read, or another process is busy with it.
     """
     all_tasks = unique(tasks)
-    found = found_shards(output)
-    if not found:
-        raise InputError(
-            f"{output}: no store of a shard is beside it; allowed: stores that `ehdmaps generate --shard i/n` made in "
-            "that folder"
-        )
+    found = check_found(output)
     _refuse_foreign(found, all_tasks, sha256)
     incomplete = []
     for shard, path in found.items():

@@ -16,7 +16,7 @@ from ehdmaps.jobs.batch_plan import plan_batch
 from ehdmaps.jobs.generate import planned_tasks
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.reader import is_map, read_job
-from ehdmaps.jobs.shards import Merged, Shard, merge_shards, solve_shard, unique
+from ehdmaps.jobs.shards import Merged, Shard, check_found, merge_shards, solve_shard, unique
 from ehdmaps.jobs.status import about
 from ehdmaps.jobs.store import Store, store_path
 from ehdmaps.jobs.sweep import Progress, SweepResult, Task
@@ -75,7 +75,6 @@ def read_work(
     if is_batch(source):
         batch = read_batch(source, solver, to_run=True)
         folder = Path(output or batch.name)
-        make_folder(folder)
         tasks = unique(plan_batch(batch).tasks())
         what = f"batch {batch.name}, {len(batch.members)} maps"
         return Work(fspath(source), batch, folder, batch_path(batch, folder), what, _hash(batch.sha256, solver), tasks)
@@ -107,9 +106,13 @@ def run_shard(
 
     Raises
     ------
+    InputError
+        If the folder of a batch cannot be made.
     StoreError
         If the store cannot be read or written.
     """
+    if isinstance(work.asked, Batch):
+        make_folder(work.output)
     return solve_shard(work.tasks, work.place, shard, work.what, work.sha256, workers, fresh, progress, executor)
 
 
@@ -126,6 +129,7 @@ def merge(work: Work) -> Merged:
     InputError, StoreError
         If a store is missing, is another job's, or cannot be read.
     """
+    check_found(work.place)  # before a store of the whole is made
     with Store(store_path(work.place)) as store:
         return merge_shards(work.tasks, work.place, work.sha256, store)
 

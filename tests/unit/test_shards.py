@@ -73,6 +73,7 @@ def test_missing_shards_are_listed_and_no_map_is_made(tmp_path, monkeypatch, cap
     job_file(tmp_path)
     assert cli.main(["merge", "job.toml"]) == 2
     assert "no store of a shard is beside it" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["job.toml"]
     assert cli.main(["generate", "job.toml", "--shard", "2/4", "--workers", "1"]) == 0
     capsys.readouterr()
     assert cli.main(["status", "job.toml"]) == 1
