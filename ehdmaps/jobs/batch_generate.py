@@ -25,15 +25,17 @@ from ehdmaps.jobs.report import holes
 from ehdmaps.jobs.status import StatusFile
 from ehdmaps.jobs.store import Store, store_path
 from ehdmaps.jobs.sweep import Progress, SweepResult, sweep, worker_pool
+from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import Axis
+from ehdmaps.netcdf_structure import DAMAGE
 from ehdmaps.outputs import MAP, Output, output_problems, root_attributes
 from ehdmaps.workers import available_cores
 
 MADE, KEPT, FAILED = "made", "kept", "failed"
 """What became of a map: kept is one that was there from an earlier run, and is the same."""
 
-BATCH, FINGERPRINT = "batch", "batch_fingerprint"
-"""Attributes of a map of a batch: the name of the batch, and the hash of all that shapes the map."""
+BATCH, FINGERPRINT, FILMS = "batch", "batch_fingerprint", "batch_films"
+"""Attributes of a map of a batch: its name, the hash of all that shapes the map, and whether its films are shared."""
 
 _PIECES = 16
 """Pieces of work for each worker, into which the maps of a family are cut."""
@@ -208,26 +210,34 @@ def _is_due(
 ) -> bool:
     """Whether a map is to be made: not where it is there already, nor where something else stands in its place."""
     output = folder / f"{member.name}.nc"
+    there = root_attributes(output) if output.is_file() else {}
+    if not fresh and there.get(BATCH) == batch.name and there.get(FINGERPRINT) == fingerprint:
+        kept = _kept(member, output, str(there.get(FILMS, films)))
+        if kept is not None:
+            outcomes[member.name] = kept
+            return False
     problems = output_problems([Output("", output, MAP)])
-    there = root_attributes(output) if output.is_file() and not problems else {}
-    if there and there.get(BATCH) != batch.name:
+    if there and not problems and there.get(BATCH) != batch.name:
         problems = [
             f"{output}: is a map that this batch did not make; allowed: a new file, or a map of this batch; move it "
             "away, or choose another folder with -o"
         ]
     if problems:
         outcomes[member.name] = Outcome(member, output, FAILED, films, reason="; ".join(problems))
-        return False
-    if fresh or there.get(FINGERPRINT) != fingerprint:
-        return True
+    return not problems
+
+
+def _kept(member: Member, output: Path, films: str) -> Outcome | None:
+    """What is to be said of a map that is there; None where it does not read."""
+    import netCDF4
+
     try:
+        with netCDF4.Dataset(output) as file:
+            lines = schema.BACKBONE in file.groups
         with xr.open_dataset(output, engine="netcdf4") as dataset:
-            outcomes[member.name] = _outcome(
-                member, output, KEPT, str(there.get("batch_films", films)), dataset, True, 0.0
-            )
-    except (OSError, ValueError, KeyError):
-        return True
-    return False
+            return _outcome(member, output, KEPT, films, dataset, lines, 0.0)
+    except (*DAMAGE, KeyError):
+        return None
 
 
 def _outcome(
@@ -251,7 +261,7 @@ def _figures(dataset: xr.Dataset) -> dict[str, float]:
 
 def _marks(batch: Batch, fingerprint: str, films: str) -> dict[str, str]:
     """Attributes of a map of a batch."""
-    return {BATCH: batch.name, FINGERPRINT: fingerprint, "batch_films": films}
+    return {BATCH: batch.name, FINGERPRINT: fingerprint, FILMS: films}
 
 
 @dataclass

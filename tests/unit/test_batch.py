@@ -190,6 +190,11 @@ def test_a_change_of_the_file_makes_the_maps_that_it_changes(tmp_path):
     more = batch_text(SMALL_LISTS.replace('"N1014"', '"N1014", { name = "N1014", label = "wide" }'))
     states = [outcome.state for outcome in generate_batch(read(more), folder, workers=1).outcomes]
     assert states == ["kept", "kept", "made"]
+    whole = (folder / "NU308_FVA3.nc").read_bytes()
+    (folder / "NU308_FVA3.nc").write_bytes(whole[: len(whole) // 2])  # a copy that stopped half-way is none of a map
+    damaged, *_ = generate_batch(read(more), folder, workers=1).outcomes
+    assert (damaged.state, "is not a map of ehdmaps" in damaged.reason) == ("failed", True)
+    (folder / "NU308_FVA3.nc").unlink()
     hot = more.replace("40 degC", "50 degC")
     assert {outcome.state for outcome in generate_batch(read(hot), folder, workers=1).outcomes} == {"made"}
 
