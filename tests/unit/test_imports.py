@@ -115,6 +115,7 @@ ALLOWED = {
         "ehdmaps.trade",
     },
     "mbs.scene.scene": {
+        "ehdmaps.exports",
         "ehdmaps.arrays",
         "ehdmaps.interrupts",
         "ehdmaps.workers",
@@ -153,7 +154,7 @@ ALLOWED = {
 }
 """What each layer may import besides itself and other distributions. `ehdmaps` itself is the shop window of all."""
 
-SCENES = ("__main__", "analyses", "cli", "commands", "output", "scene", "stability")
+SCENES = ("__main__", "analyses", "cli", "commands", "exports", "output", "scene", "stability")
 """Modules of mbs that plan a scene or are its command line: they may call ehdmaps.jobs; no other module of mbs may
 call them."""
 
