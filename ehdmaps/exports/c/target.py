@@ -90,9 +90,9 @@ def write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Nam
 
 
 TARGET = Target(
-    summary="law and bearing in C99, one source and one header, no library",
+    summary="law and bearing in C99, one source, one header, no library; Fortran interface",
     writes="a folder of C sources",
-    read_back_by="gcc",
+    read_back_by="gcc, gfortran",
     add_arguments=add_arguments,
     write=write,
 )

@@ -64,7 +64,7 @@ def write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Nam
     options, unit = options_of(arguments), output or path.with_suffix(".fmu")
     check_outputs([Output("-o", unit, UNIT)], [path])
     header = origin(emap, path.name)
-    sources = kernel_files(emap, options, header)
+    sources = {name: text for name, text in kernel_files(emap, options, header).items() if name.endswith((".c", ".h"))}
     cold, hot = (float(emap.dataset["temperature"].values[end]) for end in (0, -1))
     clearance = emap.bearing.diametral_clearance if options.clearance is None else options.clearance
     start = {"temperature": min(max(_USUAL_TEMPERATURE, cold), hot), "clearance": clearance}
