@@ -223,19 +223,35 @@ def _in_process(tasks: Sequence[Task]) -> _Outcomes:
         yield task, _run(task), True
 
 
+def _import(task: Task) -> None:
+    """Do nothing: a worker that receives a task has imported what the task needs."""
+
+
 def _in_pool(tasks: Sequence[Task], workers: int, store: Results) -> _Outcomes:
-    """Run tasks in worker processes; those that were out when a worker died are tried again alone."""
+    """Run tasks in worker processes; those that were out when a worker died are tried again alone.
+
+    The first task runs alone while the other workers import. In a fresh installation it compiles what all need, and
+    they load that from numba's cache; else each worker would compile the same. Slow tasks do not wait for each other.
+    """
     waiting = deque(tasks)
+    compiled = any(task.slow for task in tasks)
     while waiting:
         running: dict[Future[Arrays], Task] = {}
         try:
             with worker_pool(workers) as pool:
+                if not compiled:
+                    with deaf_children():  # a worker starts with every task that finds none idle
+                        running[pool.submit(_run, waiting[0])] = waiting[0]
+                        for _ in range(workers - 1):
+                            pool.submit(_import, waiting[0])
+                    waiting.popleft()
                 while waiting or running:
-                    while waiting and len(running) < workers * _AHEAD:
+                    while compiled and waiting and len(running) < workers * _AHEAD:
                         with deaf_children():  # workers start with the first task
                             running[pool.submit(_run, waiting[0])] = waiting[0]
                         waiting.popleft()
                     done, _ = wait(running, timeout=COMMIT_SECONDS, return_when=FIRST_COMPLETED)
+                    compiled = compiled or bool(done)
                     store.commit_if_due()
                     for future in done:
                         arrays = future.result()
