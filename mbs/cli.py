@@ -60,9 +60,9 @@ def parser() -> argparse.ArgumentParser:
     _films(sweep, compares=True)
     _sweep(sweep)
     critical = _scene_command(
-        commands, "critical", "critical speeds, and the response to unbalances and orders over speed", compares=False
+        commands, "critical", "critical speeds, and the response to unbalances and orders over speed", compares=True
     )
-    _films(critical, compares=False)
+    _films(critical, compares=True)
     _speeds(critical)
     campbell = _scene_command(
         commands,
@@ -81,9 +81,20 @@ def parser() -> argparse.ArgumentParser:
     )
     _films(variants, compares=True)
     _variants(variants)
-    hammer = _scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=False)
-    _films(hammer, compares=False)
+    hammer = _scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=True)
+    _films(hammer, compares=True)
+    _parallel(hammer)
     _hammer(hammer)
+    report = _scene_command(
+        commands, "report", "the scene as one page to send: no network needed, prints to PDF", compares=False
+    )
+    _films(report, compares=False)
+    _speeds(report)
+    report.add_argument(
+        "--result",
+        metavar="RESULT.nc",
+        help="Campbell diagram of a result of `mbs sweep -o` or `mbs campbell -o` in place of a short sweep",
+    )
     _tradeoff(commands)
     _modal_fit(commands)
     _bearing(commands)
@@ -205,7 +216,10 @@ def _campbell(command: argparse.ArgumentParser) -> None:
     command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
     command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
     command.add_argument(
-        "--orders", metavar="ORDER", nargs="+", help="to draw and follow, such as 21 42; default: of gears or rollers"
+        "--orders",
+        metavar="ORDER",
+        nargs="+",
+        help="to draw and follow, such as 21 42; default: of gears or rollers, and of unbalances and excitations",
     )
     _recorded(command)
     command.add_argument(
@@ -346,7 +360,13 @@ def _bearing(commands: Any) -> None:
         "--oil", metavar="NAME", help="oil without a map: FVA3, Spirax MA 80W; default: the file's, else FVA3"
     )
     command.add_argument("--clearance", metavar="LENGTH", help='diametral, such as "20 um"; default: the file\'s, none')
-    command.add_argument("--profile", metavar="PROFILE", default="iso", help="iso | straight, of the rollers (iso)")
+    command.add_argument(
+        "--profile",
+        metavar="PROFILE",
+        default="iso",
+        help="of the rollers: iso | straight | an arc or measured points as in scenes, such as "
+        """'{ crown_drop = "10 um" }' or '{ positions = ["0 mm", "7.5 mm"], depths = ["0 um", "4 um"] }' (iso)""",
+    )
     command.add_argument("--slices", metavar="N", default="41", help="of a roller (41)")
     command.add_argument(
         "--coupled", action="store_true", help="slices know of their neighbours: the elasticity of three dimensions"
@@ -448,8 +468,14 @@ def _scene_command(
         help='diametral clearance of all bearings, such as "20 um", in place of the scene\'s'
         + (more if clearances else ""),
     )
-    command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
-    command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
+    if name == "report":
+        command.add_argument(
+            "-o", "--output", metavar="REPORT.html", help="default: the scene's name with .html, in this folder"
+        )
+        command.set_defaults(plot=None)
+    else:
+        command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
+        command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
     if name != "variants":
         # That of a Campbell diagram is one of levels, and stands without --auto, too.
         _auto(command, tolerance=name != "campbell")

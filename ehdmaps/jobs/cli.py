@@ -78,6 +78,12 @@ def parser() -> argparse.ArgumentParser:
         "_roughness.png",
     )
 
+    report = commands.add_parser("report", help="a map as one page to send: no network needed, prints to PDF")
+    report.add_argument("map", metavar="MAP.nc")
+    report.add_argument("-o", "--output", metavar="REPORT.html", help="default: the map's name with .html")
+    report.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
+    report.add_argument("--roughness", metavar="LENGTH", help=f"with it also the film parameter Lambda; {_ROUGHNESS}")
+
     solve = commands.add_parser("solve", help="one operating point, as a table")
     solve.add_argument("job", metavar="JOB")
     solve.add_argument("--load", required=True, help='such as "62 N" (with --length) or "88 N/mm"')

@@ -13,7 +13,7 @@ from numba import njit
 
 from ehdmaps.arrays import ByteArray, FloatArray, IntArray
 from ehdmaps.maps.elementary import log
-from ehdmaps.maps.kernel import collapse, evaluate_at, full_state, within_map
+from ehdmaps.maps.kernel import collapse, evaluate_at, within_map
 from ehdmaps.maps.lines import (
     FAST,
     cell_of,
@@ -26,6 +26,7 @@ from ehdmaps.maps.lines import (
     state_of,
     stretched,
 )
+from ehdmaps.maps.roller_balance import balanced_states
 from ehdmaps.maps.tables import COLDEST, NOT_FINITE, ApproachTable, LawTable, Line, Point
 
 _BLOCK = 256
@@ -109,9 +110,7 @@ def rest_states(point: Point, delta: FloatArray, states: FloatArray) -> None:
     """
     w, dw, c, dc = states[0], states[1], states[2], states[3]
     if point.centrifugal_load > 0.0:
-        for i in range(delta.size):
-            w[i], dw[i], ratio, dc[i] = full_state(point, delta[i])
-            c[i] = w[i] * ratio
+        balanced_states(point, delta, states)
         return
     line: Line = point.own
     scratch, found = np.empty((2, delta.size)), np.empty((4, delta.size))

@@ -35,11 +35,11 @@ from ehdmaps.maps.lines import (
     collapsed_line,
     force_of,
     line_approach,
-    line_curvature,
     line_state,
     stretched,
     table_state,
 )
+from ehdmaps.maps.roller_balance import LEAST_LOAD, balanced_state
 from ehdmaps.maps.tables import HALF_SPACE, LOAD, NOT_FINITE, SPEED, TEMPERATURE, LawTable, Point
 from ehdmaps.physics.unilateral import Force
 
@@ -50,8 +50,6 @@ EDGE_TOLERANCE = 1e-6
 """Part of the highest speed, and of the temperatures, by which they may be passed: single precision."""
 
 _STEPS = 100
-_LEAST_LOAD = 1e-200
-_LIGHT = 0.3
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
@@ -69,7 +67,7 @@ def structural_state(structure: FloatArray, centrifugal_load: float, load: float
     last = structure.shape[0] - 1
     for i in range(last + 1):
         w = load + centrifugal_load if i == last else load
-        if w > _LEAST_LOAD:
+        if w > LEAST_LOAD:
             kind, a, b = structure[i, 0], structure[i, 1], structure[i, 2]
             if kind == HALF_SPACE:
                 part = a * w * (b - 0.5 * log(w))
@@ -82,60 +80,10 @@ def structural_state(structure: FloatArray, centrifugal_load: float, load: float
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _balanced_state(point: Point, delta: float) -> State:
-    """State of a roller between its two contacts, the outer one carrying the centrifugal load besides.
-
-    The approach divides into a and delta - a so that W_i(a) + q = W_o(delta - a): Newton's method in the logarithm
-    of the loads, inside a closing bracket.
-    """
-    if delta <= point.lift_off:
-        return 0.0, 0.0, 0.0, 0.0
-    inner, outer, q = point.inner, point.outer, point.centrifugal_load
-    low, high = line_approach(inner, 0.0), delta - line_approach(outer, q)
-    scale = 1.0 / inner.inverse_scale
-    state_i, state_o = line_state(inner, high), line_state(outer, point.outer_start)
-    if state_i[0] < _LIGHT * q:  # the outer contact hardly moves
-        a = high - state_i[0] / (state_i[1] + state_o[1])
-    else:  # both alike, as their scales are
-        share = outer.inverse_scale / (inner.inverse_scale + outer.inverse_scale)
-        a = inner.offset + (delta - inner.offset - outer.offset) * share
-    last = False
-    for _ in range(_STEPS):
-        if not low <= a <= high:
-            a = 0.5 * (low + high)
-        state_i, state_o = line_state(inner, a), line_state(outer, delta - a)
-        if last:
-            break
-        if state_o[0] <= 0.0:
-            high = a
-            a = 0.5 * (low + high)
-            continue
-        excess = math.log((state_i[0] + q) / state_o[0])
-        if excess > 0.0:
-            high = a
-        else:
-            low = a
-        step = excess / (state_i[1] / (state_i[0] + q) + state_o[1] / state_o[0])
-        a -= step
-        last = abs(step) <= 1e-9 * (abs(a) + scale)
-    w, k_i, r_i, dc_i = state_i
-    w_o, k_o, r_o, dc_o = state_o
-    if w < _LEAST_LOAD or w_o < _LEAST_LOAD:
-        return 0.0, 0.0, 0.0, 0.0
-    part_i, part_o = k_o / (k_i + k_o), k_i / (k_i + k_o)
-    c_i, c_o = w * r_i, w_o * r_o
-    bend_i = line_curvature(inner, a, state_i) * part_i
-    bend_o = line_curvature(outer, delta - a, state_o) * part_o
-    change = (bend_o * k_i - k_o * bend_i) / (k_i + k_o) ** 2
-    dc = dc_i * part_i**3 + dc_o * part_o**3 + 2.0 * change * (c_i * part_i - c_o * part_o)
-    return w, k_i * part_i, r_i * part_i**2 + w_o / w * r_o * part_o**2, dc
-
-
-@njit(cache=True, error_model="numpy", fastmath=FAST)
 def full_state(point: Point, delta: float) -> State:
     """State with the whole film, at rest."""
     if point.centrifugal_load > 0.0:
-        return _balanced_state(point, delta)
+        return balanced_state(point, delta)
     return line_state(point.own, delta)
 
 
@@ -181,7 +129,7 @@ def _faded_state(point: Point, delta: float) -> State:
         last = abs(following - place) <= 1e-9
         place = following
     w, dw, ratio, dc = state
-    if w < _LEAST_LOAD:
+    if w < LEAST_LOAD:
         return 0.0, 0.0, 0.0, 0.0
     return w, dw / slope, part * ratio, part * dc / slope
 

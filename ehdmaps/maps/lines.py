@@ -265,9 +265,24 @@ def line_state(line: Line, delta: float) -> State:
     return state_of(g, dg * scale, q, dq * scale)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def line_curvature(line: Line, delta: float, state: State) -> float:
-    """Second derivative of the load of a line by the approach, where it carries load.
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def line_load(line: Line, delta: float) -> tuple[float, float]:
+    """Load of a line at an approach, and its slope: all that an equilibrium of contacts asks for."""
+    s, ds = stretched((delta - line.offset) * line.inverse_scale)
+    c = line.coefficients
+    x = place_within((s - line.start) * line.step, c.shape[0])
+    cell = cell_of(x, c.shape[0])
+    k, t = np.uint64(cell), x - cell
+    a1, a2, a3 = c[k, np.uint64(1)], c[k, np.uint64(2)], c[k, np.uint64(3)]
+    g = c[k, np.uint64(0)] + t * (a1 + t * (a2 + t * a3))
+    dg = (a1 + t * (2.0 * a2 + 3.0 * t * a3)) * (line.step * ds * line.inverse_scale)
+    g = g if g > 0.0 else 0.0
+    return g * g * g, 3.0 * g * g * dg
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def bent_state(line: Line, delta: float) -> tuple[State, float]:
+    """State of a line at an approach, and the second derivative of its load by the approach.
 
     Parameters
     ----------
@@ -275,20 +290,20 @@ def line_curvature(line: Line, delta: float, state: State) -> float:
         The line.
     delta : float
         Approach [m].
-    state : State
-        State at this approach.
     """
     z = (delta - line.offset) * line.inverse_scale
     s, ds = stretched(z)
     c = line.coefficients
     x = place_within((s - line.start) * line.step, c.shape[0])
-    i = cell_of(x, c.shape[0])
-    g, _, _, _ = cubics(c, i, x - i)
-    dg = state[1] / (3.0 * g * g)
+    cell = cell_of(x, c.shape[0])
+    k, t = np.uint64(cell), x - cell
+    g, dg, q, dq = cubics(c, cell, t)
     per_s = ds * line.inverse_scale
-    ddg = (2.0 * c[i, 2] + 6.0 * (x - i) * c[i, 3]) * (line.step * per_s) ** 2 - dg * z * ds * per_s
-    curvature: float = 6.0 * g * dg * dg + 3.0 * g * g * ddg
-    return curvature
+    scale = line.step * per_s
+    dg *= scale
+    ddg = (2.0 * c[k, np.uint64(2)] + 6.0 * t * c[k, np.uint64(3)]) * (scale * scale) - dg * z * ds * per_s
+    g = g if g > 0.0 else 0.0
+    return state_of(g, dg, q, dq * scale), 6.0 * g * dg * dg + 3.0 * g * g * ddg
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)

@@ -13,6 +13,9 @@ drive          the speed of a run by torques, the rolling torque of the bearings
 runup          the nonlinear system in time over its speed profile
 resolution     what the steps of a run resolve, and what the method of integration takes from oscillations
 campbell       run-ups with one or more laws as levels over speed, frequency and order
+followed       orders that such a diagram follows: those asked for, else what a machine excites itself
+ramp           the run-up with a sample a step: its course, a silent one before it, and the recording
+sensors        sensors whose levels are looked at
 changed_laws   models whose laws are wrong by the errors that their map states
 variants       how a difference between two laws in a run-up depends on clearance, temperature and the like
 tradeoff       what laws, supplies, maps, slices, cut-off, step and cage angles cost, and how wrong they are

@@ -39,13 +39,15 @@ from mbs.bearings.roller_loads import RollerLoads
 from mbs.bearings.rolling_loss import RollingLoss, rolling_loss
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
-from mbs.model.equilibrium import equilibrium
+from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.system import System
 
 SHARE = 0.01
 """A roller counts as loaded if it carries more than this part of the highest roller load: films load all a little."""
 
-_RING = "inner ring"
+RING = "inner ring"
+"""Name of the body that a bearing alone carries."""
+
 _FREE = 1e-9
 """Stiffness across the load over that along it, below which there is none."""
 
@@ -191,26 +193,49 @@ def bearing_points(
     return [[bearing_point(force, films, load, speed, temperature) for speed in speeds] for load in loads]
 
 
-def bearing_point(
-    force: BearingForce, films: FilmSource, load: Sequence[float], speed: float, temperature: float
-) -> BearingPoint:
-    """One point; arguments and errors as of `bearing_points`."""
+def ring_at_rest(element: BearingElement, load: Sequence[float], operation: Operation) -> Equilibrium:
+    """Where the inner ring of a bearing comes to rest in the radial plane, without tilting.
+
+    Parameters
+    ----------
+    element : BearingElement
+        The bearing, between the body `RING` and ground.
+    load : (float, float)
+        Load on the inner ring, y and z [N].
+    operation : Operation
+        Speed of the inner ring.
+
+    Raises
+    ------
+    InputError
+        For a load of zero.
+    AnalysisError
+        Where no equilibrium is found.
+    """
     given = np.array(load, dtype=np.float64)
     if given.shape != (2,) or not np.all(np.isfinite(given)) or not np.any(given):
         raise InputError(f"bearing point, load: got {load!r} N; allowed: two finite numbers, y and z, not both zero")
-    element = BearingElement("bearing", _RING, "ground", force.bearing, force, temperature)
-    ring = rigid_body(_RING, [Inertia(1.0, 1.0, 1.0)], ["y", "z"])
-    system = System([ring], loads=[Load("load", _RING, np.array([0.0, *given, 0.0, 0.0, 0.0]))], elements=[element])
-    operation = Operation(speed)
+    ring = rigid_body(RING, [Inertia(1.0, 1.0, 1.0)], ["y", "z"])
+    system = System([ring], loads=[Load("load", RING, np.array([0.0, *given, 0.0, 0.0, 0.0]))], elements=[element])
     try:
-        balance = equilibrium(system, operation)
+        return equilibrium(system, operation)
     except AnalysisError as error:
         if not isinstance(error.__cause__, InputError):
             raise
         raise AnalysisError(  # the ring went further than small displacements allow
-            f"no equilibrium of {force.bearing.geometry.name} under {np.hypot(*given):.4g} N: {error.__cause__}; the "
+            f"no equilibrium of {element.bearing.geometry.name} under {np.hypot(*given):.4g} N: {error.__cause__}; the "
             "load is beyond what the bearing can carry"
         ) from error
+
+
+def bearing_point(
+    force: BearingForce, films: FilmSource, load: Sequence[float], speed: float, temperature: float
+) -> BearingPoint:
+    """One point; arguments and errors as of `bearing_points`."""
+    element = BearingElement("bearing", RING, "ground", force.bearing, force, temperature)
+    operation = Operation(speed)
+    balance = ring_at_rest(element, load, operation)
+    given = np.array(load, dtype=np.float64)
     pose = np.array([0.0, *balance.displacement, 0.0, 0.0, 0.0])
     rollers, u = element.rollers(pose, operation), element.entrainment_speed(operation)
     contacts = bearing_contacts(films, rollers, u, temperature)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -14,39 +13,30 @@ import xarray as xr
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
-from ehdmaps.units import closest
 from mbs.analyses.case import Case, as_cases
 from mbs.analyses.changed_laws import SIGNS, law_changes, with_changed_laws
-from mbs.analyses.drive import course_of
+from mbs.analyses.followed import followed_orders
 from mbs.analyses.operating import held, states_of
 from mbs.analyses.progress import Progress, silent
+from mbs.analyses.ramp import recorded_run, rehearsed, run_course
+from mbs.analyses.sensors import chosen_sensors
 from mbs.analyses.side_by_side import Failed, side_by_side
 from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_result import Sweep
-from mbs.model.elements import Operation, Sensor
-from mbs.model.equilibrium import equilibrium
+from mbs.model.elements import Sensor
 from mbs.output.campbell_data import campbell_dataset, of_sensors
 from mbs.output.results import BAND, described
 from mbs.output.state_data import with_states
 from mbs.scene.assembly import Model, law_attributes, supply_attributes
-from mbs.scene.fields import HERTZ
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings, RunUp
 from mbs.spectral.campbell import RunUpSpectra, run_up_spectra
 from mbs.spectral.levels import Reference
 from mbs.spectral.run_signal import RunSignal
-from mbs.spectral.spectra import LEAST_OVERSAMPLING
 from mbs.transient.run import Recording
-from mbs.transient.run import run as run_system
-
-LEAST_SAMPLES, MOST_SAMPLES = 64, 5_000_000
-"""Steps of a run: the fewest that have a spectrum, and 50 s of 10 us, beyond any run-up that is waited for."""
 
 MOST_BANDS = len(SIGNS)
 """Runs of a law for its band, at most."""
-
-ALL_SENSORS = "all"
-"""Stands for all sensors of a scene, or of a file."""
 
 MODE_SPEEDS = 9
 """Speeds of the run at which modes are computed."""
@@ -194,49 +184,6 @@ def campbell(
     return CampbellResult(settings, tuple(seen), course, tuple(orders), tuple(runs), tuple(failed), dataset)
 
 
-def looked_at(scene: Scene, settings: CampbellSettings) -> tuple[Sensor, ...]:
-    """The sensor of a diagram, then all others of an acceleration.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    settings : CampbellSettings
-        The sensor's name, if one is named.
-
-    Raises
-    ------
-    InputError
-        If there is no such sensor.
-    """
-    problems: list[str] = []
-    sensor = _sensor(settings.sensor, scene, problems)
-    if sensor is None:
-        raise InputError(problems)
-    others = (other for other in scene.sensors if other.quantity == "acceleration" and other.name != sensor.name)
-    return sensor, *others
-
-
-def chosen_sensors(scene: Scene, settings: CampbellSettings, names: Sequence[str], problems: list[str]) -> list[Sensor]:
-    """The sensors of some names, without doubles.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    settings : CampbellSettings
-        Settings whose sensor is taken where no name is given.
-    names : sequence of str
-        Names, or `ALL_SENSORS` for all of the scene.
-    problems : list of str
-        What is wrong about them is appended.
-    """
-    if ALL_SENSORS in names and scene.sensors and all(sensor.name != ALL_SENSORS for sensor in scene.sensors):
-        return list(scene.sensors)
-    found = [_sensor(name, scene, problems) for name in names or (settings.sensor,)]
-    return list({sensor.name: sensor for sensor in found if sensor is not None}.values())
-
-
 def campbell_problems(scene: Scene, settings: CampbellSettings, sensors: Sequence[str] = ()) -> list[str]:
     """Everything about the run and the sensors of a scene that is not possible with some settings."""
     problems: list[str] = []
@@ -322,162 +269,6 @@ def _runs(
     return list(runs.values()), [*lost.values(), *stopped]
 
 
-def run_course(scene: Scene, highest: float, problems: list[str]) -> RunUp | None:
-    """The run of the scene with a sample a step, so that nothing above the band is folded into it.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    highest : float
-        Highest frequency that is looked at [Hz].
-    problems : list of str
-        What is wrong about it is appended.
-
-    Returns
-    -------
-    RunUp or None
-        None where there is no run, or none of a possible length.
-    """
-    course = scene.run_up
-    if course is None:
-        problems.append(f"{scene.name}: [runup] missing; a run-up needs from, to, duration and step")
-        return None
-    longest = 1.0 / (LEAST_OVERSAMPLING * highest)
-    if course.settings.step > longest * (1.0 + 1e-6):
-        problems.append(
-            f"{scene.name}: [runup] step: got {1e6 * course.settings.step:.4g} us; allowed: up to "
-            f"{1e6 * longest:.4g} us for frequencies up to {HERTZ.text(highest)}; take smaller steps, or a "
-            "lower --highest"
-        )
-    samples = course.duration / course.settings.step
-    if not LEAST_SAMPLES <= samples <= MOST_SAMPLES:
-        problems.append(
-            f"{scene.name}: [runup] duration: got {course.duration:.4g} s, which is {samples:.4g} steps; allowed: "
-            f"{LEAST_SAMPLES} to {MOST_SAMPLES}"
-        )
-        return None
-    every_step = dataclasses.replace(course.settings, sample=course.settings.step)
-    return dataclasses.replace(course, settings=every_step)
-
-
-def _sensor(name: str | None, scene: Scene, problems: list[str]) -> Sensor | None:
-    """The sensor of a name, or the first one of an acceleration."""
-    names = tuple(sensor.name for sensor in scene.sensors)
-    if name is not None:
-        for sensor in scene.sensors:
-            if sensor.name == name:
-                return sensor
-        problems.append(
-            f"{scene.name}: sensor {name!r:.60} is not there{closest(name, names)}; allowed: "
-            f"{', '.join(names) or 'none'}"
-        )
-        return None
-    for sensor in scene.sensors:
-        if sensor.quantity == "acceleration":
-            return sensor
-    problems.append(
-        f"{scene.name}: has no sensor of an acceleration; allowed: one of {', '.join(names) or 'none'} with --sensor, "
-        "or a [[sensors]] more"
-    )
-    return None
-
-
-def followed_orders(model: Model, settings: CampbellSettings, course: RunUp) -> list[tuple[float, str]]:
-    """Orders to follow, with their names: those of the settings, else what the elements excite.
-
-    Parameters
-    ----------
-    model : Model
-        Scene with a law.
-    settings : CampbellSettings
-        Orders, if any are named, and the highest frequency.
-    course : RunUp
-        The run.
-    """
-    if settings.orders:
-        return [(order, f"{order:g}") for order in settings.orders]
-    # None that lies above the band at every speed.
-    slowest = min(course.speed.at(0.0)[0], course.speed.at(course.duration)[0])
-    return orders_in_band(excited_orders(model), settings.highest, slowest)
-
-
-def orders_in_band(orders: Sequence[tuple[float, str]], highest: float, slowest: float) -> list[tuple[float, str]]:
-    """Those of some orders that do not lie above a band at every speed.
-
-    Parameters
-    ----------
-    orders : sequence of (float, str)
-        Orders, with their names.
-    highest : float
-        Highest frequency [Hz].
-    slowest : float
-        Lowest speed of the run [rad/s].
-
-    Examples
-    --------
-    >>> orders_in_band([(2.0, "2"), (200.0, "200")], 1000.0, 62.8)
-    [(2.0, '2')]
-    """
-    top = 2.0 * math.pi * highest / slowest if slowest > 0.0 else math.inf
-    return [(order, name) for order, name in orders if order < top]
-
-
-def excited_orders(model: Model) -> list[tuple[float, str]]:
-    """Orders that the elements of a model excite, with their names: of gears, else of passing rollers.
-
-    Parameters
-    ----------
-    model : Model
-        Scene with a law.
-    """
-    given = [one for entry in model.system.elements if (one := entry.element.excitation) is not None]
-    highest_rank = max((entry.rank for entry in given), default=0)
-    # Rounded, for bearings that differ in the last bit only.
-    bases = sorted({(round(entry.order, 9), entry.harmonics) for entry in given if entry.rank == highest_rank})
-    found = {k * base: f"{k * base:.4g}" for base, count in bases for k in range(1, count + 1)}
-    return sorted(found.items())
-
-
-def silent_run(course: RunUp) -> RunSignal:
-    """A silent run of a course: what does not fit it is said before minutes are spent, not after.
-
-    Parameters
-    ----------
-    course : RunUp
-        The run.
-
-    Raises
-    ------
-    InputError
-        If there is none.
-    """
-    samples = math.ceil(course.duration / course.settings.sample - 1e-9)
-    times = np.asarray(np.arange(samples + 1) * course.settings.sample, dtype=np.float64)
-    speed, angle = np.array([course.speed.at(at) for at in times.tolist()]).T
-    return RunSignal(times, speed, angle, np.zeros_like(times))
-
-
-def rehearsed(settings: CampbellSettings, course: RunUp, orders: Sequence[tuple[float, str]]) -> RunUpSpectra:
-    """What a silent run of a course gives: windows, speeds and frequencies of any signal of it.
-
-    Parameters
-    ----------
-    settings : CampbellSettings
-        What is looked at.
-    course : RunUp
-        The run.
-    orders : sequence of (float, str)
-        Orders to follow, with their names.
-
-    Raises
-    ------
-    InputError
-        If settings and orders do not fit the run.
-    """
-    return run_up_spectra(silent_run(course), 1.0, settings.highest, settings.window, [order for order, _ in orders])
-
-
 def _sum_levels(spectra: Sequence[RunUpSpectra]) -> FloatArray:
     """Sum levels of all sensors, shape (sensors, windows) [dB]."""
     return np.array([each.campbell.sum_level for each in spectra])
@@ -505,46 +296,6 @@ def _one(model: Model, look: _Look, told: Callable[[int], None], with_modes: boo
         reference = Reference.of(sensor).value
         spectra.append(run_up_spectra(signal, reference, settings.highest, settings.window, orders))
     return _Made(record, tuple(spectra), _modes(model, spectra[0]) if with_modes else None, seconds)
-
-
-def recorded_run(
-    model: Model,
-    course: RunUp,
-    sensors: Sequence[Sensor],
-    told: Callable[[int], None] | None = None,
-    *,
-    nudge: float = 0.0,
-) -> Recording:
-    """Run up from the equilibrium at the first speed, and record sensors.
-
-    Parameters
-    ----------
-    model : Model
-        Scene with a law.
-    course : RunUp
-        The run.
-    sensors : sequence of Sensor
-        What is recorded.
-    told : callable, optional
-        Told the number of samples done.
-    nudge : float
-        Distance of all coordinates from their equilibrium at the beginning [m or rad], to see what becomes of it.
-
-    Raises
-    ------
-    AnalysisError
-        If there is no equilibrium, or a step finds no solution.
-    """
-    start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
-    return run_system(
-        model.system,
-        course_of(model, course),
-        course.duration,
-        course.settings,
-        sensors=sensors,
-        displacement=start.displacement + nudge,
-        progress=told,
-    )
 
 
 def _modes(model: Model, spectra: RunUpSpectra) -> Sweep:

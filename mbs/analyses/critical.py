@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -26,7 +27,7 @@ from mbs.linearised.sweep_result import Sweep
 from mbs.model.system import System
 from mbs.output.critical_data import critical_dataset
 from mbs.output.results import described
-from mbs.scene.assembly import Model, law_attributes
+from mbs.scene.assembly import Model, law_attributes, supply_attributes
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +43,7 @@ class CriticalResult:
     found : tuple of CriticalSpeed
         Critical speeds, for each order in turn.
     speeds : array, shape (speeds,)
-        Speeds of the responses: those of the sweep, and some around each critical one [rad/s].
+        Speeds of the responses: those of the sweep, and some around each critical one, of all laws [rad/s].
     responses : tuple of OrderResponse
         Response to all loads of each order; none without unbalances and excitations.
     dataset : xarray.Dataset
@@ -92,7 +93,43 @@ def critical(model: Model, settings: SweepSettings | None = None) -> CriticalRes
     >>> found.dataset.sizes["critical"]
     0
     """
-    speeds = (settings or SweepSettings()).speeds or model.scene.sweep
+    return critical_of([model], settings)[0]
+
+
+def critical_of(models: Sequence[Model], settings: SweepSettings | None = None) -> list[CriticalResult]:
+    """Find critical speeds and responses of one scene with several laws, responses at the same speeds.
+
+    Parameters
+    ----------
+    models : sequence of Model
+        Scene with each law. Speeds around the critical ones of any of them are added for all.
+    settings : SweepSettings, optional
+        Settings with the speeds; those of [sweep] of the scene if left out.
+
+    Raises
+    ------
+    InputError
+        If there are no speeds, or no body spins.
+    AnalysisError
+        If there is no equilibrium at a speed.
+    """
+    found = [_swept(model, settings or SweepSettings()) for model in models]
+    refined = np.unique(np.concatenate([with_critical(entry.sweep.speeds, entry.found) for entry in found]))
+    return [_responded(entry, refined) for entry in found]
+
+
+class _Swept(NamedTuple):
+    """A model with its modes over speed."""
+
+    model: Model
+    system_at: Callable[[float], System]
+    sweep: Sweep
+    found: tuple[CriticalSpeed, ...]
+
+
+def _swept(model: Model, settings: SweepSettings) -> _Swept:
+    """Modes and critical speeds of one model."""
+    speeds = settings.speeds or model.scene.sweep
     if speeds is None:
         raise InputError(
             f'{model.scene.name}: no speeds; allowed: --speeds "500 rpm" "2500 rpm" 40, or a table [sweep] in the '
@@ -109,18 +146,48 @@ def critical(model: Model, settings: SweepSettings | None = None) -> CriticalRes
 
     sweep = sweep_system(system_at, speeds.speeds)
     found = critical_speeds(system_at, sweep.speeds, sweep.damped, orders(model.system))
-    refined = with_critical(sweep.speeds, found)
+    return _Swept(model, system_at, sweep, found)
+
+
+def _responded(swept: _Swept, speeds: FloatArray) -> CriticalResult:
+    """The responses of one model at some speeds."""
+    model, system_at, sweep, found = swept
     responses: tuple[OrderResponse, ...] = ()
     if model.system.turning:
         try:
-            responses = order_responses(system_at, refined)
+            responses = order_responses(system_at, speeds)
         except np.linalg.LinAlgError as error:
             raise AnalysisError(
                 "responses: one of the speeds is just that of an undamped resonance, where there is none; move the "
                 "speeds, or add damping"
             ) from error
-    dataset = critical_dataset(model.system, model.scene.sensors, sweep, found, refined, responses)
-    return CriticalResult(model, sweep, found, refined, responses, described(dataset, **law_attributes(model)))
+    dataset = critical_dataset(model.system, model.scene.sensors, sweep, found, speeds, responses)
+    return CriticalResult(model, sweep, found, speeds, responses, described(dataset, **law_attributes(model)))
+
+
+def dataset_of_laws(labels: Sequence[str], results: Sequence[CriticalResult]) -> xr.Dataset:
+    """What `mbs critical -o` writes: of one law its result, of several all of them over the dim law.
+
+    There are as many critical speeds as the law with most of them has; what a law has not is not a number.
+
+    Parameters
+    ----------
+    labels : sequence of str
+        What each is called.
+    results : sequence of CriticalResult
+        Results of `critical_of`.
+    """
+    parts = [result.dataset for result in results]
+    if len(parts) == 1:
+        return parts[0]
+    # Dims without coordinates, whose lengths differ, are numbered for the while.
+    bare = {name for part in parts for name in part.dims if name not in part.coords}
+    numbered = [part.assign_coords({name: np.arange(part.sizes[name]) for name in bare}) for part in parts]
+    law = xr.DataArray(np.array(labels, dtype=np.str_), dims="law", name="law")
+    joined = xr.concat(numbered, law, data_vars="all", join="outer", combine_attrs="override").drop_vars(list(bare))
+    named = list(zip(labels, (result.model for result in results), strict=True))
+    words = "; ".join(f"{label}: {model.law}" for label, model in named)
+    return joined.assign_attrs({**parts[0].attrs, "law": words, **supply_attributes(named)})
 
 
 def orders(system: System) -> tuple[float, ...]:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError
+from mbs.analyses.case import Case
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating
 from mbs.analyses.progress import Progress, silent
+from mbs.analyses.side_by_side import Failed, side_by_side
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import FilmError
@@ -108,27 +111,105 @@ def hammer(model: Model, settings: HammerSettings | None = None, progress: Progr
     >>> len(found.hits), found.test.samples
     (1, 1280)
     """
-    settings = settings or HammerSettings()
-    scene = model.scene
-    missing = hammer_problems(scene)
-    if missing:
-        raise InputError(missing)
-    model = operating(model, model.operation.speed)
-    balance = equilibrium(steady_system(model.system), model.operation)
-    found = modes(balance)
-    highest = settings.highest or (scene.frequencies[-1] if scene.frequencies else HIGHEST)
-    duration = settings.duration or suggested_duration(found, highest)
-    test = HammerTest(highest, duration, settings.hits, settings.noise, settings.seed)
-    hits, outside = _hit(model, balance, test, settings.nonlinear, progress or silent)
-    return HammerResult(
-        model=model,
-        balance=balance,
-        modes=found,
-        test=test,
-        hits=hits,
-        errors=tuple(film_errors(model, balance.displacement, balance.operation)),
-        outside_hits=outside,
+    tell = progress or silent
+    prepared = _prepare(model, settings or HammerSettings())
+    total = _size(prepared)
+
+    def told(done: int) -> None:
+        if prepared.nonlinear:
+            tell(done, total)
+
+    told(0)
+    return _result(prepared, *_hit(prepared, told))
+
+
+class Hammers(NamedTuple):
+    """Tests of one scene with several laws.
+
+    Attributes
+    ----------
+    labels : tuple of str
+        What each is called.
+    results : tuple of HammerResult
+        Those that came to the end.
+    failed : tuple of str
+        Why the others did not, each with its label.
+    """
+
+    labels: tuple[str, ...]
+    results: tuple[HammerResult, ...]
+    failed: tuple[str, ...]
+
+
+def hammers(
+    cases: Sequence[Case],
+    settings: HammerSettings | None = None,
+    progress: Progress | None = None,
+    *,
+    workers: int = 1,
+) -> Hammers:
+    """Hit one scene with several laws, each with the same heights and noise.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        Models, with their labels.
+    settings : HammerSettings, optional
+        How each is hit. A duration that is left out is that of each law's own slowest mode.
+    progress : callable, optional
+        Told how many hits are done, and of how many, over all laws.
+    workers : int
+        Number of processes among which the laws are divided.
+
+    Raises
+    ------
+    InputError
+        As `hammer` does.
+    AnalysisError
+        If no law has a result.
+
+    Examples
+    --------
+    >>> from mbs import Case, HammerSettings, assemble, read_scene
+    >>> scene = read_scene("nu308_rigid")
+    >>> cases = [Case(law, assemble(scene, law), 0.0) for law in ("hertz", "constant:hertz")]
+    >>> hammers(cases, HammerSettings(hits=1, duration=0.05)).labels
+    ('hertz', 'constant:hertz')
+    """
+    tell = progress or silent
+    prepared: dict[int, _Prepared] = {}
+    failed: dict[int, str] = {}
+    found: dict[int, HammerResult] = {}
+
+    def lost(index: int, error: Exception) -> None:
+        if not (isinstance(error, AnalysisError) and cases[1:]):
+            raise error
+        failed[index] = f"{cases[index].label}: {error}"
+
+    for index, case in enumerate(cases):
+        try:
+            prepared[index] = _prepare(case.model, settings or HammerSettings())
+        except AnalysisError as error:
+            lost(index, error)
+    places = list(prepared)
+    sizes = [_size(prepared[index]) for index in places]
+    tell(0, sum(sizes))
+    made = side_by_side(
+        lambda place, told: _hit(prepared[places[place]], told),
+        sizes,
+        workers,
+        lambda done: tell(done, sum(sizes)),
+        lambda place: cases[places[place]].label,
     )
+    for index, each in zip(places, made, strict=True):
+        if isinstance(each, Failed):
+            lost(index, each.error)
+        else:
+            found[index] = _result(prepared[index], *each)
+    words = tuple(failed[index] for index in sorted(failed))
+    if not found:
+        raise AnalysisError("\n".join(f"warning: {line}" for line in words))
+    return Hammers(tuple(cases[index].label for index in found), tuple(found.values()), words)
 
 
 def hammer_problems(scene: Scene) -> list[str]:
@@ -149,19 +230,61 @@ def hammer_problems(scene: Scene) -> list[str]:
     ]
 
 
-def _hit(
-    model: Model, balance: Equilibrium, test: HammerTest, nonlinear: bool, tell: Progress
-) -> tuple[tuple[Hits, ...], dict[str, int]]:
-    """Make the hits; with how often each element was outside its map."""
-    inputs, sensors = tuple(model.scene.inputs), tuple(model.scene.sensors)
-    if not nonlinear:
-        return linear_hits(balance, inputs, sensors, test), {}
-    done, total = 0, test.hits * len(inputs)
+class _Prepared(NamedTuple):
+    """A model at the equilibrium at which it is hit."""
 
-    def told() -> None:
+    model: Model
+    balance: Equilibrium
+    modes: Modes
+    test: HammerTest
+    nonlinear: bool
+
+
+def _prepare(model: Model, settings: HammerSettings) -> _Prepared:
+    """Equilibrium, modes and test of a model."""
+    scene = model.scene
+    missing = hammer_problems(scene)
+    if missing:
+        raise InputError(missing)
+    model = operating(model, model.operation.speed)
+    balance = equilibrium(steady_system(model.system), model.operation)
+    found = modes(balance)
+    highest = settings.highest or (scene.frequencies[-1] if scene.frequencies else HIGHEST)
+    duration = settings.duration or suggested_duration(found, highest)
+    test = HammerTest(highest, duration, settings.hits, settings.noise, settings.seed)
+    return _Prepared(model, balance, found, test, settings.nonlinear)
+
+
+def _size(prepared: _Prepared) -> int:
+    """Hits in all."""
+    return prepared.test.hits * len(prepared.model.scene.inputs)
+
+
+def _hit(prepared: _Prepared, told: Callable[[int], None]) -> tuple[tuple[Hits, ...], dict[str, int]]:
+    """Make the hits, and tell how many are done; with how often each element was outside its map."""
+    scene, balance, test = prepared.model.scene, prepared.balance, prepared.test
+    inputs, sensors = tuple(scene.inputs), tuple(scene.sensors)
+    if not prepared.nonlinear:
+        return linear_hits(balance, inputs, sensors, test), {}
+    done = 0
+
+    def one() -> None:
         nonlocal done
         done += 1
-        tell(done, total)
+        told(done)
 
-    tell(0, total)
-    return nonlinear_hits(balance, inputs, sensors, test, told)
+    return nonlinear_hits(balance, inputs, sensors, test, one)
+
+
+def _result(prepared: _Prepared, hits: tuple[Hits, ...], outside: Mapping[str, int]) -> HammerResult:
+    """The records with what they were made from."""
+    model, balance = prepared.model, prepared.balance
+    return HammerResult(
+        model=model,
+        balance=balance,
+        modes=prepared.modes,
+        test=prepared.test,
+        hits=hits,
+        errors=tuple(film_errors(model, balance.displacement, balance.operation)),
+        outside_hits=outside,
+    )

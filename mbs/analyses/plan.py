@@ -240,12 +240,14 @@ def _needed(
         )
     mounted = held(model)
     dry = planning.largest_loads(mounted.system, mounted.bearings, speeds[1])
-    # An unloaded bearing has films, too: those of a light load.
+    # Loads that turn would thin the films, whose room is largest where the rotor has no unbalance. An unloaded bearing
+    # has films, too: those of a light load.
+    at_rest = planning.largest_loads(mounted.system, mounted.bearings, speeds[1], turning=False)
     rooms = tuple(
         planning.film_room(entry.bearing.geometry, oil, max(load, planning.LIGHT), speed, scene.temperature)
         if speed > 0.0
         else 0.0
-        for entry, oil, load, speed in zip(model.bearings, oils, dry, fastest, strict=True)
+        for entry, oil, load, speed in zip(model.bearings, oils, at_rest, fastest, strict=True)
     )
     filled = held(assemble(_dry_scene(model.scene, rooms), settings.law))
     preloaded = planning.largest_loads(filled.system, filled.bearings, speeds[1])

@@ -1,14 +1,16 @@
 """Which operating ranges a system needs of a contact map: only what occurs in it, with a stated margin.
 
 The speeds follow from the spins. The loads are those of dry contacts in equilibrium, over the angles of one pitch of
-the rollers and the extremes of loads that vary, times a margin for what moves; the films themselves take up clearance,
+the rollers, the extremes of loads that vary and a turn of unbalances and excitations as a stiff rotor bears them,
+times a margin for what moves; the films themselves take up clearance,
 which a second set of equilibria shows. Below its lowest load and speed a law goes on by itself: the film fades.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 from itertools import pairwise
@@ -24,11 +26,14 @@ from ehdmaps.physics.solids import STEEL
 from mbs.bearings.bearing_element import BearingElement
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
-from mbs.model.profiles import Course, Harmonic, LoadProfile
+from mbs.model.profiles import Constant, Course, Harmonic, LoadProfile
 from mbs.model.system import System
 
 ANGLES = 12
 """Angles within one pitch of the rollers."""
+
+PHASES = 8
+"""Angles within the slowest turn of unbalances and excitations: the largest of a sine is at most 8 % above these."""
 
 MARGIN = 3.0
 """Highest load of a map over the largest load at rest: room for what moves."""
@@ -133,7 +138,9 @@ def speed_range(steady: Iterable[float], ramp: Sequence[float] = ()) -> tuple[fl
     return (min(low, SLOWEST * high) if passes_rest else low), high
 
 
-def largest_loads(system: System, bearings: Sequence[BearingElement], speed: float) -> tuple[float, ...]:
+def largest_loads(
+    system: System, bearings: Sequence[BearingElement], speed: float, turning: bool = True
+) -> tuple[float, ...]:
     """Largest load per unit length of a slice of each bearing at rest [N/m].
 
     Parameters
@@ -144,6 +151,8 @@ def largest_loads(system: System, bearings: Sequence[BearingElement], speed: flo
         Those of the system.
     speed : float
         Speed of the system [rad/s].
+    turning : bool
+        Whether unbalances and excitations count.
 
     Raises
     ------
@@ -154,6 +163,10 @@ def largest_loads(system: System, bearings: Sequence[BearingElement], speed: flo
     -----
     Over `ANGLES` cage angles of one pitch (that of the slowest cage), at time zero and where a load that varies has
     an extreme. Two loads that vary, each between its own extremes, may together have a larger one.
+
+    Unbalances and excitations stand still at `PHASES` angles of their slowest turn, with their size at this speed, m r
+    w^2 of an unbalance: what the bearings of a stiff rotor carry. Well below the first critical speed a rotor bends
+    little, and this holds; from half of it on the rotor adds more than a third, and near it any multiple.
     """
     pitches = [
         2.0 * math.pi / bearing.bearing.geometry.rollers / abs(bearing.rates[0])
@@ -163,14 +176,24 @@ def largest_loads(system: System, bearings: Sequence[BearingElement], speed: flo
     places = [(entry, system.relative(entry.inner, entry.outer)) for entry in bearings]
     largest = np.zeros(len(places))
     profiles = [profile for _, profile in system.varying_loads]
-    for time in sorted({0.0, *(time for profile in profiles for time in _extremes(profile))}):
+    times = sorted({0.0, *(time for profile in profiles for time in _extremes(profile))})
+    for turned, time in itertools.product(_turned(system, speed) if turning else (system,), times):
         start = None
         for part in range(ANGLES if pitches else 1):
             operation = Operation(speed, max(pitches, default=0.0) * part / ANGLES, time)
-            start = equilibrium(system, operation, start).displacement
+            start = equilibrium(turned, operation, start).displacement
             loads = [entry.rollers(place @ start, operation).load_per_length.max() for entry, place in places]
             largest = np.maximum(largest, loads)
     return tuple(largest.tolist())
+
+
+def _turned(system: System, speed: float) -> Iterator[System]:
+    """The system as it is; and where loads turn, with these held at some angles of their slowest turn."""
+    yield system
+    if system.turning:
+        turn = 2.0 * math.pi / min(abs(load.order) for load in system.turning)
+        for part in range(PHASES):
+            yield system.with_load(system.turning_loads(speed, turn * part / PHASES, 0.0), Constant())
 
 
 def film_room(

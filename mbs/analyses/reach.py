@@ -49,7 +49,7 @@ def source_of(model: Model) -> str:
     model : Model
         Model with its law.
     """
-    return "the map" if model.law.startswith("map ") else "the table of the film formula"
+    return "the map" if model.law.startswith(("map ", "maps ")) else "the table of the film formula"
 
 
 SPEED_TABLE = "its table of speeds"

@@ -10,7 +10,9 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.errors import InputError
-from mbs.analyses.campbell import ALL_SENSORS, LawRun, excited_orders, orders_in_band
+from mbs.analyses.campbell import LawRun
+from mbs.analyses.followed import excited_orders, orders_in_band
+from mbs.analyses.sensors import ALL_SENSORS
 from mbs.model.elements import Sensor
 from mbs.output.campbell_data import campbell_dataset, of_sensors
 from mbs.output.results import described
@@ -91,7 +93,7 @@ def simulated(runs: Sequence[tuple[str, Model, Recording]]) -> TimeData:
     InputError
         If the scene has no sensor.
     """
-    _, model, _ = runs[0]
+    _, model, first = runs[0]
     sensors = model.scene.sensors
     if not sensors:
         raise InputError(f"{model.scene.name}: got no [[sensors]]; allowed: at least one, whose signals are written")
@@ -103,7 +105,8 @@ def simulated(runs: Sequence[tuple[str, Model, Recording]]) -> TimeData:
     attributes = dict(law_attributes(model))
     attributes["law"] = "; ".join(f"{label}: {entry.law}" for label, entry, _ in runs)
     look = model.scene.campbell
-    orders = [(order, f"{order:g}") for order in look.orders] or excited_orders(model)
+    turns = float(np.ptp(first.signal_angle)) / (2.0 * np.pi)
+    orders = [(order, f"{order:g}") for order in look.orders] or excited_orders(model, turns)
     return TimeData(model.scene.title, records, tuple(orders), attributes, look)
 
 

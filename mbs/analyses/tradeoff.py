@@ -24,12 +24,13 @@ from ehdmaps.jobs.supply import supply_from_text
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade
 from ehdmaps.units import RPM
-from mbs.analyses.campbell import looked_at, recorded_run, run_course
 from mbs.analyses.linear_look import LinearLook, LinearReference, linear_look
 from mbs.analyses.numerics import Numerics
 from mbs.analyses.operating import held
 from mbs.analyses.progress import Progress, silent
+from mbs.analyses.ramp import recorded_run, run_course
 from mbs.analyses.ramp_parts import PartRun, Ramp, RampPart, ramp_of, run_part
+from mbs.analyses.sensors import looked_at
 from mbs.analyses.varied import VARIED, LawChoice, Subject
 from mbs.linearised.averaged import pitch
 from mbs.scene import changes

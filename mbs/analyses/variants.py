@@ -17,9 +17,10 @@ import xarray as xr
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.analyses.campbell import followed_orders, recorded_run, run_course, silent_run
+from mbs.analyses.followed import followed_orders
 from mbs.analyses.operating import held
 from mbs.analyses.progress import Progress, silent
+from mbs.analyses.ramp import recorded_run, run_course, silent_run
 from mbs.analyses.side_by_side import Failed, side_by_side
 from mbs.analyses.varied import VARIED, LawChoice, Subject, Value
 from mbs.model.elements import Sensor

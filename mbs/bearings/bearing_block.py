@@ -10,18 +10,18 @@ from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.copies import put
-from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.lines import FAST
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.bearing_kernel import bearing_force, ring_powers
+from mbs.bearings.faded_table import fade
 from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
 from mbs.bearings.laws import Law
 from mbs.bearings.level_kernel import level_force
 from mbs.bearings.rings import LEVEL, Rings, answer_ring, feels, gather_rings, motion_of, placed, shape_of
 from mbs.bearings.roller_motion import Work
-from mbs.bearings.slice_table import CELLS, KNOTS, LawNumbers, PreparedLaw, fade, law_numbers, store_numbers
+from mbs.bearings.slice_table import CELLS, KNOTS, LawNumbers, PreparedLaw, law_numbers, store_numbers
 from mbs.bearings.speed_tables import NODES, SpeedTables
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
 from mbs.model.elements import Element
@@ -236,7 +236,7 @@ class BearingBlock(FilmBlock[Bearings]):
             for element in (elements[first] for first in firsts)
         ]
         rings = gather_rings(members, films_of)
-        films = room_of(len(tables), any(table.varies for table in tables))
+        films = room_of(tables)
         course = CourseOfFilms(
             [table.places for table in tables],
             lambda film, *places: tables[film].prepare(*places, films.tables[film], films.numbers[film]),
@@ -260,12 +260,13 @@ def _force_of(element: BearingElement) -> BearingForce:
 
 def is_strict(law: Law) -> bool:
     """Whether a law refuses loads above its map."""
-    return isinstance(law, ContactLaw) and law.outside == "error"
+    return law.outside == "error"
 
 
-def room_of(films: int, varies: bool) -> Films:
-    """Room for tables."""
-    nodes, cells = (NODES + 1, 2 * table.ROWS) if varies else (1, 1)
+def room_of(tables: Sequence[SpeedTables]) -> Films:
+    """Room for tables; dry laws have one for all speeds, and power laws none."""
+    films, nodes = len(tables), NODES + 1 if any(one.varies for one in tables) else 1
+    cells = 2 * table.ROWS if any(one.has_cells for one in tables) else 1
     return Films(
         tables=np.zeros((films, nodes, cells, 8)),
         numbers=np.zeros((films, nodes, table.NUMBERS)),

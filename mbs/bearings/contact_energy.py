@@ -76,8 +76,7 @@ def potential(law: Law, conditions: Conditions, bearing: Bearing, deepest: float
         [m].
     """
     if isinstance(law, DryLaw):
-        factor, b = law.coefficient / (law.exponent + 1.0) / bearing.slices, law.exponent + 1.0
-        return lambda approach: np.asarray(factor * np.maximum(approach, 0.0) ** b)
+        return lambda approach: np.asarray(law.energy(approach) / bearing.slices)
     point = law.at(*conditions)
 
     def loads(delta: FloatArray) -> FloatArray:

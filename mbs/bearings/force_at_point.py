@@ -17,7 +17,10 @@ from ehdmaps.solids.slices import without_ends
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_kernel import force_of_arrays, force_of_point_arrays
+from mbs.bearings.changing_force import CELLS_MISSING, NO_TABLE, changed_force, remade_force
 from mbs.bearings.coupled_kernel import NO_LOADS, coupled_arrays
+from mbs.bearings.faded_table import fade
+from mbs.bearings.flat_law import FlatLaw, tabulate_law
 from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.roller_loads import RollerLoads, roller_loads
 from mbs.bearings.roller_motion import NOT_FINITE, Sizes, rollers_of_arrays
@@ -64,11 +67,14 @@ class Arrays:
         angles = 2.0 * math.pi * np.arange(rollers) / rollers
         self.angles = np.stack((np.cos(angles), np.sin(angles)))
         self.state = np.zeros(13)
+        self.motion = (self.state, self.state[:6], self.state[6:12])
+        self.conditions = np.zeros(4)
         self.rows = np.zeros((rollers, slices), dtype=np.int64)
         self.states = np.zeros((4, rollers, slices))
         self.numbers = np.zeros(table.NUMBERS)
+        self.shape = (self.state, np.array(self.sizes), self.slices, self.angles, self.numbers)
         self.cells, self.knots, self.film = np.zeros((1, 8)), np.zeros(1), np.zeros((1, 8))
-        self.buffer = np.zeros((1, 1))
+        self.nodes, self.marks = np.zeros((4, 1)), np.zeros((2, 1), dtype=np.uint8)
         self.counts = np.zeros(4, dtype=np.int64)
         self.coupling = coupling
         self.own = np.zeros((rollers, slices)) if coupling is not None else np.zeros((0, 0))
@@ -76,34 +82,13 @@ class Arrays:
     def make_room(self) -> None:
         """Make the arrays that only a tabulated law needs."""
         if self.cells.shape[0] == 1:
-            self.cells, self.buffer = np.empty((2 * table.ROWS, 8)), np.empty((6, 2 * table.ROWS + 1))
+            self.cells, self.nodes = np.empty((2 * table.ROWS, 8)), np.empty((4, table.NODES))
+            self.marks = np.zeros((2, table.NODES), dtype=np.uint8)
 
     def make_knots(self) -> None:
         """Make the arrays that only a faded film needs."""
         if self.film.shape[0] == 1:
             self.film, self.knots = np.empty((2 * table.ROWS, 8)), np.empty(2 * table.ROWS)
-
-
-class FlatLaw:
-    """A law, and its table flat for compiled code; with the single contacts only where they are needed.
-
-    Parameters
-    ----------
-    law : Law
-        Law of a roller between both raceways.
-    """
-
-    def __init__(self, law: Law) -> None:
-        self.law = law
-        self._made: dict[bool, tuple[table.FlatTable, FloatArray]] = {}
-
-    def arrays(self, law: ContactLaw, centrifugal: bool) -> tuple[table.FlatTable, FloatArray]:
-        """Flat table of `law`, and work space for it."""
-        if centrifugal not in self._made:
-            whole = law.table if centrifugal else law.plain_table
-            width = max(part.coefficients.shape[2] for part in (whole.own, whole.inner, whole.outer))
-            self._made[centrifugal] = table.flat_table(whole), np.empty((4, width // 2, 8))
-        return self._made[centrifugal]
 
 
 class ForceAtPoint:
@@ -118,14 +103,16 @@ class ForceAtPoint:
     conditions : (float, float, float)
         u [m/s], T [K], centrifugal load [N/m].
     work : Arrays, optional
-        Arrays to be used; new ones if left out.
+        Arrays that elements at one point after the other use: the table then gets its cells as slices need them. New
+        ones, with a whole table, if left out.
 
     Attributes
     ----------
     conditions : (float, float, float)
         u [m/s], T [K], centrifugal load [N/m]; NaN where a dry law was given none.
     arrays : tuple
-        All arguments of `mbs.bearings.bearing_kernel.force_of_arrays` but the last, for other compiled code.
+        All arguments of `mbs.bearings.bearing_kernel.force_of_arrays` but the last, for other compiled code, which
+        takes them from an element with arrays of its own.
     """
 
     def __init__(
@@ -139,9 +126,10 @@ class ForceAtPoint:
         self._bearing, self._flat_law = bearing, flat_law
         self._work = work or Arrays(bearing, coupling_beside(bearing, flat_law.law))
         self._law: LawAtPoint | None = None
-        self._by_slices = False
+        self._by_slices, self._passing = False, work is not None
         self._coupled = self._work.coupling is not None
         self._outside = False
+        self._growing: tuple[Any, ...] | None = None
         law, numbers, centrifugal_load = flat_law.law, self._work.numbers, conditions[2]
         if isinstance(law, DryLaw):
             if centrifugal_load != 0.0:
@@ -149,22 +137,15 @@ class ForceAtPoint:
                     f"bearing force, centrifugal_load: got {centrifugal_load!r} N/m with the law {law.name!r}; "
                     "allowed: 0; only a map's law brings rollers into equilibrium"
                 )
-            length = bearing.geometry.roller_length
-            _set_power(
-                numbers,
-                law.coefficient / length,
-                law.exponent,
-                math.inf,
-                damping=law.damping / length,
-                damping_time=law.damping_time,
-            )
+            numbers[:], cells = law.prepared(bearing.geometry.roller_length)
+            if cells is not None:
+                self._work.make_room()
+                self._work.cells[:] = cells
         else:
             self._prepare(law)
         self._apart = self._by_slices or self._coupled
         w = self._work
-        self._state = (w.state, w.state[:6], w.state[6:12])
-        self._shape = (w.state, np.array(w.sizes), w.slices, w.angles, w.numbers)
-        self.arrays = (*self._shape, w.cells, w.knots, w.rows, w.states)
+        self.arrays = (*w.shape, w.cells, w.knots, w.rows, w.states)
 
     def __call__(self, pose: npt.ArrayLike, velocity: npt.ArrayLike | None = None, cage_angle: float = 0.0) -> Triple:
         """Force, stiffness and damping; as calling the `BearingForce`. The arrays are new ones each time."""
@@ -186,7 +167,7 @@ class ForceAtPoint:
 
     def _found(self, pose: npt.ArrayLike, velocity: npt.ArrayLike | None, cage_angle: float) -> tuple[FloatArray, bool]:
         """Force, stiffness and damping in rows (13, 6), and whether a slice was outside the map."""
-        state, own_pose, own_velocity = self._state
+        state, own_pose, own_velocity = self._work.motion
         own_pose[...] = pose if type(pose) is np.ndarray and pose.shape == _SIX else six_numbers("pose", pose)
         if velocity is None:
             own_velocity[...] = 0.0
@@ -196,7 +177,10 @@ class ForceAtPoint:
             own_velocity[...] = six_numbers("velocity", velocity)
         state[12] = cage_angle
         out: FloatArray = np.empty(_OUT)
-        status = self._from_law(out) if self._apart else force_of_arrays(*self.arrays, out)
+        if self._growing is not None:
+            status = self._from_growing(self._growing, out)
+        else:
+            status = self._from_law(out) if self._apart else force_of_arrays(*self.arrays, out)
         outside = self._settle(status, out) if status != 0 or self._outside else False
         return out, outside
 
@@ -226,14 +210,17 @@ class ForceAtPoint:
         """
         self(pose, velocity, cage_angle)
         w = self._work
-        rollers = rollers_of_arrays(*self._shape[:4])
+        rollers = rollers_of_arrays(*w.shape[:4])
         own = w.own if self._coupled else None
         return roller_loads(self._bearing, w.slices, w.states, rollers, cage_angle, own)
 
     def _prepare(self, law: ContactLaw) -> None:
         """Make the law of this point ready for compiled code."""
         work = self._work
-        u, _, q = check_conditions(self.conditions)
+        u, T, q = check_conditions(self.conditions)
+        if self._passing and not self._coupled and _is_within(law, u, T, q):
+            self._grow(law)
+            return
         part, faded = part_of_film(law, u), is_faded(law, u)
         if part == 0.0 and q == 0.0 and is_one_power(law):
             # Dry contacts in series: delta = (a_1 + a_2) w^b.
@@ -248,6 +235,29 @@ class ForceAtPoint:
         self._by_slices = True
         work.numbers[:] = _BY_SLICES
 
+    def _grow(self, law: ContactLaw) -> None:
+        """Have a table begun, whose cells are made as slices need them."""
+        work = self._work
+        work.make_room()
+        work.conditions[:] = (*self.conditions, 0.0)
+        law_arrays = self._flat_law.arrays(law, self.conditions[2] > 0.0)
+        self._growing = (*law_arrays, work.conditions, work.nodes, work.counts, work.marks)
+
+    def _from_growing(self, growing: tuple[Any, ...], out: FloatArray) -> int:
+        """Call with a table whose cells are made as slices need them."""
+        status: int = CELLS_MISSING
+        if self._work.conditions[3] == 1.0:
+            status = remade_force(self._work.marks, *self.arrays, out)
+        if status == CELLS_MISSING:
+            given: tuple[Any, ...] = (*growing, *self.arrays, out)
+            status = changed_force(*given)
+        if status != NO_TABLE:
+            return status
+        law = self._flat_law.law
+        assert isinstance(law, ContactLaw)
+        self._growing, self._by_slices, self._apart = None, True, True
+        return self._from_slices(law, out)
+
     def _tabulate(self, law: ContactLaw, part: float, faded: bool) -> bool:
         """Make the table of the law with a part of its film; whether there is one."""
         work = self._work
@@ -258,12 +268,10 @@ class ForceAtPoint:
             work.make_knots()
         cells = work.film if faded else work.cells
         conditions = np.array(self.conditions, dtype=np.float64)
-        fits: bool = table.tabulate_law(
-            arrays, workspace, conditions, table.NODES, work.buffer, cells, work.numbers, counts
-        )
+        fits: bool = tabulate_law(arrays, workspace, conditions, work.nodes, work.marks, cells, work.numbers, counts)
         self._outside = bool(counts.any())
         if fits and faded:
-            table.fade(work.film, work.numbers.copy(), part, work.cells, work.knots, work.numbers)
+            fade(work.film, work.numbers.copy(), part, work.cells, work.knots, work.numbers)
         return fits and not (self._outside and law.outside == "error")
 
     def _point(self, law: ContactLaw) -> Point:
@@ -277,7 +285,7 @@ class ForceAtPoint:
         """Call the law for each slice."""
         w = self._work
         w.numbers[:] = _BY_SLICES
-        status: int = force_of_point_arrays(self._point(law), *self._shape, w.states, w.counts, out)
+        status: int = force_of_point_arrays(self._point(law), *w.shape, w.states, w.counts, out)
         w.state[6:12] = 0.0  # the rates are in the loads, should someone look at the rollers
         return status
 
@@ -294,7 +302,7 @@ class ForceAtPoint:
         w = self._work
         assert w.coupling is not None
         point = self._point(law) if self._by_slices and isinstance(law, ContactLaw) else None
-        status: int = coupled_arrays(point, *self._shape, w.cells, w.rows, w.states, w.coupling, w.own, w.counts, out)
+        status: int = coupled_arrays(point, *w.shape, w.cells, w.rows, w.states, w.coupling, w.own, w.counts, out)
         return status
 
     def _settle(self, status: int, out: FloatArray) -> bool:
@@ -308,18 +316,30 @@ class ForceAtPoint:
             )
         if status < 0:
             raise_state(work.state, work.sizes, status == NOT_FINITE)
-        if not isinstance(law, ContactLaw):
-            return False
         if status == 0 and not self._outside:
             return False
         if status > 0 and law.outside == "error":
             highest = float(np.max(work.states[0]))
+            if isinstance(law, DryLaw):
+                raise OutsideMapError(
+                    f"bearing force, load: got about {highest:.6g} N/m in a slice at the pose "
+                    f"{work.state[:6].tolist()}; the law {law.name!r} has points up to "
+                    f"{table.LawNumbers(*work.numbers).held_load:.6g} N/m; give it points that reach there"
+                )
             raise OutsideMapError(
                 f"bearing force, load: got about {highest:.6g} N/m in a slice at the pose {work.state[:6].tolist()}; "
                 f"mapped: up to {law.load_range[1]:.6g} N/m\n"
                 "make a map that reaches there, or take a law with outside='clamp' or outside='asymptote'"
             )
         return True
+
+
+def _is_within(law: ContactLaw, entrainment_speed: float, temperature: float, centrifugal_load: float) -> bool:
+    """Whether the whole film is there, and nothing is outside the map."""
+    table = law.plain_table
+    within = table.film_speed <= abs(entrainment_speed) <= table.counted_speed
+    within = within and table.lowest_temperature <= temperature <= table.highest_temperature
+    return within and 0.0 <= centrifugal_load < law.load_range[1]
 
 
 def is_faded(law: ContactLaw, entrainment_speed: float) -> bool:
@@ -386,15 +406,11 @@ def _set_power(
     exponent: float,
     highest: float,
     point: Point | None = None,
-    damping: float = 0.0,
-    damping_time: float = 0.0,
 ) -> None:
-    """Write a law w = a delta^b, with its dampers; held where that of a point is."""
+    """Write a law w = a delta^b; held where that of a point is."""
     power = _POWER._replace(
         coefficient=coefficient,
         exponent=exponent,
-        damping=damping,
-        damping_time=damping_time,
         highest=highest,
         safe_approach=(highest / coefficient) ** (1.0 / exponent),
     )

@@ -10,6 +10,7 @@ have a jump of the force at lift-off, while bodies approach.
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -30,12 +31,55 @@ from ehdmaps.physics.roughness import SMOOTH, Surface
 from ehdmaps.physics.solids import reduced_modulus
 from ehdmaps.physics.unilateral import unilateral_force
 from mbs.bearings.bearing import Bearing
+from mbs.bearings.slice_table import POWER, LawNumbers
 
 _EXPONENT = 10.0 / 9.0
 
 
+class DryLaw(ABC):
+    """A law without a film, the same at all speeds and temperatures.
+
+    Attributes
+    ----------
+    name : str
+        Name for messages and provenance.
+    kind : {"series", "single"}
+        A roller between both raceways, or one contact.
+    outside : {"error", "clamp", "asymptote"}
+        What happens above the highest load, as for a map.
+    """
+
+    name: str
+    kind: Literal["series", "single"]
+    outside: OutsidePolicy = "clamp"
+
+    @abstractmethod
+    def single(self) -> DryLaw:
+        """Law of one of the two contacts of the roller, which takes half of the approach at the same load."""
+
+    @abstractmethod
+    def load(self, delta: npt.ArrayLike) -> FloatArray:
+        """Load of the roller at rest [N] at the approach delta [m]."""
+
+    @abstractmethod
+    def evaluate(self, delta: FloatArray, rate: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Load [N], stiffness [N/m] and damping [N s/m] of the roller by approach [m] and rate [m/s]."""
+
+    @abstractmethod
+    def energy(self, delta: FloatArray) -> FloatArray:
+        """Energy of the roller at rest [J] at the approach delta [m]."""
+
+    @abstractmethod
+    def prepared(self, length: float) -> tuple[LawNumbers, FloatArray | None]:
+        """Numbers and cells per unit length for compiled code, for a roller of a length [m]; None without cells."""
+
+    def is_above(self, delta: FloatArray) -> bool:
+        """Whether an approach [m] lies above the highest load of the law."""
+        return False
+
+
 @dataclass(frozen=True)
-class DryLaw:
+class PowerLaw(DryLaw):
     """w = coefficient delta^exponent and c = damping + damping_time dw/d delta while delta > 0; nothing else.
 
     The two dampers are the usual ones of dry contacts: a constant, which jumps at lift-off, and one in proportion to
@@ -78,7 +122,7 @@ class DryLaw:
         if problems:
             raise InputError(problems)
 
-    def single(self) -> DryLaw:
+    def single(self) -> PowerLaw:
         """Law of one of the two contacts of the roller, which takes half of the approach at the same load."""
         if self.kind == "single":
             return self
@@ -110,6 +154,19 @@ class DryLaw:
         damping = np.where(loaded, self.damping + self.damping_time * slope, 0.0)
         change = self.damping_time * (self.exponent - 1.0) * slope / positive
         return unilateral_forces(at_rest, slope, damping, change, rate)
+
+    def energy(self, delta: FloatArray) -> FloatArray:
+        """Energy of the roller at rest [J] at the approach delta [m]."""
+        b = self.exponent + 1.0
+        return np.asarray(self.coefficient / b * np.maximum(delta, 0.0) ** b)
+
+    def prepared(self, length: float) -> tuple[LawNumbers, None]:
+        """Numbers per unit length for compiled code, for a roller of a length [m]."""
+        return LawNumbers(
+            kind=POWER, coefficient=self.coefficient / length, exponent=self.exponent, damping=self.damping / length,
+            damping_time=self.damping_time, centre=0.0, inverse_scale=0.0, highest=math.inf, safe_approach=math.inf,
+            lift_off=0.0, slope=1.0, held_approach=math.inf, held_load=math.inf, held_stiffness=0.0, held_damping=0.0,
+        ), None  # fmt: skip
 
 
 Law = DryLaw | ContactLaw
@@ -147,7 +204,7 @@ def _fill_forces(
         forces[0, i], forces[1, i], forces[2, i] = _unilateral_force(w[i], dw[i], c[i], dc[i], rate[i])
 
 
-def hertz(bearing: Bearing, damping: float = 0.0, damping_time: float = 0.0) -> DryLaw:
+def hertz(bearing: Bearing, damping: float = 0.0, damping_time: float = 0.0) -> PowerLaw:
     """Dry roller after ISO 16281: Q = c_L delta^(10/9), c_L = 35948 L^(8/9) (N, mm), delta of both contacts.
 
     Parameters
@@ -175,10 +232,10 @@ def hertz(bearing: Bearing, damping: float = 0.0, damping_time: float = 0.0) -> 
     stiffer = reduced_modulus(bearing.material, bearing.material) / STEEL_REDUCED_MODULUS
     coefficient = ISO_LINE_CONSTANT * length_mm ** (8.0 / 9.0) * 1e3**_EXPONENT * stiffer
     c, time = _number("hertz", "damping", damping), _number("hertz", "damping_time", damping_time)
-    return DryLaw("hertz", "series", coefficient, _EXPONENT, 0.5 * c, time)
+    return PowerLaw("hertz", "series", coefficient, _EXPONENT, 0.5 * c, time)
 
 
-def constant(stiffness: float, damping: float = 0.0) -> DryLaw:
+def constant(stiffness: float, damping: float = 0.0) -> PowerLaw:
     """Constant stiffness and damping while there is contact; two contacts in series, so k/2 and c/2.
 
     Parameters
@@ -189,7 +246,7 @@ def constant(stiffness: float, damping: float = 0.0) -> DryLaw:
         c of each contact of a roller [N s/m].
     """
     k, c = _number("constant", "stiffness", stiffness), _number("constant", "damping", damping)
-    return DryLaw("constant", "series", 0.5 * k, 1.0, 0.5 * c)
+    return PowerLaw("constant", "series", 0.5 * k, 1.0, 0.5 * c)
 
 
 def formula(

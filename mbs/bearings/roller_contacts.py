@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError, SolverError
+from ehdmaps.errors import InputError, OutsideMapError, SolverError
 from ehdmaps.maps.law import ContactLaw, LawAtPoint
 from ehdmaps.maps.memory import FilmMemory, FilmState
 from mbs.bearings.bearing import Bearing
@@ -368,10 +368,20 @@ class RollerContacts:
         law = self.laws[side]
         if isinstance(law, DryLaw):
             w, k, c = law.evaluate(delta, rate)
-            return w / self._x.size, k / self._x.size, c / self._x.size, False
+            return w / self._x.size, k / self._x.size, c / self._x.size, self._above(law, delta)
         length = self.bearing.slice_length
         w, k, c, outside = self._point(side, law, speed, temperature).evaluate(delta, rate)
         return w * length, k * length, c * length, outside
+
+    def _above(self, law: DryLaw, delta: FloatArray) -> bool:
+        """Whether a slice lies above the last point of a law without film; an error where the law asks for one."""
+        above = law.is_above(delta)
+        if above and law.outside == "error":
+            raise OutsideMapError(
+                f"roller contacts, approach: got {float(np.max(delta)):.6g} m, above the last point of the law "
+                f"{law.name!r}; give it points that reach there"
+            )
+        return above
 
     def _point(self, side: int, law: ContactLaw, speed: float, temperature: float) -> LawAtPoint:
         """The law of one side at a speed and temperature: that of the last call, or a new one."""

@@ -143,6 +143,21 @@ def _hold(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatAr
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
+def read_states(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work) -> None:
+    """States of all slices at rest, from the rows of a table and the places there.
+
+    Parameters
+    ----------
+    motion, shape, law
+        The same as for `rest_states`.
+    work : Work
+        Rows, and places where the load is written; overwritten by the states.
+    """
+    read_cells(law.cells, work.rows.reshape(-1), work.states.reshape(4, -1))
+    _hold(motion, shape, law.numbers, work.states)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def rest_states(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work) -> None:
     """States of all slices at rest.
 
@@ -160,11 +175,11 @@ def rest_states(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work) 
     states, numbers = work.states, law.numbers
     if numbers.kind == POWER:
         power_states(motion, shape, numbers, states)
+        _hold(motion, shape, numbers, states)
+        return
+    # The places lie where the load is written, at the same time as they are read.
+    if numbers.kind == CELLS:
+        find_cells(motion, shape, numbers, work.rows, states[0])
     else:
-        # The places lie where the load is written, at the same time as they are read.
-        if numbers.kind == CELLS:
-            find_cells(motion, shape, numbers, work.rows, states[0])
-        else:
-            find_knots(motion, shape, law.knots, work.rows, states[0])
-        read_cells(law.cells, work.rows.reshape(-1), states.reshape(4, -1))
-    _hold(motion, shape, numbers, states)
+        find_knots(motion, shape, law.knots, work.rows, states[0])
+    read_states(motion, shape, law, work)

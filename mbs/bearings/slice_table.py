@@ -5,6 +5,10 @@ So no logarithm is needed to find a cell; cells are fine around the valley of th
 coarse far from it. In each cell load and damping are cubics through the values and slopes of the law at its ends:
 C1, and with slopes held so that the load never falls with the approach and the damping is never negative. Slices
 differ from the law by some 1e-7 in load and 1e-5 in stiffness at most, a bearing by 1e-9 and 1e-7.
+
+A cell follows from the law at its ends and, as slopes are held by what the neighbours carry, at the ends of these. So
+each can be made alone: all of them at once for a law that stays, by `tabulate`; for a law that changes from call to
+call only those where there are slices, by `fill`. Both give the same cells.
 """
 
 from __future__ import annotations
@@ -16,12 +20,13 @@ import numpy as np
 from numba import njit
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
-from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.arrays import ByteArray, FloatArray, IntArray
 from ehdmaps.maps.binary_cells import last_of, nodes_of, rows_of
 from ehdmaps.maps.bulk import rest_states
-from ehdmaps.maps.kernel import LOAD_TOLERANCE, collapse, full_state, structural_state
+from ehdmaps.maps.kernel import full_state
 from ehdmaps.maps.lines import FAST, line_approach, line_state
-from ehdmaps.maps.tables import ApproachTable, LawTable, Point
+from ehdmaps.maps.roller_balance import balanced_approach
+from ehdmaps.maps.tables import Point
 
 fixed_tuple: Any = to_fixed_tuple
 """The first numbers of an array as a tuple, in compiled code."""
@@ -29,10 +34,21 @@ fixed_tuple: Any = to_fixed_tuple
 ROWS = rows_of(14)
 """Rows of the table on each side of the centre."""
 
-NODES = nodes_of(ROWS)
-"""Ends of the cells, as values of a."""
+NODES = 2 * ROWS + 1
+"""Number of the ends of cells."""
 
-LAST = last_of(NODES)
+_ENDS = nodes_of(ROWS)
+
+LAST = last_of(_ENDS)
+"""The largest a that is in a cell."""
+
+PLACES: FloatArray = np.concatenate((1.0 - _ENDS[:0:-1], _ENDS - 1.0))
+"""Ends of all cells, as values of z, rising."""
+
+_BY: FloatArray = np.diff(PLACES) ** -1.0
+"""Inverse lengths of the cells, in the order of their ends."""
+
+_UNKNOWN, _KNOWN, _WANTED = np.uint8(0), np.uint8(1), np.uint8(2)
 
 POWER, CELLS, KNOTS = 0.0, 1.0, 2.0
 """Kinds of prepared laws: a formula; cells at even places around a centre; cells between knots, for faded films."""
@@ -149,39 +165,216 @@ def _centre(point: Point) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def _node_states(point: Point, nodes: FloatArray, buffer: FloatArray) -> tuple[int, int, float, float]:
-    """Places z, approaches and states of the whole film at all nodes, into rows of the buffer.
+def whole_approach(point: Point, load: float) -> float:
+    """Approach at which a point with its whole film carries a load.
 
-    Above the first node beyond the hold the law goes on straight; up to it as if there were no hold. Returned are the
-    first loaded node, the end of those that are the law's, and approach and damping of the held load.
+    Parameters
+    ----------
+    point : Point
+        Law at a point.
+    load : float
+        [N/m]
     """
-    rows = nodes.size - 1
-    centre, inverse, own = _centre(point), point.own.inverse_scale, point.own
-    z, delta, w, dw, c, dc = buffer[0], buffer[1], buffer[2], buffer[3], buffer[4], buffer[5]
-    held = line_approach(own, point.held_load)
+    approach: float = line_approach(point.own, load)
     if point.centrifugal_load > 0.0:
-        held = line_approach(point.inner, point.held_load)
-        held += line_approach(point.outer, point.held_load + point.centrifugal_load)
-    first, end = 0, 0
-    for i in range(2 * rows + 1):
-        z[i] = nodes[i - rows] - 1.0 if i >= rows else 1.0 - nodes[rows - i]
-        delta[i] = centre + z[i] / inverse
-        if delta[i] <= point.lift_off:
-            first = i + 1
-            w[i] = dw[i] = c[i] = dc[i] = 0.0
-        if i > 0 and delta[i - 1] <= held:
-            end = i + 1
-    rest_states(point, delta[first:end], buffer[2:6, first:end])
-    for i in range(end, 2 * rows + 1):
-        w[i] = w[end - 1] + dw[end - 1] * (delta[i] - delta[end - 1])
-        dw[i], c[i], dc[i] = dw[end - 1], c[end - 1], 0.0
-    _, _, ratio, _ = full_state(point, held)
-    return first, end, held, ratio * point.held_load
+        approach = balanced_approach(point, load)
+    return approach
+
+
+@njit(cache=True, error_model="numpy")
+def nodes_up_to(centre: float, scale: float, approach: float) -> int:
+    """How many nodes lie at or below an approach.
+
+    Parameters
+    ----------
+    centre, scale, approach : float
+        [m]
+    """
+    low, high = 0, PLACES.size
+    while low < high:
+        middle = (low + high) // 2
+        if centre + PLACES[middle] * scale <= approach:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@njit(cache=True, error_model="numpy")
+def place_numbers(point: Point, highest: float) -> LawNumbers:
+    """Where the cells of a point with its whole film lie, and the limits of its law.
+
+    Parameters
+    ----------
+    point : Point
+        Law at a point.
+    highest : float
+        Load above which slices are outside the map [N/m].
+
+    Returns
+    -------
+    LawNumbers
+        Numbers of a table; its `lift_off` is infinite if the nodes do not reach down to it.
+    """
+    centre, inverse = _centre(point), point.own.inverse_scale
+    scale = 1.0 / inverse
+    held, held_damping = point.held_approach, point.held_damping
+    if point.film < 1.0:
+        held = whole_approach(point, point.held_load)
+        held_damping = full_state(point, held)[2] * point.held_load
+    below = nodes_up_to(centre, scale, point.lift_off)
+    most = held if point.held_load <= highest else whole_approach(point, highest)
+    safe = max(nodes_up_to(centre, scale, most) - 1, 0)
+    return LawNumbers(
+        kind=CELLS, coefficient=0.0, exponent=0.0, damping=0.0, damping_time=0.0, centre=centre,
+        inverse_scale=inverse, highest=highest, safe_approach=centre + PLACES[safe] * scale,
+        lift_off=centre + PLACES[below - 1] * scale if below > 0 else math.inf, slope=inverse,
+        held_approach=held, held_load=point.held_load, held_stiffness=point.held_stiffness,
+        held_damping=held_damping,
+    )  # fmt: skip
+
+
+@njit(cache=True, error_model="numpy")
+def is_placed(numbers: LawNumbers) -> bool:
+    """Whether the nodes of a table reach down to lift-off."""
+    return numbers.lift_off < math.inf
+
+
+@njit(cache=True, error_model="numpy")
+def node_states(point: Point, numbers: LawNumbers, wanted: IntArray, nodes: FloatArray) -> None:
+    """States of the whole film at some nodes.
+
+    Above the first node beyond the hold the law goes on straight; up to it as if there were no hold.
+
+    Parameters
+    ----------
+    point : Point
+        Law at a point.
+    numbers : LawNumbers
+        What `place_numbers` gave for it.
+    wanted : array (n,), of int
+        Nodes, rising.
+    nodes : array (4, NODES)
+        Loads, slopes, damping and its slopes; written at these nodes.
+    """
+    centre, scale = numbers.centre, 1.0 / numbers.inverse_scale
+    first = nodes_up_to(centre, scale, point.lift_off)
+    end = min(nodes_up_to(centre, scale, numbers.held_approach) + 1, NODES)
+    low, high = np.searchsorted(wanted, first), np.searchsorted(wanted, end)
+    straight = 1 if high < wanted.size else 0
+    delta, found = np.empty(high - low + straight), np.empty((4, high - low + straight))
+    for i in range(delta.size):
+        delta[i] = centre + PLACES[wanted[low + i] if low + i < high else end - 1] * scale
+    rest_states(point, delta, found)
+    for i in range(low):
+        nodes[:, wanted[i]] = 0.0
+    for k in range(4):
+        for i in range(low, high):
+            nodes[k, wanted[i]] = found[k, i - low]
+    for i in range(high, wanted.size):
+        ahead = centre + PLACES[wanted[i]] * scale - delta[-1]
+        nodes[0, wanted[i]] = found[0, -1] + found[1, -1] * ahead
+        nodes[1, wanted[i]], nodes[2, wanted[i]], nodes[3, wanted[i]] = found[1, -1], found[2, -1], 0.0
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _held_slopes(nodes: FloatArray, scale: float, i: int) -> tuple[float, float]:
+    """Slopes of load and damping by z at a node, held so that neither falls below where it must not."""
+    k, below, above = np.uint64(i), np.uint64(max(i - 1, 0)), np.uint64(min(i + 1, NODES - 1))
+    w, c = nodes[0, k], nodes[2, k]
+    # at the outermost nodes only one side holds them
+    before = 3.0 * _BY[below] if i > 0 else 3.0 * _BY[k]
+    after = 3.0 * _BY[k] if i < NODES - 1 else before
+    slope, change = nodes[1, k] * scale, nodes[3, k] * scale
+    rise, further = (w - nodes[0, below]) * before, (nodes[0, above] - w) * after
+    slope = rise if i > 0 and rise < slope else slope
+    slope = further if i < NODES - 1 and further < slope else slope
+    most, least = c * before, -c * after
+    change = most if i > 0 and most < change else change
+    change = least if i < NODES - 1 and least > change else change
+    return (slope if slope > 0.0 else 0.0), change
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+def _write_cell(nodes: FloatArray, scale: float, row: int, cells: FloatArray) -> None:
+    """Cubics of a cell, over the distance from the end that is nearer to the centre."""
+    upwards = row < ROWS
+    first, other = (ROWS + row, ROWS + row + 1) if upwards else (NODES - 1 - row, NODES - 2 - row)
+    (slope, bend), (far_slope, far_bend) = _held_slopes(nodes, scale, first), _held_slopes(nodes, scale, other)
+    near, far, k = np.uint64(first), np.uint64(other), np.uint64(row)
+    by = _BY[near] if upwards else -_BY[far]
+    secant = (nodes[0, far] - nodes[0, near]) * by
+    cells[k, np.uint64(0)], cells[k, np.uint64(1)] = nodes[0, near], slope
+    cells[k, np.uint64(2)] = (3.0 * secant - 2.0 * slope - far_slope) * by
+    cells[k, np.uint64(3)] = (slope + far_slope - 2.0 * secant) * by * by
+    secant = (nodes[2, far] - nodes[2, near]) * by
+    cells[k, np.uint64(4)], cells[k, np.uint64(5)] = nodes[2, near], bend
+    cells[k, np.uint64(6)] = (3.0 * secant - 2.0 * bend - far_bend) * by
+    cells[k, np.uint64(7)] = (bend + far_bend - 2.0 * secant) * by * by
+
+
+@njit(cache=True, error_model="numpy")
+def all_made(rows: IntArray, marks: ByteArray) -> bool:
+    """Whether the cells of some rows are made, see `fill`."""
+    missing = 0
+    for row in rows:
+        missing += 1 - marks[1, row]
+    return missing == 0
+
+
+@njit(cache=True, error_model="numpy")
+def fill(
+    point: Point, numbers: LawNumbers, rows: IntArray, nodes: FloatArray, marks: ByteArray, cells: FloatArray
+) -> None:
+    """Make the cells of some rows that are not made yet.
+
+    Parameters
+    ----------
+    point : Point
+        Law at a point.
+    numbers : LawNumbers
+        What `place_numbers` gave for it.
+    rows : array (n,), of int
+        Rows, any number of times each.
+    nodes : array (4, NODES)
+        Loads, slopes, damping and its slopes at the nodes that are known; more of them after the call.
+    marks : array (2, NODES), of uint8
+        One at the nodes that are known and at the rows that are made; zeros for a new law.
+    cells : array (2 ROWS, 8)
+        Four coefficients of w, four of c, over the distance from the end of the cell that is nearer to the centre, in
+        scales; written in these rows.
+    """
+    known, made = marks[0], marks[1]
+    pending, count = np.empty(rows.size, dtype=np.int64), 0
+    lowest, highest = NODES, 0
+    for row in rows:
+        if made[row] != _UNKNOWN:
+            continue
+        made[row] = _KNOWN
+        pending[count] = row
+        count += 1
+        low = ROWS + row if row < ROWS else NODES - 2 - row
+        begin, end = max(low - 1, 0), min(low + 3, NODES)
+        lowest, highest = min(lowest, begin), max(highest, end)
+        for i in range(begin, end):
+            known[i] = _WANTED if known[i] == _UNKNOWN else known[i]
+    if count == 0:
+        return
+    wanted, size = np.empty(highest - lowest, dtype=np.int64), 0
+    for i in range(lowest, highest):
+        if known[i] == _WANTED:
+            known[i] = _KNOWN
+            wanted[size] = i
+            size += 1
+    node_states(point, numbers, wanted[:size], nodes)
+    scale = 1.0 / numbers.inverse_scale
+    for i in range(count):
+        _write_cell(nodes, scale, pending[i], cells)
 
 
 @njit(cache=True, error_model="numpy")
 def tabulate(
-    point: Point, nodes: FloatArray, buffer: FloatArray, cells: FloatArray, highest: float, numbers: FloatArray
+    point: Point, nodes: FloatArray, marks: ByteArray, cells: FloatArray, highest: float, numbers: FloatArray
 ) -> bool:
     """Fill a table with the law of a point, with its whole film whatever part of it is there.
 
@@ -189,275 +382,22 @@ def tabulate(
     ----------
     point : Point
         Law at a point.
-    nodes : array (ROWS + 1,)
-        `NODES`.
-    buffer : array (6, 2 ROWS + 1)
-        Places z, approaches, loads, slopes, damping and its slopes at the nodes; filled.
-    cells : array (2 ROWS, 8)
-        Filled: four coefficients of w, four of c, over the distance from the end of the cell that is nearer to the
-        centre, in scales.
+    nodes, marks, cells
+        The same as for `fill`; overwritten.
     highest : float
         Load above which slices are outside the map [N/m].
     numbers : array (NUMBERS,)
-        Filled with `LawNumbers`, if there is a table.
+        Filled with `LawNumbers`.
 
     Returns
     -------
     bool
         False if the table does not reach down to lift-off.
     """
-    first, _, held, held_damping = _node_states(point, nodes, buffer)
-    if first == 0:
-        return False
-    inverse = point.own.inverse_scale
-    z, delta, w, dw, c, dc = buffer[0], buffer[1], buffer[2], buffer[3], buffer[4], buffer[5]
-    safe, most = delta[0], min(highest, point.held_load)
-    for i in range(delta.size):
-        if w[i] <= most:
-            safe = delta[i]
-    found = LawNumbers(
-        kind=CELLS, coefficient=0.0, exponent=0.0, damping=0.0, damping_time=0.0, centre=_centre(point),
-        inverse_scale=inverse, highest=highest, safe_approach=safe, lift_off=delta[first - 1], slope=inverse,
-        held_approach=held, held_load=point.held_load, held_stiffness=point.held_stiffness, held_damping=held_damping,
-    )  # fmt: skip
+    found = place_numbers(point, highest)
     store_numbers(found, numbers)
-    _fill(z, inverse, w, dw, c, dc, cells)
-    return True
-
-
-@njit(cache=True, error_model="numpy")
-def _fill(
-    z: FloatArray, inverse: float, w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, cells: FloatArray
-) -> None:
-    """Cubics of all cells from values and slopes (by the approach) at the nodes z."""
-    rows, last = (z.size - 1) // 2, z.size - 1
-    for i in range(z.size):
-        slope, change = max(dw[i] / inverse, 0.0), dc[i] / inverse
-        if i > 0:
-            h = z[i] - z[i - 1]
-            slope = min(slope, 3.0 * (w[i] - w[i - 1]) / h)
-            change = min(change, 3.0 * c[i] / h)
-        if i < last:
-            h = z[i + 1] - z[i]
-            slope = min(slope, 3.0 * (w[i + 1] - w[i]) / h)
-            change = max(change, -3.0 * c[i] / h)
-        dw[i], dc[i] = max(slope, 0.0), change
-    for k in range(rows):
-        for side in range(2):
-            near, far = (rows + k, rows + k + 1) if side == 0 else (rows - k, rows - k - 1)
-            cell = cells[side * rows + k]
-            h = z[far] - z[near]
-            secant = (w[far] - w[near]) / h
-            cell[0], cell[1] = w[near], dw[near]
-            cell[2] = (3.0 * secant - 2.0 * dw[near] - dw[far]) / h
-            cell[3] = (dw[near] + dw[far] - 2.0 * secant) / (h * h)
-            secant = (c[far] - c[near]) / h
-            cell[4], cell[5] = c[near], dc[near]
-            cell[6] = (3.0 * secant - 2.0 * dc[near] - dc[far]) / h
-            cell[7] = (dc[near] + dc[far] - 2.0 * secant) / (h * h)
-
-
-WHOLE, DRY, RISE, LOADS, SLOPES, DAMPINGS, BENDS = range(7)
-"""Columns of the nodes of a faded film: approach with the whole film and without [m], growth of the latter by the
-former; load [N/m] and damping [N s/m2], each with its slope by the approach with the whole film."""
-
-
-@njit(cache=True, error_model="numpy")
-def write_film(
-    point: Point, nodes: FloatArray, buffer: FloatArray, out: FloatArray, highest: float, numbers: FloatArray
-) -> bool:
-    """Nodes of a film of which only a part is there: what holds for every part of it.
-
-    At equal load the approach is that part of the one with the whole film, and the rest of that without any, see
-    `ehdmaps.maps.kernel`. So the nodes of `tabulate` serve all parts, as knots that move.
-
-    Parameters
-    ----------
-    point : Point
-        Law at a point.
-    nodes, buffer
-        The same as for `tabulate`.
-    out : array (2 ROWS, 8)
-        Filled: columns `WHOLE` to `BENDS` of all nodes but the outermost; the held load in the last row.
-    highest : float
-        Load above which slices are outside the map [N/m].
-    numbers : array (NUMBERS,)
-        Filled with `LawNumbers`, if the nodes fit; `lift_off` and `safe_approach` are the numbers of their nodes.
-    """
-    first, _, held, held_damping = _node_states(point, nodes, buffer)
-    if first < 2:
+    if not is_placed(found):
         return False
-    delta, w, dw, c, dc = buffer[1], buffer[2], buffer[3], buffer[4], buffer[5]
-    safe, most, last = 0, min(highest, point.held_load), out.shape[0] - 1
-    structure, q = point.structure, point.centrifugal_load
-    for i in range(last):
-        k = i + 1
-        dry, compliance = structural_state(structure, q, w[k])
-        out[i, WHOLE], out[i, DRY], out[i, RISE] = delta[k], dry, compliance * dw[k]
-        out[i, LOADS], out[i, SLOPES], out[i, DAMPINGS], out[i, BENDS] = w[k], dw[k], c[k], dc[k]
-        if w[k] <= most:
-            safe = i
-    dry, _ = structural_state(structure, q, point.held_load)
-    out[last, WHOLE], out[last, DRY], out[last, LOADS], out[last, DAMPINGS] = held, dry, point.held_load, held_damping
-    found = LawNumbers(
-        kind=KNOTS, coefficient=0.0, exponent=0.0, damping=0.0, damping_time=0.0, centre=0.0, inverse_scale=0.0,
-        highest=highest, safe_approach=float(safe), lift_off=float(first - 2), slope=1.0, held_approach=0.0,
-        held_load=point.held_load, held_stiffness=point.held_stiffness, held_damping=0.0,
-    )  # fmt: skip
-    store_numbers(found, numbers)
+    marks[:] = _UNKNOWN
+    fill(point, found, np.arange(2 * ROWS), nodes, marks, cells)
     return True
-
-
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def fade(
-    film: FloatArray, given: FloatArray, part: float, cells: FloatArray, knots: FloatArray, numbers: FloatArray
-) -> None:
-    """The table of a part of a film, from the nodes of the film.
-
-    Parameters
-    ----------
-    film, given : array (2 ROWS, 8), (NUMBERS,)
-        What `write_film` wrote.
-    part : float
-        Part of the film that is there, 0 to 1.
-    cells, knots : array (2 ROWS, 8), (2 ROWS,)
-        Filled: coefficients as of `tabulate`, over the distance from the lower end of a cell [m]; where
-        cells begin [m].
-    numbers : array (NUMBERS,)
-        Filled with `LawNumbers`.
-    """
-    last, rest = film.shape[0] - 1, 1.0 - part
-    slopes, bends = np.empty(last), np.empty(last)
-    for i in range(last):
-        knots[i] = rest * film[i, DRY] + part * film[i, WHOLE]
-        stretch = rest * film[i, RISE] + part
-        loaded = film[i, LOADS] > 0.0
-        slopes[i] = film[i, SLOPES] / (stretch if loaded else 1.0)
-        bends[i] = part * film[i, BENDS] / (stretch if loaded else 1.0)
-    knots[last] = math.inf
-    for i in range(last - 1):
-        h = knots[i + 1] - knots[i]
-        # Without film all nodes without load are one.
-        rise = 3.0 * (film[i + 1, LOADS] - film[i, LOADS]) / h if h > 0.0 else 0.0
-        slopes[i], slopes[i + 1] = min(slopes[i], rise), min(slopes[i + 1], rise)
-        if h > 0.0:
-            bends[i] = max(bends[i], -3.0 * part * film[i, DAMPINGS] / h)
-            bends[i + 1] = min(bends[i + 1], 3.0 * part * film[i + 1, DAMPINGS] / h)
-    for i in range(last - 1):
-        h, cell = knots[i + 1] - knots[i], cells[i]
-        by = 1.0 / h if h > 0.0 else 0.0
-        secant = (film[i + 1, LOADS] - film[i, LOADS]) * by
-        cell[0], cell[1] = film[i, LOADS], slopes[i]
-        cell[2] = (3.0 * secant - 2.0 * slopes[i] - slopes[i + 1]) * by
-        cell[3] = (slopes[i] + slopes[i + 1] - 2.0 * secant) * by * by
-        secant = part * (film[i + 1, DAMPINGS] - film[i, DAMPINGS]) * by
-        cell[4], cell[5] = part * film[i, DAMPINGS], bends[i]
-        cell[6] = (3.0 * secant - 2.0 * bends[i] - bends[i + 1]) * by
-        cell[7] = (bends[i] + bends[i + 1] - 2.0 * secant) * by * by
-    for k in range(8):
-        for i in range(last - 1, last + 1):
-            cells[i, k] = 0.0
-    found = law_numbers(given)
-    faded = LawNumbers(
-        kind=KNOTS, coefficient=0.0, exponent=0.0, damping=0.0, damping_time=0.0, centre=0.0, inverse_scale=0.0,
-        highest=found.highest, safe_approach=knots[int(found.safe_approach)], lift_off=knots[int(found.lift_off)],
-        slope=1.0, held_approach=rest * film[last, DRY] + part * film[last, WHOLE], held_load=found.held_load,
-        held_stiffness=found.held_stiffness, held_damping=part * film[last, DAMPINGS],
-    )  # fmt: skip
-    store_numbers(faded, numbers)
-
-
-class FlatTable(NamedTuple):
-    """A `LawTable` in arrays: compiled code takes few of them from Python much faster than nested tuples.
-
-    Attributes
-    ----------
-    own, inner, outer : array
-        `ApproachTable.coefficients` of each.
-    own_place, inner_place, outer_place : array
-        `ApproachTable.place` of each.
-    axes : array (3, 6)
-        The numbers of each, in their order.
-    structure : array (n, 3)
-        The array of the `LawTable`.
-    numbers : array (9,)
-        The numbers of the `LawTable`, in their order.
-    """
-
-    own: FloatArray
-    inner: FloatArray
-    outer: FloatArray
-    own_place: FloatArray
-    inner_place: FloatArray
-    outer_place: FloatArray
-    axes: FloatArray
-    structure: FloatArray
-    numbers: FloatArray
-
-
-def flat_table(table: LawTable) -> FlatTable:
-    """Flatten a `LawTable`."""
-    parts = (table.own, table.inner, table.outer)
-    return FlatTable(
-        own=table.own.coefficients,
-        inner=table.inner.coefficients,
-        outer=table.outer.coefficients,
-        own_place=table.own.place,
-        inner_place=table.inner.place,
-        outer_place=table.outer.place,
-        axes=np.array([part[2:] for part in parts]),
-        structure=table.structure,
-        numbers=np.array(table[4:]),
-    )
-
-
-@njit(cache=True, error_model="numpy")
-def _law_table(flat: FlatTable) -> LawTable:
-    """The `LawTable` again."""
-    return LawTable(
-        ApproachTable(flat.own, flat.own_place, *fixed_tuple(flat.axes[0], 6)),
-        ApproachTable(flat.inner, flat.inner_place, *fixed_tuple(flat.axes[1], 6)),
-        ApproachTable(flat.outer, flat.outer_place, *fixed_tuple(flat.axes[2], 6)),
-        flat.structure,
-        *fixed_tuple(flat.numbers, 9),
-    )
-
-
-@njit(cache=True, error_model="numpy")
-def tabulate_law(
-    law: FlatTable,
-    workspace: FloatArray,
-    conditions: FloatArray,
-    nodes: FloatArray,
-    buffer: FloatArray,
-    cells: FloatArray,
-    numbers: FloatArray,
-    counts: IntArray,
-) -> bool:
-    """Collapse a law at its conditions, and fill a table with it; below the lowest speed nodes of a faded film.
-
-    Parameters
-    ----------
-    law : FlatTable
-        The law.
-    workspace : array (4, n, 8)
-        Workspace of the law.
-    conditions : array (3,)
-        u [m/s], T [K], q [N/m].
-    nodes, buffer, cells, numbers
-        The same as for `tabulate`; with a faded film cells are filled with the nodes that
-        `fade` takes, which are the same at all speeds.
-    counts : array (4,)
-        int64, counted up outside the map.
-
-    Returns
-    -------
-    bool
-        False if the law does not fit into a table.
-    """
-    table = _law_table(law)
-    point = collapse(table, workspace, conditions[0], conditions[1], conditions[2], counts)
-    highest = point.highest_load * (1.0 + LOAD_TOLERANCE)
-    if abs(conditions[0]) < table.film_speed:
-        return write_film(point, nodes, buffer, cells, highest, numbers)
-    return tabulate(point, nodes, buffer, cells, highest, numbers)

@@ -6,7 +6,7 @@ it comes to them, and takes between two nodes the straight blend of cells, centr
 that the blend is wrong by less than the tables are: `STEP` makes some 1e-8 of load and stiffness of a bearing.
 
 Below the speeds with a whole film one table serves all: what is left of the film moves its knots, see `fade` of
-`mbs.bearings.slice_table`. With a centrifugal load, which changes with the speed, each step has a table of its own.
+`mbs.bearings.faded_table`. With a centrifugal load, which changes with the speed, each step has a table of its own.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from ehdmaps.errors import EhdmapsError
 from ehdmaps.maps.law import ContactLaw
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.force_at_point import FlatLaw, ForceAtPoint, is_faded, is_one_power, part_of_film
+from mbs.bearings.flat_law import FlatLaw, tabulate_law
+from mbs.bearings.force_at_point import ForceAtPoint, is_faded, is_one_power, part_of_film
 from mbs.bearings.speed_window import Made, SpeedWindow
 
 STEP = 1e-3
@@ -53,16 +54,19 @@ class SpeedTables:
     ----------
     varies : bool
         Whether the law changes with speed; a dry one has one table for all.
+    has_cells : bool
+        Whether the law is read from cells; a power law is not.
     """
 
     def __init__(self, bearing: Bearing, law: FlatLaw, temperature: float, rates: tuple[float, float]) -> None:
         self._bearing, self._law, self._temperature, self._rates = bearing, law, temperature, rates
         self.varies = isinstance(law.law, ContactLaw)
+        self.has_cells = isinstance(law.law, ContactLaw) or law.law.prepared(1.0)[1] is not None
         lowest, self._faded_below = 1.0, 0.0
         if isinstance(law.law, ContactLaw):
             lowest, self._faded_below = _limits(law.law, abs(rates[0]))
         self._window = SpeedWindow(STEP, NODES, lowest, self.varies)
-        self._buffer = np.empty((6, 2 * table.ROWS + 1))
+        self._nodes, self._marks = np.empty((4, table.NODES)), np.zeros((2, table.NODES), dtype=np.uint8)
         self._film = Made(sound=False)
         self._has_film = False
 
@@ -151,7 +155,7 @@ class SpeedTables:
             return Made(sound=False)
         arrays, workspace = self._law.arrays(law, centrifugal > 0.0)
         conditions, counts = np.array(given), np.zeros(4, dtype=np.int64)
-        fits = table.tabulate_law(arrays, workspace, conditions, table.NODES, self._buffer, cells, numbers, counts)
+        fits = tabulate_law(arrays, workspace, conditions, self._nodes, self._marks, cells, numbers, counts)
         outside = bool(counts.any())
         return _told(fits and not (outside and law.outside == "error"), outside, numbers)
 

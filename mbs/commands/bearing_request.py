@@ -38,9 +38,9 @@ from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, result_kind
 from mbs.scene.contact_laws import HERTZ_FORMS, hertz_damper
 from mbs.scene.fields import FORCE, MICROMETRE
 from mbs.scene.map_set import geometry_problems, structure_words
+from mbs.scene.profiles import profile_from_text
 
 LAWS = ("hertz", "formula", "map")
-PROFILES = ("iso", "straight")
 OIL, CELSIUS_40, ROUGHNESS = "FVA3", 313.15, 0.3e-6
 """Assumed where nothing is given: the oil, the temperature of the raceways [K], the combined rms roughness [m]."""
 
@@ -127,8 +127,8 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     given = _bearing(arguments.bearing, problems)
     emap = _map(arguments.map, arguments.structure, problems)
     law = _law(arguments.law, emap is not None or arguments.map is not None, problems)
-    loads = _values("--load", arguments.load, "N", _LOADS, FORCE, problems)
-    speeds = _values("--speed", arguments.speed, "rad/s", _SPEEDS, RPM, problems)
+    loads = read_values("--load", arguments.load, "N", _LOADS, FORCE, problems)
+    speeds = read_values("--speed", arguments.speed, "rad/s", _SPEEDS, RPM, problems)
     if len(loads) * len(speeds) > MOST_POINTS:
         problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
     if _all_slices(given, arguments.slices) * len(loads) * len(speeds) > MOST_SLICES_IN_ALL:
@@ -292,11 +292,7 @@ def _sliced(
 ) -> Bearing | None:
     """The bearing with clearance, profile and slices; without the last three where they are wrong."""
     before = len(problems)
-    if arguments.profile not in PROFILES:
-        problems.append(
-            f"--profile: got {short(arguments.profile)}{closest(arguments.profile, PROFILES)}; allowed: "
-            f"{', '.join(PROFILES)}"
-        )
+    profile = profile_from_text(arguments.profile, given.geometry if given else None, problems)
     slices = _whole("--slices", arguments.slices, 1, MOST_COUPLED if arguments.coupled else MOST_SLICES, problems)
     if given is None:
         return None
@@ -308,7 +304,7 @@ def _sliced(
             problems += [f"--clearance: {problem}" for problem in error.problems]
     if len(problems) > before:
         return Bearing(given.geometry, "iso", 41, given.material)
-    return Bearing(geometry, arguments.profile, slices, given.material, arguments.coupled)
+    return Bearing(geometry, profile, slices, given.material, arguments.coupled)
 
 
 def _map(path: str | None, structure: str | None, problems: list[str]) -> EHDMap | None:
@@ -413,7 +409,7 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def _values(
+def read_values(
     option: str,
     given: Sequence[Sequence[str]],
     unit: str,
@@ -421,7 +417,23 @@ def _values(
     display: Display,
     problems: list[str],
 ) -> tuple[float, ...]:
-    """Rising values of an option: single ones, and ranges FROM TO POINTS, evenly spaced, wide ones in the logarithm."""
+    """Rising values of an option: single ones, and ranges FROM TO POINTS, evenly spaced, wide ones in the logarithm.
+
+    Parameters
+    ----------
+    option : str
+        Name of the option; begins the messages.
+    given : sequence of sequences of str
+        What was given for it, once for each time that it was given.
+    unit : str
+        Unit of the values.
+    limits : (float, float)
+        Smallest and largest allowed value [unit].
+    display : Display
+        How messages show values.
+    problems : list of str
+        Takes what is wrong.
+    """
     found: list[float] = []
     for texts in given:
         if len(texts) not in (1, 3):

@@ -13,7 +13,9 @@ from matplotlib.figure import Figure
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.units import RPM, short
-from mbs.analyses.campbell import ALL_SENSORS, CampbellResult, chosen_sensors, followed_orders, rehearsed, run_course
+from mbs.analyses.campbell import CampbellResult
+from mbs.analyses.followed import followed_orders
+from mbs.analyses.ramp import rehearsed, run_course
 from mbs.analyses.recorded import (
     RecordedResult,
     RecordedRun,
@@ -22,6 +24,7 @@ from mbs.analyses.recorded import (
     recorded_campbell,
     recorded_run_of,
 )
+from mbs.analyses.sensors import ALL_SENSORS, chosen_sensors
 from mbs.commands.common import read_option, write
 from mbs.output.campbell_plot import MOST_LAWS, campbell_figure
 from mbs.output.campbell_text import highest_line, peak_lines, resolution_lines, sensor_line

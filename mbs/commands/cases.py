@@ -99,14 +99,15 @@ def load_cases(
     laws = _named_laws(arguments, scene, problems)
     if not several:
         problems += [
-            f"--{option}: got {len(given)} of them; allowed: one; lsa, sweep, runup and campbell compare more"
+            f"--{option}: got {len(given)} of them; allowed: one; lsa, sweep, critical, runup, campbell and hammer "
+            "compare more"
             for option in ("law", "clearance", "films", "supply")
             if len(given := _given(arguments, option)) > 1
         ]
         if sum(law.maps is not None for law in laws) > 1:
             problems.append(
                 f"--map: got {len(_given(arguments, 'map'))} of them, several for one type of bearing; allowed: one "
-                "for each type of bearing; lsa, sweep, runup and campbell compare more"
+                "for each type of bearing; lsa, sweep, critical, runup, campbell and hammer compare more"
             )
         if _ready(arguments) is not None and _given(arguments, "law"):
             problems.append("--law: stands beside --auto, whose law is that of a map; leave one of them out")

@@ -1,83 +1,141 @@
-"""`mbs critical`: critical speeds, and the response to unbalances and orders over speed."""
+"""`mbs critical`: critical speeds, and the response to unbalances and orders over speed, with each law."""
 
 from __future__ import annotations
 
 import argparse
 import dataclasses
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM
-from mbs.analyses.critical import CriticalResult, critical, orders
+from mbs.analyses.case import Case
+from mbs.analyses.critical import CriticalResult, critical_of, dataset_of_laws, orders
 from mbs.analyses.operating import operating
 from mbs.analyses.reach import axes_outside, sources_of
 from mbs.analyses.sweep import SweepSettings
 from mbs.commands.auto import Looked, analysed
-from mbs.commands.cases import load_model
+from mbs.commands.cases import load_cases
 from mbs.commands.common import heading, write
+from mbs.commands.lsa import MOST_COMPARED_CASES
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.commands.sweep import read_speeds
+from mbs.linearised.critical import CriticalSpeed
 from mbs.linearised.linear import sensor_unit
 from mbs.output.critical_data import orbits, sensed
-from mbs.output.critical_plot import critical_figure
-from mbs.scene.assembly import Model
+from mbs.output.critical_plot import CriticalCurves, critical_figure
+
+_HEAD = "critical speeds      order       speed   frequency/Hz   damping ratio   whirl"
+_WIDTH = 102
+"""Of the rows of that table: the longest words on the whirl are 32 letters."""
 
 _MIXED = 0.1
 """Size of the direction of whirl below which a mode counts as one in a plane."""
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Find critical speeds and responses."""
-    done = analysed(arguments, _asked, lambda asked: critical(*asked), _looks_at)
-    result = done.result
-    model = result.model
-    fastest = float(np.abs(result.speeds).max())
-    words = f"lies outside the map at {{}} of {result.sweep.speeds.size} speeds"
-    outside = outside_lines(
-        result.outside, words, axes_outside(operating(model, fastest), fastest), sources=sources_of(model)
+    """Find critical speeds and responses with each law."""
+    done = analysed(
+        arguments,
+        _asked,
+        lambda asked: list(
+            zip(
+                [case.label for case in asked.cases],
+                critical_of([case.model for case in asked.cases], asked.settings),
+                strict=True,
+            )
+        ),
+        _looks_at,
     )
-    lines = [
-        *done.lines,
-        *heading(model),
-        f"  {result.sweep.speeds.size} speeds from {_rpm(result.speeds[0])} to {_rpm(fastest)}, "
-        f"{result.speeds.size - result.sweep.speeds.size} more around critical ones",
-        *_critical(result),
-        *_responses(result),
-        *_lifting(result),
-        *fade_lines(model, result.sweep.speeds),
-    ]
-    figure = None
-    if arguments.plot:
-        figure = critical_figure(
-            model, result.sweep, result.found, result.speeds, result.responses, orders(model.system)
-        )
-    lines += outside + write(arguments, result.dataset, figure)
+    found = done.result
+    lines, outside = list(done.lines), list[str]()
+    for label, entry in found:
+        outside += [line for line in _outside(entry) if line not in outside]
+        lines += _report(entry, label if found[1:] else "")
+    if found[1:]:
+        lines += _beside(found)
+    figure = critical_figure([_curves(label, entry) for label, entry in found]) if arguments.plot else None
+    dataset = dataset_of_laws([label for label, _ in found], [entry for _, entry in found])
+    lines += outside + write(arguments, dataset, figure)
     return "\n".join(lines), 1 if outside else done.status
 
 
-def _asked(arguments: argparse.Namespace) -> tuple[Model, SweepSettings]:
-    """The model and the speeds; all problems at once."""
+class _Asked(NamedTuple):
+    """What is examined, and over which speeds."""
+
+    cases: list[Case]
+    settings: SweepSettings
+
+
+def _asked(arguments: argparse.Namespace) -> _Asked:
+    """A case for each law, map, kind of films, oil supply and clearance, and the speeds; all problems at once."""
     problems: list[str] = []
-    settings, model = SweepSettings(), None
+    settings, cases = SweepSettings(), list[Case]()
     try:
         settings = SweepSettings(read_speeds(arguments.speeds) if arguments.speeds else None)
     except InputError as error:
         problems += error.problems
     try:
-        model = load_model(arguments)
+        cases = load_cases(arguments)
     except InputError as error:
         problems += error.problems
-    if problems or model is None:
+    if len(cases) > MOST_COMPARED_CASES:
+        problems.append(
+            f"--law, --map, --films, --supply, --clearance: got {len(cases)} cases; allowed: up to "
+            f"{MOST_COMPARED_CASES} side by side"
+        )
+    if problems:
         raise InputError(problems)
-    return model, settings
+    return _Asked(cases, settings)
 
 
-def _looks_at(asked: tuple[Model, SweepSettings]) -> Looked:
+def _outside(found: CriticalResult) -> list[str]:
+    """Lines on bearings that lie outside their map at some speeds."""
+    model = found.model
+    fastest = float(np.abs(found.speeds).max())
+    words = f"lies outside the map at {{}} of {found.sweep.speeds.size} speeds"
+    axes = axes_outside(operating(model, fastest), fastest)
+    return outside_lines(found.outside, words, axes, sources=sources_of(model))
+
+
+def _curves(label: str, found: CriticalResult) -> CriticalCurves:
+    """What is drawn of a law."""
+    return CriticalCurves(
+        label, found.model, found.sweep, found.found, found.speeds, found.responses, orders(found.model.system)
+    )
+
+
+def _report(found: CriticalResult, label: str) -> list[str]:
+    """Lines of one law; its label is empty if it is the only one, else critical speeds come in a table of all."""
+    model, swept = found.model, found.sweep.speeds
+    more = np.setdiff1d(found.speeds, swept).size
+    return [
+        *heading(model),
+        *([f"  case: {label}"] if label else []),
+        f"  {swept.size} speeds from {_rpm(swept[0])} to {_rpm(np.abs(swept).max())}, {more} more around critical ones",
+        *([] if label else _critical(found)),
+        *_responses(found),
+        *_lifting(found),
+        *fade_lines(model, swept),
+    ]
+
+
+def _beside(found: list[tuple[str, CriticalResult]]) -> list[str]:
+    """A table of the critical speeds of all laws, for each order in rising speed."""
+    rows = [(entry, label) for label, result in found for entry in result.found]
+    if not rows:
+        return _critical(found[0][1])
+    rows.sort(key=lambda row: (row[0].order, row[0].speed))
+    none = [f"  none of {label}" for label, result in found if not result.found]
+    return [f"{_HEAD:{_WIDTH}}   law", *(f"{_row(entry):{_WIDTH}}   {label}" for entry, label in rows), *none]
+
+
+def _looks_at(asked: _Asked) -> Looked:
     """The scene with the speeds, and the highest frequency of an order."""
-    model, settings = asked
-    speeds = settings.speeds or model.scene.sweep
+    model = asked.cases[0].model
+    speeds = asked.settings.speeds or model.scene.sweep
     end = 0.0 if speeds is None else speeds.end
     highest = max(orders(model.system), default=1.0) * end / (2.0 * math.pi)
     return Looked(dataclasses.replace(model.scene, sweep=speeds), highest)
@@ -88,13 +146,15 @@ def _critical(result: CriticalResult) -> list[str]:
     tried = ", ".join(f"{order:.4g}" for order in orders(result.model.system))
     if not result.found:
         return [f"no critical speed for order {tried}"]
-    lines = ["critical speeds      order       speed   frequency/Hz   damping ratio   whirl"]
-    for entry in result.found:
-        lines.append(
-            f"  mode {entry.mode + 1:4d} {entry.order:14.4g} {_rpm(entry.speed):>13} "
-            f"{entry.eigenvalue.imag / (2.0 * math.pi):12.5g} {entry.damping_ratio:15.3g}   {_whirl_words(entry.whirl)}"
-        )
-    return lines
+    return [_HEAD, *map(_row, result.found)]
+
+
+def _row(entry: CriticalSpeed) -> str:
+    """Line of a critical speed."""
+    return (
+        f"  mode {entry.mode + 1:4d} {entry.order:14.4g} {_rpm(entry.speed):>13} "
+        f"{entry.eigenvalue.imag / (2.0 * math.pi):12.5g} {entry.damping_ratio:15.3g}   {_whirl_words(entry.whirl)}"
+    )
 
 
 def _rpm(speed: float) -> str:

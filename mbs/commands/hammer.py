@@ -1,4 +1,4 @@
-"""`mbs hammer`: a simulated hammer test of a scene, written as a universal file."""
+"""`mbs hammer`: a simulated hammer test of a scene with each law, written as universal files."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.extras import lacking
-from ehdmaps.outputs import Output, output_problems
+from ehdmaps.outputs import Output, check_outputs, output_problems
 from ehdmaps.units import quantity
-from mbs.analyses.hammer import HIGHEST, HammerSettings, hammer, hammer_problems
+from ehdmaps.workers import available_cores
+from mbs.analyses.case import Case
+from mbs.analyses.hammer import HIGHEST, HammerResult, HammerSettings, hammer_problems, hammers
 from mbs.commands.auto import Looked, analysed
-from mbs.commands.cases import load_model
+from mbs.commands.cases import load_cases
 from mbs.commands.common import Told, clean, film_lines, free_words, heading, outside_at
 from mbs.linearised.modes import Modes
 from mbs.modal.uff import UFF, Measurement
@@ -24,44 +26,77 @@ from mbs.transient.hammer import HammerTest
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Hit, and write the records."""
+    """Hit with each law, and write the records, a file a law."""
     highest, duration = _options(arguments)
     settings = HammerSettings(highest, duration, arguments.hits, arguments.noise, arguments.seed, arguments.nonlinear)
+    workers = arguments.workers or available_cores()
+    told = Told("hit") if arguments.nonlinear else None
     done = analysed(
         arguments,
-        lambda given: load_model(given, UFF, hammer_problems),
-        lambda model: hammer(model, settings, Told("hit")),
-        lambda model: Looked(model.scene, highest or max(model.scene.frequencies, default=HIGHEST)),
+        _asked,
+        lambda cases: (hammers(cases, settings, told, workers=workers), [case.label for case in cases]),
+        lambda cases: Looked(cases[0].model.scene, highest or max(cases[0].model.scene.frequencies, default=HIGHEST)),
     )
-    found = done.result
-    model = found.model
-    scene, test, hits = model.scene, found.test, found.hits
-    outside = [
-        *outside_at(model, found.balance),
-        *(f"warning: {name}: {n} calls outside the map" for name, n in found.outside_hits.items() if n),
-    ]
-    path = Path(arguments.output)
+    found, labels = done.result
+    paths = dict(zip(labels, _files(arguments.output, len(labels)), strict=True))
+    lines = list(done.lines)
+    outside = False
+    for label, entry in zip(found.labels, found.results, strict=True):
+        words, warned = _report(entry, label if labels[1:] else "", settings.nonlinear)
+        _write(paths[label], entry, label if labels[1:] else entry.model.label)
+        lines += [*words, f"{paths[label]}: written"]
+        outside = outside or warned
+    lines += [f"warning: {line}" for line in found.failed]
+    return "\n".join(lines), 1 if outside or found.failed else done.status
+
+
+def _asked(arguments: argparse.Namespace) -> list[Case]:
+    """A case for each law, map, kind of films, oil supply and clearance; of several all files are looked at."""
+    cases = load_cases(arguments, kind=UFF, needs=hammer_problems)
+    if cases[1:]:
+        read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *cases[0].model.scene.files]
+        check_outputs([Output("-o", path, UFF) for path in _files(arguments.output, len(cases))], read)
+    return cases
+
+
+def _files(path: str, count: int) -> list[Path]:
+    """The file of each case: the one that was named, or of several numbered ones, such as hits-1.uff."""
+    place = Path(path)
+    return [place] if count == 1 else [place.with_stem(f"{place.stem}-{k + 1}") for k in range(count)]
+
+
+def _write(path: Path, found: HammerResult, label: str) -> None:
+    """Write the records of a case."""
+    model, test = found.model, found.test
     films = FILM_WORDS[model.memory]
     # The file stands alone: it says films and oil supply also where they are the default.
     flooded = model.supplies and all(supply.flooded for supply in model.supplies.values())
     parts = (films if found.errors else "", "flooded" if flooded else "")
-    label = ", ".join([model.label, *(part for part in parts if part and part not in model.label)])
-    title = f"{scene.name}, {label}: {test.hits} hits, simulated"
-    write_uff(path, Measurement(title, hits))
+    words = ", ".join([label, *(part for part in parts if part and part not in label)])
+    write_uff(path, Measurement(f"{model.scene.name}, {words}: {test.hits} hits, simulated", found.hits))
+
+
+def _report(found: HammerResult, label: str, nonlinear: bool) -> tuple[list[str], bool]:
+    """Lines of one case, whose label is empty if it is the only one; and whether it was outside its map."""
+    model, test = found.model, found.test
+    scene = model.scene
+    outside = [
+        *outside_at(model, found.balance),
+        *(f"warning: {name}: {n} calls outside the map" for name, n in found.outside_hits.items() if n),
+    ]
     lines = [
-        *done.lines,
         *heading(model, scene.speed),
-        f"{test.hits} hits at each of {len(hits)} places, {len(scene.sensors)} sensors, "
-        + ("nonlinear" if arguments.nonlinear else "linearised at the equilibrium"),
+        *([f"  case: {label}"] if label else []),
+        f"{test.hits} hits at each of {len(found.hits)} places, {len(scene.sensors)} sensors, "
+        + ("nonlinear" if nonlinear else "linearised at the equilibrium"),
         f"  records of {test.samples * test.step:.4g} s, {test.samples} samples at {1.0 / test.step:.6g} Hz; "
         f"half-sines of {MILLISECOND.text(test.pulse)}, up to {test.highest:.6g} Hz; seed {test.seed}",
         f"  noise: standard deviation {100.0 * test.noise:.3g} % of the peak of each channel",
         *_expected(found.modes, test),
         *film_lines(found.errors, [test.highest]),
         *outside,
-        f"{path}: written",
     ]
-    return "\n".join(lines), 1 if outside else done.status
+    return lines, bool(outside)
 
 
 def _options(arguments: argparse.Namespace) -> tuple[float | None, float | None]:

@@ -52,6 +52,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *heading(found.model),
         f"  turns at {RPM.text(slowest)} to {RPM.text(fastest)}; loads of slices at rest, "
         f"dry, over {planning.ANGLES} cage angles of a pitch, times {settings.margin:g} for what moves",
+        *_turning(found),
     ]
     if maps is not None:
         lines += [
@@ -69,6 +70,17 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         if entry.path is not None:
             write_text(entry.path, sealed(entry.job.text), SEALED)
     return "\n".join([*lines, *(_next_steps(written, arguments.scene) if written else _NOTHING)]), 0
+
+
+def _turning(found: PlanResult) -> list[str]:
+    """A line on the loads that turn, where there are any: how they count."""
+    names = ", ".join(name for load in found.model.system.turning for name in load.names)
+    if not names:
+        return []
+    return [
+        f"  {names}: with their size at {RPM.text(found.speeds[1])}, standing still at {planning.PHASES} angles, as a "
+        "stiff rotor bears them; near and above a critical speed loads are larger: see mbs critical, and --margin"
+    ]
 
 
 def _read(arguments: argparse.Namespace) -> tuple[Model, Scene, MapSet | None, PlanSettings]:

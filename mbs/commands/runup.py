@@ -15,8 +15,8 @@ from ehdmaps.errors import InputError
 from ehdmaps.figures import COLOURS
 from ehdmaps.units import RPM
 from ehdmaps.workers import available_cores
-from mbs.analyses.campbell import silent_run
 from mbs.analyses.case import Case
+from mbs.analyses.ramp import silent_run
 from mbs.analyses.reach import Fade, axes_outside, fade_of, sources_of
 from mbs.analyses.recorded import amplitudes_at, simulated
 from mbs.analyses.resolution import resolution

@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from typing import get_args
 
 from ehdmaps.errors import InputError
@@ -23,6 +24,7 @@ from mbs.bearings.bearing_force import NO_COUPLED_MEMORY
 from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import DryLaw, Law
 from mbs.model.relaxation import DEFAULT_FILMS, Films
+from mbs.scene.law_file import read_law
 from mbs.scene.map_set import MapSet
 from mbs.scene.scene import Scene
 from mbs.scene.specs import BearingSpec
@@ -33,7 +35,7 @@ FILM_WORDS: dict[Films, str] = {"memory": "films with memory", "slow": "slow fil
 _FORMULA_SPEEDS, _BEYOND = (0.05, 10.0), 1.05
 """Entrainment speeds of the table of the film formula [m/s], and how far it goes beyond a scene that is faster."""
 
-_HERTZ, _CONSTANT = "hertz:", "constant:"
+_HERTZ, _CONSTANT, _TABLE = "hertz:", "constant:", "table:"
 _LONGEST_TIME, _STRONGEST = 1e-2, 1e9
 """Largest damper of a dry contact: by its ratio to the stiffness [s], and as a constant [N s/m], as in [laws.NAME]."""
 
@@ -58,6 +60,8 @@ def law_label(law: str, maps: MapSet | None = None) -> str:
         damper = None  # whoever reads the law says what is wrong about it
     if damper is not None:
         return ", ".join(part for part in (_LABELS["hertz"], damper.words) if part)
+    if (path := table_path(law)) is not None:
+        return f"table {path.name}"
     return _LABELS.get(law, law.replace(":", " "))
 
 
@@ -154,6 +158,11 @@ def constant_name(law: str) -> str | None:
     return law.removeprefix(_CONSTANT) if law.startswith(_CONSTANT) else None
 
 
+def table_path(law: str) -> Path | None:
+    """File of a law table:FILE, else None."""
+    return Path(law.removeprefix(_TABLE)) if law.startswith(_TABLE) else None
+
+
 @dataclass(frozen=True, eq=False)
 class ContactLaws:
     """The contact laws of a scene.
@@ -161,7 +170,7 @@ class ContactLaws:
     Attributes
     ----------
     chosen : str
-        hertz, hertz:TIME, hertz:DAMPING, formula, constant:NAME or map.
+        hertz, hertz:TIME, hertz:DAMPING, formula, constant:NAME, table:FILE or map.
     scene : Scene
         Scene with its oil and its constant laws.
     maps : MapSet or None
@@ -188,9 +197,15 @@ class ContactLaws:
             damper = hertz_damper(self.chosen)
         except InputError as error:
             return list(error.problems)
-        if self.chosen not in allowed and damper is None:
+        path = table_path(self.chosen)
+        if path is not None:
+            try:
+                read_law(path, 1.0)
+            except InputError as error:
+                return [f"--law: {line}" for line in error.problems]
+        if self.chosen not in allowed and damper is None and path is None:
             got = f"--law: got {self.chosen!r:.60}{closest(self.chosen, allowed)}"
-            return [f"{got}; allowed here: {', '.join(allowed)}; {HERTZ_FORMS}"]
+            return [f"{got}; allowed here: {', '.join(allowed)}; {HERTZ_FORMS}; table:FILE.csv"]
         if self.chosen == "map" and self.maps is None:
             return ["--law: got 'map' without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`"]
         maps = self._maps_in_force if scene.surface is None else None
@@ -323,6 +338,8 @@ class ContactLaws:
         if damper is not None:
             words = f"{damper.words} of each contact of a roller" if damper.words else ""
             return ", ".join(part for part in ("dry Hertz, ISO 16281", words) if part)
+        if (path := table_path(self.chosen)) is not None:
+            return f"table {path}, dry"
         name = self.chosen.removeprefix(_CONSTANT)
         stiffness, damping = self.scene.laws[name]
         return f"constant {name}: {stiffness:.4g} N/m and {damping:.4g} N s/m for each contact of a roller"
@@ -351,6 +368,8 @@ class BearingLaws:
         """Law of a roller between both raceways."""
         if self.given.chosen in ("map", "formula"):
             return self._of_kind("series")
+        if (path := table_path(self.given.chosen)) is not None:
+            return read_law(path, self.bearing.geometry.roller_length)
         damper = hertz_damper(self.given.chosen)
         if damper is not None:
             return laws.hertz(self.bearing, damper.constant, damper.time)

@@ -1,14 +1,15 @@
-"""The key `profile` of a bearing in a scene: by name, as an arc, or as a table."""
+"""The profile of rollers, a key of a bearing in a scene or a text: by name, as an arc, or as a table."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.profiles import CrownedProfile, TabulatedProfile
-from ehdmaps.units import LENGTH, short
+from ehdmaps.units import LENGTH, closest, short
 from mbs.scene.fields import MICROMETRE
 
 RollerProfile = str | CrownedProfile | TabulatedProfile
@@ -35,7 +36,7 @@ def read_profile(section: Table, geometry: BearingGeometry | None) -> RollerProf
     if "profile" not in section or value in NAMES:
         return value or "iso"
     if not isinstance(value, dict) or len({"crown_radius", "crown_drop", "positions"} & set(value)) != 1:
-        section.note("profile", f"got {short(value)}; allowed: {_ALLOWED}")
+        section.note("profile", f"got {short(value)}{_closest(value)}; allowed: {_ALLOWED}")
         return "iso"
     problems: list[str] = []
     table = Table(value, "profile", problems)
@@ -52,6 +53,38 @@ def read_profile(section: Table, geometry: BearingGeometry | None) -> RollerProf
     return found or "iso"
 
 
+def profile_from_text(text: str, geometry: BearingGeometry | None, problems: list[str]) -> RollerProfile:
+    """Read a profile as a scene writes its value; "iso" where a problem was noted.
+
+    Parameters
+    ----------
+    text : str
+        A name, or an arc or table in braces.
+    geometry : BearingGeometry or None
+        Geometry of the bearing; None where a problem of it was noted.
+    problems : list of str
+        What is wrong is appended.
+
+    Examples
+    --------
+    >>> profile_from_text('{ crown_radius = "5 m" }', None, [])
+    CrownedProfile(radius=5.0, straight=0.0)
+    """
+    value: object = text
+    if text.lstrip().startswith("{"):
+        try:
+            # A line break would let a text go on after the value.
+            value = toml_text.parse(f"profile = {' '.join(text.splitlines())}", "--profile")["profile"]
+        except InputError as error:
+            problems += error.problems
+            return "iso"
+    noted: list[str] = []
+    found = read_profile(Table({"profile": value}, "--profile", noted), geometry)
+    # Of the scene's words those of the key are the option's.
+    problems += [problem.replace("--profile profile", "--profile", 1) for problem in noted]
+    return found
+
+
 def _crowned(table: Table, geometry: BearingGeometry | None) -> CrownedProfile | None:
     """Read an arc, by its radius or by its depth at the ends."""
     straight = table.quantity("straight", "m", 0.0, 1.0, LENGTH) or 0.0
@@ -62,6 +95,11 @@ def _crowned(table: Table, geometry: BearingGeometry | None) -> CrownedProfile |
     if drop is None or geometry is None:
         return None
     return CrownedProfile.of_drop(drop, geometry.roller_length, straight)
+
+
+def _closest(value: object) -> str:
+    """The name that may be meant."""
+    return closest(value, NAMES) if isinstance(value, str) else ""
 
 
 def _tabulated(table: Table) -> TabulatedProfile | None:

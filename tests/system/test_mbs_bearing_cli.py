@@ -12,6 +12,7 @@ import xarray as xr
 from scipy.optimize import root
 
 import ehdmaps
+from ehdmaps.physics.bearing import BEARINGS
 from mbs import Bearing, BearingForce, cli
 from tests.cases.commands import check_units
 from tests.cases.jobs import WIDE
@@ -111,6 +112,25 @@ def test_tables_over_load_and_speed(here, capsys):
     assert status == 2 and "is not a table of ehdmaps" in err
 
 
+def test_profiles_in_the_words_of_scenes(here, capsys):
+    """An arc is what it is at measured points: straight lines between 4001 of them are 1e-12 m off the arc."""
+    asked = ("NU308", "--load", "5 kN", "--speed", "0 rpm")
+    arc = '{ crown_drop = "8 um", straight = "6 mm" }'
+    status, out, _ = run(capsys, *asked, "--profile", arc, "-o", "arc.nc")
+    assert status == 0
+    assert "profile iso" not in out
+    half = 0.5 * BEARINGS["NU308"].roller_length
+    x = np.linspace(0.0, half, 4001)
+    beyond = np.maximum(x - 3e-3, 0.0)
+    radius = ((half - 3e-3) ** 2 + 8e-6**2) / (2.0 * 8e-6)
+    depth = radius - np.sqrt(radius**2 - beyond**2)
+    table = f"{{ positions = {[f'{v!r} m' for v in x.tolist()]}, depths = {[f'{v!r} m' for v in depth.tolist()]} }}"
+    assert run(capsys, *asked, "--profile", table, "-o", "table.nc")[0] == 0
+    with xr.open_dataset("arc.nc") as one, xr.open_dataset("table.nc") as other:
+        for name in ("stiffness_along", "roller_load"):
+            np.testing.assert_allclose(other[name], one[name], rtol=1e-6, atol=1e-6 * float(np.abs(one[name]).max()))
+
+
 def test_wide_ranges_of_load_are_spaced_in_the_logarithm(here, capsys):
     run(capsys, "N1014", "--load", "1 N", "100 N", "3", "--speed", "0 rpm", "6000 rpm", "3", "-o", "w.nc")
     with xr.open_dataset("w.nc") as data:
@@ -171,6 +191,9 @@ BAD = (
     ("NU308", ["--clearance", "1 m"], "--clearance: got '1 m'; allowed: within 1e+04 um either way"),
     ("N1014", ["--clearance", "9.5 mm"], "--clearance: bearing 'N1014', diametral_clearance: got 0.0095 m"),
     ("NU308", ["--profile", "izo"], "--profile: got 'izo' (did you mean 'iso'?); allowed: iso, straight"),
+    ("NU308", ["--profile", "{ crown_radius = }"], "--profile: is not TOML"),
+    ("NU308", ["--profile", '{ crown_radius = "1 mm" }'], "--profile: crown_radius: got"),
+    ("NU308", ["--profile", '{ crown = "1 mm" }'], "--profile: got"),
     ("NU308", ["--slices", "0"], "--slices: got '0'; allowed: a whole number from 1 to 1000"),
     (
         "N1014",

@@ -16,7 +16,7 @@ import mbs
 from ehdmaps.errors import InputError
 from ehdmaps.maps.emap import open_map
 from mbs import cli
-from mbs.analyses import campbell
+from mbs.analyses import ramp
 from mbs.bearings.bearing_element import RingElement
 from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
@@ -319,14 +319,14 @@ class TestCampbell:
     @pytest.mark.parametrize("at", [0, 1, 2])
     def test_what_is_done_is_kept_when_it_is_stopped(self, here, capsys, monkeypatch, at):
         calls = iter(range(9))
-        whole = campbell.run_system
+        whole = ramp.run_system
 
         def stopped(*arguments, **keywords):
             if next(calls) == at:
                 raise KeyboardInterrupt
             return whole(*arguments, **keywords)
 
-        monkeypatch.setattr(campbell, "run_system", stopped)
+        monkeypatch.setattr(ramp, "run_system", stopped)
         # in this process, where the run is stopped; side by side it is that of `test_side_by_side`
         status, out, err = run(capsys, *self.arguments(), "-o", "c.nc", "--workers", "1")
         if at == 0:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,8 @@ from mbs import cli
 from mbs.modal.uff_reading import read_uff
 from mbs.scene.reader import read_scene
 from tests.cases.modal import DAMPING, FREQUENCY, hits, measured
+
+LAWS = ("hertz", "constant:cfd")
 
 
 @pytest.fixture
@@ -33,6 +36,29 @@ def write(path, **what):
     from mbs.modal.uff_writing import write_uff
 
     write_uff(path, Measurement("a case", what.get("hits", ()), what.get("responses")))
+
+
+def test_several_laws_side_by_side(here, capsys):
+    """Each law has a file of its own, the same as alone and however many processes there are."""
+    options = ("--nonlinear", "--hits", "1", "--duration", "25 ms", "--highest", "3 kHz")
+    status, out, err = run(
+        capsys, "hammer", "nu308_rigid", *(part for law in LAWS for part in ("--law", law)), *options,
+        "--workers", "2", "-o", "h.uff",
+    )  # fmt: skip
+    assert status == 0
+    assert "2 of 2 hits" in err
+    assert out.count("  case: ") == 2
+    for k, law in enumerate(LAWS):
+        assert f"h-{k + 1}.uff: written" in out
+        assert run(capsys, "hammer", "nu308_rigid", "--law", law, *options, "-o", f"alone{k}.uff")[0] == 0
+        beside, alone = read_uff(Path(f"h-{k + 1}.uff")).hits[0], read_uff(Path(f"alone{k}.uff")).hits[0]
+        np.testing.assert_array_equal(beside.response, alone.response)
+    assert not Path("h.uff").exists()
+    Path("h-2.uff").write_text("my own\n")
+    given = ("hammer", "nu308_rigid", "--law", LAWS[0], "--law", LAWS[1], *options, "-o", "h.uff")
+    status, _, err = run(capsys, *given)
+    assert status == 2
+    assert "h-2.uff, which is there and is not" in err
 
 
 def test_from_a_scene_to_its_modes(here, capsys):

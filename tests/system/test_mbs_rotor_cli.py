@@ -36,6 +36,30 @@ def test_critical_speeds_of_the_shipped_rotor(here, capsys):
     assert (here / "rotor.png").stat().st_size > 10_000
 
 
+def test_critical_speeds_of_several_laws_in_one_table(here, capsys):
+    """Each law has in the table, and in the file, what it has alone."""
+    speeds = ("--speeds", "9300 rpm", "9700 rpm", "2", "-o", "rotor.nc")
+    laws = ("--law", "hertz", *DAMPED)
+    status, out, _ = run(capsys, "critical", "overhung_rotor", *laws, *speeds, "--plot", "rotor.png")
+    assert status == 0
+    table = out[out.index("critical speeds") :]
+    assert [line.split()[3] for line in table.splitlines()[1:3]] == ["9539.4", "9539.5"]
+    assert "   law\n" in table
+    assert "backward (-0.97)                 dry Hertz, c = 12.5 us times k\n" in table
+    with xr.open_dataset("rotor.nc") as data:
+        found = data.load()
+    assert found["critical_speed"].dims == ("law", "critical")
+    assert run(capsys, "critical", "overhung_rotor", *DAMPED, *speeds)[0] == 0
+    with xr.open_dataset("rotor.nc") as alone:
+        ours = found.isel(law=1).sel(speed=alone["speed"])
+        # Rounding: the same equations at the same speeds.
+        np.testing.assert_allclose(ours["orbit_major"], alone["orbit_major"], rtol=1e-9)
+        np.testing.assert_allclose(
+            ours["critical_speed"].dropna("critical"), alone["critical_speed"].values, rtol=1e-12
+        )
+    assert (here / "rotor.png").stat().st_size > 10_000
+
+
 @pytest.mark.parametrize("command", ["statics", "modes"])
 def test_bearings_by_matrices_beside_others(here, capsys, command):
     status, out, err = run(capsys, command, "overhung_rotor", *DAMPED)

@@ -14,10 +14,11 @@ from ehdmaps.maps.law_change import LawChange
 from ehdmaps.maps.law_errors import LawBounds
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.solids import STEEL
-from mbs.analyses.campbell import campbell, silent_run
+from mbs.analyses.campbell import campbell
 from mbs.analyses.changed_laws import law_changes, with_changed_laws
 from mbs.analyses.lsa import LsaSettings, lsa
 from mbs.analyses.modes import modes
+from mbs.analyses.ramp import silent_run
 from mbs.commands.common import band_lines
 from mbs.linearised.bands import NO_MAP, law_bands
 from mbs.linearised.linear import frequency_response, input_matrix, responses

@@ -232,13 +232,14 @@ def test_matrices_are_the_derivatives(name, clearance, conditions):
             approach = element.rollers(pose, velocity, 0.2).approach
             if np.min(np.abs(approach)) < 2e-9:
                 continue
-        _, K, C = element(pose, velocity, 0.2)
-        for matrix, found in (
-            (K, -central_difference(lambda at, v=velocity: element(at, v, 0.2)[0], pose, step)),
-            (C, -central_difference(lambda at, p=pose: element(p, at, 0.2)[0], velocity, rate_step)),
+        f, K, C = element(pose, velocity, 0.2)
+        for matrix, found, by in (
+            (K, -central_difference(lambda at, v=velocity: element(at, v, 0.2)[0], pose, step), step),
+            (C, -central_difference(lambda at, p=pose: element(p, at, 0.2)[0], velocity, rate_step), rate_step),
         ):
             scale = np.sqrt(np.outer(np.diag(K), np.diag(K)) if matrix is K else np.outer(np.diag(C), np.diag(C)))
-            assert np.all(np.abs(matrix - found) <= 1e-6 * scale + 1e-300)
+            rounding = np.finfo(float).eps * np.abs(f)[:, None] / by  # of the forces, in their differences
+            assert np.all(np.abs(matrix - found) <= 1e-6 * scale + rounding + 1e-300)
             np.testing.assert_array_equal(matrix, matrix.T)
             assert np.all(matrix[[0, 3]] == 0.0)
 

@@ -68,7 +68,7 @@ def test_bad_bearings(keywords, text):
         (lambda: laws.constant(0.0), r"law 'constant', coefficient: got 0\.0 N/m\^exponent; allowed: finite and > 0"),
         (lambda: laws.constant(math.inf), "coefficient: got inf"),
         (lambda: laws.constant("stiff"), "law 'constant', stiffness: got 'stiff'; allowed: a finite number"),
-        (lambda: laws.DryLaw("x", "series", 1.0, 0.5, 0.0), "exponent: got 0.5; allowed: 1 to 3"),
+        (lambda: laws.PowerLaw("x", "series", 1.0, 0.5, 0.0), "exponent: got 0.5; allowed: 1 to 3"),
         (lambda: laws.formula(bearing(), OIL, load=(1e3, 1e2)), r"law 'formula', load: got \(1000.0, 100.0\)"),
         (lambda: laws.formula(bearing(), OIL, kind="line"), "kind: got 'line'; allowed: series, inner, outer"),
     ],

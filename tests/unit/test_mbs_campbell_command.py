@@ -203,13 +203,13 @@ def test_the_command_refuses_a_constant_speed(scene, tmp_path):
 
 
 def test_the_command_looks_at_the_window_before_it_runs(scene, monkeypatch):
-    command = importlib.import_module("mbs.analyses.campbell")
+    command = importlib.import_module("mbs.analyses.ramp")
     monkeypatch.setattr(command, "run_system", lambda *_, **__: pytest.fail("ran"))
     refused(lambda: run_command(scene, window="1 s"), "spectra, window: got 1.0 s")
 
 
 def test_a_law_without_a_result_leaves_the_others(scene, monkeypatch):
-    command = importlib.import_module("mbs.analyses.campbell")
+    command = importlib.import_module("mbs.analyses.ramp")
     first = []
 
     def fails_once(*values, **more):

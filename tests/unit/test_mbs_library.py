@@ -257,7 +257,7 @@ class TestStopped:
     """What Ctrl-C and a failing law leave of a comparison."""
 
     def run(self, model, monkeypatch, error, **keywords):
-        module = importlib.import_module("mbs.analyses.campbell")
+        module = importlib.import_module("mbs.analyses.ramp")
         whole, calls = module.run_system, []
 
         def fails_second(*values, **more):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from importlib import resources
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -15,6 +16,7 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solids import STEEL
 from mbs import assemble
+from mbs.analyses.reach import source_of
 from mbs.bearings.bearing import Bearing
 from mbs.commands.cases import load_cases, read_compared
 from mbs.scene.contact_laws import ContactLaws
@@ -58,6 +60,14 @@ def test_each_bearing_has_law_supply_and_films_of_its_own_map(small):
         assert laws.films(bearing, FLOODED).emap is emap
         law, own = laws.of(bearing, FLOODED).series, emap.law("series", outside="clamp", supply=FLOODED)
         assert law(1e-6, 0.0, 0.6, 313.15)[0] == own(1e-6, 0.0, 0.6, 313.15)[0]  # the same arithmetic
+
+
+def test_several_maps_are_called_maps_where_they_end(small):
+    """Not the film formula, whose bounds a user cannot change."""
+    law = ContactLaws("map", scene(), MapSet(small)).words
+    assert source_of(SimpleNamespace(law=law)) == "the map"
+    assert source_of(SimpleNamespace(law="maps of NU308 and N1014, FVA3, solver reynolds")) == "the map"
+    assert source_of(SimpleNamespace(law="film formula moes")) == "the table of the film formula"
 
 
 def test_maps_of_one_type_are_compared_and_those_of_several_belong_together(small):

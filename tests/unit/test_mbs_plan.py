@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs.reader import parse_job
 from mbs import cli
+from mbs.analyses.plan import plan
 from mbs.analyses.planned_job import job_text
 from mbs.analyses.planning import (
     LIGHT,
@@ -378,3 +379,17 @@ def test_command_tells_whether_a_map_covers_the_scene(here, capsys, light, load,
     status, _, err = run(capsys, "nu308_rigid", "--map", "holed.nc")
     assert status == 2
     assert "1 holes" in err
+
+
+def test_an_unbalance_is_planned_for_with_its_force_on_a_stiff_rotor():
+    """Beside the same force as a load that stands still, along the load, where it is largest."""
+    before, speed = plan(parse_scene(TEXT, "own", "own")).needed[0].static_load, 500.0
+    moment = 50.0 * math.sqrt(2.0) / speed**2
+    unbalance = f'\n[[unbalances]]\nname = "u"\non = "shaft:left"\nmoment = "{moment!r} kg m"\nangle = "45 deg"\n'
+    load = '\n[[loads]]\nname = "more"\non = "shaft:left"\nforce = ["0 N", "50 N", "50 N"]\n'
+    turning, standing = (assemble(parse_scene(TEXT + words, "own", "own")) for words in (unbalance, load))
+    found = largest_loads(turning.system, turning.bearings, speed)
+    # 1e-7: the equilibria begin elsewhere; the first of the angles is that of the load.
+    assert max(found) == pytest.approx(max(largest_loads(standing.system, standing.bearings, speed)), rel=1e-7)
+    assert max(found) > max(largest_loads(turning.system, turning.bearings, speed, turning=False))
+    assert plan(turning.scene).needed[0].static_load > before

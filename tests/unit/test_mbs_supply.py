@@ -186,7 +186,7 @@ def test_one_supply_is_in_the_label_where_it_is_not_flooded(shaft):
         ),
         (
             ("modes", "shaft.toml", "--supply", "grease", "--supply", "5 um"),
-            "--supply: got 2 of them; allowed: one; lsa, sweep, runup and campbell compare more",
+            "--supply: got 2 of them; allowed: one; lsa, sweep, critical, runup, campbell and hammer compare more",
         ),
         (
             ("sweep", "shaft.toml", "--supply", "gease"),

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from ehdmaps.errors import InputError
-from mbs import assemble, parse_scene
+from mbs import assemble, parse_scene, read_scene
+from mbs.analyses.followed import excited_orders
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.model.weight import load_by_gravity
@@ -186,3 +188,19 @@ def test_place_along_a_body():
         assemble(
             scene(f'{UNBALANCE}\nat = "10 mm"\n[[unbalances]]\nname = "u"\non = "disc"\nmoment = "1 g mm"\nat = "0 m"')
         )
+
+
+def test_a_campbell_diagram_follows_the_orders_of_turning_loads():
+    """Those of rollers stay; an order of less than one period a turn is left to --orders."""
+    system = assemble(read_scene("overhung_rotor")).system
+
+    def orders(*loads, turns=100.0):
+        return excited_orders(SimpleNamespace(system=SimpleNamespace(elements=system.elements, turning=loads)), turns)
+
+    rollers = [order for order, _ in orders()]
+    assert [order for order, _ in orders(*system.turning)] == sorted([*rollers, 1.0, 5.0])
+    assert (1.0, "1") in orders(*system.turning)
+    assert orders(SimpleNamespace(order=-0.25)) == orders()
+    assert orders(SimpleNamespace(order=-2.0))[0] == (2.0, "2")
+    # In 10 turns the unbalance has too few periods for the windows of all; the blades have 50.
+    assert [order for order, _ in orders(*system.turning, turns=10.0)] == sorted([*rollers, 5.0])

@@ -1,0 +1,46 @@
+"""Target `ansys`: stiffness and damping over speed, as the bearing file of Ansys Mechanical APDL.
+
+Format: Ansys Rotordynamic Analysis Guide, appendix A, "Bearing Characteristics File Format": three titles (A80),
+number of steps and keys of units (3I10), and for each speed its number and value (I10, F10.2), K11, K12, K21, K22 and
+C11, C12, C21, C22 (4E15.7). Both keys are 0 here: SI, no conversion. A number with its point may have more digits than
+F10.2 says.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from ehdmaps.errors import InputError
+from ehdmaps.outputs import Kind, has_mark
+from mbs.exports.linear_table import LinearTable, target
+
+KIND = Kind("a bearing file for Ansys made by ehdmaps", (".txt",), has_mark)
+
+_TITLE = 80
+_FASTEST = 99999.9999
+"""Speed that fits its field [rad/s]."""
+
+
+def _text(table: LinearTable, header: tuple[str, ...], _: argparse.Namespace) -> str:
+    """Write the file; what does not fit its three titles stands behind the numbers, which Ansys does not read."""
+    problems = []
+    if table.frequencies.size > 1:
+        problems.append(
+            f"--frequency: got {table.frequencies.size} values; allowed: one, since Ansys' file has speeds only"
+        )
+    if table.speeds[-1] > _FASTEST:
+        problems.append(f"--speed: got {table.speeds[-1]:.6g} rad/s; allowed: up to {_FASTEST:.6g} rad/s")
+    if problems:
+        raise InputError(problems)
+    bearing = table.request.bearing.geometry.name
+    titles = (header[0], f"bearing {bearing}; 1 is y, 2 is z, both radial; N/m, N s/m, rad/s", "the rest: at the end")
+    lines = [title[:_TITLE] for title in titles]
+    lines.append(f"{table.speeds.size:10d}{0:10d}{0:10d}")
+    for index, speed in enumerate(table.speeds):
+        lines.append(f"{index + 1:10d}{speed:10.4f}")
+        for matrix in (table.stiffness[index, 0], table.damping[index, 0]):
+            lines.append("".join(f"{matrix[i, j]:15.7E}" for i in (1, 2) for j in (1, 2)))
+    return "\n".join([*lines, "", *header]) + "\n"
+
+
+TARGET = target(KIND, "bearing characteristics over speed of Mechanical APDL", "", _text)

@@ -1,0 +1,304 @@
+"""Stiffness and damping of a bearing at a load, over speed and frequency: what linear programs are given.
+
+The ring rests under its load as in `mbs bearing`; around this place the bearing is linear, in all six displacements
+of the inner ring. At a frequency above zero it is the dynamic stiffness Z(i omega), K = Re Z and C = Im Z / omega, with
+films that relax where `films` is "memory"; at zero it is K and C of slow motion.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
+from ehdmaps.exports.header import BEARING_AXES, origin
+from ehdmaps.exports.target import Target
+from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.outputs import Kind, Output, check_outputs, write_text
+from ehdmaps.units import RPM, TEMPERATURE, Display, quantity
+from mbs.analyses.bearing_point import RING, ring_at_rest
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.contact_report import axes_left
+from mbs.commands.bearing_request import BearingRequest, read_request, read_values
+from mbs.linearised.dynamic import element_dynamic_stiffness
+from mbs.model.elements import Operation
+from mbs.model.relaxation import DEFAULT_FILMS, Films
+from mbs.scene.fields import FORCE, MICROMETRE
+
+HERTZ = Display("Hz")
+
+FREQUENCIES = (0.0, 1e5)
+"""Frequencies that may be asked for [Hz]."""
+
+_FILMS: tuple[Films, ...] = ("slow", "memory")
+
+
+@dataclass(frozen=True, eq=False)
+class LinearTable:
+    """A bearing, linear around its rest under a load.
+
+    Attributes
+    ----------
+    request : BearingRequest
+        What was asked: bearing, map, load, temperature.
+    cage_angle : float
+        Angle of the first roller from y towards z [rad].
+    films : {"slow", "memory"}
+        Whether the films relax.
+    speeds : array, shape (n,)
+        Speeds of the inner ring [rad/s].
+    frequencies : array, shape (m,)
+        Frequencies of the oscillation [Hz]; zero is slow motion.
+    displacement : array, shape (n, 2)
+        Place of the inner ring at rest, y and z [m].
+    stiffness, damping : array, shape (n, m, 6, 6)
+        K and C of the inner ring against the outer one: x (axial), y, z [m], rotations about them [rad].
+    """
+
+    request: BearingRequest
+    cage_angle: float
+    films: Films
+    speeds: FloatArray
+    frequencies: FloatArray
+    displacement: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+
+    def header(self, path: Path) -> tuple[str, ...]:
+        """Lines that tell map, axes, signs and the point at which the bearing is linear.
+
+        Parameters
+        ----------
+        path : Path
+            File of the map.
+        """
+        request = self.request
+        bearing, emap = request.bearing, request.emap
+        direction = math.degrees(math.atan2(request.direction[1], request.direction[0]))
+        relax = "films with memory" if self.films == "memory" else "slow films at any frequency"
+        point = (
+            f"bearing: {bearing.geometry.name}, {bearing.slices} slices",
+            f"linear around: load {FORCE.text(request.loads[0])} on the inner ring, "
+            f"{direction:.6g} deg from y towards z; "
+            f"diametral clearance {MICROMETRE.text(bearing.geometry.diametral_clearance)}; "
+            f"cage angle {math.degrees(self.cage_angle):.6g} deg; raceways at {TEMPERATURE.text(request.temperature)}",
+            f"speeds of the inner ring: {', '.join(RPM.text(speed) for speed in self.speeds)}; the outer ring stands",
+            f"frequencies: {', '.join(HERTZ.text(value) for value in self.frequencies)} (0: slow motion); {relax}",
+        )
+        return (*(() if emap is None else origin(emap, path.name)), *BEARING_AXES, *point)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options that say at which point the bearing is linear."""
+    point = parser.add_argument_group("where the bearing is linear")
+    point.add_argument("--load", metavar="FORCE", help='on the inner ring, such as "5 kN"; required')
+    point.add_argument(
+        "--speed",
+        nargs="+",
+        action="append",
+        metavar="VALUE",
+        help='of the inner ring, such as "1500 rpm", or FROM TO POINTS; more than once for a list; required',
+    )
+    point.add_argument(
+        "--frequency",
+        nargs="+",
+        action="append",
+        metavar="VALUE",
+        help='of the oscillation, such as "1 kHz", or FROM TO POINTS; more than once for a list (0 Hz, slow motion)',
+    )
+    point.add_argument("--films", metavar="NAME", default=DEFAULT_FILMS, help=f"slow | memory ({DEFAULT_FILMS})")
+    point.add_argument("--direction", nargs="+", metavar="ANGLE", help="of the load from y towards z (0 deg)")
+    point.add_argument("--temperature", metavar="TEMPERATURE", help='of the raceways, such as "60 degC" (40 degC)')
+    point.add_argument("--clearance", metavar="LENGTH", help='diametral, such as "20 um"; default: the map\'s, none')
+    point.add_argument("--cage-angle", metavar="ANGLE", help='of the first roller from y, such as "5 deg" (0 deg)')
+    point.add_argument("--profile", metavar="PROFILE", default="iso", help="of the rollers, as of `mbs bearing` (iso)")
+    point.add_argument("--slices", metavar="N", default="41", help="of a roller (41)")
+
+
+def linear_table(path: Path, arguments: argparse.Namespace) -> LinearTable:
+    """Stiffness and damping at the point that the options name.
+
+    Parameters
+    ----------
+    path : Path
+        File of the map.
+    arguments : argparse.Namespace
+        Options of `add_arguments`, and `structure` and `roughness`.
+
+    Raises
+    ------
+    InputError
+        With every problem of the options; and for points that lie outside of the map, or whose bearing has no
+        stiffness across the load.
+    AnalysisError
+        Where no equilibrium is found.
+    """
+    request, frequencies, cage_angle = _read(path, arguments)
+    films: Films = arguments.films
+    emap = request.emap or open_map(path)
+    law = emap.law("series", outside="clamp", supply=request.supply, surface=request.surface)
+    force = BearingForce(request.bearing, law)
+    element = BearingElement(
+        "bearing", RING, "ground", request.bearing, force, request.temperature, start_angle=cage_angle, films=films
+    )
+    omega = 2.0 * np.pi * np.array(frequencies)
+    s = np.asarray(1j * omega, dtype=np.complex128)
+    displacement, stiffness, damping, outside = [], [], [], []
+    for speed in request.speeds:
+        operation = Operation(speed)
+        balance = ring_at_rest(element, request.load_vectors[0], operation)
+        place = np.array([0.0, *balance.displacement, 0.0, 0.0, 0.0])
+        highest = float(element.rollers(place, operation).load_per_length.max())
+        outside += axes_left(law, highest, element.entrainment_speed(operation), request.temperature)
+        slow = omega == 0.0
+        dynamic = element_dynamic_stiffness(balance, 0, s)
+        rate = dynamic.imag / np.where(slow, 1.0, omega)[:, None, None]
+        displacement.append(balance.displacement)
+        stiffness.append(dynamic.real)
+        damping.append(np.where(slow[:, None, None], balance.element_damping[0], rate))
+    if outside:
+        raise InputError(
+            [
+                f"outside of the map: {axis}; allowed: points inside; make a map that reaches there"
+                for axis in dict.fromkeys(outside)
+            ]
+        )
+    return LinearTable(
+        request=request,
+        cage_angle=cage_angle,
+        films=films,
+        speeds=np.array(request.speeds),
+        frequencies=np.array(frequencies),
+        displacement=np.array(displacement),
+        stiffness=np.array(stiffness),
+        damping=np.array(damping),
+    )
+
+
+def _read(path: Path, arguments: argparse.Namespace) -> tuple[BearingRequest, tuple[float, ...], float]:
+    """Read the options with every problem: the request of `mbs bearing`, frequencies [Hz], cage angle [rad]."""
+    problems: list[str] = []
+    frequencies = read_values("--frequency", arguments.frequency or [["0 Hz"]], "Hz", FREQUENCIES, HERTZ, problems)
+    angle = 0.0
+    if arguments.cage_angle is not None:
+        try:
+            angle = quantity(arguments.cage_angle, "rad")
+        except InputError as error:
+            problems += [f"--cage-angle: {problem}" for problem in error.problems]
+    if arguments.films not in _FILMS:
+        problems.append(f"--films: got {arguments.films!r:.60}; allowed: {', '.join(_FILMS)}")
+    problems += [
+        f"{option}: it is missing; {what}"
+        for option, what, given in (
+            ("--load", 'give the load on the inner ring, such as "5 kN"', arguments.load),
+            ("--speed", 'give one speed or more of the inner ring, such as "1500 rpm"', arguments.speed),
+        )
+        if not given
+    ]
+    asked = argparse.Namespace(
+        **{
+            **_UNASKED,
+            **{name: getattr(arguments, name) for name in _TAKEN},
+            "bearing": str(path),
+            "map": str(path),
+            "load": [[arguments.load]] if arguments.load else [],
+            "speed": arguments.speed or [],
+        }
+    )
+    try:
+        request = read_request(asked)
+    except InputError as error:
+        problems += error.problems
+    if problems:
+        raise InputError(tuple(dict.fromkeys(problems)))
+    return request, frequencies, angle
+
+
+_TAKEN = ("direction", "temperature", "clearance", "profile", "slices", "structure", "roughness")
+_UNASKED = {
+    "law": "map",
+    "oil": None,
+    "supply": None,
+    "inner_ring": None,
+    "outer_ring": None,
+    "coupled": False,
+    "output": None,
+    "plot": None,
+}
+"""Options of `mbs bearing` that this table has not."""
+
+
+def target(
+    kind: Kind,
+    summary: str,
+    read_back_by: str,
+    text: Callable[[LinearTable, tuple[str, ...], argparse.Namespace], str],
+    own_arguments: Callable[[argparse.ArgumentParser], None] = lambda parser: None,
+) -> Target:
+    """Make the target of a format of one text file.
+
+    Parameters
+    ----------
+    kind : Kind
+        Kind of the file; its first ending is that of the default name.
+    summary : str
+        What it is, in half a line.
+    read_back_by : str
+        Program that reads it back in the tests, or empty.
+    text : callable
+        Takes table, lines of the header and arguments; returns the file.
+    own_arguments : callable, optional
+        Adds the options that this format has besides those of the table.
+    """
+
+    def add(parser: argparse.ArgumentParser) -> None:
+        own_arguments(parser)
+        add_arguments(parser)
+
+    def write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Namespace) -> str:
+        output = output or path.with_suffix(kind.endings[0])
+        check_outputs([Output("-o", output, kind)], [path])
+        table = linear_table(path, arguments)
+        write_text(output, text(table, table.header(path), arguments), kind)
+        return f"{output}: written"
+
+    return Target(summary, f"MAP{kind.endings[0]}", read_back_by, add, write)
+
+
+def one_speed(table: LinearTable, problems: list[str]) -> None:
+    """Note a problem where a format of one speed is given several.
+
+    Parameters
+    ----------
+    table : LinearTable
+        The table.
+    problems : list of str
+        Takes what is wrong.
+    """
+    if table.speeds.size > 1:
+        problems.append(f"--speed: got {table.speeds.size} values; allowed: one; export a file for each speed")
+
+
+def whole(option: str, text: str, problems: list[str]) -> int:
+    """Read the number of a node or element.
+
+    Parameters
+    ----------
+    option : str
+        Name of the option.
+    text : str
+        What was given.
+    problems : list of str
+        Takes what is wrong.
+    """
+    if text.isascii() and text.isdigit() and len(text) < 9 and int(text) > 0:
+        return int(text)
+    problems.append(f"{option}: got {text!r:.60}; allowed: a whole number from 1 to 99999999")
+    return 1

@@ -1,0 +1,112 @@
+"""Target `nastran`: a bearing as CBUSH with PBUSH, and PBUSHT over frequency.
+
+A CBUSH has stiffness and damping along the axes of its coordinate system and about them, without terms between them.
+That system is turned about the axis of the bearing to where Kyz is zero. Source: MSC Nastran Quick Reference Guide,
+CBUSH, PBUSH, PBUSHT, TABLED1, CORD2R; fields of 16 characters.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
+from ehdmaps.outputs import Kind, has_mark
+from mbs.exports.linear_table import LinearTable, one_speed, target, whole
+
+KIND = Kind("a bearing for Nastran made by ehdmaps", (".bdf",), has_mark)
+
+_WIDTH, _FIELDS = 16, 4
+Field = int | float | str
+
+
+def _add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options that only Nastran has."""
+    parser.add_argument("--node", metavar="N", default="1", help="grid of the inner ring (1)")
+    parser.add_argument("--outer-node", metavar="N", help="grid of the outer ring at the same place; default: ground")
+    parser.add_argument("--first-id", metavar="N", default="900001", help="first number of new entries (900001)")
+
+
+def _text(table: LinearTable, header: tuple[str, ...], arguments: argparse.Namespace) -> str:
+    """Write the bulk data."""
+    problems: list[str] = []
+    one_speed(table, problems)
+    node = whole("--node", arguments.node, problems)
+    outer = None if arguments.outer_node is None else whole("--outer-node", arguments.outer_node, problems)
+    first = whole("--first-id", arguments.first_id, problems)
+    if problems:
+        raise InputError(problems)
+    angle = _principal(table.stiffness[0, 0])
+    turned = _rotation(angle)
+    k, c = (turned @ matrices[0] @ turned.T for matrices in (table.stiffness, table.damping))
+    notes = (
+        f"coordinate system {first}: turned by {math.degrees(angle):.6g} deg from y towards z, where Kyz is zero",
+        f"left out: what is beside the diagonal there, at most {_beside(k):.1e} of K and {_beside(c):.1e} of C",
+        "PBUSHT is for frequency response; Nastran goes on beyond the tables without a word: stay within",
+    )
+    lines = [f"$ {line}" for line in (*header, *notes)]
+    z, y = (turned[2, :3], turned[1, :3])
+    lines += _card("CORD2R", first, "", 0.0, 0.0, 0.0, *z, *np.cross(y, z) + 0.0)
+    ends: tuple[Field, ...] = (node, "") if outer is None else (outer, node)
+    lines += _card("CBUSH", first, first, *ends, "", "", "", first)
+    lines += _card("PBUSH", first, "K", *np.diag(k[0]), "", "B", *np.diag(c[0]))
+    if table.frequencies.size > 1:
+        ids = np.arange(first + 1, first + 13).reshape(2, 6)
+        lines += _card("PBUSHT", first, "K", *map(int, ids[0]), "", "B", *map(int, ids[1]))
+        for numbers, matrices in zip(ids, (k, c), strict=True):
+            for axis, number in enumerate(numbers):
+                pairs = zip(table.frequencies, matrices[:, axis, axis], strict=True)
+                lines += _card("TABLED1", int(number), *[""] * 7, *(float(v) for pair in pairs for v in pair), "ENDT")
+    return "\n".join(lines) + "\n"
+
+
+def _principal(matrix: FloatArray) -> float:
+    """Angle from y towards z at which the radial terms of a matrix (6, 6) beside the diagonal are zero [rad]."""
+    across = 0.5 * float(matrix[1, 2] + matrix[2, 1])
+    return 0.5 * math.atan2(2.0 * across, float(matrix[1, 1] - matrix[2, 2]))
+
+
+def _rotation(angle: float) -> FloatArray:
+    """Six displacements in axes turned about x."""
+    cosine, sine = math.cos(angle), math.sin(angle)
+    turn = np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])
+    return np.kron(np.eye(2), turn)
+
+
+def _beside(matrices: FloatArray) -> float:
+    """Largest term of translations beside the diagonal over the largest on it."""
+    part = matrices[:, :3, :3]
+    diagonal = np.diagonal(part, axis1=1, axis2=2)
+    return float(np.max(np.abs(part - diagonal[:, :, None] * np.eye(3))) / np.max(np.abs(diagonal)))
+
+
+def _card(name: str, *fields: Field) -> list[str]:
+    """Write an entry in lines of four wide fields."""
+    texts = [_field(field) for field in fields]
+    while texts and not texts[-1].strip():
+        texts.pop()
+    lines = []
+    for begin in range(0, len(texts), _FIELDS):
+        head = f"{name}*" if begin == 0 else "*"
+        lines.append((f"{head:8}" + "".join(texts[begin : begin + _FIELDS])).rstrip())
+    if len(lines) % 2:
+        lines.append("*")
+    return lines
+
+
+def _field(value: Field) -> str:
+    """Write a field of 16 characters."""
+    text = f"{value:.9E}" if isinstance(value, float) else str(value)
+    return f"{text:>{_WIDTH}}" if not isinstance(value, str) else f"{text:<{_WIDTH}}"
+
+
+TARGET = target(
+    KIND,
+    "CBUSH with PBUSH, and PBUSHT over frequency",
+    "pyNastran (tests.benchmarks.nastran_export)",
+    _text,
+    _add_arguments,
+)

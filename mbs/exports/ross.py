@@ -1,0 +1,97 @@
+"""Target `ross`: a bearing for ROSS, the rotordynamics library, as the file that `BearingElement.load` reads.
+
+In ROSS x and y are radial and z is axial. ROSS 2 calls the axis of spin speeds `frequency`; ROSS 3 has both axes,
+`speed` and `frequency`, and tables over both. Source: documentation of ross-rotordynamics 2.3 and 3.1, class
+BearingElement.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import re
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
+from ehdmaps.outputs import Kind, has_mark
+from mbs.exports.linear_table import LinearTable, target
+
+KIND = Kind("a bearing for ROSS made by ehdmaps", (".toml",), has_mark)
+
+AXES = {"x": 1, "y": 2, "z": 0}
+"""Place in our displacements (x axial, y, z) of each axis of ROSS."""
+
+_TERMS = ("xx", "xy", "yx", "yy", "zz")
+_VERSIONS = ("2", "3")
+
+
+def _add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options that only ROSS has."""
+    parser.add_argument("--ross", metavar="VERSION", default="2", help="2 | 3, the release whose names are used (2)")
+    parser.add_argument("--node", metavar="N", default="0", help="node of the rotor at which the bearing is (0)")
+
+
+def _text(table: LinearTable, header: tuple[str, ...], arguments: argparse.Namespace) -> str:
+    """Write the element."""
+    problems = []
+    if arguments.ross not in _VERSIONS:
+        problems.append(f"--ross: got {arguments.ross!r:.60}; allowed: {', '.join(_VERSIONS)}")
+    node = arguments.node
+    if not (node.isascii() and node.isdigit() and len(node) < 7):
+        problems.append(f"--node: got {node!r:.60}; allowed: a whole number from 0 to 999999")
+    if arguments.ross == "2" and table.frequencies.size > 1:
+        problems.append(
+            f"--frequency: got {table.frequencies.size} values; ROSS 2 takes one; allowed: one, or --ross 3"
+        )
+    if problems:
+        raise InputError(problems)
+    name = re.sub(r"[^A-Za-z0-9]+", "_", table.request.bearing.geometry.name).strip("_") or "bearing"
+    axes = _axes(table, arguments.ross)
+    lines = [f"# {line}" for line in (*header, *_NOTES)]
+    lines += ["", f"[BearingElement_{name}]", f"n = {int(node)}", f'tag = "{name}"', "scale_factor = 1"]
+    lines += [f"{key} = {_array(values)}" for key, values in axes.items()]
+    for letter, matrices in (("k", table.stiffness), ("c", table.damping)):
+        for term in _TERMS:
+            values = matrices[:, :, AXES[term[0]], AXES[term[1]]]
+            lines.append(f"{letter}{term} = {_array(_squeezed(values, axes))}")
+    return "\n".join(lines) + "\n"
+
+
+_NOTES = (
+    "ROSS: x is y of the bearing, y is z of it, z is the axis; there is no place for the tilting of the ring",
+    "ROSS goes on beyond the tables without a word: stay within the speeds and frequencies above",
+    "read by: ross.BearingElement.load(FILE)",
+)
+
+
+def _axes(table: LinearTable, version: str) -> dict[str, FloatArray]:
+    """Axes of the tables by their names in ROSS [rad/s]; none of a single value."""
+    found = {}
+    if table.speeds.size > 1:
+        found["frequency" if version == "2" else "speed"] = table.speeds
+    if table.frequencies.size > 1:
+        found["frequency"] = 2.0 * math.pi * table.frequencies
+    return found
+
+
+def _squeezed(values: FloatArray, axes: dict[str, FloatArray]) -> FloatArray:
+    """Table over the axes that there are; one number where there is none."""
+    return values.reshape([axis.size for axis in axes.values()])
+
+
+def _array(values: FloatArray) -> str:
+    """Write numbers with all their digits, nested as ROSS nests them."""
+    if np.ndim(values) == 0:
+        return repr(float(values))
+    return "[" + ", ".join(_array(value) for value in values) + "]"
+
+
+TARGET = target(
+    KIND,
+    "stiffness and damping of the bearing over speed, for ross.BearingElement.load",
+    "ROSS (tests.benchmarks.ross_export)",
+    _text,
+    _add_arguments,
+)

@@ -1,0 +1,246 @@
+"""Bearings at rest under a load for ROSS, CalculiX, Nastran and Ansys: the numbers in files, and what is refused."""
+
+import subprocess
+import tomllib
+from argparse import ArgumentParser
+
+import numpy as np
+import pytest
+
+from ehdmaps.jobs.cli import main
+from ehdmaps.jobs.generate import generate
+from ehdmaps.jobs.reader import parse_job
+from ehdmaps.maps.emap import open_map
+from ehdmaps.physics.closed_form import FormulaSolver
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_force import BearingForce
+from mbs.exports.linear_table import add_arguments, linear_table
+from mbs.linearised.linear import frequency_response
+from mbs.model.body import Inertia, rigid_body
+from mbs.model.elements import Input, Load, Operation, Sensor
+from mbs.model.equilibrium import equilibrium
+from mbs.model.system import System
+from tests.cases.calculix import needed_calculix
+from tests.cases.jobs import SMALL
+
+RPM = np.pi / 30.0
+POINT = ["--load", "2 kN", "--direction", "20 deg", "--clearance", "20 um", "--temperature", "40 degC"]
+SPEED, MASS = 400.0 * RPM, 10.0
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    path = tmp_path_factory.mktemp("linear") / "map.nc"
+    generate(parse_job(SMALL, "map", "map.toml"), path, workers=1, solver=FormulaSolver())
+    return path
+
+
+@pytest.fixture(scope="module")
+def force(path):
+    emap = open_map(path)
+    return BearingForce(Bearing.named("NU308", clearance=20e-6), emap.law("series", outside="error"))
+
+
+def exported(path, out, target, *options):
+    assert main(["export", str(path), "--to", target, "-o", str(out), *POINT, *options]) == 0
+    return out.read_text(encoding="utf-8")
+
+
+def table(path, *options):
+    parser = ArgumentParser()
+    parser.add_argument("--structure")
+    parser.add_argument("--roughness")
+    add_arguments(parser)
+    return linear_table(path, parser.parse_args([*POINT, *options]))
+
+
+def test_stiffness_is_the_slope_of_the_force_and_the_ring_carries_the_load(path, force):
+    """Signs and axes by the force itself: 2e-6 bounds the curvature over the steps, the other term rounding."""
+    found = table(path, "--speed", "400 rpm", "--cage-angle", "5 deg")
+    at = dict(
+        cage_angle=np.radians(5.0),
+        entrainment_speed=force.bearing.geometry.entrainment_speed(SPEED),
+        temperature=313.15,
+    )
+    place = np.array([0.0, *found.displacement[0], 0.0, 0.0, 0.0])
+
+    def evaluated(pose, velocity):
+        return force.evaluate(pose, velocity, **at).force
+
+    load = 2e3 * np.array([np.cos(np.radians(20.0)), np.sin(np.radians(20.0))])
+    np.testing.assert_allclose(evaluated(place, np.zeros(6))[1:3], -load, rtol=1e-6)
+    for axis in (1, 2, 4, 5):
+        step = np.zeros(6)
+        step[axis] = 1e-10
+        slope = -(evaluated(place + step, np.zeros(6)) - evaluated(place - step, np.zeros(6))) / 2e-10
+        rate = -(evaluated(place, step * 1e4) - evaluated(place, -step * 1e4)) / 2e-6
+        for matrix, quotient, span in ((found.stiffness, slope, 2e-10), (found.damping, rate, 2e-6)):
+            rounding = 4.0 * np.finfo(float).eps * 2e3 / span
+            np.testing.assert_allclose(matrix[0, 0][:, axis], quotient, atol=2e-6 * np.abs(quotient).max() + rounding)
+
+
+def test_ross_has_both_radial_axes_as_x_and_y_over_speed(path, tmp_path):
+    speeds = ["--speed", "300 rpm", "600 rpm", "3"]
+    text = exported(path, tmp_path / "b.toml", "ross", *speeds, "--node", "7")
+    assert text.startswith("# made by ehdmaps ")
+    assert "diametral clearance 20 um; cage angle 0 deg; raceways at 40 degC" in text
+    element = tomllib.loads(text)["BearingElement_NU308"]
+    found = table(path, *speeds)
+    assert element["n"] == 7
+    np.testing.assert_array_equal(element["frequency"], found.speeds)
+    for key, i, j in (("xx", 1, 1), ("xy", 1, 2), ("yx", 2, 1), ("yy", 2, 2), ("zz", 0, 0)):
+        np.testing.assert_array_equal(element[f"k{key}"], found.stiffness[:, 0, i, j])
+        np.testing.assert_array_equal(element[f"c{key}"], found.damping[:, 0, i, j])
+    both = exported(path, tmp_path / "c.toml", "ross", *speeds, "--ross", "3", "--frequency", "100 Hz", "1 kHz", "2")
+    element = tomllib.loads(both)["BearingElement_NU308"]
+    np.testing.assert_array_equal(element["speed"], found.speeds)
+    np.testing.assert_allclose(element["frequency"], 2.0 * np.pi * np.array([100.0, 1000.0]), rtol=1e-15)
+    assert np.shape(element["kxy"]) == (3, 2)
+
+
+def test_calculix_answers_as_linear_analysis_does(path, force, tmp_path):
+    """A mass on the bearing, its receptances by `mbs lsa` and by CalculiX: 1e-5 is the last digit that ccx prints."""
+    ccx = needed_calculix()
+    exported(path, tmp_path / "bearing.inp", "calculix", "--speed", "400 rpm", "--films", "slow")
+    (tmp_path / "machine.inp").write_text(machine("bearing.inp"), encoding="ascii")
+    subprocess.run([ccx, "machine"], cwd=tmp_path, check=True, capture_output=True, timeout=120)
+    lines = (tmp_path / "machine.dat").read_text(encoding="ascii").splitlines()
+    heads = [i for i, line in enumerate(lines) if "displacements" in line]
+    values = np.array([lines[i + 2].split()[2:4] for i in heads], dtype=float)
+    frequencies = np.array([lines[i].split()[-1] for i in heads[::2]], dtype=float)
+    answer = 1e-3 * (values[::2] + 1j * values[1::2])  # of 1000 N: more digits are printed
+
+    element = BearingElement("bearing", "ring", "ground", force.bearing, force, 313.15, films="slow")
+    ring = rigid_body("ring", [Inertia(MASS, 1.0, 1.0)], ["y", "z"])
+    load = 2e3 * np.array([0.0, np.cos(np.radians(20.0)), np.sin(np.radians(20.0)), 0.0, 0.0, 0.0])
+    system = System([ring], loads=[Load("load", "ring", load)], elements=[element])
+    sensors = [Sensor(name, "ring", np.eye(6)[axis]) for axis, name in ((1, "y"), (2, "z"))]
+    balance = equilibrium(system, Operation(SPEED))
+    ours = frequency_response(balance, [Input("y", "ring", np.eye(6)[1])], sensors, frequencies)[:, :, 0]
+    np.testing.assert_allclose(answer, ours, rtol=1e-5, atol=1e-5 * np.abs(ours).max())
+
+
+def machine(name):
+    """Deck of a mass at node 1 in the radial plane; other masses, far stiffer and apart, are what its solver needs."""
+    others = range(101, 131)
+    return "\n".join(
+        [
+            "*NODE, NSET=ALL",
+            "1, 0., 0., 0.",
+            *(f"{n}, {n}., 0., 0." for n in others),
+            "*NSET, NSET=RING",
+            "1",
+            "*ELEMENT, TYPE=MASS, ELSET=MASSES",
+            "1, 1",
+            *(f"{100 + n}, {n}" for n in others),
+            "*MASS, ELSET=MASSES",
+            f"{MASS}",
+            "*ELEMENT, TYPE=SPRING1, ELSET=APART",
+            *(f"{300 + n}, {n}" for n in others),
+            "*SPRING, ELSET=APART",
+            "2",
+            "1.e13",
+            f"*INCLUDE, INPUT={name}",
+            "*BOUNDARY",
+            "1, 1, 1",
+            *(f"{n}, {axis}, {axis}" for n in others for axis in (1, 3)),
+            "*STEP",
+            "*FREQUENCY, STORAGE=YES",
+            "2",
+            "*END STEP",
+            "*STEP",
+            "*STEADY STATE DYNAMICS",
+            "100., 3000., 12",
+            "*CLOAD",
+            "1, 2, 1000.",
+            "*NODE PRINT, NSET=RING",
+            "U",
+            "*END STEP",
+        ]
+    )
+
+
+def wide(lines, name):
+    """Fields of 16 characters of all entries of a name."""
+    found = []
+    for i, line in enumerate(lines):
+        if line[:8].strip() != f"{name}*":
+            continue
+        rows = [line]
+        for following in lines[i + 1 :]:
+            if not following.startswith("*"):
+                break
+            rows.append(following)
+        found.append([row[k : k + 16].strip() for row in (r.ljust(72) for r in rows) for k in (8, 24, 40, 56)])
+    return found
+
+
+def test_nastran_has_the_principal_axes_and_tables_over_frequency(path, tmp_path):
+    frequencies = ["--speed", "400 rpm", "--frequency", "100 Hz", "2 kHz", "3"]
+    lines = exported(path, tmp_path / "b.bdf", "nastran", *frequencies, "--node", "5").splitlines()
+    found = table(path, *frequencies)
+    (system,), (bush,), (values,) = wide(lines, "CORD2R"), wide(lines, "CBUSH"), wide(lines, "PBUSH")
+    assert bush[:4] == ["900001", "900001", "5", ""] and bush[7] == "900001"
+    z = np.array(system[5:8], dtype=float)
+    y = np.cross(z, [1.0, 0.0, 0.0])
+    k = found.stiffness[0, :, 1:3, 1:3]
+    along = [np.einsum("i,kij,j->k", v[1:], k, v[1:]) for v in (y, z)]
+    assert abs(y[1:] @ k[0] @ z[1:]) < 1e-9 * along[0][0]
+    # 1e-9: digits of the fields
+    np.testing.assert_allclose(np.array(values[3:5], dtype=float), [along[0][0], along[1][0]], rtol=1e-8)
+    tables = {
+        one[0]: np.array([v for v in one[8:] if v and v != "ENDT"], dtype=float) for one in wide(lines, "TABLED1")
+    }
+    (ids,) = wide(lines, "PBUSHT")
+    np.testing.assert_allclose(tables[ids[3]][1::2], along[0], rtol=1e-8)
+    np.testing.assert_allclose(tables[ids[3]][::2], found.frequencies, rtol=1e-8)
+
+
+def test_ansys_has_its_columns(path, tmp_path):
+    """Read by the widths of the documented format; a part in 1e7 is its last digit."""
+    speeds = ["--speed", "300 rpm", "600 rpm", "2"]
+    lines = exported(path, tmp_path / "b.txt", "ansys", *speeds).splitlines()
+    found = table(path, *speeds)
+    assert all(len(line) <= 80 for line in lines[:3])
+    assert [int(lines[3][i : i + 10]) for i in (0, 10, 20)] == [2, 0, 0]
+    for index in range(2):
+        head, k, c = lines[4 + 3 * index : 7 + 3 * index]
+        assert int(head[:10]) == index + 1
+        np.testing.assert_allclose(float(head[10:20]), found.speeds[index], rtol=1e-5)
+        for line, matrix in ((k, found.stiffness), (c, found.damping)):
+            numbers = [float(line[i : i + 15]) for i in (0, 15, 30, 45)]
+            np.testing.assert_allclose(numbers, matrix[index, 0, 1:3, 1:3].ravel(), rtol=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("target", "options", "says"),
+    [
+        ("ross", [], "--speed: it is missing"),
+        ("ross", ["--speed", "400 rpm", "--node", "-1"], "--node: got '-1'"),
+        ("ross", ["--speed", "400 rpm", "--frequency", "1 Hz", "2 Hz", "2"], "ROSS 2 takes one"),
+        ("ross", ["--speed", "60000 rpm"], "outside of the map"),
+        ("ross", ["--speed", "400 rpm", "--films", "none"], "--films: got 'none'"),
+        ("ross", ["--speed", "400 rpm", "--cage-angle", "5 mm"], "--cage-angle"),
+        ("ross", ["--speed", "400 rpm", "--frequency", "-1 Hz"], "--frequency: got"),
+        ("calculix", ["--speed", "300 rpm", "600 rpm", "2"], "--speed: got 2 values"),
+        ("calculix", ["--speed", "400 rpm", "--at", "0,nan,0"], "--at: got"),
+        ("nastran", ["--speed", "400 rpm", "--first-id", "x"], "--first-id: got"),
+        ("ansys", ["--speed", "400 rpm", "--frequency", "1 Hz", "2 Hz", "2"], "Ansys' file has speeds only"),
+    ],
+)
+def test_what_a_format_cannot_hold_is_refused_and_nothing_is_written(path, tmp_path, capsys, target, options, says):
+    out = tmp_path / "out"
+    ending = {"ross": ".toml", "calculix": ".inp", "nastran": ".bdf", "ansys": ".txt"}[target]
+    name = str(out.with_suffix(ending))
+    assert main(["export", str(path), "--to", target, "-o", name, *POINT, *options]) == 2
+    assert says in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_is_not_ours_stays(path, tmp_path, capsys):
+    out = tmp_path / "deck.inp"
+    out.write_text("*NODE\n", encoding="ascii")
+    assert main(["export", str(path), "--to", "calculix", "-o", str(out), *POINT, "--speed", "400 rpm"]) == 2
+    assert "is not a bearing for CalculiX" in capsys.readouterr().err
+    assert out.read_text(encoding="ascii") == "*NODE\n"

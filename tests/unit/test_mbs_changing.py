@@ -1,0 +1,122 @@
+"""Bearing forces while speed, temperature and centrifugal load change: the cells that are made are those of a table."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.maps.roller_balance import balanced_approach, balanced_state, balanced_states
+from mbs.bearings import slice_table as table
+from mbs.bearings.bearing_force import BearingForce
+from tests.cases.bearings import bearing, map_law
+
+POSE = np.array([0.0, 7e-6, 9e-6, 0.0, 1e-4, -2e-4])
+VELOCITY = np.array([0.0, 2e-4, -3e-4, 0.0, 1e-2, 2e-2])
+CENTRIFUGAL = (0.0, 50.0, 3e3)
+
+ITERATION = 1e-11
+"""Of rollers between their contacts: where an iteration starts shows in the last digits, near lift-off in some more."""
+
+
+def element(slices=21, outside="clamp"):
+    return BearingForce(bearing(slices=slices), map_law(outside))
+
+
+def assert_alike(found, expected, tolerance):
+    for got, wanted in zip(found, expected, strict=True):
+        size = np.sqrt(np.outer(np.diag(wanted), np.diag(wanted))) if wanted.ndim == 2 else np.max(np.abs(wanted))
+        assert np.all(np.abs(got - wanted) <= tolerance * size)
+
+
+@pytest.mark.parametrize("slices", [20, 41])
+def test_changing_conditions_give_what_a_whole_table_gives(slices):
+    force, random = element(slices=slices), np.random.default_rng(3)
+    for u, T, q in itertools.product((0.3, -1.3, 2.0), (305.0, 330.0), CENTRIFUGAL):
+        whole = force.at(u, T, q)
+        for scale in (1.0, 1.0, 0.4, -2.0):  # the second call misses no cells, the others do
+            pose, angle = scale * POSE, random.uniform(0.0, 6.0)
+            found = force(pose, VELOCITY, cage_angle=angle, entrainment_speed=u, temperature=T, centrifugal_load=q)
+            assert_alike(found, whole(pose, VELOCITY, angle), ITERATION if q else 0.0)
+
+
+def test_through_the_lowest_speed_and_back():
+    force = element()
+    for u in (1.0, 0.1, 0.0, 0.1, 1.0):  # whole, faded, dry
+        found = force(POSE, VELOCITY, entrainment_speed=u, temperature=330.0)
+        assert_alike(found, force.at(u, 330.0)(POSE, VELOCITY), 0.0)
+
+
+def placed(q):
+    law = map_law()
+    point = law.at(1.0, 330.0, q).point
+    numbers = table.place_numbers(point, law.load_range[1])
+    return point, numbers, np.full((4, table.NODES), np.nan), np.zeros((2, table.NODES), dtype=np.uint8)
+
+
+@pytest.mark.parametrize("q", CENTRIFUGAL)
+def test_cells_are_the_same_in_any_order(q):
+    point, numbers, nodes, marks = placed(q)
+    whole, parts = np.full((2 * table.ROWS, 8), np.nan), np.full((2 * table.ROWS, 8), np.nan)
+    assert table.tabulate(point, nodes, marks, whole, numbers.highest, np.empty(table.NUMBERS))
+    assert np.all(np.isfinite(whole)) and marks[:, : 2 * table.ROWS].all()
+    nodes[:], marks[:] = np.nan, 0
+    random = np.random.default_rng(5)
+    for _ in range(40):
+        table.fill(point, numbers, random.integers(0, 2 * table.ROWS, 30), nodes, marks, parts)
+    made = marks[1, :-1] == 1
+    assert 0.5 < np.mean(made) < 0.9 and np.all(np.isnan(parts[~made]))
+    # values and slopes of the cells; the other numbers are differences of these
+    size = np.maximum(np.max(np.abs(whole[made]), axis=1, keepdims=True), 1e-300)  # none carries below lift-off
+    assert np.max(np.abs(parts[made] - whole[made]) / size) <= (1e-9 if q else 0.0)
+    for k in (0, 4):  # load, damping
+        np.testing.assert_allclose(parts[made, k], whole[made, k], rtol=ITERATION if q else 0.0)
+
+
+@pytest.mark.parametrize("q", [1e-3, 50.0, 3e3])
+def test_rollers_between_their_contacts_carry_what_both_contacts_do(q):
+    point = map_law().at(1.0, 330.0, q).point
+    loads = np.geomspace(1e-2, 0.9e6, 120)
+    delta = np.array([balanced_approach(point, load) for load in loads])
+    low = point.lift_off - np.array([1e-6, 0.0])
+    delta = np.concatenate((low, delta))
+    states = np.empty((4, delta.size))
+    balanced_states(point, delta, states)
+    assert not np.any(states[:, :2])
+    np.testing.assert_allclose(states[0, 2:], loads, rtol=ITERATION)  # of both iterations
+    alone = np.array([balanced_state(point, at) for at in delta[2:]]).T
+    alone[2] *= alone[0]
+    np.testing.assert_allclose(states[:, 2:], alone, rtol=ITERATION, atol=1e-9 * np.max(np.abs(alone[3])) * (q < 1.0))
+    # slopes of load and damping against central differences; their error is of the second order in the step
+    step = 1e-5 / point.inner.inverse_scale
+    sides = [np.empty((4, loads.size)) for _ in range(2)]
+    for side, sign in zip(sides, (-1.0, 1.0), strict=True):
+        balanced_states(point, delta[2:] + sign * step, side)
+    for k in (0, 2):
+        slope = (sides[1][k] - sides[0][k]) / (2.0 * step)
+        scale = np.max(np.abs(states[k + 1, 2:]))
+        np.testing.assert_allclose(states[k + 1, 2:], slope, rtol=1e-5, atol=1e-6 * scale)
+
+
+def test_what_is_wrong_is_said_and_leaves_no_trace():
+    force, at = element(outside="error"), {"entrainment_speed": 1.0, "temperature": 330.0}
+    with pytest.raises(InputError, match="pose: got"):
+        force([0.0, np.nan, 0.0, 0.0, 0.0, 0.0], **at)
+    with pytest.raises(InputError, match="allowed: within"):
+        force([0.0, 1.0, 0.0, 0.0, 0.0, 0.0], **at)
+    expected = force.at(1.0, 330.0)(POSE, VELOCITY)
+    assert_alike(force(POSE, VELOCITY, **at), expected, 0.0)
+    for outside in ({"entrainment_speed": 50.0}, {"temperature": 500.0}):
+        with pytest.raises(OutsideMapError):
+            force(POSE, VELOCITY, **(at | outside))
+    with pytest.raises(OutsideMapError, match="load: got about"):
+        force([0.0, 2e-4, 0.0, 0.0, 0.0, 0.0], **at)
+    assert_alike(force(POSE, VELOCITY, **at), expected, 0.0)
+
+
+def test_outside_a_map_that_is_clamped_each_call_says_so():
+    force = element()
+    for u, outside in ((1.0, False), (50.0, True), (1.0, False)):
+        assert force.evaluate(POSE, entrainment_speed=u, temperature=330.0).outside is outside
