@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from typing import Literal
@@ -25,6 +25,10 @@ _ALL, _WRONG = 127, 127 - (1 + 2 + 4)
 """All parts of a status of `law.h`, and those that are no matter of the range of the map."""
 
 _INCLUDES = ("float.h", "math.h", "stddef.h", "stdint.h", "string.h")
+
+
+BEYOND: Mapping[OutsidePolicy, str] = {"error": "refused", "clamp": "held", "asymptote": "extended"}
+"""What happens outside the map, for `ehdmaps.exports.header.origin`."""
 
 
 @dataclass(frozen=True)
