@@ -162,8 +162,8 @@ def campbell(
     if course is not None and isinstance(course.speed, DrivenSpeed) and (cases[1:] or bands):
         problems.append(
             f"{scene.name}: [drive]: got {len(cases)} cases and {bands} runs of bands; allowed: one case without "
-            "bands, as films resist with a torque of their own, so that each run has other speeds; run each case alone, or "
-            "compare two laws at equal speeds with `mbs variants`"
+            "bands, as films resist with a torque of their own, so that each run has other speeds; run each case "
+            "alone, or compare two laws at equal speeds with `mbs variants`"
         )
     if problems or course is None:
         raise InputError(tuple(dict.fromkeys(problems)))

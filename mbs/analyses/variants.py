@@ -12,7 +12,6 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
 import xarray as xr
 
 from ehdmaps.arrays import FloatArray
