@@ -187,14 +187,15 @@ def test_refused(refusing, small_map):
     assert refusing.call(np.zeros(6), 1.0, cold)[0] == 0
 
 
-def test_hostile(strict, tmp_path):
+@pytest.mark.parametrize(("outside", "calls"), [("error", "100000"), ("clamp", "30000")])
+def test_hostile(small_map, tmp_path, outside, calls):
     """Neither the address sanitizer nor that of undefined behaviour finds anything, whatever numbers come."""
-    folder = shutil.copytree(strict, tmp_path / "c")
+    folder = exported(small_map, tmp_path / "c", "--outside", outside)
     shutil.copy(DATA / "hostile.c", folder)
     program = compiled(
         folder, "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", str(folder / "hostile.c"), name="run"
     )
-    result = subprocess.run([program, "100000"], capture_output=True, text=True, check=False)
+    result = subprocess.run([program, calls], capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stdout + result.stderr
 
 

@@ -488,12 +488,13 @@ static int check_motion(const double pose[6], const double velocity[6], double c
 /* Multiply the sums by the length of a slice; refuse what is not finite after all. */
 static int finish(const ehd_bearing *bearing, const ehd_prepared *law, int status, ehd_bearing_force *result) {
     double total = 0.0;
-    for (int i = 0; i < 6; i++) {
-        result->force[i] *= bearing->slice_length;
-        total += fabs(result->force[i]) + fabs(result->stiffness[i][i]) + fabs(result->damping[i][i]);
-    }
     finish_matrix(result->stiffness, law->slope * bearing->slice_length);
     finish_matrix(result->damping, bearing->slice_length);
+    for (int i = 0; i < 6; i++) {
+        result->force[i] *= bearing->slice_length;
+        total += fabs(result->force[i]);
+        for (int k = i; k < 6; k++) total += fabs(result->stiffness[i][k]) + fabs(result->damping[i][k]);
+    }
     if (!is_finite(total)) status |= EHD_NOT_FINITE;
     if (EHD_REFUSES(status)) no_bearing_force(result);
     return status;
