@@ -257,7 +257,7 @@ def _in_pool(tasks: Sequence[Task], workers: int, store: Results) -> _Outcomes:
                         arrays = future.result()
                         yield running.pop(future), arrays, True
         except BrokenProcessPool:
-            # Nobody knows which task killed the worker: each one that was out gets a process of its own.
+            # Nobody knows which task killed the worker: those that were out run one at a time.
             yield from _alone(list(running.values()))
 
 
@@ -314,17 +314,20 @@ def _in_executor(tasks: Sequence[Task], executor: Executor, store: Results) -> _
 
 
 def _alone(tasks: Sequence[Task]) -> _Outcomes:
-    """Run tasks one at a time, each in a process that it may take down with it."""
-    for task in tasks:
+    """Run tasks one at a time, in a process that each may take down with it; the next one gets another then."""
+    waiting = deque(tasks)
+    while waiting:
         try:
             with worker_pool(1) as pool:
-                with deaf_children():
-                    outcome_of = pool.submit(_run, task)
-                outcome = outcome_of.result(), True
+                while waiting:
+                    with deaf_children():
+                        outcome_of = pool.submit(_run, waiting[0])
+                    arrays = outcome_of.result()
+                    yield waiting.popleft(), arrays, True
         except BrokenProcessPool:
             reason = "the worker process died twice (killed, or out of memory); the same command tries again"
-            outcome = task.failed(reason), False
-        yield task, *outcome
+            task = waiting.popleft()
+            yield task, task.failed(reason), False
 
 
 @contextmanager
