@@ -54,6 +54,10 @@ def parser() -> argparse.ArgumentParser:
         if name == "modes":
             _modes(command)
             _shapes(command)
+        if name == "lsa":
+            command.add_argument(
+                "--state-space", metavar="SPACE.mat", help="A, B, C, D with names and units, for MATLAB and Octave"
+            )
         if name == "runup":
             _runup(command)
         _films(command, compares=several)

@@ -7,29 +7,22 @@ with its fields as arrays of load x speed x temperature, `units`, `meaning`, `pr
 from __future__ import annotations
 
 import argparse
-import io
 import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ehdmaps.errors import InputError
 from ehdmaps.exports.header import origin
+from ehdmaps.exports.matlab_file import KIND, ascii_text, write_matlab
 from ehdmaps.exports.target import Target
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.schema import DIMS
-from ehdmaps.outputs import MARK, Kind, Output, check_outputs, has_mark, written_aside
+from ehdmaps.outputs import Output, check_outputs
 from ehdmaps.program import plain
-from ehdmaps.version import version
-
-KIND = Kind("a MATLAB file of ehdmaps", (".mat",), has_mark)
 
 _FIELD = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 """Names that a field of a struct may have in MATLAB; others are left out."""
-
-_TEXT = 116
-"""Bytes of text at the beginning of a MATLAB v5 file (MAT-File Format, MathWorks, "Level 5 MAT-File Header")."""
 
 _NOTES = (
     "arrays: load x entrainment_speed x temperature; MATLAB drops a last axis of one point",
@@ -70,7 +63,7 @@ def contents(emap: EHDMap, name: str) -> dict[str, Any]:
     attributes = {str(key): value for key, value in dataset.attrs.items() if _FIELD.fullmatch(str(key))}
     found["provenance"] = {key: _value(value) for key, value in attributes.items()}
     lines = [*origin(emap, name), *_NOTES]
-    found["header"] = np.array([_ascii(line) for line in lines], dtype=object)[:, None]
+    found["header"] = np.array([ascii_text(line) for line in lines], dtype=object)[:, None]
     return found
 
 
@@ -85,30 +78,14 @@ def _meaning(attributes: dict[str, Any]) -> str:
 
 def _value(value: Any) -> Any:
     """Return an attribute as a text, or as the number that it is."""
-    return _ascii(value) if isinstance(value, str) else np.asarray(value, dtype=float)
-
-
-def _ascii(text: str) -> str:
-    """Return a text without control characters and with escapes beyond ASCII, of which Octave loses some."""
-    return plain(text).encode("ascii", "backslashreplace").decode("ascii")
+    return ascii_text(value) if isinstance(value, str) else np.asarray(value, dtype=float)
 
 
 def _write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Namespace) -> str:
     """Write the file; by default beside the map."""
-    from scipy.io import savemat
-
     output = output or path.with_suffix(".mat")
     check_outputs([Output("-o", output, KIND)], [path])
-    buffer = io.BytesIO()
-    try:
-        savemat(
-            buffer, {"map": contents(emap, path.name)}, long_field_names=True, do_compression=True, oned_as="column"
-        )
-    except (ValueError, UnicodeError) as error:
-        raise InputError(f"{path}: cannot be written as a MATLAB file ({error}); export it as csv") from error
-    title = f"MATLAB 5.0 MAT-file, {MARK} {version()}".encode("ascii", "replace")
-    with written_aside(output, KIND) as aside:
-        aside.write_bytes(title.ljust(_TEXT)[:_TEXT] + buffer.getvalue()[_TEXT:])
+    write_matlab(output, {"map": contents(emap, path.name)}, "export it as csv")
     return f"{output}: written"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -88,6 +89,9 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     yield from status_lines(dataset, emap.surface.roughness)
     yield from extrapolated_lines(dataset)
     yield ""
+    if schema.FAMILY in attributes:
+        yield _family_line(attributes[schema.FAMILY])
+        yield ""
     yield "accuracy of the points"
     yield from error_lines(dataset)
     law = list(law_lines(dataset))
@@ -111,6 +115,16 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     yield ""
     yield "provenance"
     yield from map(_line, provenance_rows(attributes))
+
+
+def _family_line(text: str) -> str:
+    """Say from what the points were read."""
+    try:
+        record = json.loads(text)
+        shared = f"refinement lines of {int(record['line_points'])} points, which {int(record['members'])} maps share"
+    except (ValueError, TypeError, KeyError, OverflowError, RecursionError):
+        shared = "refinement lines that several maps share"
+    return f"points read from {shared}, and not solved themselves: solve_seconds and iterations are zero"
 
 
 def roughness_lines(emap: EHDMap) -> Iterator[str]:

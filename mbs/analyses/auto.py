@@ -16,6 +16,8 @@ from pathlib import Path
 from types import NoneType
 from typing import Generic, TypeVar
 
+import numpy as np
+
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.job_text import Entry
 from ehdmaps.physics.heat import PHYSICS
@@ -32,6 +34,7 @@ from mbs.analyses.lsa import LsaResult
 from mbs.analyses.modes import ModesResult
 from mbs.analyses.operating import operating
 from mbs.analyses.plan import PlanResult, PlanSettings, plan
+from mbs.analyses.reach import faster_than_laws
 from mbs.analyses.runup import RunUpResult
 from mbs.analyses.statics import StaticsResult
 from mbs.analyses.sweep import SweepResult
@@ -136,6 +139,8 @@ class Automatic(Generic[R]):
         Which physics is on, and why: memory, supply, roughness, and heat of each map.
     left : mapping of str to int
         How often each bearing was still outside its last map; empty where it never was.
+    too_fast : frozenset of str
+        Those of them that turned faster than their map, or their table over speed, goes.
     """
 
     result: R
@@ -145,6 +150,7 @@ class Automatic(Generic[R]):
     kept: tuple[KeptMap, ...]
     verdicts: tuple[Verdict, ...]
     left: Mapping[str, int]
+    too_fast: frozenset[str]
 
 
 def automatic(
@@ -232,8 +238,10 @@ def settled(
         left = outside_calls(result)
         more = _with_memory(subject, looked_at, found, verdicts, settings, highest)
         widened = False
+        too_fast = left.keys() & _too_fast(result)
         for index, one in enumerate(plans):
-            if left.keys() & set(one.needed[index].bearings):
+            # Another margin of the load brings nothing to bearings that turn faster than their map goes.
+            if (left.keys() - too_fast) & set(one.needed[index].bearings):
                 wider = _wider(looked_at, settings.clearance, WIDER * margins[index])
                 if wider is not None:
                     plans[index], margins[index], widened = wider, WIDER * margins[index], True
@@ -241,7 +249,7 @@ def settled(
             break
         verdicts = more or verdicts
     maps, their_margins = zip(*tried, strict=True)
-    return Automatic(result, subject, maps, their_margins, kept, verdicts, left)
+    return Automatic(result, subject, maps, their_margins, kept, verdicts, left, frozenset(too_fast))
 
 
 def outside_calls(result: object) -> dict[str, int]:
@@ -285,6 +293,25 @@ def outside_calls(result: object) -> dict[str, int]:
             if count:
                 total[name] = total.get(name, 0) + int(count)
     return total
+
+
+def _too_fast(result: object) -> set[str]:
+    """Bearings, and elements by tables over speed, that turn faster in an analysis than their law goes."""
+    if isinstance(result, (list, tuple)):
+        return {name for entry in result for name in _too_fast(entry)}
+    visited: list[tuple[Model, float]] = []
+    if isinstance(result, (StaticsResult, ModesResult, LsaResult, HammerResult)):
+        visited = [(result.model, abs(result.balance.operation.speed))]
+    elif isinstance(result, CriticalResult):
+        visited = [(result.model, float(np.abs(result.sweep.speeds).max()))]
+    elif isinstance(result, SweepResult):
+        fastest = (float(np.abs(found.speeds).max()) for found in result.sweeps)
+        visited = list(zip((case.model for case in result.cases), fastest, strict=True))
+    elif isinstance(result, RunUpResult):
+        visited = [(result.model, float(np.abs(result.record.speed).max()))]
+    elif isinstance(result, CampbellResult):
+        visited = [(run.case.model, float(np.abs(run.record.speed).max())) for run in result.runs]
+    return {name for model, speed in visited for name in faster_than_laws(model, speed)}
 
 
 def _plan(scene: Scene, clearance: float | None, margin: float) -> PlanResult:

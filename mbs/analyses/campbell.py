@@ -23,6 +23,7 @@ from mbs.analyses.sensors import chosen_sensors
 from mbs.analyses.side_by_side import Failed, side_by_side
 from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_result import Sweep
+from mbs.model.drive import DrivenSpeed
 from mbs.model.elements import Sensor
 from mbs.output.campbell_data import campbell_dataset, of_sensors
 from mbs.output.results import BAND, described
@@ -158,6 +159,12 @@ def campbell(
     course = run_course(scene, settings.highest, problems)
     if not 0 <= bands <= MOST_BANDS:
         problems.append(f"bands: got {bands} runs; allowed: 0 to {MOST_BANDS}")
+    if course is not None and isinstance(course.speed, DrivenSpeed) and (cases[1:] or bands):
+        problems.append(
+            f"{scene.name}: [drive]: got {len(cases)} cases and {bands} runs of bands; allowed: one case without "
+            "bands, as films resist with a torque of their own, so that each run has other speeds; run each case "
+            "alone, or compare two laws at equal speeds with `mbs variants`"
+        )
     if problems or course is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     orders = followed_orders(cases[0].model, settings, course)

@@ -19,7 +19,7 @@ from mbs.output.results import described
 from mbs.scene.assembly import Model, law_attributes
 from mbs.settings import CampbellSettings
 from mbs.spectral.campbell import RunUpSpectra, run_up_spectra
-from mbs.spectral.levels import Reference, level
+from mbs.spectral.levels import Reference, at_equal_speeds
 from mbs.spectral.run_signal import RunSignal
 from mbs.spectral.spectra import (
     LEAST_OVERSAMPLING,
@@ -318,13 +318,8 @@ def at_speeds_of(run: RunUpSpectra, other: RunUpSpectra) -> tuple[np.ndarray, np
     run, other : RunUpSpectra
         The levels of the second are interpolated as mean squares.
     """
-    speeds, theirs = run.campbell.speeds, other.campbell.speeds
-    order = np.argsort(theirs)
-    inside = (speeds >= theirs.min()) & (speeds <= theirs.max())
-    if np.count_nonzero(inside) < 2:
-        return None
-    powers = np.power(10.0, 0.1 * other.campbell.sum_level[order])
-    return run.campbell.sum_level[inside], level(np.interp(speeds[inside], theirs[order], powers), 1.0)
+    one, two = run.campbell, other.campbell
+    return at_equal_speeds(one.speeds, one.sum_level, two.speeds, two.sum_level)
 
 
 def _reference(channel: TimeChannel) -> Reference:

@@ -12,7 +12,6 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
 import xarray as xr
 
 from ehdmaps.arrays import FloatArray
@@ -30,7 +29,7 @@ from mbs.scene.assembly import Model, supply_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings, RunUp
 from mbs.spectral.campbell import campbell
-from mbs.spectral.levels import LevelDifference, Reference
+from mbs.spectral.levels import LevelDifference, Reference, at_equal_speeds
 from mbs.spectral.run_signal import RunSignal
 
 MOST_VARIANTS = 100
@@ -144,9 +143,9 @@ class _Run:
 
 @dataclass(frozen=True, eq=False)
 class _Outcome:
-    """What a run led to: sum level of each sensor, or why there is none."""
+    """What a run led to: sum level of each sensor with the speeds of its windows, or why there is none."""
 
-    levels: tuple[FloatArray, ...]
+    levels: tuple[tuple[FloatArray, FloatArray], ...]
     outside: dict[str, int]
     problem: str = ""
 
@@ -335,7 +334,8 @@ def _outcome(
     for column, sensor in enumerate(sensors):
         signal = RunSignal(record.time, record.speed, record.angle, record.signals[:, column])
         reference = Reference.of(sensor).value
-        levels.append(campbell(signal, reference, settings.highest, settings.window, run.highest_order).sum_level)
+        found = campbell(signal, reference, settings.highest, settings.window, run.highest_order)
+        levels.append((found.speeds, found.sum_level))
     return _Outcome(tuple(levels), {name: calls for name, calls in record.outside.items() if calls})
 
 
@@ -348,9 +348,10 @@ def _variant(change: Variation | None, pair: tuple[int, int], outcomes: Sequence
         problem = problem or STOPPED
     if problem:
         return Variant(key, value, (), problem, {})
-    differences = tuple(
-        LevelDifference.of(np.asarray(first), np.asarray(other))
-        for first, other in zip(made[0].levels, made[1].levels, strict=True)
-    )
+    # A drive reaches other speeds against other torques of rolling.
+    pairs = [at_equal_speeds(*first, *other) for first, other in zip(made[0].levels, made[1].levels, strict=True)]
+    differences = tuple(LevelDifference.of(*both) for both in pairs if both is not None)
+    if len(differences) < len(pairs):
+        return Variant(key, value, (), "the two runs have no speeds in common", {})
     outside = {name: sum(entry.outside.get(name, 0) for entry in made) for entry in made for name in entry.outside}
     return Variant(key, value, differences, "", outside)

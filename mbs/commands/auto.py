@@ -234,11 +234,18 @@ def _lines(found: Automatic[Any], settings: AutoSettings) -> list[str]:
     if found.left:
         names = ", ".join(f"{name} {count} times" for name, count in found.left.items())
         plans = len(found.maps) // len(found.kept)
-        lines.append(
-            f"warning: auto: after {plans} plans the analysis still left its map ({names}); the loads grow "
-            "beyond what the plan allows for: check clearance, loads and speeds of the scene, or make a map by "
-            "`mbs plan --margin` and `ehdmaps generate`"
-        )
+        if found.left.keys() - found.too_fast:
+            lines.append(
+                f"warning: auto: after {plans} plans the analysis still left its map ({names}); the loads grow "
+                "beyond what the plan allows for: check clearance, loads and speeds of the scene, or make a map by "
+                "`mbs plan --margin` and `ehdmaps generate`"
+            )
+        if found.too_fast:
+            lines.append(
+                f"warning: auto: {', '.join(sorted(found.too_fast))}: turns faster in the analysis than its map, or "
+                "its table over speed, goes, which no plan for larger loads changes; give the scene the highest speed "
+                "in [operation], [sweep] or [runup], or the table more speeds"
+            )
     else:
         inside = "the map" if len(found.kept) == 1 else "the maps"
         lines.append(f"auto: all loads, speeds and temperatures of the analysis lie inside {inside}")

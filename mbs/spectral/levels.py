@@ -122,6 +122,34 @@ class LevelDifference:
         return cls(low, median, high, energies[1] - energies[0], float(np.max(other) - np.max(first)))
 
 
+def at_equal_speeds(
+    speeds: FloatArray, levels: FloatArray, other_speeds: FloatArray, other: FloatArray
+) -> tuple[FloatArray, FloatArray] | None:
+    """Two courses of a level at the speeds of the first that lie within both; None where fewer than two do.
+
+    Parameters
+    ----------
+    speeds, levels : array, shape (windows,)
+        Speeds of the first course [rad/s], and its levels [dB].
+    other_speeds, other : array, shape (other windows,)
+        Those of the other one, in any order. Its levels are interpolated as mean squares.
+
+    Examples
+    --------
+    >>> first = np.array([1.0, 2.0, 3.0]), np.array([80.0, 90.0, 100.0])
+    >>> at_equal_speeds(*first, np.array([2.0, 5.0]), np.array([60.0, 60.0]))
+    (array([ 90., 100.]), array([60., 60.]))
+    """
+    if np.array_equal(speeds, other_speeds):
+        return levels, other
+    order = np.argsort(other_speeds)
+    inside = (speeds >= np.min(other_speeds)) & (speeds <= np.max(other_speeds))
+    if np.count_nonzero(inside) < 2:
+        return None
+    powers = np.power(10.0, 0.1 * other[order])
+    return levels[inside], level(np.interp(speeds[inside], other_speeds[order], powers), 1.0)
+
+
 def difference_text(first: FloatArray, other: FloatArray) -> str:
     """Say how two courses of a level differ, window by window and not only where each is highest.
 

@@ -24,11 +24,11 @@ _ARGUMENTS = {
 }
 
 
-def compiled(folder: Path, *more: str, compiler: str = "gcc", name: str = "libehd.so") -> Path:
+def compiled(folder: Path, *more: str, compiler: str = "gcc", name: str = "libehd.so", link: bool = True) -> Path:
     """Compile a source of an export, with what else there is, into a file of the folder."""
     output = folder / name
     result = subprocess.run(
-        [compiler, *STRICT, *more, str(folder / "ehd.c"), "-o", str(output), "-lm"],
+        [compiler, *STRICT, *more, str(folder / "ehd.c"), "-o", str(output), *(["-lm"] if link else [])],
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert result.returncode == 0, result.stderr

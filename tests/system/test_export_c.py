@@ -198,10 +198,35 @@ def test_hostile(strict, tmp_path):
     assert result.returncode == 0, result.stdout + result.stderr
 
 
+def test_fortran(refusing, strict, tmp_path):
+    """The interface module gives what C gives, by gfortran's strictest reading of the standard."""
+    folder = shutil.copytree(strict, tmp_path / "c")
+    compiled(folder, "-c", name="ehd.o", link=False)
+    program = ["ehd.f90", str(DATA / "values.f90"), "ehd.o", "-o", "run", "-lm"]
+    subprocess.run(["gfortran", "-std=f2008", "-Wall", "-Werror", *program], cwd=folder, check=True)
+    printed = subprocess.run([folder / "run"], capture_output=True, text=True, check=True).stdout.split()
+    numbers = np.array(printed, dtype=float)
+    pose, velocity = [0.0, 4e-6, -2e-6, 0.0, 1e-4, -2e-4], [0.0, 1e-4, 2e-4, 0.0, 0.0, 1e-3]
+    refusing.make(1e-5, 41)
+    refusing.prepare(1.0, 310.0)
+    _, law = refusing.law(2e-6, 1e-4, 1.0, 310.0)
+    status, force = refusing.force(np.array(pose), np.array(velocity), 0.3)
+    assert status == 0
+    np.testing.assert_allclose(numbers, [0.0, *law, 0.0, *force.reshape(-1)], rtol=1e-15)
+
+
+def test_windows(strict, tmp_path):
+    """The same source is clean for the compiler of 64-bit Windows."""
+    folder = shutil.copytree(strict, tmp_path / "c")
+    shutil.copy(DATA / "hostile.c", folder)
+    program = compiled(folder, str(folder / "hostile.c"), compiler="x86_64-w64-mingw32-gcc", name="run.exe")
+    assert program.read_bytes()[:2] == b"MZ"
+
+
 def test_prefix_and_cplusplus(small_map, tmp_path, capsys):
     """Another prefix leaves no name of the first; the header is one of C++ too; a folder of others is left alone."""
     folder = exported(small_map, tmp_path / "c", "--prefix", "left", "--clearance", "20 um", "--slices", "5")
-    assert sorted(file.name for file in folder.iterdir()) == ["left.c", "left.h"]
+    assert sorted(file.name for file in folder.iterdir()) == ["left.c", "left.f90", "left.h"]
     head = (folder / "left.h").read_text()
     assert "ehd_" not in head and "EHD_" not in head
     assert "#define LEFT_CLEARANCE 2e-05 " in head

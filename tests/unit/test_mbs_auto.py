@@ -32,6 +32,7 @@ from mbs.analyses.film_criteria import (
 from mbs.analyses.film_verdicts import heat_verdict, shear_verdict, visited
 from mbs.analyses.planning import Needed
 from mbs.commands.auto import read_tolerance
+from mbs.model.elements import Operation
 from mbs.scene.changes import with_loads
 from tests.cases.commands import run
 
@@ -119,6 +120,14 @@ def test_loads_outside_the_map_widen_the_plan_up_to_three_times(folder, factor, 
     assert set(found.left) == ({"bearing_left", "bearing_right"} if left else set())
     tops = [kept.emap.dataset["load"].values[-1] for kept in found.maps]
     np.testing.assert_allclose(np.divide(tops[1:], tops[:-1]), 3.0, rtol=0.1)  # ends of axes have two digits
+
+
+def test_speeds_outside_the_map_do_not_widen_its_loads(folder):
+    found = settled(
+        scene(), lambda subject: modes(subject.model(), Operation(2e3)), AutoSettings(folder=folder, highest=0.0)
+    )
+    assert found.margins == (3.0,)
+    assert set(found.left) == found.too_fast == {"bearing_left", "bearing_right"}
 
 
 def test_a_command_says_what_it_left_and_what_the_laws_miss(file, capsys, monkeypatch):

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from ehdmaps.errors import AnalysisError
+from ehdmaps.errors import AnalysisError, InputError
+from mbs import assemble, campbell, read_scene
 from mbs.spectral.levels import difference_text
 from mbs.transient.run import run
 from tests.cases.run_up import refused
@@ -227,3 +228,14 @@ def test_a_law_without_a_result_leaves_the_others(scene, monkeypatch):
     first.clear()
     with pytest.raises(AnalysisError, match="dry Hertz: no solution"):
         run_command(scene)
+
+
+def test_a_drive_takes_each_law_to_speeds_of_its_own():
+    scene = read_scene("overhung_rotor")
+    models = [assemble(scene, law) for law in ("hertz", "hertz:1.25e-5 s")]
+    for given, bands in ((models, 0), (models[:1], 1)):
+        with pytest.raises(
+            InputError, match=r"\[drive\]: got . cases and . runs of bands; allowed: one case"
+        ) as caught:
+            campbell(given, bands=bands)
+        assert "mbs variants" in str(caught.value)

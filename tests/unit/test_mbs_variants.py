@@ -77,6 +77,7 @@ def levels(monkeypatch):
         def __init__(self, model):
             scene = model.scene
             clearance = 1e6 * scene.bearings[0].geometry.diametral_clearance
+            self.speeds = np.linspace(10.0, 20.0, 21)
             self.sum_level = np.linspace(80.0, 90.0, 21) + clearance - 7.0 * (model.law != "dry Hertz, ISO 16281")
 
     monkeypatch.setattr(analysis, "recorded_run", recorded)
@@ -165,6 +166,26 @@ class TestTable:
         assert found.variants[4].differences[0].median == 0.0
         assert found.variants[2].differences == found.variants[0].differences == found.variants[3].differences
         assert found.variants[0].differences[0] == LevelDifference(-7.0, -7.0, -7.0, pytest.approx(-7.0), -7.0)
+
+    def test_runs_of_other_speeds_are_compared_where_both_have_them(self, scene, levels, monkeypatch):
+        made = analysis.campbell
+
+        def driven(signal, *rest):
+            found = made(signal, *rest)
+            if found is not None and signal.law == "dry Hertz, ISO 16281":
+                # as fast as the other one, but for the last windows
+                found.speeds, found.sum_level = found.speeds[:-3], found.sum_level[:-3]
+            elif found is not None and signal.scene.temperature == 350.0:
+                found.speeds = found.speeds + 100.0
+            return found
+
+        monkeypatch.setattr(analysis, "campbell", driven)
+        film = LawChoice("map", "map", MapSet([EHDMap(dataset_of())]), "slow")
+        found = variants(scene, (DRY, film), [Variation("temperature", 350.0)])
+        difference = found.variants[0].differences[0]
+        assert difference.median == pytest.approx(-7.0, abs=1e-12)  # round-off of powers and logarithms
+        assert difference.highest == pytest.approx(-7.0, abs=1e-12)
+        assert found.variants[1].problem == "the two runs have no speeds in common"
 
     def test_failures_are_rows(self, scene, path, levels, monkeypatch):
         made = analysis.recorded_run

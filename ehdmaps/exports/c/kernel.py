@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from typing import Literal
@@ -25,6 +25,10 @@ _ALL, _WRONG = 127, 127 - (1 + 2 + 4)
 """All parts of a status of `law.h`, and those that are no matter of the range of the map."""
 
 _INCLUDES = ("float.h", "math.h", "stddef.h", "stdint.h", "string.h")
+
+
+BEYOND: Mapping[OutsidePolicy, str] = {"error": "refused", "clamp": "held", "asymptote": "extended"}
+"""What happens outside the map, for `ehdmaps.exports.header.origin`."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +75,7 @@ class KernelOptions:
             raise InputError(problems)
 
 
-def kernel_files(emap: EHDMap, options: KernelOptions, header: Iterable[str]) -> dict[str, str]:
+def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) -> dict[str, str]:
     """Names and texts of the files of an export.
 
     Parameters
@@ -80,7 +84,7 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Iterable[str]) ->
         The map.
     options : KernelOptions
         What is exported of it.
-    header : iterable of str
+    header : sequence of str
         Lines that say where it comes from, put first.
 
     Raises
@@ -112,6 +116,8 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Iterable[str]) ->
         *(_template(f"{part}.c") for part in parts),
     ]  # fmt: skip
     texts = {"ehd.h": "\n".join(top), "ehd.c": "\n".join(source)}
+    if bearing is not None:
+        texts["ehd.f90"] = "".join(f"! {line}".rstrip() + "\n" for line in header) + "\n" + _template("interface.f90")
     return {name.replace("ehd", options.prefix): _renamed(text, options.prefix) for name, text in texts.items()}
 
 
@@ -122,7 +128,7 @@ def _template(name: str) -> str:
 
 def _renamed(text: str, prefix: str) -> str:
     """A text with another prefix of all public names and files."""
-    return re.sub(r"\bEHD_", f"{prefix.upper()}_", re.sub(r"\behd([_.])", rf"{prefix}\1", text))
+    return re.sub(r"\bEHD_", f"{prefix.upper()}_", re.sub(r"\behd([_.]|$)", rf"{prefix}\1", text, flags=re.M))
 
 
 def _comment(lines: Iterable[str]) -> str:

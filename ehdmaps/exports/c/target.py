@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import get_args
 
-from ehdmaps.exports.c.kernel import KernelOptions, ProfileName, kernel_files
+from ehdmaps.exports.c.kernel import BEYOND, KernelOptions, ProfileName, kernel_files
 from ehdmaps.exports.folder import check_folder, write_folder
 from ehdmaps.exports.header import origin
 from ehdmaps.exports.target import Target
@@ -84,15 +84,15 @@ def write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Nam
     options = options_of(arguments)
     folder = output or path.with_name(f"{options.prefix}_{path.stem}")
     check_folder(folder, [path])
-    files = kernel_files(emap, options, origin(emap, path.name))
+    files = kernel_files(emap, options, origin(emap, path.name, BEYOND[options.outside]))
     write_folder(folder, files)
     return f"{folder}: written ({', '.join(sorted(files))})"
 
 
 TARGET = Target(
-    summary="law and bearing in C99, one source and one header, no library",
+    summary="law and bearing in C99, one source, one header, no library; Fortran interface",
     writes="a folder of C sources",
-    read_back_by="gcc",
+    read_back_by="gcc, gfortran",
     add_arguments=add_arguments,
     write=write,
 )

@@ -15,7 +15,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from ehdmaps.errors import InputError
-from ehdmaps.exports.c.kernel import kernel_files
+from ehdmaps.exports.c.kernel import BEYOND, kernel_files
 from ehdmaps.exports.c.target import add_law_arguments, options_of
 from ehdmaps.exports.fmu.binaries import compiled, platforms
 from ehdmaps.exports.fmu.description import KIND, Identity, build_description, model_description
@@ -63,8 +63,8 @@ def write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Nam
         raise InputError("export fmu: got a map of a bare contact; allowed: the map of a bearing")
     options, unit = options_of(arguments), output or path.with_suffix(".fmu")
     check_outputs([Output("-o", unit, UNIT)], [path])
-    header = origin(emap, path.name)
-    sources = kernel_files(emap, options, header)
+    header = origin(emap, path.name, BEYOND[options.outside])
+    sources = {name: text for name, text in kernel_files(emap, options, header).items() if name.endswith((".c", ".h"))}
     cold, hot = (float(emap.dataset["temperature"].values[end]) for end in (0, -1))
     clearance = emap.bearing.diametral_clearance if options.clearance is None else options.clearance
     start = {"temperature": min(max(_USUAL_TEMPERATURE, cold), hot), "clearance": clearance}

@@ -77,7 +77,7 @@ MOTION = (
     "x is the axis of the bearing; the frame is that of the outer ring and does not spin. There is no force along x "
     "and no moment about it: what holds a ring axially is another element.",
     "pose, velocity and force are those of the inner ring, right-handed. The derivatives of the outputs by the pose "
-    "are -K, by the velocity -C, exactly; those by spins, speeds, temperature and clearance are quotients of differences.",
+    "are -K, by the velocity -C, exactly; those by the others are quotients of differences.",
     "The rollers stand where the spins bring them, without slip; the first one stands on the y axis at spins of zero.",
     "The film follows the motion at once: there are no states. Films with a memory want `mbs`.",
 )
