@@ -13,6 +13,7 @@ from ehdmaps.maps.law import ContactLaw
 from ehdmaps.units import LOAD
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
+from mbs.bearings.table_law import TableLaw
 from mbs.model.elements import Operation
 from mbs.model.matrices import MatrixElement
 from mbs.scene.assembly import Model
@@ -41,14 +42,20 @@ class Fade:
         return np.asarray(np.abs(np.asarray(speeds, dtype=np.float64)) < self.speed)
 
 
+POINTS = "the points of its law"
+"""What is left by a bearing whose dry law is given by points."""
+
+
 def source_of(model: Model) -> str:
-    """Where a law has its films from, in words: "the map", or "the table of the film formula".
+    """What a law is read from, in words: "the map", "the table of the film formula", or `POINTS`.
 
     Parameters
     ----------
     model : Model
         Model with its law.
     """
+    if model.law.startswith("table "):
+        return POINTS
     return "the map" if model.law.startswith(("map ", "maps ")) else "the table of the film formula"
 
 
@@ -128,10 +135,14 @@ def axes_outside(model: Model, speed: float, loads: Mapping[str, float] | None =
     found = {}
     for bearing in model.bearings:
         law = bearing.force.law if isinstance(bearing.force, BearingForce) else None
-        if not isinstance(law, ContactLaw):
+        if not isinstance(law, ContactLaw | TableLaw):
             continue
         load = (loads or {}).get(bearing.name, 0.0)
         axes = axes_left(law, load, bearing.entrainment_speed(Operation(speed)), bearing.temperature)
-        words = "; ".join(axes) or f"a load above {LOAD.text(law.load_range[1])}, where the map ends"
+        if isinstance(law, TableLaw):
+            end = f"{LOAD.text(float(law.line_load[-1]))}, the last one"
+        else:
+            end = f"{LOAD.text(law.load_range[1])}, where the map ends"
+        words = "; ".join(axes) or f"a load above {end}"
         found[bearing.name] = words.replace("the map", source_of(model))
     return found

@@ -9,6 +9,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.maps.kernel import LOAD_TOLERANCE
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.thermal import inlet_shear_heating_factor, thermal_loading, viscosity_slope
@@ -17,6 +18,7 @@ from mbs.bearings.bearing import STATIC_LIMIT
 from mbs.bearings.films import SIDES, ContactState, FilmSource
 from mbs.bearings.laws import Law
 from mbs.bearings.roller_loads import RollerLoads
+from mbs.bearings.table_law import TableLaw
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,10 +123,10 @@ def outside_map(law: Law, load: float, entrainment_speed: float, temperature: fl
     temperature : float
         T [K].
     """
-    return [
-        f"{axis}, where the law is held at its edge; make a map that reaches there"
-        for axis in axes_left(law, load, entrainment_speed, temperature)
-    ]
+    fate = "where the law is held at its edge; make a map that reaches there"
+    if isinstance(law, TableLaw):
+        fate = "where the law goes on straight; add points that reach there"
+    return [f"{axis}, {fate}" for axis in axes_left(law, load, entrainment_speed, temperature)]
 
 
 def axes_left(law: Law, load: float, entrainment_speed: float, temperature: float) -> list[str]:
@@ -133,10 +135,14 @@ def axes_left(law: Law, load: float, entrainment_speed: float, temperature: floa
     Parameters
     ----------
     law : Law
-        Law of a map or formula; a dry law has no map.
+        Law of a map or formula, or by points; other dry laws have no end.
     load, entrainment_speed, temperature : float
         Largest load of a slice [N/m], u [m/s], T [K].
     """
+    if isinstance(law, TableLaw):
+        last = float(law.line_load[-1])
+        above = load > last * (1.0 + LOAD_TOLERANCE)
+        return [f"load per length of {LOAD.text(load)} is above the last point of the law, {LOAD.text(last)}"] * above
     if not isinstance(law, ContactLaw):
         return []
     axes = (

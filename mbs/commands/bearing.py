@@ -14,7 +14,8 @@ from mbs.output.bearing_data import bearing_dataset, write_csv
 from mbs.output.bearing_plot import bearing_figure
 from mbs.output.bearing_text import bearing_text
 from mbs.output.results import write_dataset
-from mbs.scene.contact_laws import Damper, hertz_damper
+from mbs.scene.contact_laws import Damper, hertz_damper, table_path
+from mbs.scene.law_file import read_law
 
 RESOLUTION = 150
 FORMULA_LOADS = (100.0, 1e8)
@@ -59,5 +60,7 @@ def _law(request: BearingRequest) -> Law:
             supply=request.supply,
             surface=request.surface,
         )
+    if (path := table_path(request.law)) is not None:
+        return read_law(path, request.bearing.geometry.roller_length)
     damper = hertz_damper(request.law) or Damper()
     return laws.hertz(request.bearing, damper.constant, damper.time)

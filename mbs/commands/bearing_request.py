@@ -35,7 +35,7 @@ from mbs.bearings.fits import Mounting, operating_clearance
 from mbs.bearings.state import BearingState
 from mbs.commands.cases import NO_MAP, read_clearance, read_supplies
 from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, result_kind
-from mbs.scene.contact_laws import HERTZ_FORMS, hertz_damper
+from mbs.scene.contact_laws import HERTZ_FORMS, TABLE_FORM, dry_words, hertz_damper, table_path, table_problems
 from mbs.scene.fields import FORCE, MICROMETRE
 from mbs.scene.map_set import geometry_problems, structure_words
 from mbs.scene.profiles import profile_from_text
@@ -61,7 +61,7 @@ class BearingRequest:
     bearing : Bearing
         Geometry with its clearance, profile, slices.
     law : str
-        Law of the contacts: hertz, hertz:TIME, hertz:DAMPING, formula or map.
+        Law of the contacts: hertz, hertz:TIME, hertz:DAMPING, table:FILE, formula or map.
     emap : EHDMap or None
         The map.
     oil : Lubricant
@@ -168,7 +168,8 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
         Output("-o", arguments.output, result_kind(arguments.output)),
         Output("--plot", arguments.plot, FIGURE),
     )
-    problems += output_problems(outputs, [path for path in (arguments.bearing, arguments.map) if path])
+    read = (arguments.bearing, arguments.map, table_path(law))
+    problems += output_problems(outputs, [path for path in read if path])
     if problems or bearing is None or given is None or oil is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     contacts = bearing.geometry.contacts(given.material, "iso16281")
@@ -233,7 +234,7 @@ def _law_words(law: str, emap: EHDMap | None, oil: Lubricant) -> str:
     if law == "map" and emap is not None:
         return f"map of {oil.name}, solver {emap.dataset.attrs.get('solver', '')}{structure_words(emap)}"
     words = f"film formula moes, {oil.name} (its damping is far too low for loaded contacts)"
-    return words if law == "formula" else "dry Hertz, ISO 16281"
+    return words if law == "formula" else dry_words(law)
 
 
 def _bearing(source: str, problems: list[str]) -> _Given | None:
@@ -331,8 +332,11 @@ def _law(name: str | None, with_map: bool, problems: list[str]) -> str:
     except InputError as error:
         problems += error.problems
         return name
-    if name not in LAWS and damper is None:
-        problems.append(f"--law: got {short(name)}{closest(name, LAWS)}; allowed: {', '.join(LAWS)}; {HERTZ_FORMS}")
+    if table_path(name) is not None:
+        problems += table_problems(name)
+    elif name not in LAWS and damper is None:
+        allowed = f"{', '.join(LAWS)}; {HERTZ_FORMS}; {TABLE_FORM}"
+        problems.append(f"--law: got {short(name)}{closest(name, LAWS)}; allowed: {allowed}")
     elif name == "map" and not with_map:
         problems.append("--law: got 'map' without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`")
     elif name == "formula" and with_map:

@@ -26,7 +26,7 @@ from mbs.analyses.varied import VARIED, LawChoice, Subject, Value
 from mbs.model.relaxation import DEFAULT_FILMS, Films
 from mbs.output.results import RESULT
 from mbs.scene.assembly import Model
-from mbs.scene.contact_laws import FILM_WORDS, ContactLaws, choose_law, law_label
+from mbs.scene.contact_laws import FILM_WORDS, ContactLaws, choose_law, law_label, table_path
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.map_set import MapSet, map_sets
 from mbs.scene.reader import read_scene
@@ -208,7 +208,8 @@ def _ready(arguments: argparse.Namespace) -> Subject | None:
 
 def _output_problems(arguments: argparse.Namespace, scene: Scene | None, kind: Kind) -> list[str]:
     """What is wrong about the files that are written."""
-    read: list[str | Path] = [*_given(arguments, "map"), *(scene.files if scene else ())]
+    tables = [path for law in _given(arguments, "law") if (path := table_path(law)) is not None]
+    read: list[str | Path] = [*_given(arguments, "map"), *tables, *(scene.files if scene else ())]
     return scene_output_problems(arguments.scene, read, arguments.output, arguments.plot, kind)
 
 

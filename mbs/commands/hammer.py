@@ -14,6 +14,7 @@ from ehdmaps.units import quantity
 from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case
 from mbs.analyses.hammer import HIGHEST, HammerResult, HammerSettings, hammer_problems, hammers
+from mbs.analyses.reach import source_of
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Told, clean, film_lines, free_words, heading, outside_at
@@ -82,7 +83,7 @@ def _report(found: HammerResult, label: str, nonlinear: bool) -> tuple[list[str]
     scene = model.scene
     outside = [
         *outside_at(model, found.balance),
-        *(f"warning: {name}: {n} calls outside the map" for name, n in found.outside_hits.items() if n),
+        *(f"warning: {name}: {n} calls outside {source_of(model)}" for name, n in found.outside_hits.items() if n),
     ]
     lines = [
         *heading(model, scene.speed),

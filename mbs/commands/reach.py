@@ -8,7 +8,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.units import RPM
-from mbs.analyses.reach import SPEED_TABLE, fade_of, share_below
+from mbs.analyses.reach import POINTS, SPEED_TABLE, fade_of, share_below
 from mbs.scene.assembly import Model
 
 
@@ -38,7 +38,11 @@ def fade_lines(model: Model, speeds: FloatArray, of: str = "the speeds") -> list
     ]
 
 
-_ADVICE = {"the map": "make a map that reaches there", SPEED_TABLE: "give it these speeds too"}
+_ADVICE = {
+    "the map": "make a map that reaches there",
+    SPEED_TABLE: "give it these speeds too",
+    POINTS: "add points that reach there",
+}
 
 
 def outside_lines(
@@ -71,9 +75,11 @@ def outside_lines(
         source = (sources or {}).get(name, "the map")
         left = words.format(count).replace("the map", source)
         axis = f" ({axes[name]})" if name in axes else ""
-        held = "the law" if source != SPEED_TABLE else "it"
+        held = "it is held at its edge" if source == SPEED_TABLE else "the law is held at its edge"
+        if source == POINTS:
+            held = "the law goes on straight"
         advice = _ADVICE.get(source, "a map may reach there, `mbs plan` writes its job")
-        lines.append(f"warning: {begin}{name}: {left}{axis}, where {held} is held at its edge; {advice}")
+        lines.append(f"warning: {begin}{name}: {left}{axis}, where {held}; {advice}")
     return lines
 
 

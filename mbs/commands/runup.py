@@ -17,7 +17,7 @@ from ehdmaps.units import RPM
 from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case
 from mbs.analyses.ramp import silent_run
-from mbs.analyses.reach import Fade, axes_outside, fade_of, sources_of
+from mbs.analyses.reach import POINTS, Fade, axes_outside, fade_of, source_of, sources_of
 from mbs.analyses.recorded import amplitudes_at, simulated
 from mbs.analyses.resolution import resolution
 from mbs.analyses.runup import RunUpResult, RunUps, runup_problems, runups
@@ -228,12 +228,13 @@ def _report(found: RunUpResult) -> list[str]:
         *step_lines(resolution(model, found.course)),
         *(f"note: {line}" for line in result.notes),
     ]
+    end = POINTS if source_of(model) == POINTS else "the map"
     for bearing, force in zip(model.bearings, result.forces, strict=False):
         size = np.hypot(force[:, 1], force[:, 2])
         lines.append(
             f"{bearing.name}: {size[0]:.5g} N at the beginning, {size.min():.5g} to {size.max():.5g} N, "
             f"{size[-1]:.5g} N at the end; largest change from sample to sample {_changes(size, result.speed, fade)}; "
-            f"{outside[bearing.name]} calls outside the map"
+            f"{outside[bearing.name]} calls outside {end}"
         )
     lines += drive_lines(result.drive) + energy_lines(result.energy)
     lines += fade_lines(model, result.speed, "the run")

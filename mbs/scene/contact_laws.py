@@ -42,6 +42,9 @@ _LONGEST_TIME, _STRONGEST = 1e-2, 1e9
 HERTZ_FORMS = "hertz:TIME such as 'hertz:1.25e-5 s', hertz:DAMPING such as 'hertz:100 N s/m'"
 """The forms of the dry law with a damper, for messages."""
 
+TABLE_FORM = "table:FILE.csv"
+"""The form of the dry law by points, for messages."""
+
 _LABELS = {"hertz": "dry Hertz", "formula": "film formula"}
 
 
@@ -163,6 +166,33 @@ def table_path(law: str) -> Path | None:
     return Path(law.removeprefix(_TABLE)) if law.startswith(_TABLE) else None
 
 
+def dry_words(law: str) -> str:
+    """A law hertz, with or without a damper, or table:FILE, for people; empty for other laws.
+
+    Examples
+    --------
+    >>> dry_words("hertz:100 N s/m")
+    'dry Hertz, ISO 16281, c = 100 N s/m of each contact of a roller'
+    """
+    if (path := table_path(law)) is not None:
+        return f"table {path}, dry"
+    if (damper := hertz_damper(law)) is None:
+        return ""
+    return "dry Hertz, ISO 16281" + (f", {damper.words} of each contact of a roller" if damper.words else "")
+
+
+def table_problems(law: str) -> list[str]:
+    """What is wrong about the file of a law table:FILE; nothing for other laws."""
+    path = table_path(law)
+    if path is None:
+        return []
+    try:
+        read_law(path, 1.0)
+    except InputError as error:
+        return [f"--law: {line}" for line in error.problems]
+    return []
+
+
 @dataclass(frozen=True, eq=False)
 class ContactLaws:
     """The contact laws of a scene.
@@ -197,15 +227,11 @@ class ContactLaws:
             damper = hertz_damper(self.chosen)
         except InputError as error:
             return list(error.problems)
-        path = table_path(self.chosen)
-        if path is not None:
-            try:
-                read_law(path, 1.0)
-            except InputError as error:
-                return [f"--law: {line}" for line in error.problems]
-        if self.chosen not in allowed and damper is None and path is None:
+        if wrong := table_problems(self.chosen):
+            return wrong
+        if self.chosen not in allowed and damper is None and table_path(self.chosen) is None:
             got = f"--law: got {self.chosen!r:.60}{closest(self.chosen, allowed)}"
-            return [f"{got}; allowed here: {', '.join(allowed)}; {HERTZ_FORMS}; table:FILE.csv"]
+            return [f"{got}; allowed here: {', '.join(allowed)}; {HERTZ_FORMS}; {TABLE_FORM}"]
         if self.chosen == "map" and self.maps is None:
             return ["--law: got 'map' without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`"]
         maps = self._maps_in_force if scene.surface is None else None
@@ -334,12 +360,8 @@ class ContactLaws:
             return maps.words
         if self.chosen == "formula":
             return f"film formula moes, {self.lubricant.title}"
-        damper = hertz_damper(self.chosen)
-        if damper is not None:
-            words = f"{damper.words} of each contact of a roller" if damper.words else ""
-            return ", ".join(part for part in ("dry Hertz, ISO 16281", words) if part)
-        if (path := table_path(self.chosen)) is not None:
-            return f"table {path}, dry"
+        if words := dry_words(self.chosen):
+            return words
         name = self.chosen.removeprefix(_CONSTANT)
         stiffness, damping = self.scene.laws[name]
         return f"constant {name}: {stiffness:.4g} N/m and {damping:.4g} N s/m for each contact of a roller"

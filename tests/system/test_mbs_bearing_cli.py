@@ -13,7 +13,8 @@ from scipy.optimize import root
 
 import ehdmaps
 from ehdmaps.physics.bearing import BEARINGS
-from mbs import Bearing, BearingForce, cli
+from mbs import Bearing, BearingForce
+from tests.cases import commands
 from tests.cases.commands import check_units
 from tests.cases.jobs import WIDE
 
@@ -35,9 +36,7 @@ def here(tmp_path, monkeypatch):
 
 
 def run(capsys, *arguments):
-    status = cli.main(["bearing", *arguments])
-    captured = capsys.readouterr()
-    return status, captured.out, captured.err
+    return commands.run(capsys, "bearing", *arguments)
 
 
 def value(out, label):

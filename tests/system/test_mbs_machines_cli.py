@@ -15,7 +15,6 @@ import xarray as xr
 import mbs
 from ehdmaps.errors import InputError
 from ehdmaps.maps.emap import open_map
-from mbs import cli
 from mbs.analyses import ramp
 from mbs.bearings.bearing_element import RingElement
 from mbs.linearised.modes import modes
@@ -23,6 +22,7 @@ from mbs.linearised.steady import steady_system
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import parse_scene, read_scene
+from tests.cases.commands import run
 
 HEAD = """
 schema = 1
@@ -103,12 +103,6 @@ def here(tmp_path, monkeypatch):
         text.replace('"100 N", "100 N"', '"0 N", "0 N"').replace('"0 um"', '"20 um"'), encoding="utf-8"
     )
     return tmp_path
-
-
-def run(capsys, *arguments):
-    status = cli.main(arguments)
-    captured = capsys.readouterr()
-    return status, captured.out, captured.err
 
 
 class TestFiles:

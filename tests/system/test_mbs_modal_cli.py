@@ -11,9 +11,9 @@ import pytest
 import xarray as xr
 
 from ehdmaps.outputs import MARK
-from mbs import cli
 from mbs.modal.uff_reading import read_uff
 from mbs.scene.reader import read_scene
+from tests.cases.commands import run
 from tests.cases.modal import DAMPING, FREQUENCY, hits, measured
 
 LAWS = ("hertz", "constant:cfd")
@@ -23,12 +23,6 @@ LAWS = ("hertz", "constant:cfd")
 def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-def run(capsys, *arguments):
-    status = cli.main(arguments)
-    captured = capsys.readouterr()
-    return status, captured.out, captured.err
 
 
 def write(path, **what):

@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs.reader import parse_job
-from mbs import cli
 from mbs.analyses.plan import plan
 from mbs.analyses.planned_job import job_text
 from mbs.analyses.planning import (
@@ -30,6 +29,7 @@ from mbs.model.elements import Load
 from mbs.model.profiles import Course, Harmonic
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import parse_scene, read_scene
+from tests.cases import commands
 from tests.cases.jobs import map_job, spaced
 
 TEXT = read_scene("nu308_rigid").text
@@ -67,9 +67,7 @@ def here(tmp_path, monkeypatch):
 
 
 def run(capsys, *arguments):
-    status = cli.main(["plan", *map(str, arguments)])
-    captured = capsys.readouterr()
-    return status, captured.out, captured.err
+    return commands.run(capsys, "plan", *map(str, arguments))
 
 
 def test_speeds_go_down_to_a_part_of_the_highest_where_rest_is_passed():
