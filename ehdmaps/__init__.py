@@ -11,6 +11,7 @@
 ==================  ================================================================================
 open_map            a map file, as `EHDMap`
 generate            make a map: of a job file, a shipped job, or a `Job`; `read_job`, `Job.build`
+generate_batch      make the maps of a batch file
 compare             two maps, as a `Comparison`
 solve               one contact at one operating point, without a map
 solve_points        contacts at many operating points: dataset in, dataset out
@@ -30,7 +31,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     __version__: str
-    from ehdmaps.jobs.calls import compare, frequency_response, generate, solve, solve_points
+    from ehdmaps.jobs.calls import compare, frequency_response, generate, generate_batch, solve, solve_points
     from ehdmaps.jobs.compare import Comparison
     from ehdmaps.jobs.job import Job
     from ehdmaps.jobs.reader import read_job
@@ -60,6 +61,7 @@ __all__ = [
     "compare",
     "frequency_response",
     "generate",
+    "generate_batch",
     "open_map",
     "read_job",
     "solve",
@@ -70,6 +72,7 @@ _HOMES = {
     "compare": "jobs.calls",
     "frequency_response": "jobs.calls",
     "generate": "jobs.calls",
+    "generate_batch": "jobs.calls",
     "solve": "jobs.calls",
     "solve_points": "jobs.calls",
     "Comparison": "jobs.compare",

@@ -24,7 +24,7 @@ what connects them  `bearings` (the bearing force), `gears`
 linear              `linearised` (modes, responses, over speed); `modal` (identified from hammer hits)
 in time             `transient` (method, compiled runs); `spectral` (levels over speed and order); `timedata` (files)
 analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, variants, hammer, plan; `automatic`
-for people          `output` (datasets, figures), `commands`, `cli`; `systems` (shipped scenes)
+for people          `output` (datasets, figures), `report` (a page to send), `commands`, `cli`; `systems`: scenes
 ==================  ====================================================================================
 
 Names of the package are loaded when they are first used, so that importing it is quick.

@@ -53,6 +53,10 @@ def parser() -> argparse.ArgumentParser:
         if name == "modes":
             _modes(command)
             _shapes(command)
+        if name == "lsa":
+            command.add_argument(
+                "--state-space", metavar="SPACE.mat", help="A, B, C, D with names and units, for MATLAB and Octave"
+            )
         if name == "runup":
             _runup(command)
         _films(command, compares=several)
@@ -85,6 +89,16 @@ def parser() -> argparse.ArgumentParser:
     _films(hammer, compares=True)
     _parallel(hammer)
     _hammer(hammer)
+    report = _scene_command(
+        commands, "report", "the scene as one page to send: no network needed, prints to PDF", compares=False
+    )
+    _films(report, compares=False)
+    _speeds(report)
+    report.add_argument(
+        "--result",
+        metavar="RESULT.nc",
+        help="Campbell diagram of a result of `mbs sweep -o` or `mbs campbell -o` in place of a short sweep",
+    )
     _tradeoff(commands)
     _modal_fit(commands)
     _bearing(commands)
@@ -458,8 +472,14 @@ def _scene_command(
         help='diametral clearance of all bearings, such as "20 um", in place of the scene\'s'
         + (more if clearances else ""),
     )
-    command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
-    command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
+    if name == "report":
+        command.add_argument(
+            "-o", "--output", metavar="REPORT.html", help="default: the scene's name with .html, in this folder"
+        )
+        command.set_defaults(plot=None)
+    else:
+        command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
+        command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
     if name != "variants":
         # That of a Campbell diagram is one of levels, and stands without --auto, too.
         _auto(command, tolerance=name != "campbell")

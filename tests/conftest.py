@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from tests.cases.jobs import FINE, WIDE_AXES, map_job
+from tests.cases.jobs import FINE, SMALL, WIDE_AXES, map_job
 
 # CI must not fail on an example that nobody has seen before; a developer wants to see new ones
 settings.register_profile("ci", derandomize=True, deadline=None)
@@ -97,6 +97,12 @@ def formula_maps(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 def formula_map(formula_maps: dict[str, str]) -> str:
     """File of the small map of NU308."""
     return formula_maps["NU308"]
+
+
+@pytest.fixture(scope="session")
+def small_map(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """File of a map of NU308 by the film formula whose laws have small tables."""
+    return made_map(tmp_path_factory.mktemp("small"), SMALL, statuses=(0, 1))
 
 
 @pytest.fixture(scope="session")

@@ -25,7 +25,7 @@ from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.warm_oil import heat_groups
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.film_limits import THICKEST_FILM, THIN_FILM_LIMIT, too_thick
+from ehdmaps.physics.film_limits import THICK_NOTE, THICKEST_FILM, THIN_FILM_LIMIT, too_thick
 from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, PHYSICS, THERMAL, heat_data
 from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.inlet_heat import heated, heated_spectrum, inlet_heat
@@ -544,7 +544,7 @@ def _in_si(
     thickness = groups.film_offset * film / contact.radius
     if thickness > THIN_FILM_LIMIT:
         status = Status.ASYMPTOTE
-        notes.append("film thicker than 1 % of the radius: limit of thin-film theory, Reynolds with a parabolic gap")
+        notes.append(THICK_NOTE)
     elif groups.loss < 0.0:
         kind = " of an isothermal, Newtonian film" if newtonian and profile.warmth is None else ""
         notes.append(f"negative damping at the valley{kind}; a contact law takes zero")

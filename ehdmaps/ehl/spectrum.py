@@ -140,12 +140,12 @@ def _space(linear: Arrays, unit: FloatArray, height: int, fastest: float) -> tup
     hessenberg = np.zeros((size + 1, size))
     basis[0] = static / norm
     count = 0
-    while count < size:
-        _extend(linear, basis, hessenberg, count)
-        count += 1
+    for last in range(size):  # an index of numba's own: for the literal 0 it would compile `_extend` once more
+        _extend(linear, basis, hessenberg, last)
+        count = last + 1
         if count % CHECK_EVERY == 0 and _residual(hessenberg, count, fastest) < SMALL_RESIDUAL:
             break
-        if hessenberg[count, count - 1] < _TINY:
+        if hessenberg[count, last] < _TINY:
             break
     return norm, hessenberg[:count, :count].copy(), basis[:count, height].copy()
 

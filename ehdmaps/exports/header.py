@@ -20,7 +20,7 @@ BEARING_AXES = (
 _AXES = (("load", LOAD), ("entrainment_speed", SPEED), ("temperature", TEMPERATURE))
 
 
-def origin(emap: EHDMap, name: str) -> tuple[str, ...]:
+def origin(emap: EHDMap, name: str, beyond: str = "refused") -> tuple[str, ...]:
     """Return the lines that tell where an export comes from; the first carries the mark of our files.
 
     Parameters
@@ -29,6 +29,8 @@ def origin(emap: EHDMap, name: str) -> tuple[str, ...]:
         The map.
     name : str
         Name of its file.
+    beyond : str
+        What happens to points outside of the map.
     """
     attributes = emap.dataset.attrs
     stated = [
@@ -42,7 +44,7 @@ def origin(emap: EHDMap, name: str) -> tuple[str, ...]:
     return (
         f"{MARK} {version()}",
         *(f"{key}: {plain(value)}" for key, value in stated if value),
-        *(f"{label}: {_span(emap, axis, display)}; refused beyond" for axis, label, display in _ranges()),
+        *(f"{label}: {_span(emap, axis, display)}; {beyond} beyond" for axis, label, display in _ranges()),
     )
 
 

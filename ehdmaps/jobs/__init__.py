@@ -38,6 +38,9 @@ opening      the map of a command, by the structural law that it names
 describe     what a map file holds, in words
 plot         what a map file holds, on one page
 plot_curves  one panel of that page
+map_report   a map as one page to send
+map_charts   its charts over load, with what they say
+map_limits   where the map is limited, and why
 film_output  files with the film itself, beside the numbers of one point
 traction     traction of one point over the slide-to-roll ratio
 supplied     one point behind an oil layer: flow ratio and place of the meniscus

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from os import PathLike, fspath
 from pathlib import Path
 
@@ -17,12 +18,16 @@ from ehdmaps.jobs import compare as comparing
 from ehdmaps.jobs import generate as generating
 from ehdmaps.jobs import points as many
 from ehdmaps.jobs import solvers
+from ehdmaps.jobs.batch import SUMMARY, Batch, is_batch, read_batch
+from ehdmaps.jobs.batch_generate import generate_batch as many_maps
+from ehdmaps.jobs.batch_generate import make_folder
+from ehdmaps.jobs.batch_table import table_dataset, write_table
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.spectrum import spectrum_dataset
 from ehdmaps.jobs.sweep import Progress
 from ehdmaps.maps.emap import EHDMap, open_map
-from ehdmaps.outputs import MAP, Output, check_outputs
+from ehdmaps.outputs import MAP, TABLE, Output, check_outputs
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
@@ -39,6 +44,7 @@ def generate(
     progress: Callable[[int], Progress] | None = None,
     tolerance: float | None = None,
     corrector: ContactSolver | None = None,
+    executor: Executor | None = None,
 ) -> xr.Dataset:
     """Make a map.
 
@@ -69,6 +75,9 @@ def generate(
         what was found. It needs an output file.
     corrector : ContactSolver, optional
         Solver in place of the one that the job names in `corrected_by`.
+    executor : concurrent.futures.Executor, optional
+        What solves the points in place of processes that are started here, with ``workers`` of no account then: a pool
+        of threads or processes, or that of a cluster, such as dask's ``Client().get_executor()``. It stays open.
 
     Returns
     -------
@@ -89,9 +98,60 @@ def generate(
         )
     if output is None:
         plain = dataclasses.replace(chosen, backbone="none")
-        return generating.generate_in_memory(plain, workers, progress, made_by, corrector).dataset
+        return generating.generate_in_memory(plain, workers, progress, made_by, corrector, executor).dataset
     check_outputs([Output("output", Path(output), MAP)], [] if isinstance(job, Job) else [fspath(job)])
-    return generating.generate(chosen, Path(output), workers, fresh, progress, made_by, tolerance, corrector).dataset
+    generated = generating.generate(
+        chosen, Path(output), workers, fresh, progress, made_by, tolerance, corrector, executor
+    )
+    return generated.dataset
+
+
+def generate_batch(
+    batch: Batch | str | PathLike[str],
+    folder: str | PathLike[str] | None = None,
+    *,
+    workers: int | None = 1,
+    fresh: bool = False,
+    progress: Callable[[int], Progress] | None = None,
+    executor: Executor | None = None,
+) -> xr.Dataset:
+    """Make the maps of a batch, as the command does: what is there and is the same is kept, and a run goes on.
+
+    Parameters
+    ----------
+    batch : Batch, str or path
+        A batch, or the path of a batch file.
+    folder : str or path, optional
+        Folder of the maps; one named after the batch if left out.
+    workers, fresh, progress
+        The same as for `generate`.
+    executor : concurrent.futures.Executor, optional
+        What solves the points in place of processes that are started here. Maps are put together here, by `workers`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The table of the maps over `map`, their names: file, bearing, oil, override, state (made, kept or failed), films
+        (shared or own), points without a solution, what laws miss, why it failed, and numbers of the first contact at
+        the middle of the axes, with units.
+
+    Raises
+    ------
+    InputError, StoreError
+        If nothing can be made at all; a map that fails is told in the table.
+    """
+    if not isinstance(batch, Batch) and not is_batch(batch):
+        raise InputError(
+            f"batch: got {fspath(batch)!r:.200}, which is no batch file; allowed: TOML with a table [batch]"
+        )
+    chosen = batch if isinstance(batch, Batch) else read_batch(batch, to_run=True)
+    place = Path(folder or chosen.name)
+    make_folder(place)
+    read = [] if isinstance(batch, Batch) else [fspath(batch)]
+    check_outputs([Output("summary", place / SUMMARY, TABLE)], read)
+    result = many_maps(chosen, place, workers, fresh, progress, executor)
+    write_table(result, place)
+    return table_dataset(result)
 
 
 def _with_solver(job: Job, name: str | None) -> Job:

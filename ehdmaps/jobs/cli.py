@@ -30,7 +30,7 @@ def parser() -> argparse.ArgumentParser:
         prog="ehdmaps",
         description="Elastohydrodynamic contact maps for roller bearings.",
         epilog="JOB is a job file, a map (its job is repeated), or the name of a shipped job: nu308, n1014, "
-        "nu308_openfoam. "
+        "nu308_openfoam; for generate, check, merge, status and submit also a batch file, of many maps. "
         "Exit status: 0 done; 1 done, with failed points or an unmet tolerance; 2 bad input, nothing "
         "written; 130 stopped with Ctrl-C.",
     )
@@ -40,7 +40,10 @@ def parser() -> argparse.ArgumentParser:
     generate = commands.add_parser("generate", help="make a map; the same command goes on after an interruption")
     generate.add_argument("jobs", metavar="JOB", nargs="+", help="of several, one map after the other")
     generate.add_argument(
-        "-o", "--output", metavar="MAP.nc", help="of one job; default: the job's name with .nc, in this folder"
+        "-o",
+        "--output",
+        metavar="MAP.nc",
+        help="of one job; default: the job's name with .nc, in this folder; of a batch a folder, default: its name",
     )
     generate.add_argument("--solver", metavar="NAME", help=_SOLVER)
     generate.add_argument(
@@ -52,10 +55,20 @@ def parser() -> argparse.ArgumentParser:
     generate.add_argument("--workers", metavar="N", type=processes, help="processes; default: all cores")
     generate.add_argument("--fresh", action="store_true", help="forget what is solved already")
     generate.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
+    generate.add_argument(
+        "--shard", metavar="I/N", type=_shard, help="solve part I of N only, into a store of its own; see `merge`"
+    )
+    _add_shards(commands)
 
     status = commands.add_parser("status", help="how far a map is that is being made, or was interrupted")
     status.add_argument(
-        "map", metavar="MAP.nc", nargs="?", help="or its store, or its JOB; default: all maps in this folder"
+        "map",
+        metavar="MAP.nc",
+        nargs="?",
+        help="or its store, its JOB, or a batch file, with its shards; default: all maps in this folder",
+    )
+    status.add_argument(
+        "-o", "--output", metavar="MAP.nc", help="of the job, or the folder of the batch, as for generate"
     )
 
     check = commands.add_parser("check", help="list every problem of a job; estimate points, time, memory")
@@ -77,6 +90,12 @@ def parser() -> argparse.ArgumentParser:
         help='combined rms roughness, "0.2 um": Lambda and the film\'s share of the load instead, with the ending '
         "_roughness.png",
     )
+
+    report = commands.add_parser("report", help="a map as one page to send: no network needed, prints to PDF")
+    report.add_argument("map", metavar="MAP.nc")
+    report.add_argument("-o", "--output", metavar="REPORT.html", help="default: the map's name with .html")
+    report.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
+    report.add_argument("--roughness", metavar="LENGTH", help=f"with it also the film parameter Lambda; {_ROUGHNESS}")
 
     solve = commands.add_parser("solve", help="one operating point, as a table")
     solve.add_argument("job", metavar="JOB")
@@ -145,6 +164,27 @@ def parser() -> argparse.ArgumentParser:
     _add_tradeoff(commands)
     _add_stability(commands)
     return top
+
+
+def _add_shards(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Add the arguments of `ehdmaps merge` and `ehdmaps submit`."""
+    merge = commands.add_parser("merge", help="the map of a job, or the maps of a batch, from the stores of its shards")
+    submit = commands.add_parser("submit", help="the script of a job array of Slurm that makes shards, and merges them")
+    for command in (merge, submit):
+        command.add_argument("job", metavar="JOB", help="or a batch file")
+        command.add_argument(
+            "-o", "--output", metavar="MAP.nc", help="of a job, or the folder of a batch; default: as for generate"
+        )
+        command.add_argument("--solver", metavar="NAME", help=_SOLVER)
+    merge.add_argument("--workers", metavar="N", type=processes, help="processes; default: all cores")
+    merge.add_argument("--rest", action="store_true", help="solve here what shards have not")
+    submit.add_argument("--array", metavar="N", type=_shards, required=True, help="number of shards")
+    submit.add_argument("--cpus", metavar="N", type=processes, default=1, help="cores of each shard; default: 1")
+    submit.add_argument("--time", metavar="LIMIT", help='of each shard, as Slurm has it, "02:00:00"; default: none')
+    submit.add_argument("--partition", metavar="NAME", help="of the cluster; default: the cluster's own")
+    submit.add_argument(
+        "--submit", action="store_true", help="submit the array and the merge by submitit, instead of printing a script"
+    )
 
 
 def _add_export(commands: argparse._SubParsersAction[Parser]) -> None:
@@ -261,6 +301,22 @@ def _command(arguments: argparse.Namespace) -> tuple[str, int]:
     """Load the command that is asked for, and do it."""
     result: tuple[str, int] = importlib.import_module(f"ehdmaps.jobs.commands.{arguments.command}").run(arguments)
     return result
+
+
+def _shard(text: str) -> object:
+    """Read a shard, where one is given: what reads it is not loaded for other commands."""
+    from ehdmaps.jobs.shards import read_shard
+
+    return read_shard(text)
+
+
+def _shards(text: str) -> int:
+    """Read a number of shards."""
+    from ehdmaps.jobs.shards import MOST_SHARDS
+
+    if not (text.isascii() and text.isdigit() and len(text) <= 6 and 1 <= int(text) <= MOST_SHARDS):
+        raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 1 to {MOST_SHARDS}")
+    return int(text)
 
 
 def _count(text: str) -> int:

@@ -111,3 +111,46 @@ def curves(
         compliance += film_compliance
         loss += film_loss
     return Curves(loads, approach, offset, 1.0 / compliance, loss / compliance**2)
+
+
+def film_between(
+    emap: EHDMap, film: str, contact: str, loads: FloatArray, speed: float, temperature: float
+) -> FloatArray:
+    """Film over load: between the map's points linear in the logarithms of film, load and speed, and in temperature.
+
+    Parameters
+    ----------
+    emap : EHDMap
+        A map without holes.
+    film : str
+        A film that the map holds at its points only, such as "central_film".
+    contact : str
+        Name of the contact.
+    loads : ndarray, shape (n,)
+        [N/m].
+    speed, temperature : float
+        [m/s], [K].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [m]; 0 at a standstill.
+    """
+    dataset = emap.dataset.sel(contact=contact)
+    moving = dataset["entrainment_speed"].values > 0.0
+    values = dataset[film].transpose("load", "entrainment_speed", "temperature").values[:, moving]
+    if speed == 0.0 or not np.any(values):
+        return np.zeros(loads.size)
+    speeds, temperatures = dataset["entrainment_speed"].values[moving], dataset["temperature"].values
+    at_speed = _between(np.log(values), np.log(speeds), float(np.log(speed)), 1)
+    at_point = _between(at_speed, temperatures, temperature, 1)
+    return np.asarray(np.exp(np.interp(np.log(loads), np.log(dataset["load"].values), at_point)))
+
+
+def _between(values: FloatArray, axis: FloatArray, at: float, along: int) -> FloatArray:
+    """Linear interpolation at one place along one axis."""
+    if axis.size == 1:
+        return np.asarray(np.take(values, 0, along))
+    i = min(max(int(np.searchsorted(axis, at)) - 1, 0), axis.size - 2)
+    share = (at - axis[i]) / (axis[i + 1] - axis[i])
+    return np.asarray((1.0 - share) * np.take(values, i, along) + share * np.take(values, i + 1, along))

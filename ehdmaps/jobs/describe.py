@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -71,8 +72,7 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     yield from _geometry_lines(emap)
     yield ""
     yield from _oil_lines(emap.lubricant)
-    yield f"  {'supply':20s} {supply_words(emap.supply if schema.OIL_SUPPLY in attributes else None)}"
-    yield f"  {'surfaces':20s} {surface_words(emap.surface if schema.SURFACE in attributes else None)}"
+    yield from map(_line, stated_rows(emap))
     yield ""
     yield f"axes ({dataset['status'].size} points)"
     yield f"  {'contact':20s} {dataset.sizes['contact']:5d}  {', '.join(map(str, dataset['contact'].values))}"
@@ -83,12 +83,15 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     yield "values (per unit length of contact)"
     yield from value_lines(dataset)
     if not emap.surface.smooth:
-        yield from _roughness_lines(emap)
+        yield from roughness_lines(emap)
     yield ""
     yield "statuses"
     yield from status_lines(dataset, emap.surface.roughness)
     yield from extrapolated_lines(dataset)
     yield ""
+    if schema.FAMILY in attributes:
+        yield _family_line(attributes[schema.FAMILY])
+        yield ""
     yield "accuracy of the points"
     yield from error_lines(dataset)
     law = list(law_lines(dataset))
@@ -108,12 +111,23 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
         yield f"contact laws at low loads: {emap.low_loads.text}"
     if emap.backbone is not None:
         yield ""
-        yield from _backbone_lines(emap.backbone)
+        yield from backbone_lines(emap.backbone)
     yield ""
-    yield from _provenance_lines(attributes)
+    yield "provenance"
+    yield from map(_line, provenance_rows(attributes))
 
 
-def _roughness_lines(emap: EHDMap) -> Iterator[str]:
+def _family_line(text: str) -> str:
+    """Say from what the points were read."""
+    try:
+        record = json.loads(text)
+        shared = f"refinement lines of {int(record['line_points'])} points, which {int(record['members'])} maps share"
+    except (ValueError, TypeError, KeyError, OverflowError, RecursionError):
+        shared = "refinement lines that several maps share"
+    return f"points read from {shared}, and not solved themselves: solve_seconds and iterations are zero"
+
+
+def roughness_lines(emap: EHDMap) -> Iterator[str]:
     """Yield what the roughness makes of the films: Lambda, and the film's share of the load."""
     found = rough_variables(emap.dataset, emap.contacts, emap.lubricant, emap.surface)
     parameter, share = (found[name].values[np.isfinite(found[name].values)] for name in (FILM_PARAMETER, FILM_SHARE))
@@ -128,51 +142,93 @@ def _roughness_lines(emap: EHDMap) -> Iterator[str]:
 
 def _geometry_lines(emap: EHDMap) -> Iterator[str]:
     """Yield bearing and contacts."""
-    if emap.bearing is None:
+    bearing = emap.bearing
+    if bearing is None:
         yield "geometry: a bare line contact"
     else:
-        yield from _bearing_lines(emap.bearing)
+        name = f" ({plain(bearing.name)})" if bearing.label else ""
+        yield f"bearing {plain(bearing.label or bearing.name)}{name}"
+        if bearing.estimated:
+            yield f"  {plain(bearing.estimated)}"
+    yield from map(_line, geometry_rows(emap))
+
+
+def _line(row: tuple[str, str]) -> str:
+    """A line of a name and its value."""
+    return f"  {row[0]:20s} {row[1]}"
+
+
+def geometry_rows(emap: EHDMap) -> Iterator[tuple[str, str]]:
+    """Yield the dimensions of bearing and contacts, and the solids: names and values.
+
+    Parameters
+    ----------
+    emap : EHDMap
+        The map.
+    """
+    if emap.bearing is not None:
+        yield from _bearing_rows(emap.bearing)
     for contact in emap.contacts:
         depth = f", depth d* {LENGTH.text(contact.reference_depth)}" if contact.reference_depth else ""
         found = f", approach {FILM.text(contact.fe_approach, 5)} at {LOAD.text(FE_LOAD)}" if contact.fe_approach else ""
         shown = {"half_space": depth, "fe": found}.get(contact.structural_law, "")
-        yield f"  {contact.name + ' contact':20s} reduced radius {LENGTH.text(contact.radius, 5)}{shown}"
+        yield f"{contact.name} contact", f"reduced radius {LENGTH.text(contact.radius, 5)}{shown}"
     material = emap.contacts[0].material
     modulus = PRESSURE.text(material.youngs_modulus)
-    yield f"  {'material':20s} Young's modulus {modulus}, Poisson's ratio {material.poisson_ratio:g}"
+    yield "material", f"Young's modulus {modulus}, Poisson's ratio {material.poisson_ratio:g}"
     scaling = float(emap.dataset.attrs.get("structural_scaling", 1.0))
     scaled = f", times {scaling:.6g} for the material" if scaling != 1.0 else ""
-    yield f"  {'structural law':20s} {plain(emap.dataset.attrs['structural_law'])}{scaled}"
+    yield "structural law", f"{plain(emap.dataset.attrs['structural_law'])}{scaled}"
 
 
-def _bearing_lines(bearing: BearingGeometry) -> Iterator[str]:
+def _bearing_rows(bearing: BearingGeometry) -> Iterator[tuple[str, str]]:
     """Yield the dimensions of a bearing."""
-    yield f"bearing {plain(bearing.label or bearing.name)}" + (f" ({plain(bearing.name)})" if bearing.label else "")
-    if bearing.estimated:
-        yield f"  {plain(bearing.estimated)}"
     inner, outer = LENGTH.text(bearing.inner_raceway_diameter, 5), LENGTH.text(bearing.outer_raceway_diameter, 5)
-    yield f"  {'raceway diameters':20s} {inner} inner, {outer} outer"
+    yield "raceway diameters", f"{inner} inner, {outer} outer"
     size = f"{LENGTH.text(bearing.roller_diameter, 5)} diameter, {LENGTH.text(bearing.roller_length, 5)} long"
-    yield f"  {'rollers':20s} {bearing.rollers}, {size}"
-    yield f"  {'diametral clearance':20s} {FILM.text(bearing.diametral_clearance)}"
+    yield "rollers", f"{bearing.rollers}, {size}"
+    yield "diametral clearance", FILM.text(bearing.diametral_clearance)
 
 
 def _oil_lines(oil: Lubricant) -> Iterator[str]:
     """Yield the oil: what a data sheet has, and by which laws it goes on."""
-    record = oil.record()
     yield f"oil {plain(oil.title)}" + ("" if oil.verified else ": NOT VERIFIED")
     if oil.estimated:
         yield f"  {oil.estimated}"
+    yield from map(_line, oil_rows(oil))
+
+
+def oil_rows(oil: Lubricant) -> Iterator[tuple[str, str]]:
+    """Yield the properties of an oil: names and values.
+
+    Parameters
+    ----------
+    oil : Lubricant
+        The oil.
+    """
+    record = oil.record()
     over_temperature, over_pressure = record["viscosity_over_temperature"], record["viscosity_law"]
-    yield f"  {'viscosity':20s} {_at_temperatures(oil, 'viscosity', _VISCOSITY)} (law {over_temperature})"
+    yield "viscosity", f"{_at_temperatures(oil, 'viscosity', _VISCOSITY)} (law {over_temperature})"
     coefficient = _at_temperatures(oil, "pressure_viscosity", _PER_PRESSURE)
     limit = f", fitted up to {PRESSURE.text(oil.fitted_pressure)}" if oil.fitted_pressure < float("inf") else ""
-    yield f"  {'pressure-viscosity':20s} {coefficient} (law {over_pressure}{limit})"
+    yield "pressure-viscosity", f"{coefficient} (law {over_pressure}{limit})"
     slope = f", {oil.density_slope:+g} kg/m3 a K" if oil.density_slope else ""
-    yield f"  {'density':20s} {oil.density_15:.5g} kg/m3 at 15 degC{slope} (over pressure: {oil.density_law})"
+    yield "density", f"{oil.density_15:.5g} kg/m3 at 15 degC{slope} (over pressure: {oil.density_law})"
     if oil.thermal_conductivity is not None:
-        words = f"{oil.thermal_conductivity:.4g} W/(m K), heat capacity {oil.heat_capacity:.4g} J/(kg K)"
-        yield f"  {'conductivity':20s} {words}"
+        yield "conductivity", f"{oil.thermal_conductivity:.4g} W/(m K), heat capacity {oil.heat_capacity:.4g} J/(kg K)"
+
+
+def stated_rows(emap: EHDMap) -> Iterator[tuple[str, str]]:
+    """Yield oil supply and surfaces that the job of a map states: names and values.
+
+    Parameters
+    ----------
+    emap : EHDMap
+        The map.
+    """
+    attributes = emap.dataset.attrs
+    yield "supply", supply_words(emap.supply if schema.OIL_SUPPLY in attributes else None)
+    yield "surfaces", surface_words(emap.surface if schema.SURFACE in attributes else None)
 
 
 def _at_temperatures(oil: Lubricant, name: str, display: Display) -> str:
@@ -188,7 +244,7 @@ def _at_temperatures(oil: Lubricant, name: str, display: Display) -> str:
     return ", ".join(texts) or "not known at 40 and 100 degC"
 
 
-def _backbone_lines(backbone: xr.Dataset) -> Iterator[str]:
+def backbone_lines(backbone: xr.Dataset) -> Iterator[str]:
     """Yield the size of the group of refinement lines."""
     sizes = [backbone.sizes[name] for name in schema.BACKBONE_DIMS]
     yield "refinement lines of the contact law (group backbone)"
@@ -215,25 +271,30 @@ def _backbone_lines(backbone: xr.Dataset) -> Iterator[str]:
     )
 
 
-def _provenance_lines(attributes: dict[str, Any]) -> Iterator[str]:
-    """Yield how the map came about."""
-    yield "provenance"
+def provenance_rows(attributes: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """Yield how a map came about: names and values, an empty name where a value goes on with the one before.
+
+    Parameters
+    ----------
+    attributes : dict
+        Attributes of the map.
+    """
     job = f"{plain(attributes.get('job_name', ''))} (sha256 {plain(attributes['job_sha256'])[:12]}...)"
-    yield f"  {'job':20s} {job.strip()}"
-    yield f"  {'solver':20s} {plain(attributes['solver'])}"
+    yield "job", job.strip()
+    yield "solver", plain(attributes["solver"])
     for key, value in record_from_json(attributes["solver_settings"], "solver_settings").items():
-        yield f"  {'':20s} {key.replace('_', ' ')} {_setting(value)}"
+        yield "", f"{key.replace('_', ' ')} {_setting(value)}"
     if "openfoam_build" in attributes:
         version = plain(attributes.get("openfoam_version", "of an unknown version"))
-        yield f"  {'OpenFOAM':20s} {version}; ehlFoam built with {plain(attributes['openfoam_build'])}"
+        yield "OpenFOAM", f"{version}; ehlFoam built with {plain(attributes['openfoam_build'])}"
     versions = record_from_json(attributes["package_versions"], "package_versions")
-    yield f"  {'versions':20s} {', '.join(f'{package} {version}' for package, version in versions.items())}"
-    sealed = (
+    yield "versions", ", ".join(f"{package} {version}" for package, version in versions.items())
+    yield (
+        "content",
         f"as made (sha256 {attributes[schema.CHECKSUM][:12]}...)"
         if schema.CHECKSUM in attributes
-        else ("may have been changed since: the map has no checksum")
+        else "may have been changed since: the map has no checksum",
     )
-    yield f"  {'content':20s} {sealed}"
 
 
 def _setting(value: object) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.jobs.curves import curves, rough_layers
+from ehdmaps.jobs.curves import curves, film_between, rough_layers
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.rough_films import FILM_PARAMETER, FILM_SHARE, film_share
@@ -92,7 +92,7 @@ def _lines(emap: EHDMap, chosen: Chosen, name: str) -> Iterator[str]:
         for speed in chosen.speeds:
             found = curves(field, contacts, loads, speed, temperature, layers)
             columns = [loads, found.approach, found.film_offset, found.stiffness, found.damping]
-            between = [_film(emap, film, contacts[0].name, loads, speed, temperature) for film in films]
+            between = [film_between(emap, film, contacts[0].name, loads, speed, temperature) for film in films]
             columns += between
             if of_roughness:
                 share = _share(field, layers[contacts[0].name], loads, speed, temperature)
@@ -108,25 +108,3 @@ def _share(field: FilmField, layer: RoughLayer, loads: FloatArray, speed: float,
     if speed > 0.0 and not field.dry:
         film, _, _ = field.films(layer.contact.name, loads[:, None, None], speeds, temperatures)
     return film_share(layer, film, loads, speeds, temperatures)[:, 0, 0]
-
-
-def _film(emap: EHDMap, film: str, contact: str, loads: FloatArray, speed: float, temperature: float) -> FloatArray:
-    """Film over load: between the map's points linear in the logarithms of film, load and speed, and in temperature."""
-    dataset = emap.dataset.sel(contact=contact)
-    moving = dataset["entrainment_speed"].values > 0.0
-    values = dataset[film].transpose("load", "entrainment_speed", "temperature").values[:, moving]
-    if speed == 0.0 or not np.any(values):
-        return np.zeros(loads.size)
-    speeds, temperatures = dataset["entrainment_speed"].values[moving], dataset["temperature"].values
-    at_speed = _between(np.log(values), np.log(speeds), float(np.log(speed)), 1)
-    at_point = _between(at_speed, temperatures, temperature, 1)
-    return np.asarray(np.exp(np.interp(np.log(loads), np.log(dataset["load"].values), at_point)))
-
-
-def _between(values: FloatArray, axis: FloatArray, at: float, along: int) -> FloatArray:
-    """Linear interpolation at one place along one axis."""
-    if axis.size == 1:
-        return np.asarray(np.take(values, 0, along))
-    i = min(max(int(np.searchsorted(axis, at)) - 1, 0), axis.size - 2)
-    share = (at - axis[i]) / (axis[i + 1] - axis[i])
-    return np.asarray((1.0 - share) * np.take(values, i, along) + share * np.take(values, i + 1, along))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -15,8 +17,8 @@ from ehdmaps.jobs.correction import Correction, correction
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.law_check import HALVED, REFUSED, LawCheck, checked_laws, coarse_axis, met, plan_check
 from ehdmaps.jobs.refinement import MOST_LINE_POINTS, Refinement, backbone_group, refinement
-from ehdmaps.jobs.status import StatusFile
-from ehdmaps.jobs.store import Arrays, NoStore, Store, store_path
+from ehdmaps.jobs.status import StatusFile, about
+from ehdmaps.jobs.store import Arrays, NoStore, Results, Store, store_path
 from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
 from ehdmaps.jobs.tasks import LineTask, line_tasks
 from ehdmaps.jobs.tolerance import check_tolerance, within_tolerance
@@ -31,6 +33,15 @@ from ehdmaps.workers import available_cores
 
 MOST_HALVINGS = 3
 """How often the steps of the lines of a law are halved, each time along one axis."""
+
+
+@dataclass(frozen=True)
+class Within:
+    """What a map is made within that is one of several: their common store and status, and what marks it as theirs."""
+
+    store: Results
+    status: StatusFile
+    attributes: Mapping[str, str | int]
 
 
 @dataclass(frozen=True)
@@ -61,6 +72,8 @@ def generate(
     solver: ContactSolver | None = None,
     tolerance: float | None = None,
     corrector: ContactSolver | None = None,
+    executor: Executor | None = None,
+    within: Within | None = None,
 ) -> Generated:
     """Make a map; what its store has already is taken over.
 
@@ -84,6 +97,10 @@ def generate(
         `ehdmaps.jobs.tolerance`; those of the job if left out.
     corrector : ContactSolver, optional
         Instead of the dearer solver that the job names in `corrected_by`; picklable.
+    executor : concurrent.futures.Executor, optional
+        What solves the points in place of processes that are started here.
+    within : Within, optional
+        The batch that the map belongs to, whose store is open.
 
     Raises
     ------
@@ -94,7 +111,12 @@ def generate(
     adjusted = None if tolerance is None else check_tolerance(job, planned.solver, tolerance)
     total = planned.points if adjusted is None else 0
     processes = workers or available_cores()
-    with Store(store_path(output), fresh) as store, StatusFile(output, job, total, processes) as status:
+    with ExitStack() as stack:
+        if within is None:
+            store: Results = stack.enter_context(Store(store_path(output), fresh))
+            status = stack.enter_context(StatusFile(output, about(job), total, processes))
+        else:
+            store, status = within.store, within.status
         result = SweepResult()
 
         def solve(tasks: Sequence[LineTask], more: bool = True) -> Mapping[str, Arrays]:
@@ -103,7 +125,8 @@ def generate(
             if more:
                 status.more(points)
             if missing:
-                result.add(sweep(missing, store, processes, progress(points) if progress else None, [status]))
+                told = progress(points) if progress else None
+                result.add(sweep(missing, store, processes, told, [status], executor))
             status.write()
             return result.arrays
 
@@ -115,6 +138,7 @@ def generate(
         solve(planned.everything, more=adjusted is not None)
         dataset, group = _refined(planned, result, str(output), solve)
         dataset.attrs.update(found)
+        dataset.attrs.update(within.attributes if within else {})
         write_map(dataset, output, {schema.BACKBONE: group} if group is not None else None)
     return Generated(dataset, group, result)
 
@@ -125,6 +149,7 @@ def generate_in_memory(
     progress: Callable[[int], Progress] | None = None,
     solver: ContactSolver | None = None,
     corrector: ContactSolver | None = None,
+    executor: Executor | None = None,
 ) -> Generated:
     """Make a map without a file and without a store: what is not finished is lost.
 
@@ -136,13 +161,29 @@ def generate_in_memory(
 
     def solve(tasks: Sequence[LineTask]) -> Mapping[str, Arrays]:
         points = sum(task.points for task in tasks)
-        result.add(sweep(tasks, NoStore(), workers or available_cores(), progress(points) if progress else None))
+        told = progress(points) if progress else None
+        result.add(sweep(tasks, NoStore(), workers or available_cores(), told, executor=executor))
         return result.arrays
 
     planned = _corrected(planned, solve)
     solve(planned.everything)
     dataset, group = _refined(planned, result, job.name, solve)
     return Generated(dataset, group, result)
+
+
+def planned_tasks(job: Job, solver: ContactSolver | None = None) -> tuple[LineTask, ...]:
+    """All that is known to be solved for a map before anything is solved.
+
+    Points that hang on results come later: those of a correction, of lines that turn out too coarse, of a tolerance.
+
+    Parameters
+    ----------
+    job : Job
+        What to make.
+    solver : ContactSolver, optional
+        Instead of the job's.
+    """
+    return _plan(job, _solver(job, solver), None).everything
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,9 @@ _BEARING_LENGTHS = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_
 _NAMED_SIZES = re.compile(r"bearing (\S+) x (\S+) x (\S+) mm")
 """Name of a bearing that was estimated from dimensions."""
 
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+"""Keys that TOML takes without quotes."""
+
 _OIL_UNITS = {
     "viscosity": "Pa s",
     "viscosity_40": "m^2/s",
@@ -123,7 +126,28 @@ def table_lines(name: str, table: Mapping[str, Value]) -> list[str]:
     table : mapping
         Keys with their values.
     """
-    return ["", f"[{name}]", *(f"{key} = {_toml(value)}" for key, value in table.items())]
+    return ["", f"[{name}]", *(f"{_key(key)} = {_toml(value)}" for key, value in table.items())]
+
+
+def tables_text(values: Mapping[str, object]) -> str:
+    """Return the text of a job file from its tables as they were read: `tomllib`'s way back.
+
+    Parameters
+    ----------
+    values : mapping
+        Tables, and keys that stand before the first of them, by name. What no job file may hold (dates, lists of
+        tables) becomes a text that its reader refuses.
+    """
+    lines = [f"{_key(key)} = {_toml(value)}" for key, value in values.items() if not isinstance(value, Mapping)]
+    for key, value in values.items():
+        if isinstance(value, Mapping):
+            lines += table_lines(_key(key), value)
+    return "\n".join(lines) + "\n"
+
+
+def _key(key: str) -> str:
+    """Return a key as it is, or in quotes where TOML wants them."""
+    return key if _BARE.fullmatch(key) else _toml(key)
 
 
 def _toml(value: object) -> str:
@@ -131,7 +155,7 @@ def _toml(value: object) -> str:
     if isinstance(value, Mapping):
         return f"{{ {', '.join(f'{key} = {_toml(entry)}' for key, entry in value.items())} }}"
     # JSON escapes all that TOML wants escaped, but for this one.
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return json.dumps(value, ensure_ascii=False, default=str).replace("\x7f", "\\u007f")
 
 
 def _quantity(value: float, unit: str) -> str:

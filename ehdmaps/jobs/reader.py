@@ -111,6 +111,11 @@ def parse_job(
         With every problem found, each beginning with `where`.
     """
     values = toml_text.parse(text, where)
+    if "batch" in values:
+        raise InputError(
+            f"{where}: is a batch file, of many jobs; allowed: one job; `ehdmaps generate`, `check`, `status`, `merge` "
+            "and `submit` take a batch"
+        )
     problems: list[str] = []
     job = _job(Table(values, "job file", problems), text, name, solver, to_run, finding_solids)
     if problems or job is None:

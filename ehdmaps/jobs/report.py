@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -101,21 +102,82 @@ def status_lines(dataset: xr.Dataset, roughness: float = 0.0) -> Iterator[str]:
     roughness : float
         Combined rms roughness [m]; 0 where none is known.
     """
-    reasons = np.array([plain(reason) for reason in dataset["reason"].values.ravel()], dtype=object)
-    causes = np.array([_NUMBER.sub("#", reason) for reason in reasons], dtype=object)
-    for words, here in status_counts(dataset, roughness).items():
-        yield f"  {words:17s} {np.count_nonzero(here):7d}  {100.0 * here.mean():6.2f} %"
-        if "," in words:
-            yield f"              {_corner(dataset, here)}"
-        for cause in sorted(set(causes[here]) - {""}):
-            of_cause = here & (causes == cause)
-            count = int(np.count_nonzero(of_cause))
-            example = reasons[of_cause][0]
-            yield f"    {count:7d} x {example}" + (" (numbers differ)" if len(set(reasons[of_cause])) > 1 else "")
-            yield f"              {_corner(dataset, of_cause)}"
+    for group in status_rows(dataset, roughness):
+        yield f"  {group.words:17s} {group.count:7d}  {100.0 * group.share:6.2f} %"
+        if "," in group.words:
+            yield f"              {group.where}"
+        for cause in group.causes:
+            yield f"    {cause.count:7d} x {cause.text}"
+            yield f"              {cause.where}"
     filled = int(np.count_nonzero(dataset["filled"].values))
     if filled:
         yield f"  of the points without a solution {filled} are isolated and filled from their neighbours"
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Points of one status that have one reason.
+
+    Attributes
+    ----------
+    count : int
+        How many there are.
+    text : str
+        The reason of the first, and whether numbers differ in those of the others.
+    where : str
+        Ranges of the axes in which they lie.
+    """
+
+    count: int
+    text: str
+    where: str
+
+
+@dataclass(frozen=True)
+class StatusGroup:
+    """Points of one status.
+
+    Attributes
+    ----------
+    words : str
+        The status.
+    count : int
+        How many there are.
+    share : float
+        Their share of all points.
+    where : str
+        Ranges of the axes in which they lie.
+    causes : tuple of Cause
+        Their reasons, where they have some.
+    """
+
+    words: str
+    count: int
+    share: float
+    where: str
+    causes: tuple[Cause, ...]
+
+
+def status_rows(dataset: xr.Dataset, roughness: float = 0.0) -> Iterator[StatusGroup]:
+    """Yield the points by status and cause.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map.
+    roughness : float
+        Combined rms roughness [m]; 0 where none is known.
+    """
+    reasons = np.array([plain(reason) for reason in dataset["reason"].values.ravel()], dtype=object)
+    kinds = np.array([_NUMBER.sub("#", reason) for reason in reasons], dtype=object)
+    for words, here in status_counts(dataset, roughness).items():
+        causes = []
+        for kind in sorted(set(kinds[here]) - {""}):
+            of_cause = here & (kinds == kind)
+            differ = " (numbers differ)" if len(set(reasons[of_cause])) > 1 else ""
+            text = f"{reasons[of_cause][0]}{differ}"
+            causes.append(Cause(int(np.count_nonzero(of_cause)), text, _corner(dataset, of_cause)))
+        yield StatusGroup(words, int(np.count_nonzero(here)), float(here.mean()), _corner(dataset, here), tuple(causes))
 
 
 def _corner(dataset: xr.Dataset, chosen: BoolArray) -> str:
@@ -155,15 +217,25 @@ def fitted_pressure(dataset: xr.Dataset) -> str:
 def error_lines(dataset: xr.Dataset) -> Iterator[str]:
     """Yield median, 95 % quantile and maximum of the error estimates over the solved points."""
     yield "  estimated relative error       median       95 %    largest"
+    for label, found in error_rows(dataset):
+        if found is None:
+            yield f"  {label:25s} {NONE_STATED:>11s}"
+        else:
+            middle, high, most = found
+            yield f"  {label:25s} {middle:11.2g} {high:10.2g} {most:10.2g}"
+
+
+def error_rows(dataset: xr.Dataset) -> Iterator[tuple[str, tuple[float, float, float] | None]]:
+    """Yield each quantity with median, 95 % quantile and maximum of its error estimates; None where none is stated."""
     for name in ERRORS:
         values = dataset[name].values if name in dataset else np.empty(0)
         known = values[np.isfinite(values)]
         label = name.removesuffix("_error").replace("_", " ")
-        if known.size:
-            middle, high, most = (float(value) for value in np.quantile(known, (0.5, 0.95, 1.0)))
-            yield f"  {label:25s} {middle:11.2g} {high:10.2g} {most:10.2g}"
-        else:
-            yield f"  {label:25s} {NONE_STATED:>11s}"
+        if not known.size:
+            yield label, None
+            continue
+        middle, high, most = (float(value) for value in np.quantile(known, (0.5, 0.95, 1.0)))
+        yield label, (middle, high, most)
 
 
 def value_lines(dataset: xr.Dataset) -> Iterator[str]:
@@ -193,12 +265,18 @@ def value_lines(dataset: xr.Dataset) -> Iterator[str]:
 
 def law_lines(dataset: xr.Dataset) -> Iterator[str]:
     """Yield what the check of the contact laws against fresh solves found; nothing where there was none."""
-    law = {key: value for key, value in dataset.attrs.items() if key.startswith(_LAW_PREFIX)}
+    law = list(law_rows(dataset))
     if law:
         yield "accuracy of the contact laws, at random points against fresh solves"
-        for key, value in law.items():
+        yield from (f"  {label:36s} {text}" for label, text in law)
+
+
+def law_rows(dataset: xr.Dataset) -> Iterator[tuple[str, str]]:
+    """Yield what that check looked at, and what it found."""
+    for key, value in dataset.attrs.items():
+        if key.startswith(_LAW_PREFIX):
             text = f"{value:.2%}" if key.endswith("_within_bar") else plain(value)
-            yield f"  {key.removeprefix(_LAW_PREFIX).replace('_', ' '):36s} {text}"
+            yield key.removeprefix(_LAW_PREFIX).replace("_", " "), text
 
 
 def tolerance_lines(dataset: xr.Dataset) -> Iterator[str]:

@@ -79,10 +79,20 @@ class RunStatus:
 
 @dataclass(frozen=True)
 class Seen:
-    """A status, and whether a process works on the map now."""
+    """A status, and whether a process works on the map now.
+
+    `known` is False where that cannot be told: on another machine, or a file system without locks, a lock that is not
+    seen may be held. Only the time of the last sign tells something then.
+    """
 
     status: RunStatus
     running: bool
+    known: bool = True
+
+    @property
+    def finished(self) -> bool:
+        """Whether all points have a result, and nobody works on more: of a shard, which leaves no map."""
+        return not self.running and 0 < self.status.total <= self.status.done
 
 
 class StatusFile:
@@ -94,18 +104,21 @@ class StatusFile:
     ----------
     output : Path
         The map.
-    job : Job
-        What is made.
+    about : str
+        What is made, see `about`.
     total : int
         Number of points.
     workers : int
         Number of processes.
+    stays : bool
+        Whether it stays at the end of a run that finishes: of a shard, which leaves no map that would say so.
     """
 
-    def __init__(self, output: Path, job: Job, total: int, workers: int) -> None:
+    def __init__(self, output: Path, about: str, total: int, workers: int, stays: bool = False) -> None:
         self._path = status_path(output)
+        self._stays = stays
         self._about = {
-            "job": f"{job.title}, {job.lubricant.name}, solver {job.solver}",
+            "job": about,
             "process": os.getpid(),
             "host": platform.node(),
             "workers": workers,
@@ -126,7 +139,7 @@ class StatusFile:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if kind is not None:
+        if kind is not None or self._stays:
             self.write()
         elif self._held is not None:
             with contextlib.suppress(OSError):
@@ -184,7 +197,8 @@ class StatusFile:
         aside = self._path.with_name(f"{self._path.name}.{os.getpid()}.part")
         descriptor = os.open(aside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o666)
         try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            with contextlib.suppress(OSError):  # a file system without locks: the file still tells how far it is
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
             os.write(descriptor, content)
             aside.replace(self._path)
         except OSError:
@@ -194,6 +208,11 @@ class StatusFile:
         if self._held is not None:
             os.close(self._held)
         self._held = descriptor
+
+
+def about(job: Job) -> str:
+    """What is made, in words."""
+    return f"{job.title}, {job.lubricant.name}, solver {job.solver}"
 
 
 def status_path(output: Path) -> Path:
@@ -228,7 +247,9 @@ def look(output: Path) -> Seen | None:
                 running = _is_held(file.fileno())
                 # One that was replaced since it was opened is not held any more.
                 if running or os.path.samestat(os.fstat(file.fileno()), path.stat()):
-                    return Seen(_parsed(path, content), running)
+                    status = _parsed(path, content)
+                    known = running is not None and (running or status.host == platform.node())
+                    return Seen(status, bool(running), known)
     except FileNotFoundError:
         return None
     except OSError as error:
@@ -236,12 +257,14 @@ def look(output: Path) -> Seen | None:
     return Seen(_parsed(path, content), running=True)  # it was replaced every time
 
 
-def _is_held(descriptor: int) -> bool:
-    """Whether another process holds the lock of an open file."""
+def _is_held(descriptor: int) -> bool | None:
+    """Whether another process holds the lock of an open file; None where the file system has no locks."""
     try:
         fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except BlockingIOError:
         return True
+    except OSError:
+        return None
     return False
 
 

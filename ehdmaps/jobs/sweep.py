@@ -11,7 +11,7 @@ import os
 import time
 from collections import deque
 from collections.abc import Generator, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -25,6 +25,9 @@ from ehdmaps.workers import start_worker
 _THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 _AHEAD = 3
 """Tasks handed out per worker, so that none waits for the next; few, so that few are lost on Ctrl-C."""
+
+MOST_OUT = 2000
+"""Tasks handed out to an executor that was given, of which nobody knows how many workers it has."""
 
 
 class Task(Protocol):
@@ -135,6 +138,7 @@ def sweep(
     workers: int,
     progress: Progress | None = None,
     watches: Sequence[Watch] = (),
+    executor: Executor | None = None,
 ) -> SweepResult:
     """Take over what the store has, run the rest, and keep every result in the store.
 
@@ -150,6 +154,9 @@ def sweep(
         Told about points.
     watches : sequence of Watch
         Shown every result.
+    executor : concurrent.futures.Executor, optional
+        What runs the tasks in place of processes that are started here; it stays open, and belongs to the caller. A
+        task that it loses is handed out once more.
 
     Returns
     -------
@@ -178,7 +185,10 @@ def sweep(
                 watch.found(task, known, now=False)
     result.damaged = store.damaged
     told.taken_over(result.taken_over)
-    outcomes = _in_process(todo) if workers <= 1 else _in_pool(todo, min(workers, len(todo)), store)
+    if executor is not None:
+        outcomes = _in_executor(todo, executor, store)
+    else:
+        outcomes = _in_process(todo) if workers <= 1 else _in_pool(todo, min(workers, len(todo)), store)
     try:
         for task, arrays, final in outcomes:
             if final and task.is_final(arrays):
@@ -213,19 +223,35 @@ def _in_process(tasks: Sequence[Task]) -> _Outcomes:
         yield task, _run(task), True
 
 
+def _import(task: Task) -> None:
+    """Do nothing: a worker that receives a task has imported what the task needs."""
+
+
 def _in_pool(tasks: Sequence[Task], workers: int, store: Results) -> _Outcomes:
-    """Run tasks in worker processes; those that were out when a worker died are tried again alone."""
+    """Run tasks in worker processes; those that were out when a worker died are tried again alone.
+
+    The first task runs alone while the other workers import. In a fresh installation it compiles what all need, and
+    they load that from numba's cache; else each worker would compile the same. Slow tasks do not wait for each other.
+    """
     waiting = deque(tasks)
+    compiled = any(task.slow for task in tasks)
     while waiting:
         running: dict[Future[Arrays], Task] = {}
         try:
-            with _pool(workers) as pool:
+            with worker_pool(workers) as pool:
+                if not compiled:
+                    with deaf_children():  # a worker starts with every task that finds none idle
+                        running[pool.submit(_run, waiting[0])] = waiting[0]
+                        for _ in range(workers - 1):
+                            pool.submit(_import, waiting[0])
+                    waiting.popleft()
                 while waiting or running:
-                    while waiting and len(running) < workers * _AHEAD:
+                    while compiled and waiting and len(running) < workers * _AHEAD:
                         with deaf_children():  # workers start with the first task
                             running[pool.submit(_run, waiting[0])] = waiting[0]
                         waiting.popleft()
                     done, _ = wait(running, timeout=COMMIT_SECONDS, return_when=FIRST_COMPLETED)
+                    compiled = compiled or bool(done)
                     store.commit_if_due()
                     for future in done:
                         arrays = future.result()
@@ -235,11 +261,63 @@ def _in_pool(tasks: Sequence[Task], workers: int, store: Results) -> _Outcomes:
             yield from _alone(list(running.values()))
 
 
+@dataclass(frozen=True)
+class _Raised:
+    """An exception of a task, which is a bug: told apart from one by which an executor says that it lost the task."""
+
+    error: Exception
+
+
+def _caught(task: Task) -> Arrays | _Raised:
+    """Run one task where another machine may do it."""
+    try:
+        return _run(task)
+    except Exception as error:
+        return _Raised(error)
+
+
+def _in_executor(tasks: Sequence[Task], executor: Executor, store: Results) -> _Outcomes:
+    """Run tasks by an executor of the caller's; what it loses is handed out once more, then given up for this time."""
+    waiting = deque((task, True) for task in tasks)
+    running: dict[Future[Arrays | _Raised], tuple[Task, bool]] = {}
+    try:
+        while waiting or running:
+            while waiting and len(running) < MOST_OUT:
+                task, first = waiting[0]
+                try:
+                    future = executor.submit(_caught, task)
+                except Exception as error:  # of any kind: it is broken, or was shut down
+                    reason = f"the executor takes no task any more ({error!s:.200}); the same command tries again"
+                    yield from ((left, left.failed(reason), False) for left, _ in waiting)
+                    waiting.clear()
+                    break
+                running[future] = waiting.popleft()
+            done, _ = wait(running, timeout=COMMIT_SECONDS, return_when=FIRST_COMPLETED)
+            store.commit_if_due()
+            for future in done:
+                task, first = running.pop(future)
+                try:
+                    found = future.result()
+                except Exception as error:  # of the executor's own kind, which is not known here
+                    if first:
+                        waiting.append((task, False))
+                        continue
+                    reason = f"the executor lost the task twice ({error!s:.200}); the same command tries again"
+                    yield task, task.failed(reason), False
+                    continue
+                if isinstance(found, _Raised):
+                    raise found.error
+                yield task, found, True
+    finally:
+        for future in running:
+            future.cancel()
+
+
 def _alone(tasks: Sequence[Task]) -> _Outcomes:
     """Run tasks one at a time, each in a process that it may take down with it."""
     for task in tasks:
         try:
-            with _pool(1) as pool:
+            with worker_pool(1) as pool:
                 with deaf_children():
                     outcome_of = pool.submit(_run, task)
                 outcome = outcome_of.result(), True
@@ -250,7 +328,7 @@ def _alone(tasks: Sequence[Task]) -> _Outcomes:
 
 
 @contextmanager
-def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
+def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Start worker processes of one thread each; on any error stop them at once, else when they are done."""
     others = set(multiprocessing.active_children())
     before = {name: os.environ.get(name) for name in _THREAD_VARIABLES}

@@ -376,7 +376,23 @@ class BackboneField:
         weights: FloatArray,
         lattice: FloatArray | None = None,
     ) -> FloatArray:
-        """Films along loads at one speed and temperature, shape (3, n)."""
+        """Films along loads at one speed and temperature with their loss lifted, shape (3, n)."""
+        offset, compliance, loss = self._as_solved(contact, loads, speed, temperature, lines, weights, lattice)
+        width = half_width(loads, contact.radius, contact.reduced_modulus)
+        total = contact.structural_compliance(loads) + compliance
+        return np.stack([offset, compliance, lifted_loss(loss, width, speed, total)])
+
+    def _as_solved(
+        self,
+        contact: LineContact,
+        loads: FloatArray,
+        speed: float,
+        temperature: float,
+        lines: IntArray,
+        weights: FloatArray,
+        lattice: FloatArray | None = None,
+    ) -> FloatArray:
+        """Films along loads at one speed and temperature as a solver gives them, shape (3, n)."""
         unit, valley, scale = self._scales(contact, speed, temperature)
         mixed = np.empty((3, loads.size))
         zeta = np.log(loads * unit / valley)
@@ -385,8 +401,65 @@ class BackboneField:
         compliance = -mixed[1] * offset / loads
         width = half_width(loads, contact.radius, contact.reduced_modulus)
         loss = LOSS_SCALE * np.sinh(mixed[2]) * offset / loads * width / speed
-        total = contact.structural_compliance(loads) + compliance
-        return np.stack([offset, compliance, lifted_loss(loss, width, speed, total)])
+        return np.stack([offset, compliance, loss])
+
+    def solved_films(self, contact: LineContact, loads: FloatArray, speed: float, temperature: float) -> FloatArray:
+        """Films of any contact of these solids as a solver would give them: the loss may be negative in the valley.
+
+        Parameters
+        ----------
+        contact : LineContact
+            The contact; it need not be one of the map.
+        loads : ndarray, shape (n,)
+            [N/m].
+        speed, temperature : float
+            [m/s], > 0, and [K].
+
+        Returns
+        -------
+        ndarray, shape (2, 3, n)
+            Film offset [m], film compliance [m2/N] and loss compliance [m2 s/N]: read from six lines along speed and
+            temperature, and from four, by which the reading is known to be good or not.
+        """
+        read = (
+            self._as_solved(contact, loads, speed, temperature, *self.stencil(contact, speed, temperature, most))
+            for most in (NEIGHBOURS, _FEWER)
+        )
+        return np.stack(list(read))
+
+    def stencil(
+        self, contact: LineContact, speed: float, temperature: float, most: int = NEIGHBOURS
+    ) -> tuple[IntArray, FloatArray]:
+        """Lines that a contact is read from at one speed and temperature, and their weights; both of shape (m,).
+
+        Parameters
+        ----------
+        contact : LineContact
+            The contact.
+        speed, temperature : float
+            [m/s], > 0, and [K].
+        most : int
+            Largest number of lines along each axis.
+        """
+        rows, row_weights = lagrange(self._log_speeds, math.log(speed * self._reference.radius / contact.radius), most)
+        columns, column_weights = lagrange(self._temperatures, temperature, most)
+        lines = (rows[:, None] * self._temperatures.size + columns).ravel()
+        return lines, np.outer(row_weights, column_weights).ravel()
+
+    def zeta(self, contact: LineContact, loads: FloatArray, speed: float, temperature: float) -> FloatArray:
+        """ln(M/M_valley) of a contact at loads [N/m], shape (n,), at one speed [m/s] and temperature [K].
+
+        Parameters
+        ----------
+        contact : LineContact
+            The contact.
+        loads : ndarray, shape (n,)
+            [N/m].
+        speed, temperature : float
+            [m/s], > 0, and [K].
+        """
+        unit, valley, _ = self._scales(contact, speed, temperature)
+        return np.log(loads * unit / valley)
 
 
 def lagrange(nodes: FloatArray, at: float, most: int = NEIGHBOURS) -> tuple[IntArray, FloatArray]:

@@ -176,7 +176,7 @@ class RollingFilm:
             return found
         T = float(np.clip(temperature, *self._temperatures))
         groups = np.exp(self._logarithms(contact, loads[loaded], speed, T)[which])
-        found[loaded] = _units(contact, self._lubricant, speed, T)[which] * groups
+        found[loaded] = rolling_units(contact, self._lubricant, speed, T)[which] * groups
         return found
 
     def _logarithms(self, contact: LineContact, loads: FloatArray, speed: float, T: float) -> FloatArray:
@@ -267,7 +267,7 @@ def _backbone_reader(group: xr.Dataset, reference: LineContact, lubricant: Lubri
     lattices = np.zeros((2, speeds.size * kelvins.size, nodes, 5))
     for j, speed in enumerate(speeds):
         for k, kelvin in enumerate(kelvins):
-            units = _units(reference, lubricant, float(speed), float(kelvin))
+            units = rolling_units(reference, lubricant, float(speed), float(kelvin))
             for i, name in enumerate(NAMES):
                 line = group[name].values[:, j, k].astype(np.float64)
                 solved = np.isfinite(line) & (line > 0.0)
@@ -303,7 +303,7 @@ def _grid_reader(
     """Reader of the map's own grid: splines over ln(load), ln(speed) and temperature."""
     loads, speeds, kelvins = axes
     units = np.array(
-        [[[_units(contact, lubricant, u, T) for T in kelvins] for u in speeds.tolist()] for contact in contacts]
+        [[[rolling_units(contact, lubricant, u, T) for T in kelvins] for u in speeds.tolist()] for contact in contacts]
     )
     logs = np.log(values / np.moveaxis(units, -1, 0)[:, :, None])
     names = [contact.name for contact in contacts]
@@ -317,8 +317,18 @@ def _grid_reader(
     return read
 
 
-def _units(contact: LineContact, lubricant: Lubricant, speed: float, T: float) -> tuple[float, float]:
-    """Rolling force [N/m] and mass flow [kg/(m s)] whose numbers f and g are one."""
+def rolling_units(contact: LineContact, lubricant: Lubricant, speed: float, T: float) -> tuple[float, float]:
+    """Rolling force [N/m] and mass flow [kg/(m s)] whose numbers f and g are one.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    lubricant : Lubricant
+        The oil.
+    speed, T : float
+        Entrainment speed [m/s], > 0, and temperature [K].
+    """
     state = lubricant.at(float(T))
     number = moes_speed_number(speed, state.viscosity, contact.radius, contact.reduced_modulus)
     force = contact.reduced_modulus * contact.radius * number**0.75

@@ -345,6 +345,10 @@ The points of a map are those of smooth surfaces, whatever it says.
 CORRECTION = "correction"
 """Attribute of a map whose films are corrected, JSON: the dearer solver, its points, the errors of leaving one out."""
 
+FAMILY = "family"
+"""Attribute of a map whose points were read from lines that several maps share, JSON: how many maps and points of
+lines, and how the laws of some of them were found to be."""
+
 TEXTS = (
     "title",
     "job_name",
@@ -356,6 +360,7 @@ TEXTS = (
     OIL_SUPPLY,
     SURFACE,
     CORRECTION,
+    FAMILY,
     CHECKSUM,
 )
 """Attributes that are texts, where a map has them; others than those named here are left alone."""

@@ -15,6 +15,9 @@ from __future__ import annotations
 THIN_FILM_LIMIT = 0.01
 """h/R above which a film is outside thin-film theory, and is said to be an asymptote."""
 
+THICK_NOTE = "film thicker than 1 % of the radius: limit of thin-film theory, Reynolds with a parabolic gap"
+"""What is said of a film above `THIN_FILM_LIMIT`."""
+
 THICKEST_FILM = 0.3
 """h/R above which a film is refused."""
 

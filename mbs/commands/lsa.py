@@ -5,11 +5,14 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 from scipy.signal import find_peaks
 
 from ehdmaps.errors import InputError
+from ehdmaps.exports.matlab_file import KIND
+from ehdmaps.outputs import FIGURE, Output, output_problems
 from mbs.analyses.case import Case
 from mbs.analyses.lsa import LsaResult, lsa_dataset, lsa_of, lsa_problems
 from mbs.commands.auto import Looked, analysed
@@ -19,6 +22,8 @@ from mbs.commands.reach import fade_lines
 from mbs.linearised.linear import response_unit
 from mbs.linearised.validity import DynamicLoad
 from mbs.output.response_plot import Curves, comparison_figure, response_figure
+from mbs.output.results import RESULT
+from mbs.output.state_space_file import write_spaces
 from mbs.scene.assembly import Model
 
 MOST_COMPARED_CASES = 8
@@ -56,12 +61,31 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         lines += _report(entry, label if found[1:] else "")
     dataset = lsa_dataset([label for label, _ in found], [entry for _, entry in found])
     lines += [*outside, *write(arguments, dataset, figure)]
+    if file := getattr(arguments, "state_space", None):
+        write_spaces(Path(file), found)
+        lines.append(f"{file}: written")
     return "\n".join(lines), 1 if outside else done.status
 
 
 def _asked(arguments: argparse.Namespace) -> list[Case]:
     """A case for each law, map, kind of films, oil supply and clearance."""
-    cases = load_cases(arguments, needs=lsa_problems)
+    file = getattr(arguments, "state_space", None)
+    problems: list[str] = []
+    cases: list[Case] = []
+    try:
+        cases = load_cases(arguments, needs=lsa_problems)
+    except InputError as error:
+        problems += error.problems
+    if file is not None:
+        read = [
+            arguments.scene,
+            *(getattr(arguments, "map", None) or ()),
+            *(cases[0].model.scene.files if cases else ()),
+        ]
+        outputs = [Output("-o", arguments.output, RESULT), Output("--plot", arguments.plot, FIGURE)]
+        problems += output_problems([*outputs, Output("--state-space", file, KIND)], read)
+    if problems:
+        raise InputError(tuple(dict.fromkeys(problems)))
     if len(cases) > MOST_COMPARED_CASES:
         raise InputError(
             f"--law, --map, --films, --supply, --clearance: got {len(cases)} cases; allowed: up to "

@@ -31,6 +31,7 @@ from mbs.commands.reach import fade_lines
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import skeleton
 from mbs.output.modes_plot import modes_figure
+from mbs.output.modes_text import kinds, share_words
 from mbs.output.results import RESULT
 from mbs.output.shapes_file import MOST_SHAPES as MOST_WRITTEN
 from mbs.output.shapes_file import SHAPES, write_shapes
@@ -43,7 +44,6 @@ from mbs.scene.scene import Scene
 HIGHEST = 10e3
 """Highest frequency shown of a scene that asks for no responses [Hz]."""
 
-_LEAST_SHARE = 0.05
 _LAST = 100_000
 
 
@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     done = analysed(arguments, _asked, lambda asked: modes(asked[0]), lambda asked: Looked(asked[0].scene, asked[1]))
     result, highest = done.result, _highest(arguments, done.result.model.scene, [])
     model, found = result.model, result.modes
-    free, overdamped, swinging = _kinds(found)
+    free, overdamped, swinging = kinds(found)
     shown = swinging[found.frequency[swinging] <= highest]
     above = swinging[found.frequency[swinging] > highest]
     notes = [*_free(free), *_above(found, above, highest)]
@@ -150,13 +150,6 @@ def _highest(arguments: argparse.Namespace, scene: Scene | None, problems: list[
     return max(scene.frequencies if scene else (), default=HIGHEST) if highest is None else highest
 
 
-def _kinds(found: Modes) -> tuple[IntArray, IntArray, IntArray]:
-    """Which modes are free, which creep back without oscillating, and which oscillate."""
-    free = found.free
-    creeping = (found.eigenvalues.imag <= 0.0) & ~free
-    return np.flatnonzero(free), np.flatnonzero(creeping), np.flatnonzero(~free & ~creeping)
-
-
 def _table(found: Modes, shown: IntArray) -> list[str]:
     """Lines of modes: frequency, damping ratio, and the parts that have most of the strain energy."""
     bands = found.bands
@@ -167,19 +160,8 @@ def _table(found: Modes, shown: IntArray) -> list[str]:
     for k in shown:
         ratio = clean(found.damping_ratio[k])
         by = ("", "") if bands is None else (f"{bands.frequency[k]:10.2g}", f"{bands.damping_ratio[k]:10.2g}")
-        lines.append(f"  {k + 1:4d} {found.frequency[k]:14.6g}{by[0]} {ratio:15.4g}{by[1]}   {_shares(found, k)}")
+        lines.append(f"  {k + 1:4d} {found.frequency[k]:14.6g}{by[0]} {ratio:15.4g}{by[1]}   {share_words(found, k)}")
     return lines
-
-
-def _shares(found: Modes, mode: int) -> str:
-    """The parts that have most of the strain energy of a mode."""
-    order = np.argsort(-found.shares[:, mode], kind="stable")
-    shares = [
-        f"{found.parts[i]} {100.0 * found.shares[i, mode]:.3g} %"
-        for i in order
-        if found.shares[i, mode] >= _LEAST_SHARE
-    ]
-    return ", ".join(shares) or "none"
 
 
 def _overdamped(found: Modes, which: IntArray) -> list[str]:
@@ -190,7 +172,7 @@ def _overdamped(found: Modes, which: IntArray) -> list[str]:
     for k in which:
         decay = -float(found.eigenvalues[k].real)
         time = MILLISECOND.text(1.0 / decay) if decay > 0.0 else "grows"
-        lines.append(f"  {k + 1:4d} {time:>14}                   {_shares(found, k)}")
+        lines.append(f"  {k + 1:4d} {time:>14}                   {share_words(found, k)}")
     return lines
 
 

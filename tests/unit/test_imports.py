@@ -57,6 +57,7 @@ ALLOWED = {
         "ehdmaps.inputs",
         "ehdmaps.physics",
     },
+    "ehdmaps.report": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.figures", "ehdmaps.outputs", "ehdmaps.units"},
     "ehdmaps.trade": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.figures", "ehdmaps.outputs", "ehdmaps.units"},
     "ehdmaps.stability": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.inputs", "ehdmaps.outputs", "ehdmaps.units"},
     "ehdmaps.exports": {
@@ -89,6 +90,7 @@ ALLOWED = {
         "ehdmaps.ehl",
         "ehdmaps.openfoam",
         "ehdmaps.maps",
+        "ehdmaps.report",
         "ehdmaps.solids",
         "ehdmaps.stability",
         "ehdmaps.trade",
@@ -110,6 +112,7 @@ ALLOWED = {
         "ehdmaps.version",
         "ehdmaps.physics",
         "ehdmaps.maps",
+        "ehdmaps.report",
         "ehdmaps.solids",
         "ehdmaps.stability",
         "ehdmaps.trade",
@@ -131,6 +134,7 @@ ALLOWED = {
         "ehdmaps.version",
         "ehdmaps.physics",
         "ehdmaps.maps",
+        "ehdmaps.report",
         "ehdmaps.solids",
         "ehdmaps.stability",
         "ehdmaps.trade",
@@ -154,7 +158,7 @@ ALLOWED = {
 }
 """What each layer may import besides itself and other distributions. `ehdmaps` itself is the shop window of all."""
 
-SCENES = ("__main__", "analyses", "cli", "commands", "exports", "output", "scene", "stability")
+SCENES = ("__main__", "analyses", "cli", "commands", "exports", "output", "report", "scene", "stability")
 """Modules of mbs that plan a scene or are its command line: they may call ehdmaps.jobs; no other module of mbs may
 call them."""
 

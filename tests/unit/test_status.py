@@ -2,6 +2,7 @@ import dataclasses
 import fcntl
 import json
 import os
+import platform
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import cli, status
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.jobs.status import RunStatus, StatusFile, look, status_path
+from ehdmaps.jobs.status import RunStatus, StatusFile, about, look, status_path
 from ehdmaps.physics.solution import Status
 from tests.cases.jobs import DRY
 
@@ -47,7 +48,7 @@ def seen(output):
 
 def test_a_run_can_be_looked_at_and_leaves_nothing_behind(output, job, monkeypatch):
     monkeypatch.setattr(status, "WRITE_SECONDS", 0.0)
-    with StatusFile(output, job, 12, workers=3) as written:
+    with StatusFile(output, about(job), 12, workers=3) as written:
         assert seen(output)[0].done == 0
         written.found(Line(), arrays(*[Status.CONVERGED] * 3, Status.STAGNATED), now=False)
         written.found(Line(), arrays(Status.FAILED, Status.STAGNATED, Status.ASYMPTOTE, Status.CONVERGED), now=True)
@@ -62,7 +63,7 @@ def test_a_run_can_be_looked_at_and_leaves_nothing_behind(output, job, monkeypat
 
 
 def test_a_run_that_ends_early_leaves_its_last_status(output, job):
-    with pytest.raises(KeyboardInterrupt), StatusFile(output, job, 12, workers=1) as written:
+    with pytest.raises(KeyboardInterrupt), StatusFile(output, about(job), 12, workers=1) as written:
         written.found(Line(), arrays(*[Status.CONVERGED] * 4), now=True)
         raise KeyboardInterrupt
     found, running = seen(output)
@@ -70,7 +71,7 @@ def test_a_run_that_ends_early_leaves_its_last_status(output, job):
 
 
 def test_it_is_written_now_and_then_and_after_every_point_that_took_long(output, job):
-    with StatusFile(output, job, 100, workers=1) as written:
+    with StatusFile(output, about(job), 100, workers=1) as written:
         for _ in range(5):
             written.found(Line(), arrays(*[Status.CONVERGED] * 4), now=True)
         assert seen(output)[0].done == 0  # the first one is younger than WRITE_SECONDS
@@ -80,7 +81,7 @@ def test_it_is_written_now_and_then_and_after_every_point_that_took_long(output,
 
 def test_who_looks_does_not_disturb(output, job, monkeypatch):
     monkeypatch.setattr(status, "WRITE_SECONDS", 0.0)
-    with StatusFile(output, job, 100, workers=1) as written:
+    with StatusFile(output, about(job), 100, workers=1) as written:
         held = [status_path(output).open("rb") for _ in range(3)]
         for file in held:
             with pytest.raises(BlockingIOError):
@@ -98,7 +99,7 @@ def test_who_looks_does_not_disturb(output, job, monkeypatch):
 def test_a_status_that_cannot_be_written_is_no_reason_to_stop(output, job, obstacle):
     path = status_path(output)
     path.mkdir() if obstacle == "folder" else path.write_text("mine")
-    with StatusFile(output, job, 4, workers=1) as written:
+    with StatusFile(output, about(job), 4, workers=1) as written:
         written.found(Line(), arrays(*[Status.CONVERGED] * 4), now=True)
     assert path.is_dir() if obstacle == "folder" else path.read_text() == "mine"
 
@@ -136,19 +137,43 @@ def left(output, **changes):
 @pytest.mark.parametrize("name", ["mine.nc", "mine.nc.store", "mine.nc.store.status", "mine.toml", None])
 def test_an_interrupted_run_by_all_its_names(output, capsys, name):
     (output.parent / "mine.toml").write_text(DRY)
-    left(output, failed={"outside_validity": 3, "failed": 1})
+    left(output, host=platform.node(), failed={"outside_validity": 3, "failed": 1})
     code, out, err = command(capsys, *([name] if name else []))
     assert (code, err) == (1, "")
     lines = out.splitlines()
-    assert lines[0] == "mine.nc: interrupted, process 12 on here has ended; the same command goes on"
+    assert lines[0] == f"mine.nc: interrupted, process 12 on {platform.node()} has ended; the same command goes on"
     assert lines[2] == "  points   40 of 100 (40.0 %), 10 of them taken over"
     assert lines[3] == "  rate     not known"
     assert lines[4] == "  failed   1 failed, 3 outside validity"
     assert lines[6].startswith("  written  2026-01-01T01:00:00+00:00, ")
 
 
+def test_of_another_machine_only_the_last_sign_is_known(output, capsys):
+    left(output, host="node7")
+    code, out, _ = command(capsys, "mine.nc")
+    assert code == 0
+    assert "mine.nc: process 12 on node7: only there it can be told whether it runs; it was heard of " in out
+
+
+def test_a_file_system_without_locks_is_no_reason_to_stop(output, job, capsys, monkeypatch):
+    def refuse(*_):
+        raise OSError(38, "Function not implemented")
+
+    monkeypatch.setattr(status.fcntl, "flock", refuse)
+    with StatusFile(output, about(job), 12, workers=3):
+        code, out, _ = command(capsys, "mine.nc")
+    assert code == 0
+    assert "only there it can be told whether it runs" in out
+
+
+def test_the_status_of_a_shard_stays(output, job):
+    with StatusFile(output, about(job), 4, workers=1, stays=True) as written:
+        written.found(Line(), arrays(0, 0, 0, 0), now=True)
+    assert look(output).finished
+
+
 def test_a_running_one(output, job, capsys):
-    with StatusFile(output, job, 12, workers=3):
+    with StatusFile(output, about(job), 12, workers=3):
         code, out, _ = command(capsys, "mine.nc")
     assert code == 0
     assert f"mine.nc: running, process {os.getpid()} on " in out and "with 3 workers" in out

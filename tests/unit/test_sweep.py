@@ -1,5 +1,6 @@
 import os
 import signal
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -94,6 +95,31 @@ def test_a_solver_that_gives_up_is_a_result(tmp_path, workers):
         assert store.get("gives up 2")["reason"] == ["no film"]
     assert result.arrays["square 3"]["value"] == 9.0
     assert result.solved == 9
+
+
+@dataclass(frozen=True)
+class Meeting(Stub):
+    """A task that says when it begins; the first one waits for the others, so long as `patience` says."""
+
+    patience: float = 0.0
+
+    def run(self):
+        if self.number > 0:
+            Path(self.marker).write_text("")
+        end = time.monotonic() + self.patience
+        while self.number == 0 and not Path(self.marker).exists() and time.monotonic() < end:
+            time.sleep(0.01)
+        return {"value": np.array([float(Path(self.marker).exists())]), "reason": np.array([""])}
+
+
+@pytest.mark.parametrize(("slow", "patience"), [(False, 1.0), (True, 60.0)])
+def test_only_slow_tasks_run_beside_the_first_one(tmp_path, slow, patience):
+    """The first one compiles for all; what takes hours does not wait for it."""
+    tasks = [Meeting(number, "met", str(tmp_path / "begun"), slow, patience=patience) for number in range(4)]
+    with Store(tmp_path / "s") as store:
+        result = sweep(tasks, store, 2)
+    assert result.arrays["met 0"]["value"] == slow
+    assert result.solved == 12
 
 
 def test_a_dead_worker_costs_its_task_only(tmp_path):

@@ -8,11 +8,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ehdmaps.jobs import solvers
+from ehdmaps.jobs.batch import is_batch, read_batch
+from ehdmaps.jobs.batch_plan import plan_batch
 from ehdmaps.jobs.job import CorrectedBy, Job
 from ehdmaps.jobs.law_check import check_points
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.refinement import refinement
 from ehdmaps.jobs.report import AXES, span
+from ehdmaps.jobs.shards import unique
 from ehdmaps.jobs.supply import supply_words
 from ehdmaps.jobs.surface import surface_words
 from ehdmaps.jobs.tasks import LineTask, line_tasks
@@ -40,6 +43,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """
     import numpy as np
 
+    if is_batch(arguments.job):
+        return _batch(arguments.job, arguments.solver)
     job = read_job(arguments.job, arguments.solver, to_run=True)
     solver = solvers.build(job.solver, job.solver_options)
     values = (job.loads, job.entrainment_speeds, job.temperatures)
@@ -72,6 +77,28 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"  memory  about {max(100.0 + cheap * _BYTES_PER_POINT / 1e6, 1.0):.0f} MB",
     ]
     return "\n".join(lines), 0 if solved else 1
+
+
+def _batch(source: str, solver: str | None) -> tuple[str, int]:
+    """Read a batch file, and tell what its maps share."""
+    batch = read_batch(source, solver, to_run=True)
+    plan = plan_batch(batch)
+    tasks = unique(plan.tasks())
+    points = sum(task.points for task in tasks)
+    lines = [
+        f"{source}: no problems",
+        f"  {len(batch.members)} maps, from {batch.members[0].name} to {batch.members[-1].name}",
+        *(
+            f"  {len(shared.members)} maps with {shared.family.jobs[0].lubricant.title} share lines of "
+            f"{shared.family.lines.points} points"
+            for shared in plan.shared
+        ),
+        *([f"  {len(plan.alone)} maps are solved at their own points"] if plan.alone else []),
+        f"  points  {points} in {len(tasks)} tasks, which is what shards can be made of",
+    ]
+    job = batch.members[0].job
+    estimate = estimated_time(job, solvers.build(job.solver, job.solver_options), points)
+    return "\n".join([*lines, f"  time    {estimate.words}, and that of putting maps together"]), 0
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,10 @@ from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
+from ehdmaps.jobs.batch import SUMMARY, is_batch, read_batch
+from ehdmaps.jobs.batch_generate import batch_path, generate_batch, make_folder
+from ehdmaps.jobs.batch_table import summary as batch_summary
+from ehdmaps.jobs.batch_table import write_table
 from ehdmaps.jobs.correction_report import unsolved
 from ehdmaps.jobs.generate import generate
 from ehdmaps.jobs.job import Job
@@ -16,10 +20,12 @@ from ehdmaps.jobs.law_check import unmet
 from ehdmaps.jobs.progress import progress
 from ehdmaps.jobs.reader import is_map, read_job
 from ehdmaps.jobs.report import holes
+from ehdmaps.jobs.shards import shard_path
 from ehdmaps.jobs.store import store_path
 from ehdmaps.jobs.summary import summary
 from ehdmaps.jobs.tolerance import read_tolerance, unmet_tolerance
-from ehdmaps.outputs import MAP, Output, check_outputs
+from ehdmaps.jobs.work import read_work, run_shard
+from ehdmaps.outputs import MAP, TABLE, Output, check_outputs
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.program import tell
 
@@ -29,6 +35,11 @@ INTERRUPTED = 130
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Make the maps, one after the other; status 1 if one has points without a solution, or a law not good enough."""
+    if arguments.shard is not None:
+        return _shard(arguments)
+    batches = [source for source in arguments.jobs if is_batch(source)]
+    if batches:
+        return _batch(batches[0], arguments)
     tolerance = None if arguments.tolerance is None else read_tolerance(arguments.tolerance)
     texts, status = [], 0
     for job, output in _planned(arguments):
@@ -38,6 +49,61 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         if found == INTERRUPTED:
             break
     return "\n\n".join(text for text in texts if text), status
+
+
+def _shard(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Solve one shard of a job or a batch."""
+    beside = {"several JOB": len(arguments.jobs) > 1, "--tolerance": arguments.tolerance is not None}
+    beside["--keep-cases"] = arguments.keep_cases is not None
+    problems = [
+        f"--shard: stands beside {option}; allowed: one job or batch, with --workers, --solver, --fresh and -o"
+        for option, given in beside.items()
+        if given
+    ]
+    if problems:
+        raise InputError(problems)
+    work, shard = read_work(arguments.jobs[0], arguments.output, arguments.solver), arguments.shard
+    store = store_path(shard_path(work.place, shard))
+    try:
+        result = run_shard(work, shard, arguments.workers, arguments.fresh, progress)
+    except KeyboardInterrupt:
+        tell(f"\nstopped; what is solved is kept in {store}: the same command goes on from there")
+        return "", INTERRUPTED
+    return f"{store}: shard {shard} solved: {result.taken_over} points taken over, {result.solved} solved now", 0
+
+
+def _batch(source: str, arguments: argparse.Namespace) -> tuple[str, int]:
+    """Make the maps of a batch file."""
+    beside = {
+        "JOB": len(arguments.jobs) > 1,
+        "--tolerance": arguments.tolerance is not None,
+        "--keep-cases": arguments.keep_cases is not None,
+    }
+    problems = [
+        f"{option}: stands beside a batch file, {source}; allowed: with jobs; leave it out, or give a job"
+        for option, given in beside.items()
+        if given
+    ]
+    if problems:
+        raise InputError(problems)
+    batch = read_batch(source, arguments.solver, to_run=True)
+    folder = Path(arguments.output or batch.name)
+    make_folder(folder)
+    check_outputs([Output("summary", folder / SUMMARY, TABLE)], [source])
+    store = store_path(batch_path(batch, folder))
+    try:
+        result = generate_batch(
+            batch,
+            folder,
+            arguments.workers,
+            arguments.fresh,
+            progress,
+            told=lambda total: progress(total, "map"),
+        )
+    except KeyboardInterrupt:
+        tell(f"\nstopped; what is solved is kept in {store}: the same command goes on from there")
+        return "", INTERRUPTED
+    return batch_summary(result, write_table(result, folder)), result.status
 
 
 def _planned(arguments: argparse.Namespace) -> list[tuple[Job, Path]]:

@@ -1,4 +1,4 @@
-"""`ehdmaps status`: how far a map is that is being made, or whose making was interrupted."""
+"""`ehdmaps status`: how far a map, a batch or its shards are that are being made, or whose making was interrupted."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.batch import SUMMARY, is_batch
 from ehdmaps.jobs.progress import duration
 from ehdmaps.jobs.reader import is_map, read_job, shipped_jobs
-from ehdmaps.jobs.status import RunStatus, look, status_path
+from ehdmaps.jobs.shards import Shard, found_shards, listed, not_begun, shard_path, whole_of
+from ehdmaps.jobs.status import RunStatus, Seen, look, status_path
 from ehdmaps.jobs.store import store_path
-from ehdmaps.outputs import MAP
+from ehdmaps.outputs import MAP, TABLE
 
 _STORE = ".store"
 _STATUS = ".store.status"
@@ -19,14 +21,15 @@ _STATUS = ".store.status"
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Look; status 1 if a map is neither finished nor being made."""
-    outputs = _here() if arguments.map is None else [_output(arguments.map)]
+    outputs = _here() if arguments.map is None else [_output(arguments.map, arguments.output)]
     found = [_described(output) for output in outputs]
     return "\n".join(text for text, _ in found), max(status for _, status in found)
 
 
 def _here() -> list[Path]:
     """Maps of this folder that are being made, or were."""
-    names = {path.name.removesuffix(_STATUS).removesuffix(_STORE) for path in Path().iterdir() if _is_trace(path)}
+    traces = [path.name for path in Path().iterdir() if _is_trace(path)]
+    names = {whole_of(name) or name.removesuffix(_STATUS).removesuffix(_STORE) for name in traces}
     if not names:
         raise InputError(
             "no store of a map is in this folder; allowed: a folder where `ehdmaps generate` runs or ran, or the "
@@ -40,15 +43,21 @@ def _is_trace(path: Path) -> bool:
     return path.name.endswith((_STORE, _STATUS)) and path.is_file()
 
 
-def _output(name: str) -> Path:
-    """Return the map that is meant by a map, a store or a job."""
+def _output(name: str, output: str | None) -> Path:
+    """Return the map or batch that is meant by a map, a store, a job or a batch file."""
+    if is_batch(name):
+        return Path(output or Path(name).stem) / f"{Path(name).stem}.batch"
+    if output is not None:
+        return Path(output)
+    if Path(name).is_dir():
+        raise InputError(f"{name}: is a folder; allowed: the batch file, with -o {name}, or a map")
     for ending in (_STATUS, _STORE):
         if name.endswith(ending):
             return Path(name.removesuffix(ending))
-    output = Path(name)
-    if store_path(output).exists() or status_path(output).exists() or is_map(name):
-        return output
-    if name in shipped_jobs() or output.is_file():
+    place = Path(name)
+    if found_shards(place) or store_path(place).exists() or status_path(place).exists() or is_map(name):
+        return place
+    if name in shipped_jobs() or place.is_file():
         return Path(f"{read_job(name).name}.nc")
     raise InputError(
         f"{name}: is not there, nor its store; allowed: a map, its store, or a job whose map is made in this folder"
@@ -56,10 +65,53 @@ def _output(name: str) -> Path:
 
 
 def _described(output: Path) -> tuple[str, int]:
-    """Tell about a map, and the exit status."""
+    """Tell about a map or a batch, with its shards, and the exit status."""
+    shards = found_shards(output)
     seen = look(output)
+    if not shards:
+        return _whole(output, seen)
+    texts, states = _shards(output, list(shards))
+    if seen is not None or store_path(output).exists():
+        text, status = _whole(output, seen)
+        return "\n".join([text, *texts]), status
+    return "\n".join(texts), 0 if all(states) else 1
+
+
+def _shards(output: Path, shards: list[Shard]) -> tuple[list[str], list[bool]]:
+    """A line a shard, with one for all of them first, and whether each is finished or at work."""
+    seen = {shard: look(shard_path(output, shard)) for shard in shards}
+    known = [found.status for found in seen.values() if found is not None]
+    done, total = sum(status.done for status in known), sum(status.total for status in known)
+    missing = not_begun(shards)
+    finished = sum(found is not None and found.finished for found in seen.values())
+    head = f"{output}: {finished} of {len(shards) + len(missing)} shards finished, {done} of {total} points"
+    lines = [f"{head} of those that have begun"]
+    states = [not missing]
+    for shard, found in seen.items():
+        if found is None:
+            lines.append(f"  {shard!s:>9s}  not known")
+            states.append(False)
+            continue
+        status = found.status
+        word = "running" if found.running else "finished" if found.finished else "interrupted"
+        if not found.known and word == "interrupted":
+            word = f"on {status.host}: only there it can be told whether it runs"
+        states.append(found.running or found.finished or not found.known)
+        part = f"{status.done} of {status.total} points"
+        rate = f", {_pace(status, found.running)}" if found.running else ""
+        lines.append(f"  {shard!s:>9s}  {word}, {part}{rate}; last sign {_ago(status)} ago")
+    if missing:
+        lines.append(f"  not begun: {listed(missing)}")
+    return lines, states
+
+
+def _whole(output: Path, seen: Seen | None) -> tuple[str, int]:
+    """Tell about a map or a batch without its shards."""
     if seen is not None:
-        return "\n".join(_lines(output, seen.status, seen.running)), 0 if seen.running else 1
+        return "\n".join(_lines(output, seen)), 0 if seen.running or not seen.known else 1
+    table = output.with_name(SUMMARY)
+    if output.name.endswith(".batch") and table.is_file() and TABLE.ours(table):
+        return f"{output}: finished; see {table}", 0
     if output.is_file() and MAP.ours(output):
         return f"{output}: finished; no process works on it; see `ehdmaps show`", 0
     if not store_path(output).exists():
@@ -67,18 +119,19 @@ def _described(output: Path) -> tuple[str, int]:
     return f"{output}: not finished; what is solved is kept in {store_path(output)}; how far it is, is not known", 1
 
 
-def _lines(output: Path, status: RunStatus, running: bool) -> list[str]:
+def _lines(output: Path, seen: Seen) -> list[str]:
     """Lines on a map that is not finished."""
+    status, running = seen.status, seen.running
     who = f"process {status.process} on {status.host}"
     head = (
         f"running, {who} with {status.workers} worker{'s' if status.workers > 1 else ''}"
         if running
         else f"interrupted, {who} has ended; the same command goes on"
     )
+    if not seen.known:
+        head = f"{who}: only there it can be told whether it runs; it was heard of {_ago(status)} ago"
     part = f" ({100.0 * status.done / status.total:.1f} %)" if status.total else ""
     failed = ", ".join(f"{count} {word.replace('_', ' ')}" for word, count in sorted(status.failed.items()))
-    written = datetime.fromisoformat(status.written)
-    ago = duration(max((datetime.now(UTC) - written).total_seconds(), 0.0))
     return [
         f"{output}: {head}",
         f"  job      {status.job}",
@@ -86,8 +139,13 @@ def _lines(output: Path, status: RunStatus, running: bool) -> list[str]:
         f"  rate     {_pace(status, running)}",
         f"  failed   {failed or 'none'}",
         f"  begun    {status.begun}",
-        f"  written  {status.written}, {ago} ago",
+        f"  written  {status.written}, {_ago(status)} ago",
     ]
+
+
+def _ago(status: RunStatus) -> str:
+    """How long ago a status was written."""
+    return duration(max((datetime.now(UTC) - datetime.fromisoformat(status.written)).total_seconds(), 0.0))
 
 
 def _pace(status: RunStatus, running: bool) -> str:

@@ -1,0 +1,545 @@
+/* ---------------------------------------------------------------------------------------------------------------------
+ * The bearing
+ * ------------------------------------------------------------------------------------------------------------------ */
+
+#define MOST_TILT 0.5  /* [rad]; the largest accepted displacement is the roller diameter */
+#define CELL_BITS 5    /* cells are 2^5 to each doubling */
+#define NO_APPROACH 1e-30
+
+/* Kinds of prepared laws: none yet, a formula, cells at even places around a centre, cells between knots for faded
+ * films, and the law itself for each slice where no table reaches down to lift-off. */
+enum { UNPREPARED = 0, POWER, CELLS, KNOTS, BY_SLICES };
+
+/* Rows of ehd_prepared.node. */
+enum { Z, APPROACH, LOAD, SLOPE, DAMPING, BEND };
+
+/* Where a roller stands and how it moves: direction, approach in its middle and its growth along the roller, the rates
+ * of both, and a bound that no approach of a slice is above. */
+typedef struct roller {
+    double cosine, sine, gap, tilt, rate, tilt_rate, deepest;
+} roller;
+
+/* States of the slices of a roller at rest: the load and its slope, the damping and its slope. */
+typedef struct slices {
+    double w[EHD_MOST_SLICES], dw[EHD_MOST_SLICES], c[EHD_MOST_SLICES], dc[EHD_MOST_SLICES];
+} slices;
+
+/* Sums over the slices of a roller: loads and loads times place; stiffness and damping times 1, x and x^2. */
+typedef struct sums {
+    double w[2], k[3], c[3];
+} sums;
+
+static double number_of_bits(uint64_t bits) {
+    double x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+static uint64_t bits_of(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+/* Where cell k begins, as a value of a >= 1. */
+static double cell_end(int k) {
+    return number_of_bits(((UINT64_C(1023) << CELL_BITS) + (uint64_t)k) << (52 - CELL_BITS));
+}
+
+/* Row of the cells of a place z, and the part of the cell up to it. */
+static int row_of(double z, double *t) {
+    const double last = number_of_bits(bits_of(cell_end(EHD_ROWS)) - 1), above = 1.0 + fabs(z);
+    const double a = above < last ? above : last;
+    const uint64_t cell = bits_of(a) >> (52 - CELL_BITS);
+    const double place = a - number_of_bits(cell << (52 - CELL_BITS));
+    const int row = (int)(cell - (UINT64_C(1023) << CELL_BITS));
+    *t = z >= 0.0 ? place : -place;
+    return z >= 0.0 ? row : row + EHD_ROWS;
+}
+
+/* Depth of the roller's profile at a distance from its middle, on one side [m]. */
+static double roller_profile(double x) {
+#if EHD_ISO_PROFILE
+    /* ISO/TS 16281: logarithmic; rollers longer than 2.5 diameters are straight in the middle */
+    const int is_short = EHD_ROLLER_LENGTH <= 2.5 * EHD_ROLLER_DIAMETER;
+    const double crowned = is_short ? EHD_ROLLER_LENGTH : 2.5 * EHD_ROLLER_DIAMETER;
+    const double part = most(2.0 * fabs(x) - (EHD_ROLLER_LENGTH - crowned), 0.0) / crowned;
+    return -(is_short ? 0.00035 : 0.0005) * EHD_ROLLER_DIAMETER * log1p(-part * part);
+#else
+    (void)x; /* straight */
+    return 0.0;
+#endif
+}
+
+int ehd_bearing_make(ehd_bearing *bearing, double clearance, int count, const double *profile) {
+    const double two_pi = 6.283185307179586476925;
+    if (!bearing || count < 1 || count > EHD_MOST_SLICES || !is_finite(clearance)) return EHD_BAD_ARGUMENT;
+    bearing->slices = count;
+    bearing->clearance = clearance;
+    bearing->slice_length = EHD_ROLLER_LENGTH / count;
+    bearing->least_profile = DBL_MAX;
+    for (int i = 0; i < count; i++) {
+        const double x = ((i + 0.5) / count - 0.5) * EHD_ROLLER_LENGTH;
+        const double depth = profile ? profile[i] : roller_profile(x);
+        if (!(fabs(depth) < EHD_ROLLER_DIAMETER)) return EHD_BAD_ARGUMENT;
+        bearing->position[i] = x;
+        bearing->profile[i] = 2.0 * depth;
+        bearing->least_profile = least(bearing->least_profile, 2.0 * depth);
+    }
+    for (int j = 0; j < EHD_ROLLERS; j++) {
+        bearing->cosine[j] = cos(two_pi * j / EHD_ROLLERS);
+        bearing->sine[j] = sin(two_pi * j / EHD_ROLLERS);
+    }
+    return EHD_OK;
+}
+
+/* Approach around which a law is finest. */
+static double centre_of(const ehd_point *point) {
+#if EHD_HAS_CENTRIFUGAL
+    if (point->centrifugal_load > 0.0) {
+        const double load = line_state(&point->inner, point->inner.offset).w + point->centrifugal_load;
+        return point->inner.offset + line_approach(&point->outer, load);
+    }
+#endif
+    return point->own.offset;
+}
+
+/* States of the whole film at all nodes. Above the first node beyond the hold the law goes on straight. Returns the
+ * first loaded node; fills approach and damping of the held load. */
+static int fill_nodes(ehd_prepared *law, double *held_damping) {
+    const ehd_point *point = &law->point;
+    double *z = law->node[Z], *delta = law->node[APPROACH];
+    double *w = law->node[LOAD], *dw = law->node[SLOPE], *c = law->node[DAMPING], *dc = law->node[BEND];
+    const double centre = centre_of(point), inverse = point->own.inverse_scale;
+    double held = line_approach(&point->own, point->held_load);
+    int first = 0, end = 0;
+#if EHD_HAS_CENTRIFUGAL
+    if (point->centrifugal_load > 0.0)
+        held = line_approach(&point->inner, point->held_load) +
+               line_approach(&point->outer, point->held_load + point->centrifugal_load);
+#endif
+    for (int i = 0; i < EHD_NODES; i++) {
+        z[i] = i >= EHD_ROWS ? cell_end(i - EHD_ROWS) - 1.0 : 1.0 - cell_end(EHD_ROWS - i);
+        delta[i] = centre + z[i] / inverse;
+        if (delta[i] <= point->lift_off) {
+            first = i + 1;
+            w[i] = dw[i] = c[i] = dc[i] = 0.0;
+        }
+        if (i > 0 && delta[i - 1] <= held) end = i + 1;
+    }
+    for (int i = first; i < end; i++) {
+        const state found = full_state(point, delta[i]);
+        w[i] = found.w;
+        dw[i] = found.dw;
+        c[i] = found.w * found.ratio;
+        dc[i] = found.dc;
+    }
+    for (int i = end; i > 0 && i < EHD_NODES; i++) {
+        w[i] = w[end - 1] + dw[end - 1] * (delta[i] - delta[end - 1]);
+        dw[i] = dw[end - 1];
+        c[i] = c[end - 1];
+        dc[i] = 0.0;
+    }
+    *held_damping = full_state(point, held).ratio * point->held_load;
+    law->held_approach = held;
+    return first;
+}
+
+/* Cubic through values and slopes at both ends of a cell that is h wide, number f of it. */
+static void write_cubic(double cell[4][2], int f, double y0, double y1, double s0, double s1, double by) {
+    const double secant = (y1 - y0) * by;
+    cell[0][f] = y0;
+    cell[1][f] = s0;
+    cell[2][f] = (3.0 * secant - 2.0 * s0 - s1) * by;
+    cell[3][f] = (s0 + s1 - 2.0 * secant) * by * by;
+}
+
+/* Cells of the whole film. Slopes are held so that the load never falls and the damping is never negative. */
+static void fill_cells(ehd_prepared *law) {
+    const double inverse = law->point.own.inverse_scale;
+    const double *z = law->node[Z], *w = law->node[LOAD], *c = law->node[DAMPING];
+    double *dw = law->node[SLOPE], *dc = law->node[BEND];
+    for (int i = 0; i < EHD_NODES; i++) {
+        double slope = most(dw[i] / inverse, 0.0), change = dc[i] / inverse;
+        if (i > 0) {
+            const double h = z[i] - z[i - 1];
+            slope = least(slope, 3.0 * (w[i] - w[i - 1]) / h);
+            change = least(change, 3.0 * c[i] / h);
+        }
+        if (i < EHD_NODES - 1) {
+            const double h = z[i + 1] - z[i];
+            slope = least(slope, 3.0 * (w[i + 1] - w[i]) / h);
+            change = most(change, -3.0 * c[i] / h);
+        }
+        dw[i] = most(slope, 0.0);
+        dc[i] = change;
+    }
+    for (int k = 0; k < 2 * EHD_ROWS; k++) {
+        const int above = k < EHD_ROWS, near = above ? EHD_ROWS + k : 2 * EHD_ROWS - k, far = above ? near + 1 : near - 1;
+        const double by = 1.0 / (z[far] - z[near]);
+        write_cubic(law->cell[k], 0, w[near], w[far], dw[near], dw[far], by);
+        write_cubic(law->cell[k], 1, c[near], c[far], dc[near], dc[far], by);
+    }
+}
+
+/* Cells of a part of the film. At equal load the approach is that part of the one with the whole film, and the rest of
+ * that without any. So the nodes of the whole film serve all parts, as knots that move. */
+static void fill_knots(ehd_prepared *law, double held_damping, double most_load) {
+    const ehd_point *point = &law->point;
+    const double part = point->film, rest = 1.0 - part, q = point->centrifugal_load;
+    const double *whole = law->node[APPROACH], *w = law->node[LOAD], *c = law->node[DAMPING];
+    double *dw = law->node[SLOPE], *dc = law->node[BEND], *knot = law->knot, compliance, safe = 0.0;
+    const int last = 2 * EHD_ROWS - 1;
+    for (int i = 0; i < last; i++) {
+        const int k = i + 1; /* the outermost nodes have no knots */
+        const double dry = structural_approach(q, w[k], &compliance);
+        const double stretch = w[k] > 0.0 ? rest * compliance * dw[k] + part : 1.0;
+        knot[i] = rest * dry + part * whole[k];
+        dw[k] /= stretch;
+        dc[k] *= part / stretch;
+        if (w[k] <= most_load) safe = knot[i];
+    }
+    knot[last] = INFINITY;
+    for (int i = 0; i < last - 1; i++) {
+        const double h = knot[i + 1] - knot[i];
+        /* without film all nodes without load are one */
+        const double rise = h > 0.0 ? 3.0 * (w[i + 2] - w[i + 1]) / h : 0.0;
+        dw[i + 1] = least(dw[i + 1], rise);
+        dw[i + 2] = least(dw[i + 2], rise);
+        if (h > 0.0) {
+            dc[i + 1] = most(dc[i + 1], -3.0 * part * c[i + 1] / h);
+            dc[i + 2] = least(dc[i + 2], 3.0 * part * c[i + 2] / h);
+        }
+    }
+    for (int i = 0; i < last - 1; i++) {
+        const double h = knot[i + 1] - knot[i], by = h > 0.0 ? 1.0 / h : 0.0;
+        write_cubic(law->cell[i], 0, w[i + 1], w[i + 2], dw[i + 1], dw[i + 2], by);
+        write_cubic(law->cell[i], 1, part * c[i + 1], part * c[i + 2], dc[i + 1], dc[i + 2], by);
+    }
+    memset(law->cell[last - 1], 0, 2 * sizeof law->cell[0]);
+    law->safe_approach = safe;
+    law->held_approach = rest * structural_approach(q, point->held_load, &compliance) + part * law->held_approach;
+    law->held_damping = part * held_damping;
+}
+
+/* Whether dry contacts in series are one power law, approach = (a_1 + a_2) w^b; fills it. */
+static int one_power(ehd_prepared *law) {
+    double a = 0.0;
+    const double b = STRUCTURE[0].b;
+    for (int i = 0; i < EHD_CONTACTS; i++) {
+        if (STRUCTURE[i].half_space || fabs(STRUCTURE[i].b - b) >= 1e-12) return 0;
+        a += STRUCTURE[i].a;
+    }
+    law->coefficient = pow(a, -1.0 / b);
+    law->exponent = 1.0 / b;
+    return 1;
+}
+
+int ehd_prepare(ehd_prepared *law, double u, double T, double q) {
+    double held_damping;
+    if (!law) return EHD_BAD_ARGUMENT;
+    const ehd_point *point = &law->point;
+    const int status = ehd_at(&law->point, u, T, q);
+    law->kind = BY_SLICES;
+    law->lift_off = -DBL_MAX;
+    law->safe_approach = law->held_approach = DBL_MAX;
+    law->highest = DBL_MAX; /* the law itself counts its loads */
+    law->slope = 1.0;
+    law->held_damping = 0.0;
+    if (EHD_REFUSES(status)) return status;
+    const double highest = point->highest_load * (1.0 + LOAD_TOLERANCE), most_load = least(highest, point->held_load);
+    if (point->film == 0.0 && q == 0.0 && one_power(law)) {
+        law->kind = POWER;
+        law->lift_off = 0.0;
+        law->highest = highest;
+        law->held_approach = point->held_approach;
+        law->held_damping = point->held_damping;
+        law->safe_approach = least(pow(highest / law->coefficient, 1.0 / law->exponent), point->held_approach);
+        return status;
+    }
+    const double held_approach = law->held_approach;
+    const int first = fill_nodes(law, &held_damping), faded = fabs(u) < FILM_SPEED;
+    if (first < (faded ? 2 : 1)) { /* the table does not reach down to lift-off */
+        law->held_approach = held_approach;
+        return status;
+    }
+    law->highest = highest;
+    if (faded) {
+        law->kind = KNOTS;
+        fill_knots(law, held_damping, most_load);
+        law->lift_off = law->knot[first - 2];
+        return status;
+    }
+    law->kind = CELLS;
+    law->centre = centre_of(point);
+    law->inverse_scale = law->slope = point->own.inverse_scale;
+    law->lift_off = law->node[APPROACH][first - 1];
+    law->held_damping = held_damping;
+    for (int i = 0; i < EHD_NODES; i++)
+        if (i == 0 || law->node[LOAD][i] <= most_load) law->safe_approach = law->node[APPROACH][i];
+    fill_cells(law);
+    return status;
+}
+
+size_t ehd_bearing_size(void) { return sizeof(ehd_bearing); }
+
+size_t ehd_prepared_size(void) { return sizeof(ehd_prepared); }
+
+static roller roller_of(const ehd_bearing *bearing, const double pose[6], const double velocity[6], double cage_cosine,
+                        double cage_sine, int j) {
+    roller r;
+    r.cosine = cage_cosine * bearing->cosine[j] - cage_sine * bearing->sine[j];
+    r.sine = cage_sine * bearing->cosine[j] + cage_cosine * bearing->sine[j];
+    r.gap = pose[1] * r.cosine + pose[2] * r.sine - 0.5 * bearing->clearance;
+    r.tilt = pose[5] * r.cosine - pose[4] * r.sine;
+    r.rate = velocity[1] * r.cosine + velocity[2] * r.sine;
+    r.tilt_rate = velocity[5] * r.cosine - velocity[4] * r.sine;
+    r.deepest = r.gap + (0.5 * EHD_ROLLER_LENGTH * fabs(r.tilt) - bearing->least_profile);
+    return r;
+}
+
+static double approach_of(const ehd_bearing *bearing, const roller *r, int i) {
+    return r->gap + bearing->position[i] * r->tilt - bearing->profile[i];
+}
+
+/* Cubics of a cell at its part t, of load and damping. */
+static void read_cell(const double cell[4][2], double t, double value[2], double slope[2]) {
+    for (int f = 0; f < 2; f++) {
+        const double bend = cell[2][f] + t * cell[3][f], mean = cell[1][f] + t * bend;
+        value[f] = cell[0][f] + t * mean;
+        slope[f] = mean + t * (bend + t * cell[3][f]);
+    }
+}
+
+/* Cell between knots of an approach, found from the one before. */
+static int knot_of(const ehd_prepared *law, double approach, int found) {
+    int low = 0, high = 2 * EHD_ROWS - 1;
+    if (law->knot[found] <= approach && approach < law->knot[found + 1]) return found;
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        if (law->knot[middle] <= approach)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* States of the slices of a roller at rest, by a power law, in cells around a centre, or in cells between knots. */
+static void power_states(const ehd_bearing *bearing, const ehd_prepared *law, const roller *r, slices *s) {
+    for (int i = 0; i < bearing->slices; i++) {
+        const double approach = approach_of(bearing, r, i), safe = most(approach, NO_APPROACH);
+        const double slope = law->coefficient * law->exponent * pow(safe, law->exponent - 1.0);
+        s->dw[i] = approach > 0.0 ? slope : 0.0;
+        s->w[i] = approach > 0.0 ? slope * safe / law->exponent : 0.0;
+        s->c[i] = s->dc[i] = 0.0;
+    }
+}
+
+static void cell_states(const ehd_bearing *bearing, const ehd_prepared *law, const roller *r, slices *s) {
+    const double inverse = law->inverse_scale, start = (r->gap - law->centre) * inverse, tilt = r->tilt * inverse;
+    for (int i = 0; i < bearing->slices; i++) {
+        double t, value[2], slope[2];
+        const int row = row_of(start + bearing->position[i] * tilt - bearing->profile[i] * inverse, &t);
+        read_cell(law->cell[row], t, value, slope);
+        s->w[i] = value[0];
+        s->dw[i] = slope[0];
+        s->c[i] = value[1];
+        s->dc[i] = slope[1];
+    }
+}
+
+static void knot_states(const ehd_bearing *bearing, const ehd_prepared *law, const roller *r, slices *s) {
+    int found = 0;
+    for (int i = 0; i < bearing->slices; i++) {
+        double value[2], slope[2];
+        const double approach = approach_of(bearing, r, i);
+        if (approach > law->knot[0]) found = knot_of(law, approach, found);
+        const double t = approach > law->knot[0] ? approach - law->knot[found] : 0.0;
+        read_cell(law->cell[approach > law->knot[0] ? found : 0], t, value, slope);
+        s->w[i] = value[0];
+        s->dw[i] = slope[0];
+        s->c[i] = value[1];
+        s->dc[i] = slope[1];
+    }
+}
+
+/* Put slices above the held load on the tangent. */
+static void hold(const ehd_bearing *bearing, const ehd_prepared *law, const roller *r, slices *s) {
+    for (int i = 0; i < bearing->slices; i++) {
+        const double above = approach_of(bearing, r, i) - law->held_approach;
+        if (above > 0.0) {
+            s->w[i] = law->point.held_load + law->point.held_stiffness * above;
+            s->dw[i] = law->point.held_stiffness / law->slope;
+            s->c[i] = law->held_damping;
+            s->dc[i] = 0.0;
+        }
+    }
+}
+
+/* States by the law itself, at the rates of the slices: the rates are in the loads then, and the damping is given as it
+ * acts. */
+static int law_states(const ehd_bearing *bearing, const ehd_prepared *law, roller *r, slices *s) {
+    int status = EHD_OK;
+    for (int i = 0; i < bearing->slices; i++) {
+        ehd_force found;
+        const double rate = r->rate + bearing->position[i] * r->tilt_rate;
+        status |= ehd_law_at(&law->point, approach_of(bearing, r, i), rate, &found);
+        s->w[i] = found.load;
+        s->dw[i] = found.stiffness;
+        s->c[i] = found.damping;
+        s->dc[i] = 0.0;
+    }
+    r->rate = r->tilt_rate = 0.0;
+    return status;
+}
+
+/* Sums over the slices of a roller that all have c rate >= -w/2, where the rule of the damping is linear. Returns
+ * whether they have. */
+static int moderate_sums(const ehd_bearing *bearing, const roller *r, const slices *s, sums *sum) {
+    double lifting = 0.0;
+    const sums none = {{0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    sums found = none;
+    for (int i = 0; i < bearing->slices; i++) {
+        const double x = bearing->position[i], rate = r->rate + x * r->tilt_rate, part = s->c[i] * rate;
+        const double load = s->w[i] + part, k = s->dw[i] + s->dc[i] * rate, twice = load + part;
+        lifting += fabs(twice) - twice;
+        found.w[0] += load;
+        found.w[1] += load * x;
+        found.k[0] += k;
+        found.k[1] += k * x;
+        found.k[2] += k * x * x;
+        found.c[0] += s->c[i];
+        found.c[1] += s->c[i] * x;
+        found.c[2] += s->c[i] * x * x;
+    }
+    *sum = found;
+    return lifting <= 0.0;
+}
+
+/* The same at any rates, by the whole rule without tension. */
+static void lifting_sums(const ehd_bearing *bearing, const roller *r, const slices *s, sums *sum) {
+    const sums none = {{0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    *sum = none;
+    for (int i = 0; i < bearing->slices; i++) {
+        const double x = bearing->position[i];
+        ehd_force found;
+        unilateral(s->w[i], s->dw[i], s->c[i], s->dc[i], r->rate + x * r->tilt_rate, &found);
+        sum->w[0] += found.load;
+        sum->w[1] += found.load * x;
+        sum->k[0] += found.stiffness;
+        sum->k[1] += found.stiffness * x;
+        sum->k[2] += found.stiffness * x * x;
+        sum->c[0] += found.damping;
+        sum->c[1] += found.damping * x;
+        sum->c[2] += found.damping * x * x;
+    }
+}
+
+/* Add s B B^T of a roller to a matrix of the bearing, B its direction in y, z, theta_y and theta_z; for the sums of s
+ * over 1, x and x^2. */
+static void add_matrix(double matrix[6][6], const roller *r, const double s[3]) {
+    const double cc = r->cosine * r->cosine, cs = r->cosine * r->sine, ss = r->sine * r->sine;
+    matrix[1][1] += s[0] * cc;
+    matrix[1][2] += s[0] * cs;
+    matrix[2][2] += s[0] * ss;
+    matrix[1][4] -= s[1] * cs;
+    matrix[1][5] += s[1] * cc;
+    matrix[2][4] -= s[1] * ss;
+    matrix[2][5] += s[1] * cs;
+    matrix[4][4] += s[2] * ss;
+    matrix[4][5] -= s[2] * cs;
+    matrix[5][5] += s[2] * cc;
+}
+
+static void finish_matrix(double matrix[6][6], double factor) {
+    for (int i = 0; i < 6; i++)
+        for (int k = i; k < 6; k++) matrix[k][i] = matrix[i][k] = matrix[i][k] * factor;
+}
+
+/* Add a roller to the force on the ring and its derivatives. */
+static void add_roller(const roller *r, const sums *sum, ehd_bearing_force *result) {
+    result->force[1] -= r->cosine * sum->w[0];
+    result->force[2] -= r->sine * sum->w[0];
+    result->force[4] += r->sine * sum->w[1];
+    result->force[5] -= r->cosine * sum->w[1];
+    add_matrix(result->stiffness, r, sum->k);
+    add_matrix(result->damping, r, sum->c);
+}
+
+static void no_bearing_force(ehd_bearing_force *result) {
+    for (int i = 0; i < 6; i++) {
+        result->force[i] = NAN;
+        for (int k = 0; k < 6; k++) result->stiffness[i][k] = result->damping[i][k] = NAN;
+    }
+}
+
+/* What is wrong about a motion. */
+static int check_motion(const double pose[6], const double velocity[6], double cage_angle) {
+    double total = fabs(cage_angle);
+    for (int i = 0; i < 6; i++) total += fabs(pose[i]) + fabs(velocity[i]);
+    if (!is_finite(total)) return EHD_NOT_FINITE;
+    if (fabs(pose[1]) <= EHD_ROLLER_DIAMETER && fabs(pose[2]) <= EHD_ROLLER_DIAMETER && fabs(pose[4]) <= MOST_TILT &&
+        fabs(pose[5]) <= MOST_TILT)
+        return EHD_OK;
+    return EHD_TOO_FAR;
+}
+
+/* Multiply the sums by the length of a slice; refuse what is not finite after all. */
+static int finish(const ehd_bearing *bearing, const ehd_prepared *law, int status, ehd_bearing_force *result) {
+    double total = 0.0;
+    for (int i = 0; i < 6; i++) {
+        result->force[i] *= bearing->slice_length;
+        total += fabs(result->force[i]) + fabs(result->stiffness[i][i]) + fabs(result->damping[i][i]);
+    }
+    finish_matrix(result->stiffness, law->slope * bearing->slice_length);
+    finish_matrix(result->damping, bearing->slice_length);
+    if (!is_finite(total)) status |= EHD_NOT_FINITE;
+    if (EHD_REFUSES(status)) no_bearing_force(result);
+    return status;
+}
+
+int ehd_bearing_at(const ehd_bearing *bearing, const ehd_prepared *law, const double pose[6], const double velocity[6],
+                   double cage_angle, ehd_bearing_force *result) {
+    static const double at_rest[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    slices s;
+    sums sum;
+    if (!result) return EHD_BAD_ARGUMENT;
+    no_bearing_force(result);
+    if (!bearing || !law || !pose || law->kind == UNPREPARED) return EHD_BAD_ARGUMENT;
+    if (!velocity) velocity = at_rest;
+    int status = law->point.status | check_motion(pose, velocity, cage_angle);
+    if (EHD_REFUSES(status)) return status;
+    const double cage_cosine = cos(cage_angle), cage_sine = sin(cage_angle);
+    memset(result, 0, sizeof *result);
+    for (int j = 0; j < EHD_ROLLERS; j++) {
+        roller r = roller_of(bearing, pose, velocity, cage_cosine, cage_sine, j);
+        if (r.deepest <= law->lift_off) continue;
+        if (law->kind == CELLS)
+            cell_states(bearing, law, &r, &s);
+        else if (law->kind == KNOTS)
+            knot_states(bearing, law, &r, &s);
+        else if (law->kind == POWER)
+            power_states(bearing, law, &r, &s);
+        else
+            status |= law_states(bearing, law, &r, &s);
+        if (r.deepest > law->safe_approach) {
+            hold(bearing, law, &r, &s);
+            for (int i = 0; i < bearing->slices; i++)
+                if (s.w[i] > law->highest) status |= EHD_ABOVE_LOAD;
+        }
+        if (!moderate_sums(bearing, &r, &s, &sum)) lifting_sums(bearing, &r, &s, &sum);
+        add_roller(&r, &sum, result);
+    }
+    return finish(bearing, law, status, result);
+}
+
+int ehd_bearing_call(const ehd_bearing *bearing, ehd_prepared *law, const double pose[6], const double velocity[6],
+                     double cage_angle, double u, double T, double q, ehd_bearing_force *result) {
+    if (!law) return EHD_BAD_ARGUMENT;
+    const ehd_point *point = &law->point;
+    const int same = law->kind != UNPREPARED && point->entrainment_speed == fabs(u) && point->temperature == T &&
+                     point->centrifugal_load == q;
+    if (!same) ehd_prepare(law, u, T, q);
+    return ehd_bearing_at(bearing, law, pose, velocity, cage_angle, result);
+}

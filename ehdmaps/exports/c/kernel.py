@@ -1,0 +1,238 @@
+"""A contact law and a bearing in C: templates, in which the law's mathematics is, and the numbers of one map."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from typing import Literal
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
+from ehdmaps.maps.tables import HALF_SPACE, ApproachTable, LawTable
+from ehdmaps.physics.bearing import BearingGeometry
+
+ProfileName = Literal["iso", "straight"]
+
+_WIDTH = 118
+_LEAST_SLICES = 201
+_NAME = re.compile(r"[a-z][a-z0-9_]*")
+_ALL, _WRONG = 127, 127 - (1 + 2 + 4)
+"""All parts of a status of `law.h`, and those that are no matter of the range of the map."""
+
+_INCLUDES = ("float.h", "math.h", "stddef.h", "stdint.h", "string.h")
+
+
+BEYOND: Mapping[OutsidePolicy, str] = {"error": "refused", "clamp": "held", "asymptote": "extended"}
+"""What happens outside the map, for `ehdmaps.exports.header.origin`."""
+
+
+@dataclass(frozen=True)
+class KernelOptions:
+    """What is exported of a map.
+
+    Attributes
+    ----------
+    kind : {"series", "inner", "outer", "line"}, optional
+        Which law; a roller between both raceways, or the one contact of the map, if left out.
+    outside : {"error", "clamp", "asymptote"}
+        What happens outside the map, see `ehdmaps.maps.law.ContactLaw`: calls are refused, or held and told.
+    centrifugal : bool
+        Whether the law takes centrifugal loads: three times as much code.
+    clearance : float, optional
+        Diametral clearance that the export names [m]; that of the map's bearing if left out.
+    slices : int
+        Number of slices that the export names.
+    profile : {"iso", "straight"}
+        Profile of the rollers.
+    prefix : str
+        What all names begin with, in lower case: two maps in one program need two.
+    """
+
+    kind: LawKind | None = None
+    outside: OutsidePolicy = "error"
+    centrifugal: bool = False
+    clearance: float | None = None
+    slices: int = 41
+    profile: ProfileName = "iso"
+    prefix: str = "ehd"
+
+    def __post_init__(self) -> None:
+        problems = []
+        if not _NAME.fullmatch(self.prefix):
+            problems.append(
+                f"export c, prefix: got {self.prefix!r}; allowed: lower-case letters, digits and _, a letter first"
+            )
+        if not 1 <= self.slices <= _LEAST_SLICES:
+            problems.append(f"export c, slices: got {self.slices!r}; allowed: 1 to {_LEAST_SLICES}")
+        if self.clearance is not None and not math.isfinite(self.clearance):
+            problems.append(f"export c, clearance: got {self.clearance!r}; allowed: a finite number of metres")
+        if problems:
+            raise InputError(problems)
+
+
+def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) -> dict[str, str]:
+    """Names and texts of the files of an export.
+
+    Parameters
+    ----------
+    emap : EHDMap
+        The map.
+    options : KernelOptions
+        What is exported of it.
+    header : sequence of str
+        Lines that say where it comes from, put first.
+
+    Raises
+    ------
+    InputError
+        For a law that the map does not have, and for centrifugal loads of a single contact.
+    MapError
+        If no law can be made of the map.
+    """
+    kind: LawKind = options.kind or ("series" if emap.bearing is not None else "line")
+    if options.centrifugal and kind != "series":
+        raise InputError(f"export c, centrifugal: got the law {kind!r}; allowed: the law 'series' of a bearing's map")
+    law = emap.law(kind, options.outside)
+    bearing = emap.bearing if kind == "series" else None
+    banner = _comment(header)
+    parts = ("law", "bearing") if bearing is not None else ("law",)
+    guard = "EHD_H"
+    top = [
+        banner, f"#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n",
+        _public_numbers(law, bearing, options),
+        '#ifdef __cplusplus\nextern "C" {\n#endif\n',
+        *(_template(f"{part}.h") for part in parts),
+        f"#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n",
+    ]  # fmt: skip
+    source = [
+        banner, "".join(f"#include <{name}>\n" for name in _INCLUDES) + '\n#include "ehd.h"\n',
+        _template("tables.c"),
+        _private_numbers(law, options.centrifugal),
+        *(_template(f"{part}.c") for part in parts),
+    ]  # fmt: skip
+    texts = {"ehd.h": "\n".join(top), "ehd.c": "\n".join(source)}
+    if bearing is not None:
+        texts["ehd.f90"] = "".join(f"! {line}".rstrip() + "\n" for line in header) + "\n" + _template("interface.f90")
+    return {name.replace("ehd", options.prefix): _renamed(text, options.prefix) for name, text in texts.items()}
+
+
+def _template(name: str) -> str:
+    """Text of a template."""
+    return (files("ehdmaps.exports.c") / name).read_text(encoding="utf-8")
+
+
+def _renamed(text: str, prefix: str) -> str:
+    """A text with another prefix of all public names and files."""
+    return re.sub(r"\bEHD_", f"{prefix.upper()}_", re.sub(r"\behd([_.]|$)", rf"{prefix}\1", text, flags=re.M))
+
+
+def _comment(lines: Iterable[str]) -> str:
+    """Lines as a comment, whatever they hold."""
+    safe = (line.replace("*/", "* /").replace("/*", "/ *").rstrip() for line in lines)
+    return "/*\n" + "".join(f" * {line}".rstrip() + "\n" for line in safe) + " */\n"
+
+
+def _number(value: float) -> str:
+    """A number with all its digits, as C has it."""
+    if math.isinf(value):
+        return "INFINITY" if value > 0.0 else "-INFINITY"
+    text = repr(float(value))
+    return text if any(mark in text for mark in ".en") else f"{text}.0"
+
+
+def _define(name: str, value: float | str, words: str) -> str:
+    """A constant with what it is."""
+    text = value if isinstance(value, str) else str(value) if isinstance(value, int) else _number(value)
+    return f"#define {name} {f'({text})' if text.startswith('-') else text} /* {words} */\n"
+
+
+def _public_numbers(law: ContactLaw, bearing: BearingGeometry | None, options: KernelOptions) -> str:
+    """Constants that callers may read."""
+    table = law.plain_table
+    refused = _ALL if law.outside == "error" else _WRONG
+    tables = (law.table.own, law.table.inner, law.table.outer) if options.centrifugal else (table.own,)
+    lines = [
+        _define("EHD_REFUSED", refused, f"parts of a status that refuse: the policy is {law.outside!r}"),
+        _define("EHD_HAS_CENTRIFUGAL", int(options.centrifugal), "whether centrifugal loads are taken"),
+        _define("EHD_CONTACTS", len(law.contacts), "contacts in series: " + ", ".join(c.name for c in law.contacts)),
+        _define("EHD_HIGHEST_LOAD", table.highest_load, "highest mapped load [N/m]"),
+        _define("EHD_LOWEST_SPEED", law.speed_range[0], "lowest mapped speed [m/s]; below it films fade"),
+        _define("EHD_HIGHEST_SPEED", table.counted_speed, "highest mapped entrainment speed [m/s]"),
+        _define("EHD_LOWEST_TEMPERATURE", table.lowest_temperature, "[K]"),
+        _define("EHD_HIGHEST_TEMPERATURE", table.highest_temperature, "[K]"),
+        _define("EHD_MOST_CELLS", max(_places(entry) - 3 for entry in tables), "cells of a line"),
+    ]
+    if bearing is not None:
+        clearance = bearing.diametral_clearance if options.clearance is None else options.clearance
+        lines += [
+            "\n",
+            _define("EHD_ROLLERS", bearing.rollers, "number of rollers"),
+            _define("EHD_ROLLER_LENGTH", bearing.roller_length, "[m]"),
+            _define("EHD_ROLLER_DIAMETER", bearing.roller_diameter, "[m]"),
+            _define("EHD_ISO_PROFILE", int(options.profile == "iso"), "1: profile of ISO/TS 16281, 0: straight"),
+            _define("EHD_CLEARANCE", clearance, "diametral clearance of the export [m]"),
+            _define("EHD_SLICES", options.slices, "slices of a roller of the export"),
+            _define("EHD_MOST_SLICES", max(options.slices, _LEAST_SLICES), "room for slices"),
+            _define("EHD_CAGE_INNER", 0.5 * (1.0 - bearing.gamma), "turns of the cage for each of the inner ring"),
+            _define("EHD_CAGE_OUTER", 0.5 * (1.0 + bearing.gamma), "turns of the cage for each of the outer ring"),
+            _define("EHD_ENTRAINMENT", bearing.entrainment_speed(1.0, 0.0), "entrainment speed [m/rad], see below"),
+        ]
+    return "".join(lines)
+
+
+def _private_numbers(law: ContactLaw, centrifugal: bool) -> str:
+    """Constants and tables that only the functions read."""
+    table: LawTable = law.table if centrifugal else law.plain_table
+    rows = "".join(
+        f"    {{{int(kind == HALF_SPACE)}, {_number(a)}, {_number(b)}}},\n" for kind, a, b in table.structure.tolist()
+    )
+    parts = [
+        _define("FILM_SPEED", table.film_speed, "speed below which films fade [m/s]")
+        + _define("LOWEST_SPEED", table.lowest_speed, "speeds of the table [m/s]")
+        + _define("HIGHEST_SPEED", table.highest_speed, "beyond it the law is held")
+        + _define("HELD_LOAD", table.held_load, "load above which the law is its tangent [N/m]"),
+        f"static const structure STRUCTURE[EHD_CONTACTS] = {{\n{rows}}};\n",
+        _table("OWN", table.own, "the law"),
+    ]
+    if centrifugal:
+        parts += [_table("INNER", table.inner, "the inner contact"), _table("OUTER", table.outer, "the outer contact")]
+    return "\n".join(parts)
+
+
+def _places(table: ApproachTable) -> int:
+    """Number of coefficients over the approach."""
+    return int(table.coefficients.shape[2]) // 2
+
+
+def _table(name: str, table: ApproachTable, words: str) -> str:
+    """A table with its axes."""
+    speeds, temperatures, _ = table.coefficients.shape
+    sizes = f"{speeds} speeds, {temperatures} temperatures, {_places(table)} places"
+    axes = ", ".join(_number(value) for value in table[2:])
+    return "\n".join(
+        (
+            f"/* Coefficients of {words}, over {sizes}. */",
+            _array(f"{name}_COEFFICIENTS", table.coefficients),
+            f"/* Offset and inverse scale of {words}. */",
+            _array(f"{name}_PLACE", table.place),
+            f"static const axes {name} = {{\n    {speeds}, {temperatures}, {_places(table)}, {axes},\n"
+            f"    {name}_COEFFICIENTS, {name}_PLACE}};\n",
+        )
+    )
+
+
+def _array(name: str, values: FloatArray) -> str:
+    """An array of doubles."""
+    lines, line = [], "   "
+    for text in map(_number, values.reshape(-1).tolist()):
+        if len(line) + len(text) + 2 > _WIDTH:
+            lines.append(line)
+            line = "   "
+        line += f" {text},"
+    lines.append(line)
+    return f"static const double {name}[{values.size}] = {{\n" + "\n".join(lines) + "};\n"

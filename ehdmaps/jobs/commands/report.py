@@ -1,0 +1,26 @@
+"""`ehdmaps report`: a map as one file of HTML that can be sent, read without a network, and printed."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+from pathlib import Path
+
+from ehdmaps.jobs.map_report import map_report
+from ehdmaps.jobs.opening import open_given
+from ehdmaps.outputs import Output, check_outputs
+from ehdmaps.report.page import REPORT, write_report
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Write the report; by default beside the map."""
+    path = Path(arguments.map)
+    output = Path(arguments.output) if arguments.output else path.with_suffix(".html")
+    check_outputs([Output("-o", output, REPORT)], [path])
+    emap = open_given(path, arguments.structure, arguments.roughness)
+    words = ["ehdmaps", "report", path.name]
+    for option in ("structure", "roughness"):
+        if (value := getattr(arguments, option)) is not None:
+            words += [f"--{option}", value]
+    write_report(output, map_report(emap, path.name, shlex.join([*words, "-o", output.name])))
+    return f"{output}: written", 0

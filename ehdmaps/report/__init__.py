@@ -1,0 +1,18 @@
+"""A report as one file of HTML: pages, tables and charts that need no network and no program but a browser.
+
+The modules in the order in which data pass through them:
+
+=============  ====================================================================================
+markup         text and tags; whatever is no markup is escaped
+numbers        numbers as people read them
+axis           linear, logarithmic and two-sided logarithmic axes: places and ticks
+chart          curves over a common axis as inline SVG, with the numbers that a cursor reads off
+tables         tables of rows, and pairs of names and values
+page           the whole document: style, script, and the rule that nothing is loaded
+document.css   how it looks on a screen and on paper
+document.js    reads values off the charts; all else works without it
+=============  ====================================================================================
+
+What is said of a map is in `ehdmaps.jobs.map_report`, and of a scene in `mbs.report`. Nothing is imported here: take
+the names from their modules.
+"""

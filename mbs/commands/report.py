@@ -1,0 +1,109 @@
+"""`mbs report`: a scene as one file of HTML that can be sent, read without a network, and printed."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+from pathlib import Path
+from typing import NamedTuple
+
+import xarray as xr
+
+from ehdmaps.errors import InputError
+from ehdmaps.report.page import REPORT, write_report
+from mbs.analyses.case import Case
+from mbs.analyses.modes import ModesResult
+from mbs.analyses.statics import StaticsResult
+from mbs.analyses.sweep import SweepResult
+from mbs.commands.auto import Looked, analysed
+from mbs.commands.cases import load_cases
+from mbs.commands.sweep import read_speeds
+from mbs.report.campbell import read_result
+from mbs.report.examination import Examination, examined
+from mbs.report.machine import warnings
+from mbs.report.scene_report import scene_report
+from mbs.scene.map_set import MapSet
+from mbs.settings import SweepRange
+
+_OPTIONS = ("map", "structure", "law", "films", "supply", "clearance", "physics", "shear", "tolerance", "result")
+
+
+class _Asked(NamedTuple):
+    """The model, speeds of the sweep, and a result in its place."""
+
+    case: Case
+    speeds: SweepRange | None
+    saved: xr.Dataset | None
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Examine the scene and write the report; by default in this folder, with the name of the scene."""
+    arguments.output = arguments.output or f"{Path(arguments.scene).stem}.html"
+    looked: list[_Asked] = []
+    done = analysed(arguments, _asked, lambda asked: _examine(asked, looked), _looks_at)
+    asked = looked[-1]
+    found = Examination(*done.result, _maps(asked))
+    saved = None if asked.saved is None else (Path(arguments.result).name, asked.saved)
+    maps = [Path(path).name for path in arguments.map or ()]
+    # a page that is sent need not tell the folders of who made it
+    remarks = [line.strip().replace(f"{Path(arguments.maps or '.')}/", "") for line in done.lines]
+    text = scene_report(found, _command(arguments), maps, saved, remarks)
+    write_report(arguments.output, text)
+    failed = [reason for reason in (found.modes, found.sweep) if isinstance(reason, str) and reason]
+    told = [f"warning: {line}" for line in (*warnings(found), *failed)]
+    return "\n".join([*done.lines, *told, f"{arguments.output}: written"]), 1 if told else done.status
+
+
+def _asked(arguments: argparse.Namespace) -> _Asked:
+    """Read what is asked for; all problems at once."""
+    problems: list[str] = []
+    speeds, saved, cases = None, None, []
+    try:
+        speeds = read_speeds(arguments.speeds) if arguments.speeds else None
+    except InputError as error:
+        problems += error.problems
+    if arguments.result is not None:
+        try:
+            saved = read_result(arguments.result)
+        except InputError as error:
+            problems += error.problems
+        if arguments.speeds:
+            problems.append("--speeds: stands beside --result, whose speeds are drawn; leave one of them out")
+    try:
+        cases = load_cases(arguments, several=False, kind=REPORT)
+    except InputError as error:
+        problems += error.problems
+    if problems:
+        raise InputError(tuple(dict.fromkeys(problems)))
+    return _Asked(cases[0], speeds, saved)
+
+
+def _examine(asked: _Asked, looked: list[_Asked]) -> tuple[StaticsResult, ModesResult | str, SweepResult | str]:
+    """Examine the model; what was asked last is kept, with the maps that `--auto` made."""
+    looked.append(asked)
+    found = examined(asked.case.model, _maps(asked), asked.speeds, asked.saved is None)
+    return found.statics, found.modes, found.sweep
+
+
+def _maps(asked: _Asked) -> MapSet | None:
+    """The maps of the law, if it is that of maps."""
+    law = None if asked.case.subject is None else asked.case.subject.law
+    return None if law is None or law.name not in ("map", None) else law.maps
+
+
+def _looks_at(asked: _Asked) -> Looked:
+    """The scene, up to the highest frequency of its modes."""
+    scene = asked.case.model.scene
+    return Looked(scene, max(scene.frequencies, default=scene.campbell.highest))
+
+
+def _command(arguments: argparse.Namespace) -> str:
+    """The command line, with the names of the files alone."""
+    words = ["mbs", "report", Path(arguments.scene).name]
+    for option in _OPTIONS:
+        given = getattr(arguments, option, None)
+        for value in [given] if isinstance(given, str) else given or ():
+            words += [f"--{option}", Path(value).name if option in ("map", "result") else value]
+    words += ["--auto"] if arguments.auto else []
+    words += ["--speeds", *arguments.speeds] if arguments.speeds else []
+    return shlex.join([*words, "-o", Path(arguments.output).name])

@@ -1,0 +1,295 @@
+"""Campbell diagrams of a report: frequencies over speed from the linearised system, or a result that was saved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
+from ehdmaps.figures import COLOURS
+from ehdmaps.netcdf_structure import DAMAGE, structure_problem
+from ehdmaps.report.axis import linear_axis
+from ehdmaps.report.chart import GREY, WIDE, Chart, Curve, Points, figure
+from ehdmaps.report.markup import Markup, joined, tag
+from ehdmaps.report.numbers import number, shown
+from ehdmaps.units import RPM
+from mbs.linearised.sweep_result import Sweep
+from mbs.output.results import RESULT
+from mbs.scene.fields import HERTZ
+
+LEAST_SHARE = 0.05
+"""Part of the strain energy in bearings above which a mode has a colour."""
+
+MOST_NAMED, MOST_ORDERS = 12, 6
+MOST_DAMPED = 0.5
+"""Damping ratio up to which a crossing is told: above, a response has hardly a peak by the mode."""
+
+_SPEEDS, _FREQUENCIES, _CLASS = 70, 90, 6.0
+"""Cells of a drawing of levels, and decibels of a class."""
+
+_LEVELS = ("#f7f7f7", "#d9e4ef", "#b3cbe3", "#85abd3", "#5585bf", "#305f9e", "#1a3d73", "#0a1f44")
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Frequencies of modes over speed.
+
+    Attributes
+    ----------
+    speeds : ndarray, shape (n,)
+        [rad/s].
+    frequency, damping_ratio, share : ndarray, shape (n, modes)
+        [Hz], [1], part of the strain energy in bearings [1]; NaN where a mode does not oscillate.
+    number : ndarray, shape (modes,)
+        Numbers of the modes, from 0 on.
+    """
+
+    speeds: FloatArray
+    frequency: FloatArray
+    damping_ratio: FloatArray
+    share: FloatArray
+    number: FloatArray
+
+
+def lines_of(found: Sweep) -> Lines:
+    """Return the complex modes of a sweep.
+
+    Parameters
+    ----------
+    found : Sweep
+        The sweep.
+    """
+    damped = found.damped
+    return Lines(
+        found.speeds,
+        damped.frequency,
+        damped.damping_ratio,
+        damped.bearing_share,
+        np.asarray(damped.number, dtype=np.float64),
+    )
+
+
+def read_result(path: str) -> xr.Dataset:
+    """Read a result of `mbs sweep` or `mbs campbell`.
+
+    Parameters
+    ----------
+    path : str
+        The file.
+
+    Raises
+    ------
+    InputError
+        If it is none of them.
+    """
+    allowed = "allowed: a result of `mbs sweep -o` or `mbs campbell -o`"
+    try:
+        problem = "" if Path(path).is_file() else "no file"
+        if problem or (problem := structure_problem(path)):
+            raise OSError(problem)
+        with xr.open_dataset(path, engine="netcdf4") as dataset:
+            found = dataset.load()
+    except DAMAGE as error:
+        cause = " ".join(str(error).split()) or type(error).__name__
+        raise InputError(f"--result: {path}: cannot be read ({cause:.200}); {allowed}") from error
+    dims = {"complex_frequency": ("case", "speed", "complex_mode"), "level": ("law", "speed", "frequency")}
+    fits = any(name in found and found[name].dims == order for name, order in dims.items())
+    if not (RESULT.ours(Path(path)) and fits):
+        raise InputError(f"--result: {path} holds no modes and no levels over speed; {allowed}")
+    return found
+
+
+def saved_campbell(dataset: xr.Dataset, orders: Sequence[tuple[float, str]], highest: float, source: str) -> Markup:
+    """Return the diagram of a result that was saved.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        What `read_result` gave.
+    orders : sequence of (float, str)
+        Orders that excite, with their names.
+    highest : float
+        Highest frequency that is drawn [Hz].
+    source : str
+        Name of the file.
+    """
+    if "level" in dataset:
+        return _levels(dataset, orders, source)
+    first = dataset.isel(case=0)
+    speeds = np.asarray(first["speed"].values, dtype=np.float64)
+    lines = Lines(
+        speeds,
+        first["complex_frequency"].values,
+        first["complex_damping_ratio"].values,
+        first["complex_bearing_share"].values,
+        np.asarray(first["complex_number"].values, dtype=np.float64),
+    )
+    return campbell(lines, orders, highest, None, f"From {source}. ")
+
+
+def campbell(
+    lines: Lines, orders: Sequence[tuple[float, str]], highest: float, speed: float | None, begins: str = ""
+) -> Markup:
+    """Return the diagram of modes over speed, with what excites them.
+
+    Parameters
+    ----------
+    lines : Lines
+        The modes.
+    orders : sequence of (float, str)
+        Orders that excite, with their names.
+    highest : float
+        Highest frequency that is drawn [Hz].
+    speed : float or None
+        Operating speed, which is marked [rad/s].
+    begins : str
+        Begins what is said.
+    """
+    rpm = RPM.factor * lines.speeds
+    inside = np.flatnonzero(np.any(lines.frequency <= highest, axis=0))
+    with_bearings = bool(np.nanmax(lines.share, initial=0.0) > 0.0)
+    shares = np.nanmax(lines.share, axis=0, initial=0.0)
+    coloured = [int(k) for k in inside if not with_bearings or shares[k] >= LEAST_SHARE]
+    coloured.sort(key=lambda k: float(np.nanmin(lines.frequency[:, k])))
+    named = coloured[:MOST_NAMED]
+    curves = [
+        Curve(f"mode {int(lines.number[k]) + 1}", lines.frequency[:, k], COLOURS[i % len(COLOURS)],
+              ("", "8 3")[i // len(COLOURS) % 2], 1.8)
+        for i, k in enumerate(named)
+    ]  # fmt: skip
+    others = [int(k) for k in inside if int(k) not in named]
+    curves += [
+        Curve("other modes" if i == 0 else "", lines.frequency[:, k], "#a8a8a8", "", 0.9, read=False)
+        for i, k in enumerate(others)
+    ]
+    drawn = [(order, name) for order, name in orders if order * lines.speeds[0] / (2.0 * np.pi) < highest]
+    drawn = drawn[:MOST_ORDERS]
+    curves += _order_curves(lines.speeds, drawn)
+    points = []
+    crossings = _crossings(lines, drawn, named)
+    if crossings:
+        found = np.array([(at, frequency) for at, frequency, *_ in crossings])
+        points.append(
+            Points("order meets mode", RPM.factor * found[:, 0], found[:, 1], "ring", "#9b0d22"),
+        )
+    if speed is not None and lines.speeds[0] <= speed <= lines.speeds[-1]:
+        curves.append(Curve("", np.full(rpm.size, np.nan), GREY, read=False))
+        points.append(
+            Points("operating speed", np.array([RPM.factor * speed]), np.array([np.nan]), "diamond", "#5a0010")
+        )
+    chart = Chart(
+        "campbell",
+        "Frequencies of the modes over speed",
+        begins + " ".join(_says(lines, crossings, speed)),
+        linear_axis("speed", "rpm", rpm, from_zero=False),
+        linear_axis("frequency", "Hz", np.array([0.0, highest])),
+        rpm,
+        curves,
+        points,
+        frame=WIDE,
+    )
+    return tag("div", figure(chart), class_="single")
+
+
+def _order_curves(speeds: FloatArray, orders: Sequence[tuple[float, str]]) -> list[Curve]:
+    """Lines of the orders."""
+    return [
+        Curve(f"order {name}", order * speeds / (2.0 * np.pi), "#1a1a1a", f"{2 + 2 * i} 4", 1.0, False, name)
+        for i, (order, name) in enumerate(orders)
+    ]
+
+
+def _crossings(
+    lines: Lines, orders: Sequence[tuple[float, str]], modes: Sequence[int]
+) -> list[tuple[float, float, str, int]]:
+    """Where orders meet modes that are not much damped: speed [rad/s], frequency [Hz], order, mode."""
+    found = []
+    for order, name in orders:
+        for k in modes:
+            gap = lines.frequency[:, k] - order * lines.speeds / (2.0 * np.pi)
+            for i in np.flatnonzero(np.isfinite(gap[:-1] * gap[1:]) & (gap[:-1] * gap[1:] <= 0.0)):
+                if lines.damping_ratio[i, k] > MOST_DAMPED or gap[i] == gap[i + 1]:
+                    continue
+                part = float(gap[i] / (gap[i] - gap[i + 1]))
+                speed = float(lines.speeds[i] + part * (lines.speeds[i + 1] - lines.speeds[i]))
+                found.append((speed, order * speed / (2.0 * np.pi), name, int(lines.number[k]) + 1))
+    return sorted(found)
+
+
+def _says(lines: Lines, crossings: Sequence[tuple[float, float, str, int]], speed: float | None) -> list[str]:
+    """What the diagram says."""
+    told = [
+        "Coloured modes have at least 5 % of their strain energy in bearings; modes are those of the system "
+        "linearised at the equilibrium of each speed."
+    ]
+    if not crossings:
+        return [*told, "No order that excites meets one of them here."]
+    near = min(crossings, key=lambda one: abs(one[0] - speed)) if speed is not None else crossings[0]
+    return [
+        *told,
+        f"Orders meet them {len(crossings)} times; nearest to the operating speed is order {near[2]} with mode "
+        f"{near[3]} at {number(RPM.value(near[0]))} rpm and {shown(HERTZ, near[1])}."
+        if speed is not None
+        else f"Orders meet them {len(crossings)} times, first order {near[2]} with mode {near[3]} at "
+        f"{number(RPM.value(near[0]))} rpm and {shown(HERTZ, near[1])}.",
+    ]
+
+
+def _levels(dataset: xr.Dataset, orders: Sequence[tuple[float, str]], source: str) -> Markup:
+    """The levels of a run over speed and frequency, in classes."""
+    first = dataset.isel(law=0)
+    speeds, frequencies = (np.asarray(first[name].values, dtype=np.float64) for name in ("speed", "frequency"))
+    level = np.asarray(first["level"].values, dtype=np.float64)
+    level = level[np.argsort(speeds)]
+    speeds = np.sort(speeds)
+    unit = str(first["level"].attrs.get("units", "dB"))
+    across, along = (min(speeds.size, _SPEEDS), min(frequencies.size, _FREQUENCIES))
+    columns, rows = (
+        np.linspace(0, size, parts + 1).astype(int)
+        for size, parts in ((speeds.size, across), (frequencies.size, along))
+    )
+    coarse = np.array(
+        [[np.nanmax(level[a:b, c:d], initial=-np.inf) for c, d in pairwise(rows)]
+         for a, b in pairwise(columns)]
+    )  # fmt: skip
+    top = _CLASS * np.ceil(float(coarse[np.isfinite(coarse)].max(initial=0.0)) / _CLASS)
+    classes = np.clip(len(_LEVELS) - 1 - ((top - np.nan_to_num(coarse, neginf=-1e9)) // _CLASS), 0, len(_LEVELS) - 1)
+    rpm = RPM.factor * speeds
+    x, y = linear_axis("speed", "rpm", rpm, from_zero=False), linear_axis("frequency", "Hz", frequencies)
+    left = WIDE.across(x, rpm[np.minimum(columns, speeds.size - 1)])
+    high = WIDE.along(y, frequencies[np.minimum(rows, frequencies.size - 1)])
+    cells = []
+    for i in range(across):
+        line = classes[i]
+        for run in np.split(np.arange(along), np.flatnonzero(np.diff(line)) + 1):
+            path = f"M{left[i]:.1f} {high[run[0]]:.1f}H{left[i + 1]:.1f}V{high[run[-1] + 1]:.1f}H{left[i]:.1f}z"
+            cells.append((int(line[run[0]]), path))
+    behind = joined(
+        *(
+            tag("path", d="".join(path for of, path in cells if of == kind), fill=colour)
+            for kind, colour in enumerate(_LEVELS)
+        )
+    )
+    sums = np.asarray(first["sum_level"].values, dtype=np.float64) if "sum_level" in first else np.array([np.nan])
+    loudest = int(np.nanargmax(sums)) if np.isfinite(sums).any() else 0
+    begins = np.asarray(first["speed"].values, dtype=np.float64)
+    chart = Chart(
+        "campbell",
+        f"Levels of a run over speed, {dataset['law'].values[0]}",
+        f"From {source}. The darkest class is {top - _CLASS:g} to {top:g} {unit}, each lighter one {_CLASS:g} dB less. "
+        f"The sum level is highest, {number(float(sums[loudest]), 4)} {unit}, at "
+        f"{number(RPM.value(float(begins[loudest])))} rpm.",
+        x,
+        y,
+        rpm,
+        _order_curves(speeds, orders[:MOST_ORDERS]),
+        behind=behind,
+        frame=WIDE,
+    )
+    return tag("div", figure(chart), class_="single")

@@ -1,0 +1,100 @@
+"""Everything that the report of a scene tells: equilibrium, modes, and modes over speed; what fails is told, too."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeVar
+
+from ehdmaps.errors import AnalysisError
+from mbs.analyses.modes import ModesResult, modes
+from mbs.analyses.statics import StaticsResult, statics
+from mbs.analyses.sweep import SweepResult, SweepSettings, sweep
+from mbs.scene.assembly import Model
+from mbs.scene.map_set import MapSet
+from mbs.settings import SweepRange
+
+R = TypeVar("R")
+
+MOST_SPEEDS = 9
+"""Speeds of the short sweep: modes are followed between them."""
+
+_BELOW, _ABOVE = 0.25, 1.5
+"""Speeds of a scene without [sweep], as parts of its operating speed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Examination:
+    """What was found about a scene.
+
+    Attributes
+    ----------
+    statics : StaticsResult
+        Equilibrium of the scene.
+    modes : ModesResult or str
+        Modes at the equilibrium, or why there are none.
+    sweep : SweepResult or str
+        Modes over speed, or why there are none.
+    maps : MapSet or None
+        The maps of its law.
+    """
+
+    statics: StaticsResult
+    modes: ModesResult | str
+    sweep: SweepResult | str
+    maps: MapSet | None
+
+    @property
+    def model(self) -> Model:
+        """The model in operation."""
+        return self.statics.model
+
+
+def examined(model: Model, maps: MapSet | None, speeds: SweepRange | None, swept: bool = True) -> Examination:
+    """Find it.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    maps : MapSet or None
+        The maps of the law.
+    speeds : SweepRange or None
+        Speeds of the sweep; a few of [sweep] of the scene, or about its operating speed, if None.
+    swept : bool
+        Whether there is a sweep at all.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no equilibrium.
+    """
+    return Examination(
+        statics(model),
+        _or_reason(lambda: modes(model)),
+        _or_reason(lambda: _sweep(model, speeds)) if swept else "",
+        maps,
+    )
+
+
+def _sweep(model: Model, speeds: SweepRange | None) -> SweepResult:
+    """Modes over a few speeds, without frequency responses."""
+    scene = model.scene
+    if speeds is None:
+        given = scene.sweep
+        if given is not None:
+            speeds = SweepRange(given.begin, given.end, min(given.points, MOST_SPEEDS))
+        elif scene.speed > 0.0:
+            speeds = SweepRange(_BELOW * scene.speed, _ABOVE * scene.speed, MOST_SPEEDS)
+        else:
+            raise AnalysisError("the scene stands still and has no [sweep]; --speeds gives speeds")
+    return sweep(dataclasses.replace(model, scene=dataclasses.replace(scene, frequencies=())), SweepSettings(speeds))
+
+
+def _or_reason(find: Callable[[], R]) -> R | str:
+    """The result, or why there is none."""
+    try:
+        return find()
+    except AnalysisError as error:
+        return str(error)

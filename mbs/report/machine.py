@@ -1,0 +1,176 @@
+"""The machine of a report and what limits its law, in sentences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from ehdmaps.figures import typeset
+from ehdmaps.report.markup import Markup, joined, tag
+from ehdmaps.report.numbers import number, shown
+from ehdmaps.report.tables import pairs, table
+from ehdmaps.units import FILM, LENGTH, PRESSURE, RPM
+from mbs.analyses.case import clearance_text, temperature_text
+from mbs.analyses.film_errors import film_errors
+from mbs.analyses.rings import ring_motions
+from mbs.commands.common import outside_at
+from mbs.commands.reach import fade_lines
+from mbs.linearised.validity import NOTABLE
+from mbs.model.elements import GROUND
+from mbs.output.bearing_text import flooded_note, regime
+from mbs.output.modes_text import kinds
+from mbs.output.state_text import state_lines
+from mbs.report.bearings import loaded
+from mbs.report.examination import Examination
+from mbs.scene.contact_laws import supply_words
+from mbs.scene.fields import FORCE, HERTZ
+
+
+def machine(found: Examination) -> Markup:
+    """Return what is examined: speed, law, bearings and loads.
+
+    Parameters
+    ----------
+    found : Examination
+        What was found.
+    """
+    model = found.model
+    scene = model.scene
+    rows = [
+        ("speed", shown(RPM, scene.speed)),
+        ("contact law", model.law),
+        ("temperature", typeset(temperature_text(model))),
+        ("diametral clearance", typeset(clearance_text(model) or "none")),
+        *([("oil", scene.lubricant.title)] if scene.lubricant else []),
+        *([("oil supply", typeset(supply_words(model.supplies)))] if model.supplies else []),
+        *([("surfaces", typeset(model.surface.label))] if model.surface else []),
+        ("assumed", f"{len(scene.assumed)} keys of the scene, marked there" if scene.assumed else "nothing"),
+    ]
+    bearings = [
+        (
+            entry.name,
+            entry.geometry.label or entry.geometry.name,
+            f"{entry.geometry.rollers}",
+            number(LENGTH.value(entry.geometry.roller_diameter), 5),
+            number(LENGTH.value(entry.geometry.roller_length), 5),
+            f"{entry.inner} in {entry.outer}",
+        )
+        for entry in scene.bearings
+    ]
+    loads = [
+        (
+            load.name,
+            load.on if load.against == GROUND else f"{load.on} against {load.against}",
+            *(", ".join(number(value, 4) for value in part) for part in (load.force[:3], load.force[3:])),
+        )
+        for load in scene.loads
+    ]
+    return joined(
+        pairs(rows),
+        *(tag("p", typeset(line.strip())) for line in state_lines(model.states)),
+        table(
+            ("bearing", "type", "rollers", "roller diameter, mm", "roller length, mm", "where"),
+            bearings,
+            "Roller bearings",
+            (0, 1, 5),
+        )
+        if bearings
+        else None,
+        table(("load", "at", "force x, y, z, N", "moment x, y, z, N m"), loads, "Loads", (0, 1)) if loads else None,
+    )
+
+
+def in_short(found: Examination) -> Iterator[str]:
+    """Yield what a reader has to know first.
+
+    Parameters
+    ----------
+    found : Examination
+        What was found.
+    """
+    model, balance = found.model, found.statics.balance
+    motions = ring_motions(model, balance.displacement)
+    if motions:
+        forces = [float(np.hypot(*balance.forces[index][1:3])) for index in range(len(motions))]
+        most = int(np.argmax(forces))
+        rollers = motions[most][0].rollers(motions[most][1], balance.operation)
+        contacts = found.statics.contacts[most]
+        yield (
+            f"Bearing {motions[most][0].name} carries most: {shown(FORCE, forces[most])} on "
+            f"{loaded(rollers).size} of {rollers.load.size} rollers, up to "
+            f"{shown(FORCE, float(rollers.load.max()))} on one, with a Hertz pressure of "
+            f"{shown(PRESSURE, float(contacts.hertz_pressure.max()))}."
+        )
+        films = [float(np.min(state.minimum_film)) for state in found.statics.contacts]
+        if np.isfinite(films).any():
+            thin = int(np.nanargmin(films))
+            words = f"The thinnest film is {shown(FILM, films[thin])}, in bearing {motions[thin][0].name}"
+            if model.surface is not None and not model.surface.smooth:
+                parameter = films[thin] / model.surface.roughness
+                words += f": Λ = {number(parameter)} ({regime(parameter)})"
+            yield f"{words}."
+        else:
+            yield "The law knows no film: contacts are dry."
+    else:
+        yield "The scene has no roller bearing."
+    if isinstance(found.modes, str):
+        yield f"There are no modes: {found.modes}"
+    else:
+        _, _, swinging = kinds(found.modes.modes)
+        if swinging.size:
+            all_modes = found.modes.modes
+            first = ", ".join(shown(HERTZ, float(all_modes.frequency[k])) for k in swinging[:3])
+            ratios = all_modes.damping_ratio[swinging[:3]]
+            yield (
+                f"The lowest oscillating modes are at {first}, with damping ratios of {number(float(ratios.min()), 2)} "
+                f"to {number(float(ratios.max()), 2)}."
+            )
+            if float(all_modes.eigenvalues.real.max()) > 1e-6 * float(np.abs(all_modes.eigenvalues).max()):
+                yield "Warning: a motion grows: the equilibrium is not stable."
+
+
+def warnings(found: Examination) -> list[str]:
+    """Return what is to be warned of: loads, pressures and speeds at which the law no longer holds.
+
+    Parameters
+    ----------
+    found : Examination
+        What was found.
+    """
+    balance, model = found.statics.balance, found.model
+    lines = [
+        *found.statics.overloads,
+        *found.statics.free,
+        *outside_at(model, balance),
+        *fade_lines(model, np.array([model.scene.speed])),
+    ]
+    return [line.removeprefix("warning: ") for line in lines]
+
+
+def notes(found: Examination) -> list[str]:
+    """Return what else limits the numbers: estimates, films in quick motion, oil supply.
+
+    Parameters
+    ----------
+    found : Examination
+        What was found.
+    """
+    balance, model = found.statics.balance, found.model
+    geometry = {entry.geometry.estimated: entry.geometry.label or entry.geometry.name for entry in model.scene.bearings}
+    torque = max((loss.torque for loss in found.statics.losses), default=math.nan)
+    return [
+        *(f"{name}: {words}" for words, name in geometry.items() if words),
+        *(
+            f"{entry.bearing}: stiffness and damping of slow motion are off by more than {100.0 * NOTABLE:g} % from "
+            f"{shown(HERTZ, entry.frequency)} on (estimated)"
+            for entry in film_errors(model, balance.displacement, balance.operation, "slow")
+            if math.isfinite(entry.frequency)
+        ),
+        *(line.removeprefix("note: ") for line in flooded_note(torque, model.supplies.values())),
+        *(
+            f"The weight of {name} is left out: its finite elements are held themselves"
+            for name in model.system.weightless
+        ),
+    ]

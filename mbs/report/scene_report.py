@@ -1,0 +1,130 @@
+"""The report of a scene as one document."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import xarray as xr
+
+from ehdmaps.figures import typeset
+from ehdmaps.jobs.map_report import job, provenance, written_by
+from ehdmaps.program import plain
+from ehdmaps.report.markup import Markup, joined, tag
+from ehdmaps.report.page import Section, document
+from ehdmaps.report.tables import pairs, sentences
+from ehdmaps.units import RPM
+from mbs.analyses.followed import excited_orders
+from mbs.report.bearings import bearings
+from mbs.report.campbell import campbell, lines_of, saved_campbell
+from mbs.report.examination import Examination
+from mbs.report.machine import in_short, machine, notes, warnings
+from mbs.report.modes import mode_table
+from mbs.report.used_maps import map_sections, used_maps
+
+
+def scene_report(
+    found: Examination,
+    command: str,
+    maps: Sequence[str],
+    saved: tuple[str, xr.Dataset] | None = None,
+    remarks: Sequence[str] = (),
+) -> str:
+    """Return the document.
+
+    Parameters
+    ----------
+    found : Examination
+        What was found.
+    command : str
+        Command line that asks for it.
+    maps : sequence of str
+        Names of the files of the maps, in their order.
+    saved : (str, xarray.Dataset) or None
+        A result for the Campbell diagram and the name of its file, in place of the sweep.
+    remarks : sequence of str
+        Notes besides, such as how maps were made.
+    """
+    scene = found.model.scene
+    used = list(used_maps(found))
+    told = warnings(found)
+    sections = [
+        Section(
+            "summary",
+            "In short",
+            [
+                sentences(map(typeset, in_short(found))),
+                *(tag("p", typeset(f"Warning: {line}"), class_="warning") for line in told),
+            ],
+        ),
+        Section("machine", "Machine, law and oil", [machine(found)]),
+    ]
+    if found.model.bearings:
+        sections.append(Section("bearings", "Bearings in operation", list(bearings(found))))
+    for index, one in enumerate(used):
+        sections += map_sections(one, f"map-{index}", len(used) > 1)
+    if not used:
+        words = f"The law is that of {found.model.law}: no map stands behind it, and there are no curves of one."
+        sections.append(Section("law", "Contact law", [tag("p", words)]))
+    sections += [
+        Section("modes", f"Modes at {RPM.text(scene.speed)}", [_modes(found)]),
+        Section("campbell-diagram", "Campbell diagram", [_campbell(found, saved)]),
+        Section("limits", "What limits these numbers", [_limits(told, [*notes(found), *remarks])]),
+        Section("provenance", "Provenance", [_provenance(found, command, maps)]),
+    ]
+    lead = f"{RPM.text(scene.speed)}; law {found.model.law}."
+    return document(scene.title, typeset(lead), sections)
+
+
+def _highest(found: Examination) -> float:
+    """Highest frequency that matters [Hz]."""
+    scene = found.model.scene
+    return float(max(scene.frequencies, default=scene.campbell.highest))
+
+
+def _modes(found: Examination) -> Markup:
+    """The modes, or why there are none."""
+    if isinstance(found.modes, str):
+        return tag("p", f"There are no modes: {found.modes}", class_="warning")
+    return mode_table(found.modes, _highest(found))
+
+
+def _campbell(found: Examination, saved: tuple[str, xr.Dataset] | None) -> Markup:
+    """The diagram, or why there is none."""
+    model = found.model
+    given = model.scene.campbell.orders
+    # modes of a linear system, not of a run: no order is too slow for it
+    excited = {1.0: "1", **dict(excited_orders(model, math.inf))}
+    orders = [(order, f"{order:g}") for order in given] if given else sorted(excited.items())
+    if saved is not None:
+        name, dataset = saved
+        return saved_campbell(dataset, orders, _highest(found), name)
+    if isinstance(found.sweep, str):
+        return tag("p", f"There is no Campbell diagram: {found.sweep}", class_="warning")
+    return campbell(lines_of(found.sweep.sweeps[0]), orders, _highest(found), model.scene.speed)
+
+
+def _limits(told: Sequence[str], noted: Sequence[str]) -> Markup:
+    """Warnings and notes."""
+    if not told and not noted:
+        return tag("p", "Nothing is to be warned of.")
+    return joined(
+        *(tag("p", typeset(line), class_="warning") for line in told),
+        sentences(map(typeset, noted)) if noted else None,
+    )
+
+
+def _provenance(found: Examination, command: str, maps: Sequence[str]) -> Markup:
+    """Scene, maps, program and command."""
+    scene = found.model.scene
+    used = list(used_maps(found))
+    names = maps if len(maps) == len(used) else [plain(one.emap.dataset.attrs.get("job_name", "")) for one in used]
+    return joined(
+        pairs([("scene", scene.file.name if scene.file else scene.name)]),
+        tag("details", tag("summary", "The scene, as it was"), tag("pre", scene.text)) if scene.text else None,
+        *(
+            joined(tag("h3", f"Map {name}"), provenance(one.emap, name), job(one.emap, f"map-{index}"))
+            for index, (one, name) in enumerate(zip(used, names, strict=True))
+        ),
+        written_by(command),
+    )

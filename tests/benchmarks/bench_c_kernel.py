@@ -1,0 +1,95 @@
+"""What a call of the exported C costs beside the compiled Python, and whether the Windows build gives the same numbers.
+
+    python -m tests.benchmarks.bench_c_kernel MAP.nc [--wine]
+
+`--wine` builds by mingw-w64 and runs by wine, which Debian has as `gcc-mingw-w64-x86-64` and `wine64`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+from numba import njit
+
+from ehdmaps.exports.c.kernel import KernelOptions, kernel_files
+from ehdmaps.maps.emap import open_map
+from mbs import Bearing, BearingForce
+from mbs.bearings.bearing_kernel import force_of_arrays
+
+TIMING = Path(__file__).parents[1] / "data" / "c" / "timing.c"
+LOOSE = "-O3 -march=native -fno-math-errno -fno-trapping-math -fassociative-math -fno-signed-zeros"
+FLAGS = ("-O2", "-O3", LOOSE)
+U, T = 1.0, 313.15
+
+
+@njit
+def called(state, sizes, slices, angles, numbers, cells, knots, rows, states, out, count):
+    total = 0.0
+    for i in range(count):
+        state[2] = 1e-6 + 1e-12 * i
+        force_of_arrays(state, sizes, slices, angles, numbers, cells, knots, rows, states, out)
+        total += out[0, 1]
+    return total
+
+
+def python_time(force, tilt, calls=20000):
+    """Microseconds of a call of the compiled Python, from compiled code."""
+    at = force.at(U, T)
+    at([0.0, 3e-6, 1e-6, 0.0, tilt, 2.0 * tilt], [0.0, 1e-4, 0.0, 0.0, 10.0 * tilt, 0.0], 0.1)
+    out, best = np.empty((13, 6)), np.inf
+    called(*at.arrays, out, 10)
+    for _ in range(15):
+        begin = time.process_time()
+        called(*at.arrays, out, calls)
+        best = min(best, (time.process_time() - begin) / calls)
+    return 1e6 * best
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("map", type=Path)
+    parser.add_argument("--wine", action="store_true")
+    arguments = parser.parse_args()
+    emap = open_map(arguments.map)
+    force = BearingForce(Bearing(emap.bearing), emap.law("series"))
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for file, text in kernel_files(emap, KernelOptions(clearance=0.0), ["timing"]).items():
+            (folder / file).write_text(text)
+        source = [str(TIMING), "ehd.c", "-I."]
+        printed = {}
+        print(f"{emap.bearing.rollers} x 41 slices, us a call: level, tilted; a new speed; one call of the law")
+        for flags in FLAGS:
+            subprocess.run(["gcc", "-std=c99", *flags.split(), *source, "-o", "run", "-lm"], cwd=folder, check=True)
+            *forces, took = subprocess.run(
+                [folder / "run", str(U), str(T)], capture_output=True, text=True, check=True
+            ).stdout.splitlines()
+            printed[flags] = forces
+            level, tilted, prepared, law = map(float, took.split())
+            ratios = level / python_time(force, 0.0), tilted / python_time(force, 1e-5)
+            print(
+                f"gcc {flags}: {level:.2f}, {tilted:.2f}; {prepared:.1f}; {law:.3f}; "
+                f"times compiled Python: {ratios[0]:.2f}, {ratios[1]:.2f}"
+            )
+        if arguments.wine:
+            command = ["x86_64-w64-mingw32-gcc", "-std=c99", "-D__USE_MINGW_ANSI_STDIO=1", "-O2", *source]
+            subprocess.run([*command, "-o", "run.exe", "-lm"], cwd=folder, check=True)
+            wine = next(path for path in ("/usr/lib/wine/wine64", "wine") if path == "wine" or Path(path).exists())
+            found = subprocess.run(
+                [wine, "run.exe", str(U), str(T)], cwd=folder, capture_output=True, text=True, check=True,
+                env={"WINEPREFIX": str(folder / "prefix"), "WINEDEBUG": "-all", "PATH": "/usr/bin:/bin", "HOME": name},
+            ).stdout.splitlines()[:-1]  # fmt: skip
+            values = [
+                np.array([float.fromhex(text) for line in lines for text in line.split()])
+                for lines in (printed["-O2"], found)
+            ]
+            print(f"wine: largest relative difference of forces {np.max(np.abs(values[1] / values[0] - 1.0)):.1e}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,110 @@
+"""A map of NU308 in Modelica: `ehdmaps export --to modelica`, compiled and simulated by rumoca.
+
+python -m venv RUMOCA && RUMOCA/bin/pip install "rumoca>=0.10.2,<0.11"
+python -m tests.benchmarks.modelica_export nu308.nc RUMOCA/bin/python
+
+rumoca is released every few days and takes some seconds for each simulation of the table, so that it is no part of the
+tests. The law is compared over the whole table at three rates, the example with DOP853 on the law in Python, and an
+approach above the map has to stop the simulation.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import subprocess
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+import ehdmaps
+from ehdmaps.jobs.cli import main as export
+
+SPEED, TEMPERATURE = 1.7, 313.15
+RATES = (0.0, 1e-3, -1.0)
+"""Of the approach [m/s]: at rest, together, and parting so fast that the contact cannot follow."""
+
+SWEEP = """
+  model Sweep
+    parameter Real rate = 0.0;
+    Real place(start = 0.0, fixed = true);
+    Real w;
+    Real k;
+    Real c;
+  equation
+    der(place) = 1.0;
+    (w, k, c) = force(-2e-6 + (Table.highestApproach + 2e-6) * place, rate);
+  end Sweep;
+"""
+
+PROGRAM = """
+import json, sys, rumoca
+text, runs = json.load(sys.stdin)
+found = []
+for model, end, step, values in runs:
+    try:
+        settings = rumoca.SimConfig(rtol=1e-10, atol=1e-14)
+        compiled = rumoca.Session().loads(text, model="EhdContact." + model)
+        result = compiled.simulate(t=(0, end), dt=step, config=settings, params=values)
+        found.append({name: [float(x) for x in result[name]] for name in result.names} | {
+            "time": [float(x) for x in result.time]})
+    except rumoca.RumocaError as error:
+        found.append(str(error))
+json.dump(found, sys.stdout)
+"""
+
+
+def main() -> None:
+    """Print the differences."""
+    parser = argparse.ArgumentParser(description="Modelica export of a map beside the law in Python.")
+    parser.add_argument("map", help="map of the NU308, by `ehdmaps generate nu308`")
+    parser.add_argument("python", help="of an environment with rumoca")
+    given = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "law.mo"
+        at = ("--speed", f"{SPEED} m/s", "--temperature", f"{TEMPERATURE} K")
+        assert export(["export", given.map, "--to", "modelica", *at, "-o", str(file)]) == 0
+        text = file.read_text()
+    end = text.rindex("end EhdContact;")
+    runs = [
+        *(("Sweep", 0.999, 0.003, {"rate": rate}) for rate in RATES),
+        ("Sweep", 1.2, 0.1, {}),
+        ("Example", 0.01, 1e-4, {}),
+    ]
+    asked = json.dumps([text[:end] + SWEEP + text[end:], runs])
+    done = subprocess.run([given.python, "-c", PROGRAM], input=asked, capture_output=True, text=True, check=True)
+    *sweeps, above, example = json.loads(done.stdout)
+    law = ehdmaps.open_map(given.map).law("series").at(SPEED, TEMPERATURE)
+    (highest,) = (float(x) for x in re.findall(r"highestApproach.* = (\S+) ", text))
+    for rate, found in zip(RATES, sweeps, strict=True):
+        expected = law(-2e-6 + (highest + 2e-6) * np.array(found["place"]), rate)
+        shown = []
+        for name, values in zip("wkc", expected, strict=True):
+            differences = np.abs(np.array(found[name]) - values)
+            shown.append(f"{name} {np.max(differences / np.maximum(np.abs(values), 1e-12 * np.abs(values).max())):.1e}")
+        print(f"rate {rate:g} m/s, {len(found['w'])} places: largest relative differences {', '.join(shown)}")
+    assert isinstance(above, str) and "above the map" in above, above
+    print(f"above the map: {above}")
+    mass, load, start = (
+        float(re.findall(pattern, text)[0])
+        for pattern in (r"mass\(.*\) = (\S+) ", r"Real load\(.*\) = (\S+);", r"start = (\S+), fixed")
+    )
+    solved = solve_ivp(
+        lambda t, y: [y[1], (load - law(y[0], y[1])[0]) / mass],
+        (0.0, 0.01),
+        [start, 0.0],
+        method="DOP853",
+        rtol=1e-12,
+        atol=1e-18,
+        t_eval=example["time"],
+    )
+    difference = np.abs(np.array(example["approach"]) - solved.y[0])
+    relative, swing = float(np.max(difference / solved.y[0])), float(np.ptp(solved.y[0]))
+    print(f"example over 10 ms: {relative:.1e} of the approach, {difference.max() / swing:.1e} of its change")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,89 @@
+"""An export in C as a library for Python: what compiles it, and what calls it."""
+
+from __future__ import annotations
+
+import ctypes
+import subprocess
+from pathlib import Path
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+
+STRICT = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
+
+_D, _P = ctypes.c_double, ctypes.c_void_p
+_ARGUMENTS = {
+    "law": [_D] * 5 + [_P],
+    "at": [_P, _D, _D, _D],
+    "law_at": [_P, _D, _D, _P],
+    "bearing_make": [_P, _D, ctypes.c_int, _P],
+    "prepare": [_P, _D, _D, _D],
+    "bearing_at": [_P, _P, _P, _P, _D, _P],
+    "bearing_call": [_P, _P, _P, _P, _D, _D, _D, _D, _P],
+}
+
+
+def compiled(folder: Path, *more: str, compiler: str = "gcc", name: str = "libehd.so", link: bool = True) -> Path:
+    """Compile a source of an export, with what else there is, into a file of the folder."""
+    output = folder / name
+    result = subprocess.run(
+        [compiler, *STRICT, *more, str(folder / "ehd.c"), "-o", str(output), *(["-lm"] if link else [])],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert result.returncode == 0, result.stderr
+    return output
+
+
+class Kernel:
+    """A law, and a bearing where there is one."""
+
+    def __init__(self, library: Path) -> None:
+        self._library = ctypes.CDLL(str(library))
+        for name, arguments in _ARGUMENTS.items():
+            if hasattr(self._library, f"ehd_{name}"):
+                getattr(self._library, f"ehd_{name}").argtypes = arguments
+        self._room = {}
+        for name in ("point", "bearing", "prepared"):
+            if hasattr(self._library, f"ehd_{name}_size"):
+                size = getattr(self._library, f"ehd_{name}_size")
+                size.restype = ctypes.c_size_t
+                self._room[name] = ctypes.create_string_buffer(size())
+
+    def law(self, delta: float, rate: float, u: float, T: float, q: float = 0.0) -> tuple[int, FloatArray]:
+        """Status, and load, stiffness, damping."""
+        found = np.empty(3)
+        return self._library.ehd_law(delta, rate, u, T, q, found.ctypes.data), found
+
+    def at(self, u: float, T: float, q: float = 0.0) -> int:
+        """Go to a speed, temperature and centrifugal load."""
+        return int(self._library.ehd_at(self._room["point"], u, T, q))
+
+    def law_at(self, delta: float, rate: float) -> tuple[int, FloatArray]:
+        """Status, and load, stiffness, damping there."""
+        found = np.empty(3)
+        return self._library.ehd_law_at(self._room["point"], delta, rate, found.ctypes.data), found
+
+    def make(self, clearance: float, slices: int, profile: FloatArray | None = None) -> int:
+        """Cut the bearing into slices."""
+        given = None if profile is None else np.ascontiguousarray(profile).ctypes.data
+        return int(self._library.ehd_bearing_make(self._room["bearing"], clearance, slices, given))
+
+    def prepare(self, u: float, T: float, q: float = 0.0) -> int:
+        """Prepare the law for the bearing."""
+        return int(self._library.ehd_prepare(self._room["prepared"], u, T, q))
+
+    def force(self, pose: FloatArray, velocity: FloatArray, cage_angle: float) -> tuple[int, FloatArray]:
+        """Status, and force, stiffness and damping in rows (13, 6)."""
+        found, both = np.empty((13, 6)), np.ascontiguousarray([pose, velocity], dtype=np.float64)
+        at = both[0].ctypes.data, both[1].ctypes.data
+        return self._library.ehd_bearing_at(
+            self._room["bearing"], self._room["prepared"], *at, cage_angle, found.ctypes.data
+        ), found
+
+    def call(self, pose: FloatArray, u: float, T: float) -> tuple[int, FloatArray]:
+        """As `prepare` and `force` at rest."""
+        found, given = np.empty((13, 6)), np.ascontiguousarray(pose, dtype=np.float64)
+        return self._library.ehd_bearing_call(
+            self._room["bearing"], self._room["prepared"], given.ctypes.data, None, 0.0, u, T, 0.0, found.ctypes.data
+        ), found
