@@ -86,16 +86,17 @@ def main() -> None:
     element = BearingForce(bearing, law)
     step = iter(range(10**9))
 
-    def varied(first: float, last: float, temperature: bool = False, q: float = 0.0) -> None:
+    def varied(first: float, last: float, temperature: bool = False, q: float = 0.0, both: bool = False) -> None:
         part = (next(step) * 0.6180339887) % 1.0
         value = first + (last - first) * part
-        u, T = (1.0, value) if temperature else (value, 330.0)
+        u, T = (1.0, value) if temperature else (value, 320.0 + 20.0 * part if both else 330.0)
         element(POSE, VELOCITY, entrainment_speed=u, temperature=T, centrifugal_load=q)
 
     low = law.speed_range[0]
     for what, call, times in (
         ("speed", lambda: varied(0.5, 1.5), 300),
         ("temperature", lambda: varied(320.0, 340.0, True), 300),
+        ("speed and temperature", lambda: varied(0.5, 1.5, both=True), 300),
         ("speed, with a centrifugal load", lambda: varied(0.5, 1.5, q=50.0), 30),
         ("speed, below the lowest mapped one", lambda: varied(0.2 * low, 0.8 * low), 30),
     ):

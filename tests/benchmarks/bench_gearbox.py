@@ -370,7 +370,7 @@ def coordinates_table(bench: Bench, law: str) -> None:
     print("largest change of the natural frequencies up to 1, 2.5, 5 kHz, in rising order", *shifts, sep="\n")
 
 
-WAITS = (0.0, 10.0, 20.0, 29.0, 1000.0)
+WAITS = (0.0, 10.0, 20.0, 30.0, 1000.0)
 """Where pieces of the ramp begin [rpm]."""
 
 WAIT_STEPS, COMPARED_STEPS = 400, 20
