@@ -9,5 +9,6 @@
 | `modelica` | the law at one speed and temperature as pure functions in Modelica |
 | `folder` | exports that are folders: written whole or not at all |
 | `c` | the law and the bearing in C99 |
+| `shims` | user routines of Adams, RecurDyn and Simpack over the kernel in C |
 | `fmu` | a bearing as a Functional Mock-up Unit |
 """

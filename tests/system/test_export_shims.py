@@ -1,0 +1,149 @@
+"""User routines of Adams, RecurDyn and Simpack, called through stand-ins for these programs."""
+
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehdmaps.jobs.cli import main
+from ehdmaps.jobs.generate import generate
+from ehdmaps.jobs.reader import parse_job
+from ehdmaps.maps.emap import open_map
+from ehdmaps.physics.closed_form import FormulaSolver
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_force import BearingForce
+from tests.cases.c_kernel import STRICT
+from tests.cases.jobs import SMALL
+
+MOCKS = Path(__file__).parents[1] / "data" / "c" / "mocks"
+CLEARANCE, KELVIN, SPIN, CAGE = 20e-6, 310.0, 60.0, 0.3
+PLACE, SPEED = np.array([0.0, 18e-6, 7e-6]), np.array([0.0, 2e-4, -3e-4])
+TILT, TILT_RATE = np.array([2e-4, -3e-4]), np.array([1e-3, 2e-3])
+"""Pose and motion of the inner ring; tilts about y and z."""
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    path = tmp_path_factory.mktemp("shims") / "map.nc"
+    generate(parse_job(SMALL, "map", "map.toml"), path, workers=1, solver=FormulaSolver())
+    return path
+
+
+@pytest.fixture(scope="module")
+def wanted(path):
+    """Force and moment by the bearing of Python."""
+    bearing = Bearing.named("NU308", clearance=CLEARANCE)
+    force = BearingForce(bearing, open_map(path).law("series", outside="error"))
+    pose = np.concatenate([PLACE, [0.0], TILT])
+    rate = np.concatenate([SPEED, [0.0], TILT_RATE])
+    u = bearing.geometry.entrainment_speed(SPIN)
+    return force.evaluate(pose, rate, cage_angle=CAGE, entrainment_speed=u, temperature=KELVIN).force
+
+
+def axis_and_turning():
+    """Axis of the tilted ring (1, tz, -ty), and the angular velocity by which it spins and tilts as above."""
+    axis = np.array([1.0, TILT[1], -TILT[0]])
+    # about the axis by SPIN; across so that the axis moves by (0, TILT_RATE z, -TILT_RATE y)
+    across = np.array([0.0, TILT_RATE[0], TILT_RATE[1]])
+    turning = SPIN * axis / np.linalg.norm(axis) + across
+    # the part of `across` along the axis, and that of x in its motion, are of the second order of the tilt
+    return axis, turning
+
+
+def exported(path, folder, target, *options):
+    assert main(["export", str(path), "--to", target, "-o", str(folder), *options]) == 0
+    return folder
+
+
+def made(folder, *command):
+    result = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stderr
+
+
+def answer(folder, numbers):
+    given = " ".join(f"{number!r}" for number in np.asarray(numbers, dtype=float).tolist())
+    result = subprocess.run(["./driver"], cwd=folder, input=given, capture_output=True, text=True, check=True)
+    return result.stdout
+
+
+def numbers_of(text):
+    return np.array(text.split(), dtype=float)
+
+
+@pytest.fixture(scope="module")
+def adams(path, tmp_path_factory):
+    folder = exported(path, tmp_path_factory.mktemp("adams") / "out", "adams")
+    sources = ["ehd.c", "bearing_slot.c", "adams.c", str(MOCKS / "adams_driver.c")]
+    made(folder, "gcc", *STRICT, f"-I{MOCKS}", "-I.", *sources, "-o", "driver", "-lm")
+    return folder
+
+
+def adams_input(place=PLACE, kelvin=KELVIN):
+    """Markers whose z is the axis: their x, y, z are y, z, x of the bearing; lengths in millimetres."""
+    axis, turning = axis_and_turning()
+    x, y, z = axis[[1, 2, 0]] / np.linalg.norm(axis)
+    angles = [np.arctan2(x, -y), np.arccos(z), 0.7]
+    order = [1, 2, 0]
+    return [*1e3 * place[order], *angles, *1e3 * SPEED[order], *turning[order], CAGE, kelvin, 1e3 * CLEARANCE]
+
+
+def test_adams_feels_the_bearing(adams, wanted):
+    """1e-6: squares of the tilt, which the pose of a ring leaves out, and the rounding of arccos beside 1."""
+    found = numbers_of(answer(adams, adams_input()))
+    force = found[[2, 0, 1]]
+    moment = 1e-3 * found[[5, 3, 4]]
+    np.testing.assert_allclose(force, wanted[:3], atol=1e-6 * np.abs(wanted[:3]).max())
+    np.testing.assert_allclose(moment, wanted[3:], atol=1e-5 * np.abs(wanted[3:]).max())
+
+
+def test_adams_is_stopped_outside_of_the_map(adams):
+    assert answer(adams, adams_input(kelvin=500.0)).startswith("stopped 3 ")
+    assert "stopped 3 " in answer(adams, adams_input(place=np.array([0.0, np.nan, 0.0])))
+
+
+def test_recurdyn_feels_the_contact(path, tmp_path):
+    folder = exported(path, tmp_path / "out", "recurdyn")
+    sources = ["ehd.c", "recurdyn.c", str(MOCKS / "recurdyn_driver.c")]
+    made(folder, "gcc", *STRICT, "-I.", *sources, "-o", "driver", "-lm")
+    law = open_map(path).law("series", outside="error")
+    parameters = [1.5, KELVIN, 0.015, 1e-3, -2.0, 2e-3]
+    # closes at 0.4 mm/s: along the axis that pushes apart the velocity is against the push
+    found = numbers_of(answer(folder, [*parameters, 12e-3, 0.0, 0.4, 0.0]))
+    load = law(1e-3 * (12e-3 - 2e-3), 0.4e-3, 1.5, KELVIN)[0]
+    np.testing.assert_allclose(found, [0.0, -0.015 * load, 0.0, 0.0, 0.0, 0.0], rtol=1e-12)
+    beyond = numbers_of(answer(folder, [1.5, 600.0, *parameters[2:], 12e-3, 0.0, 0.0, 0.0]))
+    assert np.isnan(beyond[1])
+    assert np.isnan(numbers_of(answer(folder, [*parameters[:4], 7.0, 0.0, 12e-3, 0.0, 0.0, 0.0]))[0])
+
+
+def test_simpack_feels_the_bearing(path, wanted, tmp_path):
+    """1e-6 as for Adams; Simpack is given the opposite, which it applies at the outer ring."""
+    folder = exported(path, tmp_path / "out", "simpack")
+    for source in ("ehd.c", "bearing_slot.c"):
+        made(folder, "gcc", *STRICT, "-c", source)
+    sources = [str(MOCKS / "simpack.f90"), "simpack.f90", str(MOCKS / "simpack_driver.f90")]
+    made(folder, "gfortran", "-Wall", "-Wno-unused-dummy-argument", *sources, "ehd.o", "bearing_slot.o", "-o", "driver")
+    axis, turning = axis_and_turning()
+    given = [*PLACE, *(-0.05 * axis), *SPEED, *turning, CAGE]
+    found = numbers_of(answer(folder, [*given, KELVIN, CLEARANCE]))
+    np.testing.assert_allclose(-found[:3], wanted[:3], atol=1e-6 * np.abs(wanted[:3]).max())
+    np.testing.assert_allclose(-found[3:], wanted[3:], atol=1e-5 * np.abs(wanted[3:]).max())
+    assert "message 3 roller bearing with films, element 5" in answer(folder, [*given, 500.0, CLEARANCE])
+
+
+def test_the_spline_of_adams_is_the_law(path, tmp_path):
+    options = ["--speed", "1.5 m/s", "--temperature", "30 degC"]
+    text = (exported(path, tmp_path / "out", "adams", *options) / "spline.adm").read_text(encoding="utf-8")
+    body = text[text.index("SPLINE/1") :]
+    x, y = (numbers_of(part.replace(",", " ")) for part in body.split("X =")[1].split(", Y ="))
+    law = open_map(path).law("series", outside="clamp").at(1.5, 303.15)
+    assert x.size == y.size == 120
+    # ten digits of the approach make this of the load, where the curve is steepest against it
+    np.testing.assert_allclose([law(place, 0.0)[0] for place in x], y, rtol=1e-6)
+
+
+def test_half_a_place_of_the_spline_and_bare_contacts_are_refused(path, tmp_path, capsys):
+    assert main(["export", str(path), "--to", "adams", "-o", str(tmp_path / "o"), "--speed", "1 m/s"]) == 2
+    assert "--speed, --temperature: one of them is missing" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
