@@ -146,4 +146,22 @@ def test_the_spline_of_adams_is_the_law(path, tmp_path):
 def test_half_a_place_of_the_spline_and_bare_contacts_are_refused(path, tmp_path, capsys):
     assert main(["export", str(path), "--to", "adams", "-o", str(tmp_path / "o"), "--speed", "1 m/s"]) == 2
     assert "--speed, --temperature: one of them is missing" in capsys.readouterr().err
+    assert (
+        main(
+            [
+                "export",
+                str(path),
+                "--to",
+                "adams",
+                "-o",
+                str(tmp_path / "o"),
+                "--speed",
+                "90 m/s",
+                "--temperature",
+                "30 degC",
+            ]
+        )
+        == 2
+    )
+    assert "outside" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []

@@ -33,7 +33,7 @@ subroutine uforce40_setup(task, par_dim, stdyn_dim, ov_dim, str_dim, id, mk_from
    use simpack
    implicit none
    integer, intent(in) :: task, par_dim, stdyn_dim, ov_dim, str_dim, id, mk_from, mk_to
-   double precision, intent(inout) :: par(par_dim)
+   double precision, intent(in out) :: par(par_dim)
    integer, intent(out) :: par_type(par_dim), par_unit(par_dim), stdyn_unit(stdyn_dim), ov_unit(ov_dim)
    character(len=*), intent(out) :: par_name(par_dim), stdyn_name(stdyn_dim), ov_name(ov_dim)
    integer, intent(out) :: res_type, strst_type, ierr
@@ -65,8 +65,8 @@ subroutine uforce40(task, par_dim, uin_dim, stdyn_dim, stroot_dim, ov_dim, id, p
    implicit none
    integer, intent(in) :: task, par_dim, uin_dim, stdyn_dim, stroot_dim, ov_dim, id, mk_from, mk_to
    double precision, intent(in) :: par(par_dim), time, uin(uin_dim)
-   double precision, intent(inout) :: stdyn(stdyn_dim)
-   integer, intent(inout) :: stroot(stroot_dim)
+   double precision, intent(in out) :: stdyn(stdyn_dim)
+   integer, intent(in out) :: stroot(stroot_dim)
    double precision, intent(out) :: stdynd(stdyn_dim), force(3), torque(3), ov(ov_dim), valroot(stroot_dim)
    integer, intent(out) :: ierr
 

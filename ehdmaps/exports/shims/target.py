@@ -37,7 +37,7 @@ def _target(program: str, routine: str, parts: tuple[str, ...], build: str) -> T
     Parameters
     ----------
     program : str
-        Its name, for people.
+        Name of the program, for people.
     routine : str
         File of the user routine.
     parts : tuple of str
@@ -82,13 +82,15 @@ def _target(program: str, routine: str, parts: tuple[str, ...], build: str) -> T
 
 
 def _spline(emap: EHDMap, header: tuple[str, ...], arguments: argparse.Namespace) -> str:
-    """Write load over approach, both contacts of a roller in series at rest, per metre of roller, as SPLINE of Adams."""
+    """Write load over approach as SPLINE of Adams: both contacts of a roller in series, at rest, per metre of it."""
     if not (arguments.speed and arguments.temperature):
         raise InputError("--speed, --temperature: one of them is missing; the spline is made at both")
-    law = emap.law("series", "clamp").at(quantity(arguments.speed, "m/s"), quantity(arguments.temperature, "K"))
+    place = quantity(arguments.speed, "m/s"), quantity(arguments.temperature, "K")
+    emap.law("series", "error")(0.0, 0.0, *place)  # refuses what lies outside of the map
+    law = emap.law("series", "clamp").at(*place)
     highest = float(emap.dataset["load"].values[-1])
     loads = np.geomspace(_LEAST * highest, (1.0 - 1e-9) * highest, _CURVE_POINTS)
-    approach = [brentq(lambda place, w=load: float(law(place, 0.0)[0]) - w, *_PLACES, xtol=1e-16) for load in loads]
+    approach = [brentq(lambda at, w=load: float(law(at, 0.0)[0]) - w, *_PLACES, xtol=1e-16) for load in loads]
     rows = [f"! {line}" for line in header]
     rows.append(
         f"! load [N/m] per length of roller over approach [m], both contacts in series, at rest, at {arguments.speed}, "
