@@ -3,7 +3,7 @@
 python -m venv RUMOCA && RUMOCA/bin/pip install "rumoca>=0.10.2,<0.11"
 python -m tests.benchmarks.modelica_export nu308.nc RUMOCA/bin/python
 
-rumoca is released every few days and takes some seconds for each simulation of the table, so that it is no part of the
+rumoca has many releases and takes some seconds for each simulation of the table, so that it is no part of the
 tests. The law is compared over the whole table at three rates, the example with DOP853 on the law in Python, and an
 approach above the map has to stop the simulation.
 """
