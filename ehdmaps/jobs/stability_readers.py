@@ -198,7 +198,7 @@ def _statuses() -> Reader:
     }
 
     def read(folder: Path) -> str:
-        text, code = run_status(argparse.Namespace(map=str(folder / "map.nc")))
+        text, code = run_status(argparse.Namespace(map=str(folder / "map.nc"), output=None))
         return "" if text and code in (0, 1) else f"status {code} with {text!r:.80}"
 
     name = status_path(Path("map.nc")).name

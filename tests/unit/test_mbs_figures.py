@@ -26,6 +26,7 @@ from mbs.linearised.tracking import numbers
 from mbs.linearised.validity import FilmError, memory_error
 from mbs.model.equilibrium import equilibrium
 from mbs.output.modes_plot import modes_figure
+from mbs.output.modes_text import kinds
 from mbs.output.page import SHADE
 from mbs.output.response_plot import Curves, comparison_figure, response_figure
 from mbs.output.run_plot import run_figure
@@ -317,8 +318,8 @@ class TestModes:
     def test_free_and_overdamped_motions_are_told_apart(self):
         values = np.array([0.0, -1e-9, -50.0, 3j - 0.1, 1e4j - 1.0])
         shares = np.array([[0.0, 0.0, 1.0, 1.0, 1.0]])
-        kinds = modes_command._kinds(Modes(values, np.eye(5), ("spring",), shares))
-        assert [list(kind) for kind in kinds] == [[0, 1], [2], [3, 4]]
+        found = kinds(Modes(values, np.eye(5), ("spring",), shares))
+        assert [list(kind) for kind in found] == [[0, 1], [2], [3, 4]]
 
     def given(self, **more):
         names = ("law", "map", "clearance", "output", "plot", "highest")

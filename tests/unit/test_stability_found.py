@@ -191,7 +191,7 @@ def test_a_status_with_counts_of_any_size(tmp_path) -> None:
     status |= {"begun": "2026-01-01T10:00:00+00:00", "written": "2026-01-01T11:00:00+00:00", "rate": 0.3}
     (tmp_path / "map.nc.store.status").write_text(json.dumps(status))
     with pytest.raises(InputError, match="is not the status of a map that is being made"):
-        run_status(argparse.Namespace(map=str(tmp_path / "map.nc")))
+        run_status(argparse.Namespace(map=str(tmp_path / "map.nc"), output=None))
 
 
 def test_zero_bytes_in_a_matrix_market_file(tmp_path) -> None:
