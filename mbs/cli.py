@@ -58,6 +58,8 @@ def parser() -> argparse.ArgumentParser:
             command.add_argument(
                 "--state-space", metavar="SPACE.mat", help="A, B, C, D with names and units, for MATLAB and Octave"
             )
+        if name == "lsa":
+            _cage_angles(command)
         if name == "runup":
             _runup(command)
         _films(command, compares=several)
@@ -191,6 +193,11 @@ def _sweep(command: argparse.ArgumentParser) -> None:
     _load_and_angle(command)
     _parallel(command)
     _speeds(command)
+    _cage_angles(command)
+
+
+def _cage_angles(command: argparse.ArgumentParser) -> None:
+    """Add the number of cage angles."""
     command.add_argument(
         "--cage-angles",
         metavar="COUNT",

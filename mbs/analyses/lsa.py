@@ -14,11 +14,13 @@ from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating, states_of
+from mbs.linearised.averaged import AveragedEquilibrium, averaged, over_pitch
 from mbs.linearised.level_bands import level_bands
-from mbs.linearised.linear import StateSpace, sensed, state_space, with_peaks
+from mbs.linearised.linear import StateSpace, frequency_response, sensed, state_space, with_peaks
 from mbs.linearised.linear import responses as responses_of
 from mbs.linearised.modes import StateModes, modes_of, state_modes, undamped_modes
 from mbs.linearised.steady import steady_system
+from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.validity import DynamicLoad, FilmError, dynamic_loads
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
@@ -39,10 +41,13 @@ class LsaSettings:
         modes.
     operation : Operation or None
         Speed, angle and time of the loads; None for the operating speed of the scene.
+    cage_angles : int
+        Angles within one pitch of the rollers over which stiffness and damping are averaged, from 1 to `MOST_ANGLES`.
     """
 
     frequencies: tuple[float, ...] | None = None
     operation: Operation | None = None
+    cage_angles: int = 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +71,8 @@ class LsaResult:
     level_error : array, shape (frequencies, sensors, inputs), or None
         Bands of the levels of the responses, either way [dB], from the errors that the map states; None for laws that
         state none.
+    pitch_range : array, shape (2, frequencies, sensors, inputs), or None
+        Least and largest size of the responses at each single angle of the cage; None for one angle.
     errors : tuple of FilmError
         How wrong the films of each bearing are estimated to be; empty for laws without films.
     lifting : tuple of DynamicLoad
@@ -81,6 +88,7 @@ class LsaResult:
     frequencies: FloatArray
     responses: ComplexArray
     level_error: FloatArray | None
+    pitch_range: FloatArray | None
     errors: tuple[FilmError, ...]
     lifting: tuple[DynamicLoad, ...]
     dataset: xr.Dataset
@@ -171,9 +179,13 @@ def _linearised(model: Model, settings: LsaSettings) -> _Linearised:
     missing = lsa_problems(dataclasses.replace(scene, frequencies=tuple(asked)))
     if missing:
         raise InputError(missing)
+    if not 1 <= settings.cage_angles <= MOST_ANGLES:
+        raise InputError(
+            f"lsa, cage angles: got {settings.cage_angles}; allowed: a whole number from 1 to {MOST_ANGLES}"
+        )
     operation = settings.operation or model.operation
     model = operating(model, operation.speed)
-    balance = equilibrium(steady_system(model.system), operation)
+    balance = averaged(over_pitch(equilibrium(steady_system(model.system), operation), settings.cage_angles))
     states = state_modes(balance, undamped_modes(balance))
     frequencies = with_peaks(np.array(asked), modes_of(balance, states).eigenvalues)
     return _Linearised(model, balance, states, len(asked), frequencies)
@@ -188,7 +200,15 @@ def _responded(found: _Linearised, frequencies: FloatArray) -> LsaResult:
     level_error = level_bands(balance, states, scene.sensors, frequencies, motion, responses)
     space = state_space(balance, scene.inputs, scene.sensors)
     lifting = tuple(load for load in dynamic_loads(balance, scene.inputs, frequencies, motion) if load.exceeds)
+    pitch_range = _pitch_range(balance, scene, frequencies)
     dataset = linear_dataset(balance, space, responses, frequencies, scene.inputs, scene.sensors, level_error)
+    if pitch_range is not None:
+        for name, words, values in zip(("least", "most"), ("least", "largest"), pitch_range, strict=True):
+            attributes = {
+                **dataset["response_real"].attrs,
+                "long_name": f"{words} size of the response at one cage angle",
+            }
+            dataset[f"response_{name}"] = (dataset["response_real"].dims, values, attributes)
     return LsaResult(
         model=model,
         balance=balance,
@@ -197,10 +217,19 @@ def _responded(found: _Linearised, frequencies: FloatArray) -> LsaResult:
         frequencies=frequencies,
         responses=responses,
         level_error=level_error,
+        pitch_range=pitch_range,
         errors=tuple(film_errors(model, balance.displacement, balance.operation)),
         lifting=lifting,
         dataset=described(with_states(dataset, states_of(model)), **law_attributes(model)),
     )
+
+
+def _pitch_range(balance: Equilibrium, scene: Scene, frequencies: FloatArray) -> FloatArray | None:
+    """Least and largest size of the responses over the angles of the cage; None for one angle."""
+    if not isinstance(balance, AveragedEquilibrium):
+        return None
+    sizes = [np.abs(frequency_response(entry, scene.inputs, scene.sensors, frequencies)) for entry in balance.over]
+    return np.array([np.min(sizes, axis=0), np.max(sizes, axis=0)])
 
 
 def lsa_dataset(labels: Sequence[str], results: Sequence[LsaResult]) -> xr.Dataset:

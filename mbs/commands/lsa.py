@@ -14,12 +14,14 @@ from ehdmaps.errors import InputError
 from ehdmaps.exports.matlab_file import KIND
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from mbs.analyses.case import Case
-from mbs.analyses.lsa import LsaResult, lsa_dataset, lsa_of, lsa_problems
+from mbs.analyses.lsa import LsaResult, LsaSettings, lsa_dataset, lsa_of, lsa_problems
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import band_lines, film_lines, heading, outside_at, write
 from mbs.commands.reach import fade_lines
+from mbs.commands.sweep import whole
 from mbs.linearised.linear import response_unit
+from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.validity import DynamicLoad
 from mbs.output.response_plot import Curves, comparison_figure, response_figure
 from mbs.output.results import RESULT
@@ -32,10 +34,16 @@ MOST_COMPARED_CASES = 8
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Linearise, and compute the responses over the frequencies of the scene, with each law."""
+    angles = whole(getattr(arguments, "cage_angles", None) or "1")
+    if not 1 <= angles <= MOST_ANGLES:
+        raise InputError(
+            f"--cage-angles: got {arguments.cage_angles!r:.40}; allowed: a whole number from 1 to {MOST_ANGLES}"
+        )
+    settings = LsaSettings(cage_angles=angles)
     done = analysed(
         arguments,
         _asked,
-        lambda cases: list(zip([c.label for c in cases], lsa_of([c.model for c in cases]), strict=True)),
+        lambda cases: list(zip([c.label for c in cases], lsa_of([c.model for c in cases], settings), strict=True)),
         lambda cases: Looked(cases[0].model.scene, max(cases[0].model.scene.frequencies, default=0.0)),
     )
     found = done.result
@@ -48,6 +56,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
                 entry.responses,
                 min((error.frequency for error in entry.errors), default=math.inf),
                 entry.level_error,
+                entry.pitch_range,
             )
             for label, entry in found
         ]

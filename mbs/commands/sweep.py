@@ -131,7 +131,7 @@ def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
         speeds = read_speeds(arguments.speeds) if arguments.speeds else None
     except InputError as error:
         problems += error.problems
-    angles = _whole(arguments.cage_angles or "1")
+    angles = whole(arguments.cage_angles or "1")
     if not 1 <= angles <= MOST_ANGLES:
         problems.append(
             f"--cage-angles: got {arguments.cage_angles!r:.40}; allowed: a whole number from 1 to {MOST_ANGLES}"
@@ -165,7 +165,7 @@ def read_speeds(texts: Sequence[str]) -> SweepRange:
             ends.append(quantity(text, "rad/s"))
         except InputError as error:
             problems.append(f"--speeds: {error.problems[0]}")
-    points = _whole(texts[2])
+    points = whole(texts[2])
     if not 2 <= points <= MOST_SPEEDS:
         problems.append(f"--speeds: got {texts[2]!r:.40} points; allowed: a whole number from 2 to {MOST_SPEEDS}")
     if len(ends) == 2 and not 0.0 <= ends[0] < ends[1] <= 1e5:
@@ -175,8 +175,14 @@ def read_speeds(texts: Sequence[str]) -> SweepRange:
     return SweepRange(ends[0], ends[1], points)
 
 
-def _whole(text: str) -> int:
-    """A whole number of a few digits, or 0."""
+def whole(text: str) -> int:
+    """Read a whole number of a few digits; 0 for anything else.
+
+    Parameters
+    ----------
+    text : str
+        What was given.
+    """
     return int(text) if text.isascii() and text.isdigit() and len(text) < 6 else 0
 
 

@@ -42,6 +42,8 @@ class Curves:
         Frequency from which on the films are notably wrong [Hz].
     level_error : array, shape (frequencies, sensors, inputs), optional
         Bands of the levels, either way [dB]; none are drawn without.
+    pitch_range : array, shape (2, frequencies, sensors, inputs), optional
+        Least and largest size at each angle of the cage; drawn as thin lines.
     """
 
     label: str
@@ -49,6 +51,7 @@ class Curves:
     responses: ComplexArray
     limit: float = math.inf
     level_error: FloatArray | None = None
+    pitch_range: FloatArray | None = None
 
 
 def response_figure(model: Model, case: Curves, notes: Sequence[str] = ()) -> Figure:
@@ -141,6 +144,10 @@ def _magnitude(panel: Axes, case: Curves, pair: tuple[int, int], **style: str) -
     """The size of a response; nothing where it is zero."""
     size = np.abs(case.responses[:, pair[0], pair[1]])
     panel.loglog(case.frequencies, np.where(size > 0.0, size, np.nan), lw=1.0, **style)
+    if case.pitch_range is not None:
+        for edge in case.pitch_range[:, :, pair[0], pair[1]]:
+            seen = np.where(edge > 0.0, edge, np.nan)
+            panel.loglog(case.frequencies, seen, lw=0.5, ls=":", color=style["color"])
     if case.level_error is not None:
         factor = 10.0 ** (case.level_error[:, pair[0], pair[1]] / 20.0)
         panel.fill_between(
@@ -150,7 +157,9 @@ def _magnitude(panel: Axes, case: Curves, pair: tuple[int, int], **style: str) -
 
 def _band_note(cases: Sequence[Curves]) -> list[str]:
     """What the shade about the curves is; nothing where no case has one."""
-    return [f"shaded: {BAND_WORDS}"] if any(case.level_error is not None for case in cases) else []
+    shaded = [f"shaded: {BAND_WORDS}"] if any(case.level_error is not None for case in cases) else []
+    dotted = ["dotted: least and largest size over the angles of the cage"]
+    return shaded + (dotted if any(case.pitch_range is not None for case in cases) else [])
 
 
 def _phase(frequencies: FloatArray, response: ComplexArray) -> tuple[FloatArray, FloatArray]:

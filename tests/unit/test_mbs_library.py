@@ -293,3 +293,20 @@ def test_a_scene_needs_no_file():
     forces = statics(assemble(scene)).dataset["bearing_force"].sum("bearing").values
     loads = sum(load.force[:3] for load in scene.loads)
     np.testing.assert_allclose(forces[1:], -loads[1:], rtol=1e-8)  # the equilibrium is found to 1e-10
+
+
+def test_responses_over_a_pitch_are_those_at_each_cage_angle():
+    model = assemble(read_scene("nu308_rigid"))
+    frequencies, turned = (300.0, 900.0), model.operation
+    found = lsa(model, LsaSettings(frequencies, turned, cage_angles=2))
+    half = np.pi / next(bearing.excitation.order for bearing in model.bearings if bearing.excitation)
+    angles = [lsa(model, LsaSettings(frequencies, turned._replace(angle=turned.angle + by))) for by in (0.0, half)]
+    data = found.dataset.sel(frequency=list(frequencies))
+    sizes = []
+    for one in angles:
+        there = one.dataset.sel(frequency=list(frequencies))
+        sizes.append(np.hypot(there["response_real"], there["response_imaginary"]).values)
+    # the same linear systems, by equilibria that Newton reaches from other starts
+    np.testing.assert_allclose(data["response_least"], np.min(sizes, axis=0), rtol=1e-6)
+    np.testing.assert_allclose(data["response_most"], np.max(sizes, axis=0), rtol=1e-6)
+    assert np.all(data["response_most"] > data["response_least"])
