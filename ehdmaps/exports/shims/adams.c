@@ -14,9 +14,11 @@
  *                  EHD_CAGE_INNER of ehd.h, plus turns of the outer one times EHD_CAGE_OUTER; 0: the cage stands
  *
  * The film takes the speed of the inner marker against the outer one about z. Beyond the range of the map the run is
- * stopped with a message, or the law is held, as the header says. Partial derivatives are left to Adams.
+ * stopped with a message, also where only a trial of the solver is there. Exported with --outside clamp or asymptote the
+ * law goes on, and the first time that an element leaves the map in a way is told as a warning. Partial derivatives are
+ * left to Adams. Adams calls this from one thread, since it does not declare itself safe for several.
  *
- * Signatures after the documentation of Adams Solver (GFOSUB, SYSARY, SYSFNC, ERRMES); no Adams has run this.
+ * Signatures after the documentation of Adams Solver (GFOSUB, SYSARY, SYSFNC, ERRMES, USRMES); no Adams has run this.
  * ------------------------------------------------------------------------------------------------------------------ */
 #include <math.h>
 
@@ -74,6 +76,9 @@ void Gfosub(const struct sAdamsGforce *gforce, double time, int dflag, int iflag
         c_errmes(1, bearing_slot_text(status), gforce->ID, STOP);
         return;
     }
+    status = bearing_slot_news(gforce->ID, status);
+    if (status)
+        c_usrmes(1, bearing_slot_text(status), gforce->ID, "WARN");
     for (i = 0; i < 3; ++i) {
         result[i] = force[(i + 1) % 3];
         result[3 + i] = force[3 + (i + 1) % 3] / metres;

@@ -4,12 +4,15 @@
 #include "ehd.h"
 
 typedef struct slot {
-    int used, number;
+    int used, number, told;
     double clearance;
     ehd_bearing bearing;
     ehd_prepared law;
 } slot;
 
+static slot slots[SLOT_MOST];
+
+static slot *find(int number);
 static slot *slot_of(int number, double clearance, int *status);
 
 int bearing_slot(int number, const double axis[3], const double place[3], const double speed[3],
@@ -45,29 +48,46 @@ int bearing_slot(int number, const double axis[3], const double place[3], const 
     return status;
 }
 
+int bearing_slot_news(int number, int status)
+{
+    slot *own = find(number);
+    const int news = own ? status & ~own->told : status;
+
+    if (own)
+        own->told |= status;
+    return news;
+}
+
 const char *bearing_slot_text(int status)
 {
     return status == SLOT_FULL ? "more bearings than there are slots" : ehd_status_text(status);
 }
 
-static slot *slot_of(int number, double clearance, int *status)
+/* The slot of an element, or the first free one; null where all are taken. */
+static slot *find(int number)
 {
-    static slot slots[SLOT_MOST];
     int i = 0;
 
     while (i < SLOT_MOST && slots[i].used && slots[i].number != number)
         ++i;
-    if (i == SLOT_MOST) {
+    return i < SLOT_MOST ? &slots[i] : 0;
+}
+
+static slot *slot_of(int number, double clearance, int *status)
+{
+    slot *own = find(number);
+
+    if (own == 0) {
         *status = SLOT_FULL;
         return 0;
     }
-    if (!slots[i].used || slots[i].clearance != clearance) {
-        *status = ehd_bearing_make(&slots[i].bearing, clearance, EHD_SLICES, 0);
+    if (!own->used || own->clearance != clearance) {
+        *status = ehd_bearing_make(&own->bearing, clearance, EHD_SLICES, 0);
         if (EHD_REFUSES(*status))
             return 0;
-        slots[i].used = 1;
-        slots[i].number = number;
-        slots[i].clearance = clearance;
+        own->used = 1;
+        own->number = number;
+        own->clearance = clearance;
     }
-    return &slots[i];
+    return own;
 }

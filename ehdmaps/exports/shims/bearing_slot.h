@@ -21,6 +21,9 @@ enum { SLOT_MOST = 256, SLOT_FULL = 1024 };
 int bearing_slot(int number, const double axis[3], const double place[3], const double speed[3],
                  const double turning[3], double cage_angle, double T, double clearance, double force[6]);
 
+/* What of a status that does not refuse an element, which bearing_slot was called for, had not had before. */
+int bearing_slot_news(int number, int status);
+
 /* Name of a status, for messages. */
 const char *bearing_slot_text(int status);
 

@@ -9,11 +9,13 @@
 ! temperature of the raceways [K]; 3 diametral clearance [m]. First component of the u-vector: angle of the first roller
 ! from y towards z [rad] (turns of the inner ring times EHD_CAGE_INNER of ehd.h); without one the cage stands.
 ! Output values: 1 to 3 force, 4 to 6 moment on the inner ring in the frame of the from-marker [N], [N m]; 7 status of the
-! law. Where the law refuses, a message says why and the element returns an error.
+! law. Where the law refuses, a message says why and the element returns an error. Exported with --outside clamp or
+! asymptote the law goes on there: output 7 is then not 0. Calls have to come from one thread.
 !
 ! Interfaces after a public user routine (uforce40) and its access functions; no Simpack has run this.
 ! ----------------------------------------------------------------------------------------------------------------------
 subroutine uforce40_type(str_dim, type_name, ierr)
+   !DEC$ ATTRIBUTES DLLEXPORT :: uforce40_type
    use simpack
    implicit none
    integer, intent(in) :: str_dim
@@ -30,6 +32,7 @@ end subroutine
 subroutine uforce40_setup(task, par_dim, stdyn_dim, ov_dim, str_dim, id, mk_from, mk_to, par, par_type, par_name, &
                           par_unit, stdyn_name, stdyn_unit, ov_name, ov_unit, res_type, stdyn_nr, stroot_nr, &
                           strst_type, ierr)
+   !DEC$ ATTRIBUTES DLLEXPORT :: uforce40_setup
    use simpack
    implicit none
    integer, intent(in) :: task, par_dim, stdyn_dim, ov_dim, str_dim, id, mk_from, mk_to
@@ -60,6 +63,7 @@ end subroutine
 
 subroutine uforce40(task, par_dim, uin_dim, stdyn_dim, stroot_dim, ov_dim, id, par, mk_from, mk_to, time, uin, stdyn, &
                     stroot, stdynd, force, torque, ov, valroot, ierr)
+   !DEC$ ATTRIBUTES DLLEXPORT :: uforce40
    use, intrinsic :: iso_c_binding
    use simpack
    implicit none

@@ -36,6 +36,12 @@ void c_errmes(int failed, const char *message, int id, const char *stop)
     }
 }
 
+void c_usrmes(int wanted, const char *message, int id, const char *kind)
+{
+    if (wanted)
+        fprintf(stderr, "%s %d %s\n", kind, id, message);
+}
+
 int main(void)
 {
     double par[6] = {11.0, 12.0, 0.0, 0.0, 1e-3, 7.0}, result[6];
@@ -52,6 +58,8 @@ int main(void)
         return 2;
     Gfosub(&gforce, 0.0, 0, 1, result);
     Gfosub(&gforce, 0.0, 0, 0, result);
+    if (!stopped)
+        Gfosub(&gforce, 0.0, 0, 0, result); /* again, as solvers do */
     if (!stopped)
         for (i = 0; i < 6; ++i)
             printf("%.17g\n", result[i]);

@@ -1,4 +1,4 @@
-/* Stand-in for the header of Adams Solver: what its documentation says of GFOSUB, SYSARY, SYSFNC and ERRMES. */
+/* Stand-in for the header of Adams Solver: what its documentation says of GFOSUB, SYSARY, SYSFNC, ERRMES and USRMES. */
 #ifndef SLV_C_UTILS_H
 #define SLV_C_UTILS_H
 
@@ -13,5 +13,6 @@ typedef void adams_c_Gfosub(const struct sAdamsGforce *, double, int, int, doubl
 void c_sysary(const char *function, const int *ids, int count, double *values, int *states, int *failed);
 void c_sysfnc(const char *function, const int *ids, int count, double *value, int *failed);
 void c_errmes(int failed, const char *message, int id, const char *stop);
+void c_usrmes(int wanted, const char *message, int id, const char *kind);
 
 #endif
