@@ -145,7 +145,7 @@ def package(law: LawAtPoint, name: str, lines: Iterable[str]) -> str:
     Raises
     ------
     InputError
-        For a name that is none in Modelica, and for a law with a part of its film.
+        If the name is not allowed in Modelica, or if the speed is below the mapped ones, where films fade.
     """
     if not _NAME.fullmatch(name) or name in _WORDS.split() or name in ("Table", "force", "Example"):
         raise InputError(

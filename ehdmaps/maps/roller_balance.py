@@ -26,7 +26,7 @@ from ehdmaps.maps.lines import (
 from ehdmaps.maps.tables import Line, Point
 
 LEAST_LOAD = 1e-200
-"""Load that is none [N/m]."""
+"""Load below which a contact counts as unloaded [N/m]."""
 
 _STEPS, _ROUNDS = 100, 4
 _LIGHT = 0.3
