@@ -21,6 +21,13 @@ _ARGUMENTS = {
     "prepare": [_P, _D, _D, _D],
     "bearing_at": [_P, _P, _P, _P, _D, _P],
     "bearing_call": [_P, _P, _P, _P, _D, _D, _D, _D, _P],
+    "film_at": [_P, _D, _D],
+    "film_settled": [_P, _D, _P],
+    "film_advance": [_P, _D, _D, _D, _P, _P, _P],
+    "film_rate": [_P, _D, _D, _P],
+    "bearing_settled": [_P, _P, _P, _D, _P],
+    "bearing_advance": [_P, _P, _D, _D, _P, _D, _P, _P, _P],
+    "bearing_rates": [_P, _P, _P, _D, _P, _P, _P],
 }
 
 
@@ -44,7 +51,7 @@ class Kernel:
             if hasattr(self._library, f"ehd_{name}"):
                 getattr(self._library, f"ehd_{name}").argtypes = arguments
         self._room = {}
-        for name in ("point", "bearing", "prepared"):
+        for name in ("point", "bearing", "prepared", "film"):
             if hasattr(self._library, f"ehd_{name}_size"):
                 size = getattr(self._library, f"ehd_{name}_size")
                 size.restype = ctypes.c_size_t
@@ -87,3 +94,57 @@ class Kernel:
         return self._library.ehd_bearing_call(
             self._room["bearing"], self._room["prepared"], given.ctypes.data, None, 0.0, u, T, 0.0, found.ctypes.data
         ), found
+
+    def film_at(self, u: float, T: float) -> int:
+        """Go to a speed and temperature with films that have a memory."""
+        return int(self._library.ehd_film_at(self._room["film"], u, T))
+
+    def film_settled(self, delta: float) -> tuple[int, FloatArray]:
+        """Status, and the state of a film in equilibrium: approach, change, load."""
+        state = np.empty(3)
+        return self._library.ehd_film_settled(self._room["film"], delta, state.ctypes.data), state
+
+    def film_advance(
+        self, state: FloatArray, delta: float, step: float, last: float
+    ) -> tuple[int, FloatArray, FloatArray]:
+        """Status, load and stiffness at the end of a step, and the state there."""
+        found, after, before = np.empty(3), np.empty(3), np.ascontiguousarray(state)
+        at = before.ctypes.data, after.ctypes.data, found.ctypes.data
+        return self._library.ehd_film_advance(self._room["film"], step, last, delta, *at), found[:2], after
+
+    def film_rate(self, delta: float, state: float) -> tuple[int, FloatArray]:
+        """Status; load and its derivatives by approach and state, rate of the state and its derivatives."""
+        found = np.empty(6)
+        return self._library.ehd_film_rate(self._room["film"], delta, state, found.ctypes.data), found
+
+    def settled(self, pose: FloatArray, cage_angle: float, slices: int) -> tuple[int, FloatArray]:
+        """Status, and states of all films in equilibrium (n, 3)."""
+        states, given = np.empty((slices, 3)), np.ascontiguousarray(pose, dtype=np.float64)
+        room = self._room["bearing"], self._room["film"]
+        return self._library.ehd_bearing_settled(*room, given.ctypes.data, cage_angle, states.ctypes.data), states
+
+    def advance(
+        self, states: FloatArray, pose: FloatArray, cage_angle: float, step: float, last: float
+    ) -> tuple[int, FloatArray, FloatArray]:
+        """Status, force and stiffness in rows (7, 6) at the end of a step, and the states there."""
+        found, given, after = np.empty((13, 6)), np.ascontiguousarray(pose, dtype=np.float64), np.empty_like(states)
+        before = np.ascontiguousarray(states)
+        status = self._library.ehd_bearing_advance(
+            self._room["bearing"], self._room["film"], step, last, given.ctypes.data, cage_angle,
+            before.ctypes.data, after.ctypes.data, found.ctypes.data,
+        )  # fmt: skip
+        return status, found[:7], after
+
+    def rates(self, pose: FloatArray, cage_angle: float, states: FloatArray) -> tuple[int, FloatArray, FloatArray]:
+        """Status, force and stiffness in rows (7, 6) of an instant, and what `film_rate` has, for all films (n, 6)."""
+        found, given, rates = (
+            np.empty((13, 6)),
+            np.ascontiguousarray(pose, dtype=np.float64),
+            np.empty((states.size, 6)),
+        )
+        held = np.ascontiguousarray(states)
+        status = self._library.ehd_bearing_rates(
+            self._room["bearing"], self._room["film"], given.ctypes.data, cage_angle,
+            held.ctypes.data, rates.ctypes.data, found.ctypes.data,
+        )  # fmt: skip
+        return status, found[:7], rates

@@ -213,7 +213,16 @@ def test_fortran(refusing, strict, tmp_path):
     _, law = refusing.law(2e-6, 1e-4, 1.0, 310.0)
     status, force = refusing.force(np.array(pose), np.array(velocity), 0.3)
     assert status == 0
-    np.testing.assert_allclose(numbers, [0.0, *law, 0.0, *force.reshape(-1)], rtol=1e-15)
+    refusing.film_at(1.0, 310.0)
+    state = refusing.film_settled(2e-6)[1]
+    _, advanced, after = refusing.film_advance(state, 3e-6, 1e-5, 0.0)
+    states = refusing.settled(np.array(pose), 0.3, 12 * 41)[1]
+    pose[1] = 5e-6
+    film = [
+        *(0.0, *after, *advanced), *(0.0, *refusing.film_rate(2.1e-6, 2e-6)[1]),
+        *(0.0, *refusing.advance(states, np.array(pose), 0.3, 1e-5, 0.0)[1].reshape(-1)),
+    ]  # fmt: skip
+    np.testing.assert_allclose(numbers, [0.0, *law, 0.0, *force.reshape(-1), *film], rtol=1e-15)
 
 
 def test_windows(strict, tmp_path):

@@ -3,7 +3,6 @@
  * ------------------------------------------------------------------------------------------------------------------ */
 
 #define MOST_TILT 0.5  /* [rad]; the largest accepted displacement is the roller diameter */
-#define CELL_BITS 5    /* cells are 2^5 to each doubling */
 #define NO_APPROACH 1e-30
 
 /* Kinds of prepared laws: none yet, a formula, cells at even places around a centre, cells between knots for faded
@@ -29,33 +28,7 @@ typedef struct sums {
     double w[2], k[3], c[3];
 } sums;
 
-static double number_of_bits(uint64_t bits) {
-    double x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
-static uint64_t bits_of(double x) {
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits;
-}
-
-/* Where cell k begins, as a value of a >= 1. */
-static double cell_end(int k) {
-    return number_of_bits(((UINT64_C(1023) << CELL_BITS) + (uint64_t)k) << (52 - CELL_BITS));
-}
-
-/* Row of the cells of a place z, and the part of the cell up to it. */
-static int row_of(double z, double *t) {
-    const double last = number_of_bits(bits_of(cell_end(EHD_ROWS)) - 1), above = 1.0 + fabs(z);
-    const double a = above < last ? above : last;
-    const uint64_t cell = bits_of(a) >> (52 - CELL_BITS);
-    const double place = a - number_of_bits(cell << (52 - CELL_BITS));
-    const int row = (int)(cell - (UINT64_C(1023) << CELL_BITS));
-    *t = z >= 0.0 ? place : -place;
-    return z >= 0.0 ? row : row + EHD_ROWS;
-}
+static const sums NO_SUMS = {{0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
 
 /* Depth of the roller's profile at a distance from its middle, on one side [m]. */
 static double roller_profile(double x) {
@@ -119,7 +92,7 @@ static int fill_nodes(ehd_prepared *law, double *held_damping) {
                line_approach(&point->outer, point->held_load + point->centrifugal_load);
 #endif
     for (int i = 0; i < EHD_NODES; i++) {
-        z[i] = i >= EHD_ROWS ? cell_end(i - EHD_ROWS) - 1.0 : 1.0 - cell_end(EHD_ROWS - i);
+        z[i] = node_place(i);
         delta[i] = centre + z[i] / inverse;
         if (delta[i] <= point->lift_off) {
             first = i + 1;
@@ -398,8 +371,7 @@ static int law_states(const ehd_bearing *bearing, const ehd_prepared *law, rolle
  * whether they have. */
 static int moderate_sums(const ehd_bearing *bearing, const roller *r, const slices *s, sums *sum) {
     double lifting = 0.0;
-    const sums none = {{0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-    sums found = none;
+    sums found = NO_SUMS;
     for (int i = 0; i < bearing->slices; i++) {
         const double x = bearing->position[i], rate = r->rate + x * r->tilt_rate, part = s->c[i] * rate;
         const double load = s->w[i] + part, k = s->dw[i] + s->dc[i] * rate, twice = load + part;
@@ -419,8 +391,7 @@ static int moderate_sums(const ehd_bearing *bearing, const roller *r, const slic
 
 /* The same at any rates, by the whole rule without tension. */
 static void lifting_sums(const ehd_bearing *bearing, const roller *r, const slices *s, sums *sum) {
-    const sums none = {{0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-    *sum = none;
+    *sum = NO_SUMS;
     for (int i = 0; i < bearing->slices; i++) {
         const double x = bearing->position[i];
         ehd_force found;
@@ -485,10 +456,10 @@ static int check_motion(const double pose[6], const double velocity[6], double c
     return EHD_TOO_FAR;
 }
 
-/* Multiply the sums by the length of a slice; refuse what is not finite after all. */
-static int finish(const ehd_bearing *bearing, const ehd_prepared *law, int status, ehd_bearing_force *result) {
+/* Multiply the sums by the length of a slice, and stiffness by a slope besides; refuse what is not finite after all. */
+static int finish(const ehd_bearing *bearing, double slope, int status, ehd_bearing_force *result) {
     double total = 0.0;
-    finish_matrix(result->stiffness, law->slope * bearing->slice_length);
+    finish_matrix(result->stiffness, slope * bearing->slice_length);
     finish_matrix(result->damping, bearing->slice_length);
     for (int i = 0; i < 6; i++) {
         result->force[i] *= bearing->slice_length;
@@ -532,7 +503,7 @@ int ehd_bearing_at(const ehd_bearing *bearing, const ehd_prepared *law, const do
         if (!moderate_sums(bearing, &r, &s, &sum)) lifting_sums(bearing, &r, &s, &sum);
         add_roller(&r, &sum, result);
     }
-    return finish(bearing, law, status, result);
+    return finish(bearing, law->slope, status, result);
 }
 
 int ehd_bearing_call(const ehd_bearing *bearing, ehd_prepared *law, const double pose[6], const double velocity[6],

@@ -14,10 +14,6 @@
  * traction, ribs and contacts with the cage are left out.
  * ------------------------------------------------------------------------------------------------------------------ */
 
-/* Cells of a prepared law on each side of its centre. */
-#define EHD_ROWS 448
-#define EHD_NODES (2 * EHD_ROWS + 1)
-
 /* What does not change of a bearing; made by ehd_bearing_make. */
 typedef struct ehd_bearing {
     int slices;

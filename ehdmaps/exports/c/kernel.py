@@ -11,6 +11,8 @@ from typing import Literal
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.exports.c.locked_table import locked_table
+from ehdmaps.maps import locked_film
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
 from ehdmaps.maps.tables import HALF_SPACE, ApproachTable, LawTable
@@ -100,7 +102,7 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) ->
     law = emap.law(kind, options.outside)
     bearing = emap.bearing if kind == "series" else None
     banner = _comment(header)
-    parts = ("law", "bearing") if bearing is not None else ("law",)
+    parts = ("law", "film", "bearing", "film_bearing") if bearing is not None else ("law", "film")
     guard = "EHD_H"
     top = [
         banner, f"#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n",
@@ -113,7 +115,9 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) ->
         banner, "".join(f"#include <{name}>\n" for name in _INCLUDES) + '\n#include "ehd.h"\n',
         _template("tables.c"),
         _private_numbers(law, options.centrifugal),
-        *(_template(f"{part}.c") for part in parts),
+        _film_numbers(law),
+        _template("law.c"), _template("cells.c"),
+        *(_template(f"{part}.c") for part in parts[1:]),
     ]  # fmt: skip
     texts = {"ehd.h": "\n".join(top), "ehd.c": "\n".join(source)}
     if bearing is not None:
@@ -202,6 +206,38 @@ def _private_numbers(law: ContactLaw, centrifugal: bool) -> str:
     if centrifugal:
         parts += [_table("INNER", table.inner, "the inner contact"), _table("OUTER", table.outer, "the outer contact")]
     return "\n".join(parts)
+
+
+def _film_numbers(law: ContactLaw) -> str:
+    """Constants and the table of films with memory."""
+    table, film = locked_table(law), locked_film.film_of(law.contacts, 0.0)
+    speeds, temperatures, loads = table.speeds, table.temperatures, table.loads
+    rows = ",\n".join(
+        "    {" + ",\n     ".join("{" + ", ".join(map(_number, line)) + "}" for line in part) + "}"
+        for part in table.factors.tolist()
+    )
+    return "\n".join(
+        (
+            _define("FILM_PI", math.pi, "pi")
+            + _define("FILM_RADIUS", film.radius, "mean reduced radius of the contacts [m]")
+            + _define("FILM_MODULUS", film.modulus, "E' [Pa]")
+            + _define("LOCKED", locked_film.LOCKED, "closed formula of the locked film")
+            + _define("LOCKED_BY_LOAD", locked_film.LOCKED_BY_LOAD, "its part that goes with the film's exponent")
+            + _define("MOST_LOCKED", locked_film.MOST_LOCKED, "most of the structure's compliance that it takes off")
+            + _define("LONGEST", locked_film.LONGEST, "longest relaxation time, in natural times")
+            + _define("FACTOR_SPEEDS", speeds.count, "places of ln u")
+            + _define("FACTOR_LOG_SPEED", speeds.start, "the first one")
+            + _define("FACTOR_SPEED_STEP", speeds.per_step, "inverse distance of two")
+            + _define("FACTOR_TEMPERATURES", temperatures.count, "places of 1/(T - COLDEST)")
+            + _define("FACTOR_COLD", temperatures.start, "the first one")
+            + _define("FACTOR_COLD_STEP", temperatures.per_step, "inverse distance of two")
+            + _define("FACTOR_LOADS", loads.count, "places of ln of the load")
+            + _define("FACTOR_LOG_LOAD", loads.start, "the first one")
+            + _define("FACTOR_LOAD_STEP", loads.per_step, "inverse distance of two"),
+            "/* Factors of the closed formula of the locked film. */\n"
+            f"static const double FACTORS[FACTOR_SPEEDS][FACTOR_TEMPERATURES][FACTOR_LOADS] = {{\n{rows}}};\n",
+        )
+    )
 
 
 def _places(table: ApproachTable) -> int:

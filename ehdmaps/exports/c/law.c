@@ -352,6 +352,17 @@ static state rest_state(const ehd_point *point, double approach) {
     return point->film < 1.0 ? faded_state(point, approach) : full_state(point, approach);
 }
 
+/* State at rest: above the held load the law is its tangent. */
+static state held_state(const ehd_point *point, double approach) {
+    state found;
+    if (approach <= point->held_approach) return rest_state(point, approach);
+    found.w = point->held_load + point->held_stiffness * (approach - point->held_approach);
+    found.dw = point->held_stiffness;
+    found.ratio = point->held_damping / found.w;
+    found.dc = 0.0;
+    return found;
+}
+
 /* Part of the film that is there: 0 at standstill, 1 from the lowest mapped speed on. */
 static double film_part(double speed) {
     const double part = speed >= FILM_SPEED ? 1.0 : speed / FILM_SPEED;
@@ -420,14 +431,7 @@ int ehd_law_at(const ehd_point *point, double approach, double rate, ehd_force *
     no_force(force);
     if (EHD_REFUSES(status)) return status;
     if (!(is_finite(approach) && is_finite(rate))) return status | EHD_NOT_FINITE;
-    if (approach > point->held_approach) {
-        found.w = point->held_load + point->held_stiffness * (approach - point->held_approach);
-        found.dw = point->held_stiffness;
-        found.ratio = point->held_damping / found.w;
-        found.dc = 0.0;
-    } else {
-        found = rest_state(point, approach);
-    }
+    found = held_state(point, approach);
     if (found.w <= 0.0) {
         force->load = force->stiffness = force->damping = 0.0;
         return status;

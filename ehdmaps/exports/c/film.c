@@ -1,0 +1,392 @@
+/* ---------------------------------------------------------------------------------------------------------------------
+ * Films with memory
+ *
+ * The table has p, y and G over the approach xi at which a film is in equilibrium, and a over the load, as cubics that
+ * rise. k_s = 1/(da/dw) is the stiffness of the contact while its film is locked; with the stiffness k and damping c of
+ * the law at rest dy/dxi = 1 - k/k_s and dG/dxi = c/(1 - k/k_s). Load and state: w = x + sqrt(x^2 + p^2), x = G'.
+ * ------------------------------------------------------------------------------------------------------------------ */
+
+#define LEAST_DAMPING 1e-12
+#define LEAST_FILM 1e-9
+#define FILM_STEPS 60
+#define FILM_EXACT 1e-13
+#define MOST_GROWTH 1.2 /* ratio of steps above which the method is of first order: its formula would no longer rise */
+#define NO_CHANGE 1e-30
+#define NOTHING 1e-60
+#define NO_LOAD_LEFT 1e-20
+
+/* Cubics of a cell. */
+enum { P_OF, Y_OF, G_OF };
+
+/* Rows of ehd_film.node: p, then what the table is made of. */
+enum { NODE_P, NODE_Z, NODE_K, NODE_Y, NODE_G, NODE_BY_Y, NODE_BY_C, NODE_BEYOND, NODE_SLOPE };
+
+/* A value that is read from a cell, and its slope. */
+typedef struct reading {
+    double value, slope;
+} reading;
+
+/* Weights of a discrete step: 1/h, and those of the change of G over this step and over the last one. */
+typedef struct weights {
+    double rate, ahead, back;
+} weights;
+
+size_t ehd_film_size(void) { return sizeof(ehd_film); }
+
+/* Cubic through values and slopes at the ends of a cell of the width h; slopes are held so that it rises. */
+static void rising_cubic(double y0, double y1, double s0, double s1, double h, double cubic[4]) {
+    const double secant = (y1 - y0) / h;
+    s0 = least(most(s0, 0.0), 3.0 * secant);
+    s1 = least(most(s1, 0.0), 3.0 * secant);
+    cubic[0] = y0;
+    cubic[1] = s0;
+    cubic[2] = (3.0 * secant - 2.0 * s0 - s1) / h;
+    cubic[3] = (s0 + s1 - 2.0 * secant) / (h * h);
+}
+
+/* Factor of the closed formula of the locked film at a load: straight between its places in ln of the load. */
+static double locked_factor(const double factors[FACTOR_LOADS], double load) {
+    if (FACTOR_LOADS == 1) return factors[0];
+    const double place = least(most((log(load) - FACTOR_LOG_LOAD) * FACTOR_LOAD_STEP, 0.0), FACTOR_LOADS - 1.0);
+    const int cell = (int)least(place, FACTOR_LOADS - 2.0);
+    return factors[cell] + (place - cell) * (factors[cell + 1] - factors[cell]);
+}
+
+/* The nearest two of so many places of an axis: number of the first one, and the weight of the second. */
+static int between(double place, int places, double *weight) {
+    const double held = least(most(place, 0.0), places - 1.0);
+    const int first = (int)least(held, most(places - 2.0, 0.0));
+    *weight = held - first;
+    return first;
+}
+
+/* Factors over the load at a speed and temperature within the map, straight in ln u and in 1/(T - COLDEST). */
+static void factors_at(double log_speed, double T, double factors[FACTOR_LOADS]) {
+    double a, b;
+    const int i = between((log_speed - FACTOR_LOG_SPEED) * FACTOR_SPEED_STEP, FACTOR_SPEEDS, &a);
+    const int j = between((1.0 / (T - COLDEST) - FACTOR_COLD) * FACTOR_COLD_STEP, FACTOR_TEMPERATURES, &b);
+    const int up = i + (FACTOR_SPEEDS > 1), on = j + (FACTOR_TEMPERATURES > 1);
+    for (int n = 0; n < FACTOR_LOADS; n++) {
+        const double low = FACTORS[i][j][n] + b * (FACTORS[i][on][n] - FACTORS[i][j][n]);
+        const double high = FACTORS[up][j][n] + b * (FACTORS[up][on][n] - FACTORS[up][j][n]);
+        factors[n] = low + a * (high - low);
+    }
+}
+
+/* Stiffness of a contact whose film is locked: offset of the film, load, stiffness and damping at rest, compliance of
+ * the structure, factor of the closed formula. */
+static double locked_stiffness(double speed, double offset, double load, double k, double c, double solids,
+                               double factor) {
+    const double each = most(offset, 0.0) / EHD_CONTACTS;
+    const double square = 8.0 * load * FILM_RADIUS / (FILM_PI * FILM_MODULUS);
+    const double exponent = each > 0.0 ? least(most((1.0 / k - solids) * load / offset, 0.0), 1.0) : 0.0;
+    const double part = (LOCKED + LOCKED_BY_LOAD * exponent) * 4.0 / FILM_MODULUS;
+    const double locked = factor * EHD_CONTACTS * part * log1p(2.0 * each * FILM_RADIUS / square);
+    const double stiff = 1.0 / (solids - least(locked, MOST_LOCKED * solids));
+    const double per_natural = speed / sqrt(square + 2.0 * each * FILM_RADIUS);
+    return most(most(stiff, k), k + c * per_natural / LONGEST);
+}
+
+/* Values at the nodes: p, y, G and their slopes over the approach; what a has beyond the structure. */
+static void fill_film_nodes(ehd_film *film, const double factors[FACTOR_LOADS]) {
+    const ehd_point *point = &film->point;
+    double *p = film->node[NODE_P], *z = film->node[NODE_Z], *k = film->node[NODE_K], *y = film->node[NODE_Y];
+    double *g = film->node[NODE_G], *by_y = film->node[NODE_BY_Y], *by_c = film->node[NODE_BY_C];
+    double *beyond = film->node[NODE_BEYOND], *slope = film->node[NODE_SLOPE];
+    double last_approach = 0.0;
+    for (int i = 0; i < EHD_NODES; i++) {
+        z[i] = node_place(i);
+        const double approach = film->centre + z[i] / film->inverse_scale;
+        const state rest = held_state(point, approach);
+        p[i] = rest.w;
+        k[i] = rest.dw;
+        y[i] = approach;
+        by_y[i] = 1.0;
+        g[i] = by_c[i] = beyond[i] = slope[i] = 0.0;
+        if (p[i] <= 0.0) {
+            film->lift_off = approach; /* the law lifts off within the cell that begins here */
+        } else {
+            double solids;
+            const double dry = structural_approach(0.0, p[i], &solids);
+            const double c = most(rest.w * rest.ratio, LEAST_DAMPING * k[i]);
+            const double stiff = locked_stiffness(point->entrainment_speed, dry - approach, p[i], k[i], c, solids,
+                                                  locked_factor(factors, p[i]));
+            by_y[i] = 1.0 - k[i] / stiff;
+            by_c[i] = by_y[i] > LEAST_FILM ? c / by_y[i] : 0.0; /* without film nothing is squeezed */
+            slope[i] = 1.0 / stiff - solids;
+            const double before = i > 0 ? p[i - 1] : 0.0, slope_before = before > 0.0 ? slope[i - 1] : slope[i];
+            beyond[i] = (i > 0 ? beyond[i - 1] : 0.0) + 0.5 * (slope_before + slope[i]) * (p[i] - before);
+            y[i] = approach - dry - beyond[i];
+        }
+        if (i > 0) {
+            y[i] = most(y[i], y[i - 1]); /* it rises, but for rounding where the film hardly gives way */
+            g[i] = g[i - 1] + 0.5 * (by_c[i - 1] + by_c[i]) * (approach - last_approach);
+        }
+        last_approach = approach;
+    }
+}
+
+/* Cells of p, y and G. */
+static void fill_film_cells(ehd_film *film) {
+    double(*n)[EHD_NODES] = film->node;
+    const double per = 1.0 / film->inverse_scale;
+    for (int row = 0; row < 2 * EHD_ROWS; row++) {
+        const int above = row < EHD_ROWS, i = above ? EHD_ROWS + row : 2 * EHD_ROWS - row, j = above ? i + 1 : i - 1;
+        const double h = n[NODE_Z][j] - n[NODE_Z][i];
+        double(*cell)[4] = film->cell[row];
+        rising_cubic(n[NODE_P][i], n[NODE_P][j], n[NODE_K][i] * per, n[NODE_K][j] * per, h, cell[P_OF]);
+        rising_cubic(n[NODE_Y][i], n[NODE_Y][j], n[NODE_BY_Y][i] * per, n[NODE_BY_Y][j] * per, h, cell[Y_OF]);
+        rising_cubic(n[NODE_G][i], n[NODE_G][j], n[NODE_BY_C][i] * per, n[NODE_BY_C][j] * per, h, cell[G_OF]);
+    }
+}
+
+/* Cells of a: the structure and what is beyond it, which is straight in its slope between the nodes of p. */
+static void fill_load_cells(ehd_film *film) {
+    const double *p = film->node[NODE_P], *beyond = film->node[NODE_BEYOND], *slopes = film->node[NODE_SLOPE];
+    double before = 0.0, slope_before = INFINITY;
+    int i = 0;
+    while (i < EHD_NODES - 1 && p[i + 1] <= 0.0) i++;
+    if (i == EHD_NODES - 1) i--; /* nothing is carried at all */
+    for (int row = 1; row <= EHD_LOAD_ROWS; row++) {
+        double solids;
+        const double load = cell_end(row) - 1.0, dry = structural_approach(0.0, load, &solids);
+        while (i + 2 < EHD_NODES && p[i + 1] < load) i++;
+        const double begin = p[i] > 0.0 ? slopes[i] : slopes[i + 1];
+        const double t = least((load - p[i]) / (p[i + 1] - p[i]), 1.0), slope = begin + t * (slopes[i + 1] - begin);
+        const double more = beyond[i] + 0.5 * (begin + slope) * least(load - p[i], p[i + 1] - p[i]) +
+                            slope * most(load - p[i + 1], 0.0);
+        const double value = dry + more, per_load = solids + slope;
+        rising_cubic(before, value, slope_before, per_load, cell_end(row) - cell_end(row - 1), film->load_cell[row - 1]);
+        before = value;
+        slope_before = per_load;
+    }
+}
+
+/* Cubic at a place in its cell. */
+static reading read_cubic(const double cubic[4], double t) {
+    const double bend = cubic[2] + t * cubic[3], mean = cubic[1] + t * bend;
+    const reading found = {cubic[0] + t * mean, mean + t * (bend + t * cubic[3])};
+    return found;
+}
+
+/* p, y and G of a film that is in equilibrium at an approach, with their slopes by it. */
+static void equilibrium(const ehd_film *film, double approach, reading found[3]) {
+    double t;
+    const int row = row_of((approach - film->centre) * film->inverse_scale, &t);
+    for (int n = 0; n < 3; n++) {
+        found[n] = read_cubic(film->cell[row][n], t);
+        found[n].slope *= film->inverse_scale;
+    }
+}
+
+/* a of a load, and its slope. */
+static reading stretch(const ehd_film *film, double load) {
+    double above;
+    const int row = cell_from(1.0 + load, EHD_LOAD_ROWS, &above);
+    return read_cubic(film->load_cell[row], above);
+}
+
+int ehd_film_at(ehd_film *film, double u, double T) {
+    if (!film) return EHD_BAD_ARGUMENT;
+    ehd_point *point = &film->point;
+    if (film->inverse_scale > 0.0 && point->entrainment_speed == fabs(u) && point->temperature == T)
+        return point->status;
+    double factors[FACTOR_LOADS];
+    const int status = ehd_at(point, u, T, 0.0);
+    film->inverse_scale = 0.0;
+    if (EHD_REFUSES(status)) return status;
+    /* a faded film takes its part of the offset, and of the approach of lift-off */
+    film->centre = point->film * point->own.offset;
+    film->lift_off = point->film * point->lift_off;
+    film->inverse_scale = point->own.inverse_scale;
+    film->highest = point->highest_load * (1.0 + LOAD_TOLERANCE);
+    factors_at(log(least(most(fabs(u), LOWEST_SPEED), HIGHEST_SPEED)), least(most(T, EHD_LOWEST_TEMPERATURE), EHD_HIGHEST_TEMPERATURE), factors);
+    fill_film_nodes(film, factors);
+    fill_film_cells(film);
+    fill_load_cells(film);
+    film->least_damping = EHD_SHORTEST_MEMORY / stretch(film, point->highest_load).slope;
+    return status;
+}
+
+/* What a film refuses before it is asked anything. */
+static int film_status(const ehd_film *film) {
+    if (EHD_REFUSES(film->point.status)) return film->point.status;
+    return film->inverse_scale > 0.0 ? film->point.status : EHD_BAD_ARGUMENT;
+}
+
+/* w = x + sqrt(x^2 + p^2), without cancellation, and its slope, for slopes of p and x. */
+static reading load_of(reading p, reading x) {
+    const double root = sqrt(x.value * x.value + p.value * p.value + NOTHING);
+    const double w = x.value >= 0.0 ? x.value + root : p.value * p.value / (root - x.value);
+    const reading found = {w, (w * x.slope + p.value * p.slope) / root};
+    return found;
+}
+
+/* Weights of a step: backward differences of second order, or of first order at the first step and after a short one. */
+static weights weights_of(double step, double last_step) {
+    const double r = step / last_step;
+    const weights first = {1.0 / step, 1.0, 0.0}, second = {1.0 / step, (1.0 + 2.0 * r) / (1.0 + r), r * r / (1.0 + r)};
+    return last_step <= 0.0 || step > MOST_GROWTH * last_step ? first : second;
+}
+
+/* x = G' at the end of a step, and its slope by G. Where the change falls below two thirds of the last one, the share of
+ * the last one fades with it: so x has the sign of the change, and rises with it, whatever the step. */
+static reading squeeze(weights step, double change, double last) {
+    const double t = least(fabs(change) * (1.5 / (fabs(last) + NO_CHANGE)), 1.0), turn = 9.0 * t * (1.0 - t);
+    const reading found = {step.rate * (step.ahead * change - step.back * last * t * t * (3.0 - 2.0 * t)),
+                           step.rate * (step.ahead - step.back * (change * last >= 0.0 ? turn : -turn))};
+    return found;
+}
+
+/* Load and state at the end of a step; see ehd_film_advance. Newton's method for the approach of equilibrium, in a
+ * bracket: a film that is squeezed lags behind the approach, one that is relieved behind its last state. */
+static void advance_film(const ehd_film *film, weights step, double approach, const ehd_film_state *before,
+                         ehd_film_state *after, ehd_force *force) {
+    reading at[3];
+    equilibrium(film, before->approach, at);
+    const double begun = at[G_OF].value, last = before->change, scale = film->inverse_scale;
+    double left = film->lift_off, xi = most(before->approach, left), right = most(approach, xi);
+    double before_last = INFINITY, moved = INFINITY, w = 0.0, tangent = 0.0;
+    right += right - left;
+    for (int n = 0; n < FILM_STEPS; n++) {
+        equilibrium(film, xi, at);
+        reading x = squeeze(step, at[G_OF].value - begun, last);
+        x.slope *= at[G_OF].slope;
+        const reading load = load_of(at[P_OF], x), a = stretch(film, load.value);
+        const double rise = a.slope * load.slope + at[Y_OF].slope, gap = approach - a.value - at[Y_OF].value;
+        w = load.value;
+        tangent = load.slope > 0.0 && rise > 0.0 ? load.slope / rise : 0.0; /* zero where the film has ended */
+        if (gap > 0.0)
+            left = xi;
+        else
+            right = xi;
+        double following = xi + gap / rise;
+        if (!(left <= following && following <= right && 2.0 * fabs(following - xi) <= before_last))
+            following = 0.5 * (left + right);
+        before_last = moved;
+        moved = fabs(following - xi);
+        if (moved * scale <= FILM_EXACT * (1.0 + fabs(xi - film->centre) * scale)) break;
+        xi = following;
+    }
+    equilibrium(film, xi, at);
+    after->approach = xi;
+    after->change = at[G_OF].value - begun;
+    after->load = force->load = w > NO_LOAD_LEFT ? w : 0.0;
+    force->stiffness = w > NO_LOAD_LEFT ? tangent : 0.0;
+    force->damping = 0.0;
+}
+
+int ehd_film_settled(const ehd_film *film, double approach, ehd_film_state *state) {
+    reading at[3];
+    if (!film || !state) return EHD_BAD_ARGUMENT;
+    state->approach = state->change = state->load = NAN;
+    const int status = film_status(film);
+    if (EHD_REFUSES(status)) return status;
+    if (!is_finite(approach)) return status | EHD_NOT_FINITE;
+    state->approach = most(approach, film->lift_off);
+    equilibrium(film, state->approach, at);
+    state->change = 0.0;
+    state->load = at[P_OF].value > NO_LOAD_LEFT ? at[P_OF].value : 0.0;
+    return status;
+}
+
+int ehd_film_advance(const ehd_film *film, double step, double last_step, double approach, const ehd_film_state *before,
+                     ehd_film_state *after, ehd_force *force) {
+    if (!film || !before || !after || !force) return EHD_BAD_ARGUMENT;
+    const ehd_film_state begun = *before;
+    no_force(force);
+    after->approach = after->change = after->load = NAN;
+    int status = film_status(film);
+    if (EHD_REFUSES(status)) return status;
+    if (!(is_finite(approach) && is_finite(begun.approach) && is_finite(begun.change) && is_finite(last_step)))
+        return status | EHD_NOT_FINITE;
+    if (!(step > 0.0 && is_finite(1.0 / step))) return status | EHD_BAD_ARGUMENT;
+    advance_film(film, weights_of(step, last_step), approach, &begun, after, force);
+    if (force->load > film->highest) status |= EHD_ABOVE_LOAD;
+    if (!is_finite(fabs(after->approach) + fabs(after->change))) status |= EHD_NOT_FINITE;
+    status = settled(status, force);
+    if (EHD_REFUSES(status)) after->approach = after->change = after->load = NAN;
+    return status;
+}
+
+/* Place in a cell from 0 to its width h, of either sign, at which a cubic that rises has a value. */
+static double place_in(const double cubic[4], double h, double value) {
+    double low = h < 0.0 ? h : 0.0, high = h < 0.0 ? 0.0 : h, t = 0.5 * h;
+    for (int n = 0; n < FILM_STEPS; n++) {
+        const reading at = read_cubic(cubic, t);
+        if (at.value > value)
+            high = t;
+        else
+            low = t;
+        double following = at.slope > 0.0 ? t - (at.value - value) / at.slope : INFINITY;
+        if (!(low <= following && following <= high)) following = 0.5 * (low + high);
+        const double moved = fabs(following - t);
+        t = following;
+        if (moved <= FILM_EXACT * fabs(h)) break;
+    }
+    return t;
+}
+
+/* Load whose a is an approach, and its slope by it; none for an approach below zero, held at the end of the table. */
+static reading load_at(const ehd_film *film, double approach) {
+    int low = 0, high = EHD_LOAD_ROWS;
+    const double end = cell_end(high) - cell_end(high - 1);
+    reading found = {0.0, 0.0};
+    if (approach <= 0.0) return found;
+    if (approach >= read_cubic(film->load_cell[high - 1], end).value) {
+        found.value = cell_end(high) - 1.0;
+        return found;
+    }
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        if (film->load_cell[middle][0] <= approach)
+            low = middle;
+        else
+            high = middle;
+    }
+    const double width = cell_end(low + 1) - cell_end(low), t = place_in(film->load_cell[low], width, approach);
+    found.value = cell_end(low) - 1.0 + t;
+    const double slope = read_cubic(film->load_cell[low], t).slope;
+    found.slope = slope > 0.0 ? 1.0 / slope : 0.0;
+    return found;
+}
+
+/* Load and rate; see ehd_film_rate. With m = w, but at least EHD_OPENING p: x = (w^2 - p^2)/(2 m), xi' = x/(dG/dxi). */
+static void rate_film(const ehd_film *film, double approach, double state, ehd_film_rates *rates) {
+    double t;
+    const double scale = film->inverse_scale, xi = most(state, film->lift_off);
+    const int row = row_of((xi - film->centre) * scale, &t), held = state < film->lift_off;
+    const reading at = read_cubic(film->cell[row][P_OF], t), y = read_cubic(film->cell[row][Y_OF], t);
+    const double *cubic = film->cell[row][G_OF];
+    const double p = most(at.value, 0.0), dp = held ? 0.0 : at.slope * scale, dy = held ? 0.0 : y.slope * scale;
+    const double c = most(read_cubic(cubic, t).slope, 0.0) * scale + film->least_damping;
+    const double dc = held ? 0.0 : (2.0 * cubic[2] + 6.0 * t * cubic[3]) * scale * scale;
+    const reading w = load_at(film, approach - y.value);
+    const int opening = w.value < EHD_OPENING * p;
+    const double m = opening ? EHD_OPENING * p : w.value, x = m > 0.0 ? 0.5 * (w.value - p) * (w.value + p) / m : 0.0;
+    const double x_by_w = m <= 0.0 ? 0.5 : opening ? w.value / m : 1.0 - x / m;
+    const double x_by_p = m <= 0.0 ? 0.0 : opening ? -p / m - x / p : -p / m;
+    rates->load = w.value;
+    rates->stiffness = w.slope;
+    rates->by_state = -w.slope * dy;
+    rates->rate = x / c;
+    rates->rate_by_approach = x_by_w * w.slope / c;
+    rates->rate_by_state = (x_by_p * dp + x_by_w * rates->by_state - rates->rate * dc) / c;
+}
+
+int ehd_film_rate(const ehd_film *film, double approach, double state, ehd_film_rates *rates) {
+    if (!film || !rates) return EHD_BAD_ARGUMENT;
+    int status = film_status(film);
+    if (!(is_finite(approach) && is_finite(state))) status |= EHD_NOT_FINITE;
+    if (!EHD_REFUSES(status)) {
+        rate_film(film, approach, state, rates);
+        if (rates->load > film->highest) status |= EHD_ABOVE_LOAD;
+        if (!is_finite(rates->load + fabs(rates->rate) + fabs(rates->rate_by_approach) + fabs(rates->rate_by_state)))
+            status |= EHD_NOT_FINITE;
+    }
+    if (EHD_REFUSES(status)) {
+        rates->load = rates->stiffness = rates->by_state = NAN;
+        rates->rate = rates->rate_by_approach = rates->rate_by_state = NAN;
+    }
+    return status;
+}
