@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "identity.h"
-
 static const double START[VARIABLES] = {[TEMPERATURE] = EHD_START_TEMPERATURE, [CLEARANCE] = EHD_CLEARANCE};
 
 /* Place of each of the four directions in the poses and forces of ehd.h. */
@@ -20,7 +18,14 @@ component *component_make(void) {
 }
 
 void component_reset(component *of) {
-    memcpy(of->values, START, sizeof of->values);
+    snapshot start;
+    memset(&start, 0, sizeof start);
+    memcpy(start.values, START, sizeof start.values);
+    component_restore(of, &start);
+}
+
+void component_restore(component *of, const snapshot *kept) {
+    memcpy(&of->now, kept, sizeof of->now);
     of->stale = 1;
 }
 
@@ -33,36 +38,105 @@ static void motion_of(const double *values, double pose[6], double velocity[6]) 
     }
 }
 
-/* Force of some values. */
-static int force_of(component *of, const double *values, ehd_bearing_force *result) {
+static double cage_angle_of(const double *values) {
+    return EHD_CAGE_INNER * values[INNER_ANGLE] + EHD_CAGE_OUTER * values[OUTER_ANGLE];
+}
+
+/* Force of some values, and what follows for the films. */
+static int force_of(component *of, const double *values, ehd_bearing_force *result, ehd_film_rates *rates) {
     double pose[6], velocity[6];
-    const double cage = EHD_CAGE_INNER * values[INNER_ANGLE] + EHD_CAGE_OUTER * values[OUTER_ANGLE];
+    const double cage = cage_angle_of(values), T = values[TEMPERATURE];
     const double u = EHD_ENTRAINMENT * (values[INNER_SPEED] - values[OUTER_SPEED]);
     motion_of(values, pose, velocity);
     if (of->bearing.slices == 0 || of->bearing.clearance != values[CLEARANCE])
         if (ehd_bearing_make(&of->bearing, values[CLEARANCE], EHD_SLICES, NULL)) return EHD_BAD_ARGUMENT;
-    return ehd_bearing_call(&of->bearing, &of->law, pose, velocity, cage, u, values[TEMPERATURE], 0.0, result);
+#if FMU_MEMORY
+    double states[FILMS];
+    ehd_film_at(&of->film, u, T);
+    if (!of->now.begun) ehd_bearing_settled(&of->bearing, &of->film, pose, cage, of->now.films);
+    for (int n = 0; n < FILMS; n++) states[n] = of->now.films[n].approach;
+    return ehd_bearing_rates(&of->bearing, &of->film, pose, cage, states, rates, result);
+#else
+    (void)rates;
+    return ehd_bearing_call(&of->bearing, &of->law, pose, velocity, cage, u, T, 0.0, result);
+#endif
+}
+
+static ehd_film_rates *rates_of(component *of) {
+#if FMU_MEMORY
+    return of->rates;
+#else
+    return (void)of, NULL;
+#endif
 }
 
 int component_update(component *of) {
     if (!of->stale) return of->status;
-    of->status = force_of(of, of->values, &of->result);
-    for (int i = 0; i < 4; i++)
-        of->values[FIRST_OUTPUT + i] = EHD_REFUSES(of->status) ? NAN : of->result.force[DIRECTION[i]];
+    of->status = force_of(of, of->now.values, &of->result, rates_of(of));
+    for (int i = 0; i < OUTPUTS; i++)
+        of->now.values[FIRST_OUTPUT + i] = EHD_REFUSES(of->status) ? NAN : of->result.force[DIRECTION[i]];
     of->stale = 0;
+    of->asked = 0;
     return of->status;
 }
 
+int component_begin(component *of) {
+    const int status = FILMS ? component_update(of) : EHD_OK;
+    of->now.begun = !EHD_REFUSES(status);
+    return status;
+}
+
+#if FMU_MEMORY
+#define LONGEST_STEP 1e-5 /* of films in co-simulation [s]: a film at 4 kHz is right within some per cent */
+#define MOST_FILM_STEPS 200
+
+int component_step(component *of, double step) {
+    double pose[6], velocity[6];
+    const int count = step < MOST_FILM_STEPS * LONGEST_STEP ? (int)(step / LONGEST_STEP) + 1 : MOST_FILM_STEPS;
+    const double cage = cage_angle_of(of->now.values), part = step / count;
+    int status = component_update(of);
+    if (EHD_REFUSES(status) || !(part > 0.0)) return status;
+    const snapshot before = of->now;
+    motion_of(of->now.values, pose, velocity);
+    for (int n = 0; n < count; n++) {
+        status |= ehd_bearing_advance(&of->bearing, &of->film, part, of->now.last_step, pose, cage, of->now.films,
+                                      of->stepped, &of->result);
+        if (EHD_REFUSES(status)) {
+            component_restore(of, &before);
+            return status;
+        }
+        memcpy(of->now.films, of->stepped, sizeof of->stepped);
+        of->now.last_step = part;
+    }
+    of->now.begun = of->stale = 1;
+    return status | component_update(of);
+}
+#else
+int component_step(component *of, double step) { return (void)step, component_update(of); }
+#endif
+
 int component_set(component *of, unsigned reference, double value) {
-    if (reference == TIME || reference >= FIRST_OUTPUT || !(fabs(value) <= DBL_MAX)) return 0;
-    if (of->values[reference] != value) of->stale = 1;
-    of->values[reference] = value;
+    double *place = reference < FIRST_OUTPUT ? &of->now.values[reference] : NULL;
+    if (reference >= FIRST_STATE && reference < FIRST_RATE) {
+        place = &of->now.films[reference - FIRST_STATE].approach;
+        of->now.begun = 1;
+    }
+    if (reference == TIME || !place || !(fabs(value) <= DBL_MAX)) return 0;
+    if (*place != value) of->stale = 1;
+    *place = value;
     return 1;
 }
 
 int component_get(const component *of, unsigned reference, double *value) {
-    if (reference >= VARIABLES) return 0;
-    *value = of->values[reference];
+    if (reference >= REFERENCES) return 0;
+#if FMU_MEMORY
+    if (reference >= FIRST_RATE)
+        *value = of->rates[reference - FIRST_RATE].rate;
+    else if (reference >= FIRST_STATE)
+        *value = of->now.films[reference - FIRST_STATE].approach;
+    else
+#endif
+        *value = of->now.values[reference];
     return 1;
 }
 
@@ -73,38 +147,74 @@ static double step_of(unsigned input, double value) {
     return input < INNER_SPEED ? 1e-6 : 1e-5 * (1.0 + fabs(value));
 }
 
-int component_derivative(component *of, unsigned output, unsigned input, double *derivative) {
-    const int row = DIRECTION[output - FIRST_OUTPUT];
+/* Quotients of differences of all outputs and rates by an input. */
+static void quotients_by(component *of, unsigned known) {
+    double values[VARIABLES], found[2][OUTPUTS + FILMS], place[2];
+    ehd_bearing_force result;
+    ehd_film_rates rates[FILMS + 1];
+    const double step = step_of(known, of->now.values[known]);
+    if (of->asked == known) return;
+    for (int side = 0; side < 2; side++) {
+        memcpy(values, of->now.values, sizeof values);
+        values[known] += side ? step : -step;
+        place[side] = values[known];
+        if (EHD_REFUSES(force_of(of, values, &result, rates))) { /* the edge of the map: take the other side alone */
+            result = of->result;
+            if (FILMS) memcpy(rates, rates_of(of), FILMS * sizeof *rates);
+            place[side] = of->now.values[known];
+        }
+        for (int i = 0; i < OUTPUTS; i++) found[side][i] = result.force[DIRECTION[i]];
+        for (int n = 0; n < FILMS; n++) found[side][OUTPUTS + n] = rates[n].rate;
+    }
+    for (int i = 0; i < OUTPUTS + FILMS; i++) of->quotients[i] = (found[1][i] - found[0][i]) / (place[1] - place[0]);
+    of->asked = known;
+}
+
+int component_is_unknown(unsigned reference) {
+    return (reference >= FIRST_OUTPUT && reference < VARIABLES) || (reference >= FIRST_RATE && reference < REFERENCES);
+}
+
+#if FMU_MEMORY
+/* Derivative of an output or a rate by pose or state of a film. */
+static double film_derivative(const component *of, unsigned unknown, unsigned known) {
+    const int n = (int)(unknown >= FIRST_RATE ? unknown - FIRST_RATE : known - FIRST_STATE);
+    const ehd_film_rates *rates = &of->rates[n];
+    double column[4];
+    ehd_bearing_direction(&of->bearing, cage_angle_of(of->now.values), n / EHD_SLICES, n % EHD_SLICES, column);
+    if (unknown < FIRST_RATE) return -column[unknown - FIRST_OUTPUT] * rates->by_state * of->bearing.slice_length;
+    if (known < FIRST_STATE) return column[known - POSE_Y] * rates->rate_by_approach;
+    return known - FIRST_STATE == unknown - FIRST_RATE ? rates->rate_by_state : 0.0;
+}
+#endif
+
+int component_derivative(component *of, unsigned unknown, unsigned known, double *derivative) {
     *derivative = NAN;
     const int status = component_update(of);
     if (EHD_REFUSES(status)) return status;
-    if (input >= POSE_Y && input <= POSE_THETA_Z) {
-        *derivative = -of->result.stiffness[row][DIRECTION[input - POSE_Y]];
-    } else if (input >= VELOCITY_Y && input <= VELOCITY_THETA_Z) {
-        *derivative = -of->result.damping[row][DIRECTION[input - VELOCITY_Y]];
-    } else if (input >= INNER_ANGLE && input <= CLEARANCE) {
-        double values[VARIABLES], force[2], place[2];
-        ehd_bearing_force result;
-        const double step = step_of(input, of->values[input]);
-        for (int side = 0; side < 2; side++) {
-            memcpy(values, of->values, sizeof values);
-            values[input] += side ? step : -step;
-            place[side] = values[input];
-            if (EHD_REFUSES(force_of(of, values, &result))) { /* the edge of the map: take the other side alone */
-                result = of->result;
-                place[side] = of->values[input];
-            }
-            force[side] = result.force[row];
-        }
-        *derivative = (force[1] - force[0]) / (place[1] - place[0]);
-    } else {
-        *derivative = 0.0;
+    *derivative = 0.0;
+    if (known >= INNER_ANGLE && known <= CLEARANCE) {
+        quotients_by(of, known);
+        *derivative = of->quotients[unknown < VARIABLES ? unknown - FIRST_OUTPUT : OUTPUTS + unknown - FIRST_RATE];
+        return status;
     }
+#if FMU_MEMORY
+    if ((known >= FIRST_STATE && known < FIRST_RATE) ||
+        (unknown >= FIRST_RATE && known >= POSE_Y && known <= POSE_THETA_Z)) {
+        *derivative = film_derivative(of, unknown, known);
+        return status;
+    }
+#endif
+    if (unknown >= VARIABLES) return status;
+    const int row = DIRECTION[unknown - FIRST_OUTPUT];
+    if (known >= POSE_Y && known <= POSE_THETA_Z)
+        *derivative = -of->result.stiffness[row][DIRECTION[known - POSE_Y]];
+    else if (known >= VELOCITY_Y && known <= VELOCITY_THETA_Z)
+        *derivative = -of->result.damping[row][DIRECTION[known - VELOCITY_Y]];
     return status;
 }
 
 void component_message(const component *of, int status, char *text, size_t size) {
-    const double *v = of->values;
+    const double *v = of->now.values;
     snprintf(text, size,
              "%s: y = %.6g m, z = %.6g m, theta_y = %.6g rad, theta_z = %.6g rad, entrainment speed %.6g m/s, "
              "temperature %.6g K; mapped: up to %.6g N/m, %.6g m/s, %.6g K to %.6g K%s",

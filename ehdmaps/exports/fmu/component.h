@@ -6,6 +6,7 @@
 #define COMPONENT_H
 
 #include "ehd.h"
+#include "identity.h"
 
 /* The variables, by their value references. */
 enum {
@@ -21,15 +22,40 @@ enum {
 };
 
 #define FIRST_OUTPUT FORCE_Y
+#define OUTPUTS (VARIABLES - FIRST_OUTPUT)
 
-/* What a component is told and has found; `values` alone is its state. */
-typedef struct component {
+/* Films with memory have states xi [m], see ehd.h: after the variables above, one a slice, roller by roller; and then
+ * their rates [m/s]. Without memory there are none. */
+#define FILMS (FMU_MEMORY ? EHD_ROLLERS * EHD_SLICES : 0)
+#define FIRST_STATE VARIABLES
+#define FIRST_RATE (FIRST_STATE + FILMS)
+#define REFERENCES (FIRST_RATE + FILMS)
+#define NOMINAL_STATE 1e-7 /* [m] */
+
+/* All that a component has to remember. */
+typedef struct snapshot {
     double values[VARIABLES];
-    int stale;  /* whether outputs are older than inputs */
+    int begun;        /* whether films have left the equilibrium in which they begin */
+    double last_step; /* of co-simulation [s] */
+    ehd_film_state films[FILMS + 1];
+} snapshot;
+
+/* What a component remembers, and what it has found from it. */
+typedef struct component {
+    snapshot now;
+    int stale;  /* whether outputs are older than inputs and states */
     int status; /* of the last call of the law, see ehd.h */
     ehd_bearing bearing;
-    ehd_prepared law;
     ehd_bearing_force result;
+#if FMU_MEMORY
+    ehd_film film;
+    ehd_film_rates rates[FILMS];
+    ehd_film_state stepped[FILMS];
+#else
+    ehd_prepared law;
+#endif
+    unsigned asked;                   /* the input by which quotients of differences are, 0 for none */
+    double quotients[OUTPUTS + FILMS]; /* of outputs and of rates */
 } component;
 
 /* A component with the values at its start; null without memory. */
@@ -37,6 +63,16 @@ component *component_make(void);
 
 /* Go back to the start. */
 void component_reset(component *of);
+
+/* Go back, or on, to a state that was kept. */
+void component_restore(component *of, const snapshot *kept);
+
+/* The start is over: films begin in the equilibrium of the inputs of now, and have states of their own from here on. */
+int component_begin(component *of);
+
+/* A step of co-simulation over a time [s] with the inputs of now: films follow. Returns the status of the law; where it
+ * refuses, nothing has changed. */
+int component_step(component *of, double step);
 
 /* Bring the outputs up to date. Returns the status of the law; outputs are NaN where it refuses. */
 int component_update(component *of);
@@ -47,10 +83,13 @@ int component_set(component *of, unsigned reference, double value);
 /* Whether a value is there; gives it. Outputs want component_update first. */
 int component_get(const component *of, unsigned reference, double *value);
 
-/* Derivative of an output by an input. By pose and velocity it is exact; by spins, speeds and temperature it is a
- * quotient of differences, taken to that side on which the map goes on. Returns a status; the derivative is NaN where
- * the law refuses, and zero by variables that have no part in it. */
-int component_derivative(component *of, unsigned output, unsigned input, double *derivative);
+/* Whether a variable has derivatives: outputs and rates. */
+int component_is_unknown(unsigned reference);
+
+/* Derivative of an output or a rate by an input or a state. By pose, velocity and states it is exact; by spins, speeds
+ * and temperature it is a quotient of differences, taken to that side on which the map goes on. Returns a status; the
+ * derivative is NaN where the law refuses, and zero by variables that have no part in it. */
+int component_derivative(component *of, unsigned unknown, unsigned known, double *derivative);
 
 /* What to say of a status, with the values that led to it; into a text of so many characters. */
 void component_message(const component *of, int status, char *text, size_t size);

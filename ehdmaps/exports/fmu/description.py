@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
-from ehdmaps.exports.fmu.variables import LAG, UNITS, VARIABLES
+from ehdmaps.exports.fmu.variables import LAG, NOMINAL_STATE, UNITS, VARIABLES, Variable
 
 KIND = {"2": "2.0", "3": "3.0"}
 """Versions of the standard."""
 
-_VARIABILITY = {"independent": "continuous", "input": "continuous", "output": "continuous", "parameter": "tunable"}
+_VARIABILITY = {
+    "independent": "continuous",
+    "input": "continuous",
+    "output": "continuous",
+    "parameter": "tunable",
+    "local": "continuous",
+}
+
+_PARTS_2 = {"Output": "Outputs", "ContinuousStateDerivative": "Derivatives", "InitialUnknown": "InitialUnknowns"}
+"""Parts of the structure in FMI 2.0, which has them in elements of their own."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +48,9 @@ class Identity:
     version: str
 
 
-def model_description(fmi: str, identity: Identity, sources: tuple[str, ...], start: Mapping[str, float]) -> str:
+def model_description(
+    fmi: str, identity: Identity, sources: tuple[str, ...], start: Mapping[str, float], films: Sequence[str] = ()
+) -> str:
     """Text of modelDescription.xml.
 
     Parameters
@@ -52,6 +63,8 @@ def model_description(fmi: str, identity: Identity, sources: tuple[str, ...], st
         Files to be compiled; only FMI 2.0 names them here.
     start : mapping of str to float
         Values at the start of variables that do not start at zero.
+    films : sequence of str
+        Names of the states of films with memory.
     """
     second = fmi == "2"
     root = ElementTree.Element(
@@ -94,7 +107,9 @@ def model_description(fmi: str, identity: Identity, sources: tuple[str, ...], st
     ):
         ElementTree.SubElement(log, "Category", name=category, description=words)
     ElementTree.SubElement(root, "DefaultExperiment", startTime="0", stopTime="1")
-    (_variables_2 if second else _variables_3)(root, start)
+    entries = _entries(films)
+    _variables(root, fmi, start, entries)
+    _structure(root, fmi, entries)
     ElementTree.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
 
@@ -126,63 +141,87 @@ def _units(root: ElementTree.Element) -> None:
         ElementTree.SubElement(unit, "BaseUnit", {base: str(power) for base, power in exponents.items()})
 
 
-def _variables_2(root: ElementTree.Element, start: Mapping[str, float]) -> None:
-    """Add variables and structure as FMI 2.0 has them."""
+@dataclass(frozen=True)
+class _Entry:
+    """A variable with its value reference, and that of the state whose rate it is."""
+
+    reference: int
+    variable: Variable
+    state: int | None = None
+
+
+def _entries(films: Sequence[str]) -> list[_Entry]:
+    """All variables, in the order of their references: those of the bearing, states of films, their rates."""
+    words = "Approach at which the film of a slice would be in equilibrium"
+    first = len(VARIABLES)
+    return [
+        *(_Entry(reference, variable) for reference, variable in enumerate(VARIABLES)),
+        *(_Entry(first + n, Variable(name, "local", "m", words)) for n, name in enumerate(films)),
+        *(
+            _Entry(first + len(films) + n, Variable(f"der({name})", "local", "m/s", f"Rate of {name}"), first + n)
+            for n, name in enumerate(films)
+        ),
+    ]
+
+
+def _variables(root: ElementTree.Element, fmi: str, start: Mapping[str, float], entries: Sequence[_Entry]) -> None:
+    """Add the variables. FMI 2.0 has their numbers and units in an element of its own."""
     listed = ElementTree.SubElement(root, "ModelVariables")
-    known = [n + 1 for n, variable in enumerate(VARIABLES) if variable.causality == "input"]
-    for reference, variable in enumerate(VARIABLES):
-        entry = ElementTree.SubElement(
-            listed,
-            "ScalarVariable",
-            name=variable.name,
-            valueReference=str(reference),
-            causality=variable.causality,
-            variability=_VARIABILITY[variable.causality],
-            description=variable.words,
-        )
-        real = ElementTree.SubElement(entry, "Real", unit=variable.unit)
+    for entry in entries:
+        variable = entry.variable
+        common = {
+            "name": variable.name,
+            "valueReference": str(entry.reference),
+            "causality": variable.causality,
+            "variability": _VARIABILITY[variable.causality],
+            "description": variable.words,
+            **({"initial": "calculated"} if variable.causality == "local" else {}),
+        }
+        if fmi == "2":
+            real = ElementTree.SubElement(ElementTree.SubElement(listed, "ScalarVariable", common), "Real")
+        else:
+            real = ElementTree.SubElement(listed, "Float64", common)
+        real.set("unit", variable.unit)
         if variable.causality in ("input", "parameter"):
             real.set("start", repr(float(start.get(variable.name, 0.0))))
+        elif entry.state is not None:
+            real.set("derivative", _number(fmi, entry.state))
+        elif variable.causality == "local":
+            real.set("nominal", repr(NOMINAL_STATE))
+
+
+def _structure(root: ElementTree.Element, fmi: str, entries: Sequence[_Entry]) -> None:
+    """Add what depends on what: outputs on inputs and states, a rate on inputs and on its own state."""
+    inputs = [entry.reference for entry in entries if entry.variable.causality == "input"]
+    outputs = [entry for entry in entries if entry.variable.causality == "output"]
+    states = [entry.state for entry in entries if entry.state is not None]
+    rates = [entry for entry in entries if entry.state is not None]
+    settled = [entry for entry in entries if entry.reference in set(states)]
+    needs = {entry.reference: [*inputs, *states] for entry in outputs}
+    needs |= {entry.reference: [*inputs, entry.state] for entry in rates if entry.state is not None}
+    # at the start a film is in equilibrium, and what is a parameter later is known
+    begin = {entry.reference: inputs for entry in (*outputs, *settled, *rates)}
     structure = ElementTree.SubElement(root, "ModelStructure")
-    outputs, initial = (ElementTree.SubElement(structure, name) for name in ("Outputs", "InitialUnknowns"))
-    for place, variable in enumerate(VARIABLES):
-        if variable.causality != "output":
-            continue
-        for parent in (outputs, initial):
+    for kind, known, needed in (
+        ("Output", outputs, needs),
+        ("ContinuousStateDerivative", rates, needs),
+        ("InitialUnknown", sorted([*outputs, *settled, *rates], key=lambda entry: entry.reference), begin),
+    ):
+        parent = structure
+        if fmi == "2" and known:
+            parent = ElementTree.SubElement(structure, _PARTS_2[kind])
+        for entry in known:
             ElementTree.SubElement(
                 parent,
-                "Unknown",
-                index=str(place + 1),
-                dependencies=" ".join(map(str, known)),
-                dependenciesKind=" ".join(["dependent"] * len(known)),
+                "Unknown" if fmi == "2" else kind,
+                {
+                    "index" if fmi == "2" else "valueReference": _number(fmi, entry.reference),
+                    "dependencies": " ".join(_number(fmi, reference) for reference in needed[entry.reference]),
+                    "dependenciesKind": " ".join(["dependent"] * len(needed[entry.reference])),
+                },
             )
 
 
-def _variables_3(root: ElementTree.Element, start: Mapping[str, float]) -> None:
-    """Add variables and structure as FMI 3.0 has them."""
-    listed = ElementTree.SubElement(root, "ModelVariables")
-    known = [str(n) for n, variable in enumerate(VARIABLES) if variable.causality == "input"]
-    for reference, variable in enumerate(VARIABLES):
-        entry = ElementTree.SubElement(
-            listed,
-            "Float64",
-            name=variable.name,
-            valueReference=str(reference),
-            causality=variable.causality,
-            variability=_VARIABILITY[variable.causality],
-            description=variable.words,
-            unit=variable.unit,
-        )
-        if variable.causality in ("input", "parameter"):
-            entry.set("start", repr(float(start.get(variable.name, 0.0))))
-    structure = ElementTree.SubElement(root, "ModelStructure")
-    for kind in ("Output", "InitialUnknown"):
-        for reference, variable in enumerate(VARIABLES):
-            if variable.causality == "output":
-                ElementTree.SubElement(
-                    structure,
-                    kind,
-                    valueReference=str(reference),
-                    dependencies=" ".join(known),
-                    dependenciesKind=" ".join(["dependent"] * len(known)),
-                )
+def _number(fmi: str, reference: int) -> str:
+    """How a variable is named: by its place from 1 on in FMI 2.0, by its reference in FMI 3.0."""
+    return str(reference + 1 if fmi == "2" else reference)

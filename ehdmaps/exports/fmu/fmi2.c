@@ -1,12 +1,11 @@
 /* The interface FMI 2.0 of a bearing: Model Exchange and Co-Simulation. All of it follows from the values of now: there
- * are no continuous states and no events. */
+ * are no events, and continuous states where films have a memory. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "component.h"
 #include "fmi2Functions.h"
-#include "identity.h"
 
 typedef struct instance {
     component *of;
@@ -78,13 +77,13 @@ void fmi2FreeInstance(fmi2Component c) {
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerant, fmi2Real tolerance, fmi2Real start,
                                fmi2Boolean stops, fmi2Real stop) {
     (void)tolerant, (void)tolerance, (void)stops, (void)stop;
-    ((instance *)c)->of->values[TIME] = start;
+    ((instance *)c)->of->now.values[TIME] = start;
     return fmi2OK;
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) { return (void)c, fmi2OK; }
 
-fmi2Status fmi2ExitInitializationMode(fmi2Component c) { return (void)c, fmi2OK; }
+fmi2Status fmi2ExitInitializationMode(fmi2Component c) { return judged(c, component_begin(((instance *)c)->of)); }
 
 fmi2Status fmi2Terminate(fmi2Component c) { return (void)c, fmi2OK; }
 
@@ -128,16 +127,15 @@ NONE(String)
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
     instance *self = c;
-    if (!*state) *state = calloc(1, sizeof self->of->values);
+    if (!*state) *state = calloc(1, sizeof self->of->now);
     if (!*state) return refuse(self, "no memory");
-    memcpy(*state, self->of->values, sizeof self->of->values);
+    memcpy(*state, &self->of->now, sizeof self->of->now);
     return fmi2OK;
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
     instance *self = c;
-    memcpy(self->of->values, state, sizeof self->of->values);
-    self->of->stale = 1;
+    component_restore(self->of, state);
     return fmi2OK;
 }
 
@@ -150,20 +148,20 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size) {
     (void)state;
-    *size = sizeof((instance *)c)->of->values;
+    *size = sizeof((instance *)c)->of->now;
     return fmi2OK;
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
     instance *self = c;
-    if (size < sizeof self->of->values) return refuse(self, "too little room for a state");
-    memcpy(bytes, state, sizeof self->of->values);
+    if (size < sizeof self->of->now) return refuse(self, "too little room for a state");
+    memcpy(bytes, state, sizeof self->of->now);
     return fmi2OK;
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state) {
     instance *self = c;
-    if (size != sizeof self->of->values) return refuse(self, "no state of this FMU");
+    if (size != sizeof self->of->now) return refuse(self, "no state of this FMU");
     if (!*state) *state = calloc(1, size);
     if (!*state) return refuse(self, "no memory");
     memcpy(*state, bytes, size);
@@ -176,7 +174,7 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     instance *self = c;
     fmi2Status status = fmi2OK;
     for (size_t i = 0; i < unknown_count; i++) {
-        if (unknowns[i] < FIRST_OUTPUT || unknowns[i] >= VARIABLES) return refuse(self, "derivative of no output");
+        if (!component_is_unknown(unknowns[i])) return refuse(self, "derivative of neither output nor rate");
         found[i] = 0.0;
         for (size_t j = 0; j < known_count; j++) {
             double derivative;
@@ -209,24 +207,42 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean keeps, fmi2B
 }
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
-    ((instance *)c)->of->values[TIME] = time;
+    ((instance *)c)->of->now.values[TIME] = time;
     return fmi2OK;
 }
 
-static fmi2Status no_states(instance *self, size_t count) {
-    return count ? refuse(self, "there are no continuous states and no event indicators") : fmi2OK;
+fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real x[], size_t n) {
+    (void)x;
+    return n ? refuse(c, "there are no event indicators") : fmi2OK;
 }
 
-fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n) { return (void)x, no_states(c, n); }
+/* States of films, and their rates: none without memory. */
 
-fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real x[], size_t n) { return (void)x, no_states(c, n); }
+static const char WRONG_COUNT[] = "another number of continuous states than there are";
 
-fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real x[], size_t n) { return (void)x, no_states(c, n); }
+fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n) {
+    instance *self = c;
+    if (n != FILMS) return refuse(self, WRONG_COUNT);
+    for (size_t i = 0; i < n; i++)
+        if (!component_set(self->of, FIRST_STATE + (unsigned)i, x[i])) return refuse(self, "a state that is not finite");
+    return fmi2OK;
+}
 
-fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n) { return (void)x, no_states(c, n); }
+static fmi2Status get_all(instance *self, unsigned first, fmi2Real x[], size_t n) {
+    if (n != FILMS) return refuse(self, WRONG_COUNT);
+    const fmi2Status status = n ? judged(self, component_update(self->of)) : fmi2OK;
+    for (size_t i = 0; i < n; i++) component_get(self->of, first + (unsigned)i, &x[i]);
+    return status;
+}
+
+fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real x[], size_t n) { return get_all(c, FIRST_RATE, x, n); }
+
+fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n) { return get_all(c, FIRST_STATE, x, n); }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-    return (void)x, no_states(c, n);
+    if (n != FILMS) return refuse(c, WRONG_COUNT);
+    for (size_t i = 0; i < n; i++) x[i] = NOMINAL_STATE;
+    return fmi2OK;
 }
 
 /* Co-Simulation: the force of the values of now, which the master holds over a step. */
@@ -247,8 +263,8 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real now, fmi2Real step, fmi2Boolean 
     instance *self = c;
     (void)keeps;
     if (!(isfinite(now) && isfinite(step) && step >= 0.0)) return refuse(self, "a step that is not finite and >= 0 s");
-    const fmi2Status status = judged(self, component_update(self->of));
-    if (status != fmi2Discard) self->of->values[TIME] = now + step;
+    const fmi2Status status = judged(self, component_step(self->of, step));
+    if (status != fmi2Discard) self->of->now.values[TIME] = now + step;
     return status;
 }
 
@@ -261,7 +277,7 @@ fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status 
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value) {
     if (kind != fmi2LastSuccessfulTime) return fmi2Discard;
-    *value = ((instance *)c)->of->values[TIME];
+    *value = ((instance *)c)->of->now.values[TIME];
     return fmi2OK;
 }
 

@@ -1,12 +1,11 @@
 /* The interface FMI 3.0 of a bearing: Model Exchange and Co-Simulation. All of it follows from the values of now: there
- * are no continuous states, no clocks and no events. */
+ * are no clocks and no events, and continuous states where films have a memory. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "component.h"
 #include "fmi3Functions.h"
-#include "identity.h"
 
 typedef struct instance {
     component *of;
@@ -90,11 +89,11 @@ void fmi3FreeInstance(fmi3Instance c) {
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean tolerant, fmi3Float64 tolerance, fmi3Float64 start,
                                        fmi3Boolean stops, fmi3Float64 stop) {
     (void)tolerant, (void)tolerance, (void)stops, (void)stop;
-    ((instance *)c)->of->values[TIME] = start;
+    ((instance *)c)->of->now.values[TIME] = start;
     return fmi3OK;
 }
 
-fmi3Status fmi3ExitInitializationMode(fmi3Instance c) { return (void)c, fmi3OK; }
+fmi3Status fmi3ExitInitializationMode(fmi3Instance c) { return judged(c, component_begin(((instance *)c)->of)); }
 
 fmi3Status fmi3EnterEventMode(fmi3Instance c) { return (void)c, fmi3OK; }
 
@@ -169,22 +168,25 @@ fmi3Status fmi3SetClock(fmi3Instance c, const reference r[], size_t n, const fmi
     return (void)r, (void)v, none(c, n);
 }
 
-/* Every output depends on every input and parameter. */
+/* Every output depends on every input and parameter, and on every state; a rate on inputs and on its own state. */
 
 fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance c, reference variable, size_t *count) {
+    const size_t states = variable >= FIRST_RATE ? 1 : FILMS;
     (void)c;
-    *count = variable >= FIRST_OUTPUT && variable < VARIABLES ? FIRST_OUTPUT - POSE_Y : 0;
+    *count = component_is_unknown(variable) ? FIRST_OUTPUT - POSE_Y + states : 0;
     return fmi3OK;
 }
 
 fmi3Status fmi3GetVariableDependencies(fmi3Instance c, reference variable, size_t own[], reference others[],
                                        size_t theirs[], fmi3DependencyKind kinds[], size_t count) {
+    const size_t inputs = FIRST_OUTPUT - POSE_Y;
+    const reference state = variable >= FIRST_RATE ? variable - FILMS : FIRST_STATE;
     size_t known = 0;
     fmi3GetNumberOfVariableDependencies(c, variable, &known);
     if (count != known) return refuse(c, "another number of dependencies than there are");
     for (size_t i = 0; i < count; i++) {
         own[i] = theirs[i] = 0;
-        others[i] = (reference)(POSE_Y + i);
+        others[i] = i < inputs ? (reference)(POSE_Y + i) : (reference)(state + i - inputs);
         kinds[i] = fmi3Dependent;
     }
     return fmi3OK;
@@ -192,16 +194,15 @@ fmi3Status fmi3GetVariableDependencies(fmi3Instance c, reference variable, size_
 
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state) {
     instance *self = c;
-    if (!*state) *state = calloc(1, sizeof self->of->values);
+    if (!*state) *state = calloc(1, sizeof self->of->now);
     if (!*state) return refuse(self, "no memory");
-    memcpy(*state, self->of->values, sizeof self->of->values);
+    memcpy(*state, &self->of->now, sizeof self->of->now);
     return fmi3OK;
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
     instance *self = c;
-    memcpy(self->of->values, state, sizeof self->of->values);
-    self->of->stale = 1;
+    component_restore(self->of, state);
     return fmi3OK;
 }
 
@@ -214,20 +215,20 @@ fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *state) {
 
 fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t *size) {
     (void)state;
-    *size = sizeof((instance *)c)->of->values;
+    *size = sizeof((instance *)c)->of->now;
     return fmi3OK;
 }
 
 fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
     instance *self = c;
-    if (size < sizeof self->of->values) return refuse(self, "too little room for a state");
-    memcpy(bytes, state, sizeof self->of->values);
+    if (size < sizeof self->of->now) return refuse(self, "too little room for a state");
+    memcpy(bytes, state, sizeof self->of->now);
     return fmi3OK;
 }
 
 fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size, fmi3FMUState *state) {
     instance *self = c;
-    if (size != sizeof self->of->values) return refuse(self, "no state of this FMU");
+    if (size != sizeof self->of->now) return refuse(self, "no state of this FMU");
     if (!*state) *state = calloc(1, size);
     if (!*state) return refuse(self, "no memory");
     memcpy(*state, bytes, size);
@@ -241,7 +242,7 @@ static fmi3Status derivatives(instance *self, const reference unknowns[], size_t
     fmi3Status status = fmi3OK;
     memset(found, 0, (adjoint ? known_count : unknown_count) * sizeof *found);
     for (size_t i = 0; i < unknown_count; i++) {
-        if (unknowns[i] < FIRST_OUTPUT || unknowns[i] >= VARIABLES) return refuse(self, "derivative of no output");
+        if (!component_is_unknown(unknowns[i])) return refuse(self, "derivative of neither output nor rate");
         for (size_t j = 0; j < known_count; j++) {
             double derivative;
             if (seeds[adjoint ? i : j] == 0.0) continue;
@@ -335,33 +336,47 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean keeps, fmi3Bo
 }
 
 fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 time) {
-    ((instance *)c)->of->values[TIME] = time;
+    ((instance *)c)->of->now.values[TIME] = time;
     return fmi3OK;
 }
 
-static fmi3Status no_states(instance *self, size_t count) {
-    return count ? refuse(self, "there are no continuous states and no event indicators") : fmi3OK;
+fmi3Status fmi3GetEventIndicators(fmi3Instance c, fmi3Float64 x[], size_t n) {
+    (void)x;
+    return n ? refuse(c, "there are no event indicators") : fmi3OK;
 }
+
+/* States of films, and their rates: none without memory. */
+
+static const char WRONG_COUNT[] = "another number of continuous states than there are";
 
 fmi3Status fmi3SetContinuousStates(fmi3Instance c, const fmi3Float64 x[], size_t n) {
-    return (void)x, no_states(c, n);
+    instance *self = c;
+    if (n != FILMS) return refuse(self, WRONG_COUNT);
+    for (size_t i = 0; i < n; i++)
+        if (!component_set(self->of, FIRST_STATE + (unsigned)i, x[i])) return refuse(self, "a state that is not finite");
+    return fmi3OK;
 }
 
-fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance c, fmi3Float64 x[], size_t n) {
-    return (void)x, no_states(c, n);
+static fmi3Status get_all(instance *self, unsigned first, fmi3Float64 x[], size_t n) {
+    if (n != FILMS) return refuse(self, WRONG_COUNT);
+    const fmi3Status status = n ? judged(self, component_update(self->of)) : fmi3OK;
+    for (size_t i = 0; i < n; i++) component_get(self->of, first + (unsigned)i, &x[i]);
+    return status;
 }
 
-fmi3Status fmi3GetEventIndicators(fmi3Instance c, fmi3Float64 x[], size_t n) { return (void)x, no_states(c, n); }
+fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance c, fmi3Float64 x[], size_t n) { return get_all(c, FIRST_RATE, x, n); }
 
-fmi3Status fmi3GetContinuousStates(fmi3Instance c, fmi3Float64 x[], size_t n) { return (void)x, no_states(c, n); }
+fmi3Status fmi3GetContinuousStates(fmi3Instance c, fmi3Float64 x[], size_t n) { return get_all(c, FIRST_STATE, x, n); }
 
 fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance c, fmi3Float64 x[], size_t n) {
-    return (void)x, no_states(c, n);
+    if (n != FILMS) return refuse(c, WRONG_COUNT);
+    for (size_t i = 0; i < n; i++) x[i] = NOMINAL_STATE;
+    return fmi3OK;
 }
 
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance c, size_t *n) { return (void)c, *n = 0, fmi3OK; }
 
-fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance c, size_t *n) { return (void)c, *n = 0, fmi3OK; }
+fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance c, size_t *n) { return (void)c, *n = FILMS, fmi3OK; }
 
 /* Co-Simulation: the force of the values of now, which the importer holds over a step. */
 
@@ -380,7 +395,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 now, fmi3Float64 step, fmi3Boo
     *event = *end = *early = fmi3False;
     *last = now;
     if (!(isfinite(now) && isfinite(step) && step >= 0.0)) return refuse(self, "a step that is not finite and >= 0 s");
-    const fmi3Status status = judged(self, component_update(self->of));
-    if (status != fmi3Discard) *last = self->of->values[TIME] = now + step;
+    const fmi3Status status = judged(self, component_step(self->of, step));
+    if (status != fmi3Discard) *last = self->of->now.values[TIME] = now + step;
     return status;
 }

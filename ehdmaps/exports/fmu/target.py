@@ -10,7 +10,7 @@ import re
 import tempfile
 import uuid
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from importlib.resources import files
 from pathlib import Path
 
@@ -19,7 +19,7 @@ from ehdmaps.exports.c.kernel import BEYOND, kernel_files
 from ehdmaps.exports.c.target import add_law_arguments, options_of
 from ehdmaps.exports.fmu.binaries import compiled, platforms
 from ehdmaps.exports.fmu.description import KIND, Identity, build_description, model_description
-from ehdmaps.exports.fmu.variables import LAG, MOTION, VARIABLES
+from ehdmaps.exports.fmu.variables import LAG, MEMORY, MOTION, SLOW, VARIABLES, film_names
 from ehdmaps.exports.header import origin
 from ehdmaps.exports.target import Target
 from ehdmaps.maps import schema
@@ -30,6 +30,7 @@ from ehdmaps.version import version
 _USUAL_TEMPERATURE = 313.15
 _BEGINNING = (1980, 1, 1, 0, 0, 0)
 _DESCRIPTION = "modelDescription.xml"
+_SOURCES = "sources/"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -41,6 +42,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         The parser of the command.
     """
     parser.add_argument("--fmi", choices=tuple(KIND), default="2", help="version of the standard; 2 if left out")
+    parser.add_argument(
+        "--films",
+        choices=("slow", "memory"),
+        default="slow",
+        help="slow: films follow at once (the default); memory: they need time, with a state for each slice",
+    )
     parser.add_argument("--sources-only", action="store_true", help="compile nothing")
     add_law_arguments(parser)
 
@@ -68,16 +75,25 @@ def write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Nam
     cold, hot = (float(emap.dataset["temperature"].values[end]) for end in (0, -1))
     clearance = emap.bearing.diametral_clearance if options.clearance is None else options.clearance
     start = {"temperature": min(max(_USUAL_TEMPERATURE, cold), hot), "clearance": clearance}
-    identity = _identity(emap, path, arguments.fmi, sources, start)
-    entries, words = _entries(identity, arguments.fmi, sources, start, header, arguments.sources_only)
+    films = film_names(emap.bearing.rollers, options.slices) if arguments.films == "memory" else ()
+    identity = _identity(emap, path, arguments.fmi, sources, start, films)
+    unit_files = _unit_files(identity, arguments.fmi, sources, start, films, header)
+    entries, words = _compiled(identity, arguments.fmi, unit_files, arguments.sources_only)
     with written_aside(unit, UNIT) as aside:
         aside.write_bytes(_zipped(entries))
     return f"{unit}: written (FMI {KIND[arguments.fmi]}: {words})"
 
 
-def _identity(emap: EHDMap, path: Path, fmi: str, sources: Mapping[str, str], start: Mapping[str, float]) -> Identity:
+def _identity(
+    emap: EHDMap,
+    path: Path,
+    fmi: str,
+    sources: Mapping[str, str],
+    start: Mapping[str, float],
+    films: tuple[str, ...],
+) -> Identity:
     """Name and token of a unit; the same for the same map, options and program."""
-    text = "\n".join([version(), fmi, repr(sorted(start.items())), *sources.values()])
+    text = "\n".join([version(), fmi, repr(sorted(start.items())), repr(films), *sources.values()])
     stem = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
     return Identity(
         name=stem if stem[:1].isalpha() else f"bearing_{stem}",
@@ -88,43 +104,60 @@ def _identity(emap: EHDMap, path: Path, fmi: str, sources: Mapping[str, str], st
     )
 
 
-def _entries(
+def _unit_files(
     identity: Identity,
     fmi: str,
     sources: Mapping[str, str],
     start: Mapping[str, float],
+    films: tuple[str, ...],
     header: tuple[str, ...],
-    sources_only: bool,
-) -> tuple[dict[str, bytes], str]:
-    """Return all files of a unit, and what is inside in words."""
+) -> dict[str, str]:
+    """Return all files of a unit but its binaries."""
     own = files("ehdmaps.exports.fmu")
     texts = {name: own / name for name in ("component.c", "component.h", f"fmi{fmi}.c")}
     texts |= {entry.name: entry for entry in (own / "headers").iterdir() if entry.name.startswith(f"fmi{fmi}")}
-    numbers = f'#define FMU_TOKEN "{identity.token}"\n#define EHD_START_TEMPERATURE {start["temperature"]!r}\n'
     written = {**sources, **{name: entry.read_text(encoding="utf-8") for name, entry in texts.items()}}
-    written["identity.h"] = numbers
-    to_compile = tuple(sorted(name for name in written if name.endswith(".c")))
-    entries = {f"sources/{name}": text.encode() for name, text in written.items()}
+    written["identity.h"] = (
+        "#ifndef IDENTITY_H\n#define IDENTITY_H\n\n"
+        f'#define FMU_TOKEN "{identity.token}"\n#define EHD_START_TEMPERATURE {start["temperature"]!r}\n'
+        f"#define FMU_MEMORY {int(bool(films))} /* whether films have states */\n\n#endif\n"
+    )
+    to_compile = _to_compile(written)
     if fmi == "3":
-        entries["sources/buildDescription.xml"] = build_description(identity, to_compile).encode()
-    entries[_DESCRIPTION] = model_description(fmi, identity, to_compile, start).encode()
-    entries["documentation/index.html"] = _page(identity, header).encode()
-    inside = ["sources"]
+        written["buildDescription.xml"] = build_description(identity, to_compile)
+    return {
+        **{f"{_SOURCES}{name}": text for name, text in written.items()},
+        _DESCRIPTION: model_description(fmi, identity, to_compile, start, films),
+        "documentation/index.html": _page(identity, header, MEMORY if films else SLOW),
+    }
+
+
+def _to_compile(names: Iterable[str]) -> tuple[str, ...]:
+    """Return the files that a compiler takes, in order."""
+    return tuple(sorted(name for name in names if name.endswith(".c")))
+
+
+def _compiled(
+    identity: Identity, fmi: str, unit_files: Mapping[str, str], sources_only: bool
+) -> tuple[dict[str, bytes], str]:
+    """Return all files of a unit with its binaries, and what is inside in words."""
+    entries, inside = {name: text.encode() for name, text in unit_files.items()}, ["sources"]
+    sources = {name.removeprefix(_SOURCES): text for name, text in unit_files.items() if name.startswith(_SOURCES)}
     with tempfile.TemporaryDirectory() as folder:
-        for name, text in written.items():
+        for name, text in sources.items():
             (Path(folder) / name).write_text(text, encoding="utf-8")
         for target in () if sources_only else platforms():
             if not target.compiler:
                 inside.append(f"no {target.name}, for which no compiler is found")
                 continue
             place = target.name if fmi == "2" else target.folder
-            library = compiled(target, Path(folder), to_compile, identity.name)
+            library = compiled(target, Path(folder), _to_compile(sources), identity.name)
             entries[f"binaries/{place}/{identity.name}{target.ending}"] = library
             inside.append(target.name)
     return entries, ", ".join(inside)
 
 
-def _page(identity: Identity, header: tuple[str, ...]) -> str:
+def _page(identity: Identity, header: tuple[str, ...], films: str) -> str:
     """Documentation of a unit, for people."""
 
     def listed(lines: tuple[str, ...]) -> str:
@@ -137,7 +170,7 @@ def _page(identity: Identity, header: tuple[str, ...]) -> str:
     return (
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{html.escape(identity.name)}</title>'
         f"</head><body>\n<h1>{html.escape(identity.name)}</h1>\n<p>{html.escape(identity.words)}</p>\n"
-        f"<h2>Axes, signs, limits</h2>\n<ul>\n{listed((*MOTION, LAG))}</ul>\n"
+        f"<h2>Axes, signs, limits</h2>\n<ul>\n{listed((*MOTION, films, LAG))}</ul>\n"
         "<p>Outside the map calls are discarded, or held at its edge with a warning, as it was chosen when the unit "
         "was made; the log says which value was outside.</p>\n"
         f"<h2>Variables</h2>\n<table>\n{rows}</table>\n<h2>Where it comes from</h2>\n<ul>\n{listed(header)}</ul>\n"

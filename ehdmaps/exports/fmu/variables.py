@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-Causality = Literal["independent", "input", "parameter", "output"]
+Causality = Literal["independent", "input", "parameter", "output", "local"]
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,7 @@ class Variable:
     ----------
     name : str
         Name, with its parts by points.
-    causality : {"independent", "input", "parameter", "output"}
+    causality : {"independent", "input", "parameter", "output", "local"}
         What it is.
     unit : str
         Unit of `UNITS`.
@@ -79,6 +79,30 @@ MOTION = (
     "pose, velocity and force are those of the inner ring, right-handed. The derivatives of the outputs by the pose "
     "are -K, by the velocity -C, exactly; those by the others are quotients of differences.",
     "The rollers stand where the spins bring them, without slip; the first one stands on the y axis at spins of zero.",
-    "The film follows the motion at once: there are no states. Films with a memory want `mbs`.",
 )
 """Axes, signs and what is left out, for people."""
+
+SLOW = "Films follow the motion at once: there are no states."
+"""What units without memory say."""
+
+MEMORY = (
+    "Films need time to follow: each slice of each roller has a state film.xi, the approach at which its film would be "
+    "in equilibrium. Velocities have no part in the force. The states begin in equilibrium. Model Exchange wants a "
+    "solver for stiff equations, with an absolute tolerance of some 1e-11 m for them; in Co-Simulation the unit takes "
+    "steps of up to 10 us of its own. The derivatives by pose are those with the states held fixed."
+)
+"""What units with memory say."""
+
+NOMINAL_STATE = 1e-7
+"""Size of what films follow [m], as in `component.h`."""
+
+
+def film_names(rollers: int, slices: int) -> tuple[str, ...]:
+    """Names of the states of films, roller by roller.
+
+    Parameters
+    ----------
+    rollers, slices : int
+        Numbers of rollers and of slices of each.
+    """
+    return tuple(f"film.xi[{j + 1},{i + 1}]" for j in range(rollers) for i in range(slices))
