@@ -5,7 +5,8 @@
 | `target` | what a target of `ehdmaps export` is, and which ones are registered |
 | `header` | what every export says of itself: axes, signs, range, provenance |
 | `matlab_file` | how files of MATLAB are written |
-| `mat` | points of a map as a struct for MATLAB and Octave |
+| `mat` | points and law of a map as a struct for MATLAB and Octave |
+| `resampled` | the law on a grid that linear interpolation reads |
 | `modelica` | the law at one speed and temperature as pure functions in Modelica |
 | `folder` | exports that are folders: written whole or not at all |
 | `c` | the law and the bearing in C99 |

@@ -1,7 +1,8 @@
-"""Target `mat` of `ehdmaps export`: the points of a map as a MATLAB v5 file, which MATLAB and Octave `load`.
+"""Target `mat` of `ehdmaps export`: points and law of a map as a MATLAB v5 file, which MATLAB and Octave `load`.
 
 The file holds one struct `map`: the axes `load`, `entrainment_speed` and `temperature` as columns, one struct a contact
-with its fields as arrays of load x speed x temperature, `units`, `meaning`, `provenance` and `header`.
+with its fields as arrays of load x speed x temperature, `law` with the contact law resampled for linear interpolation
+(see `ehdmaps.exports.resampled`), `units`, `meaning`, `provenance` and `header`.
 """
 
 from __future__ import annotations
@@ -13,8 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from ehdmaps.errors import InputError, MapError
 from ehdmaps.exports.header import origin
 from ehdmaps.exports.matlab_file import KIND, ascii_text, write_matlab
+from ehdmaps.exports.resampled import QUANTITIES, Resampled, differences, resampled, struct
 from ehdmaps.exports.target import Target
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.schema import DIMS
@@ -27,15 +30,19 @@ _FIELD = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 _NOTES = (
     "arrays: load x entrainment_speed x temperature; MATLAB drops a last axis of one point",
     "signs: approach is positive together, forces press the bodies together; per unit length of contact",
-    "between points: linear in log(load), log(speed) and temperature is much coarser than the law of ehdmaps; "
-    "a speed of 0 has no logarithm",
+    "between points: linear in log(load), log(speed) and temperature is much coarser than the law of ehdmaps, which "
+    "law holds for linear interpolation, where it is there: see law.reading; a speed of 0 has no logarithm",
     "beyond the axes nothing is known: interpn and interp2 give NaN there, as long as no extrapolation is asked for",
     "status: see meaning.status; where filled is 1, values are interpolated from neighbours",
 )
 
 
+FEWEST, NODES, MOST = 20, 160, 400
+"""Nodes of the resampled law along the approach: the fewest, those if none are asked for (4 MB), the most (62 MB)."""
+
+
 def contents(emap: EHDMap, name: str) -> dict[str, Any]:
-    """Return the struct `map` as nested dictionaries.
+    """Return the struct `map` without `law` as nested dictionaries.
 
     Parameters
     ----------
@@ -81,18 +88,60 @@ def _value(value: Any) -> Any:
     return ascii_text(value) if isinstance(value, str) else np.asarray(value, dtype=float)
 
 
+def _add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add how fine the law is resampled."""
+    parser.add_argument(
+        "--resample",
+        metavar="N",
+        type=int,
+        default=NODES,
+        help=f"nodes of the resampled law along the approach, {FEWEST} to {MOST}, with N/5 speeds and temperatures; 0: "
+        f"points alone; default: {NODES}",
+    )
+
+
 def _write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Namespace) -> str:
     """Write the file; by default beside the map."""
     output = output or path.with_suffix(".mat")
+    count: int = arguments.resample
+    if count and not FEWEST <= count <= MOST:
+        raise InputError(f"--resample: got {count}; allowed: 0, or {FEWEST} to {MOST}")
     check_outputs([Output("-o", output, KIND)], [path])
-    write_matlab(output, {"map": contents(emap, path.name)}, "export it as csv")
-    return f"{output}: written"
+    found, words = contents(emap, path.name), ""
+    if count:
+        law, words = _law(emap, count)
+        found |= law
+    write_matlab(output, {"map": found}, "export it as csv")
+    return f"{output}: written{words}"
+
+
+def _law(emap: EHDMap, count: int) -> tuple[dict[str, Any], str]:
+    """Return the field `law` with what is said of it; nothing where the map makes none, and why."""
+    try:
+        law = emap.law("series" if emap.bearing is not None else "line")
+        if not law.speed_range[1] > 0.0:
+            raise MapError("a map of standstill alone")
+    except MapError as error:
+        return {}, f"\nwarning: without a resampled law: {error}"
+    found = resampled(law, count)
+    apart = differences(found, law)
+    return {"law": struct(found, apart)}, _said(found, [float(apart[name][-1]) for name in QUANTITIES])
+
+
+def _said(found: Resampled, largest: list[float]) -> str:
+    """Return how large the resampled law is, and how exact."""
+    size = " x ".join(map(str, found.shape))
+    parts = ", ".join(f"{100.0 * part:.2g} % of the {name}" for part, name in zip(largest, QUANTITIES, strict=True))
+    return (
+        f"\nlaw: {found.kind}, {size} over approach, speed, temperature; by linear interpolation at 2000 places within "
+        f"{parts}"
+    )
 
 
 TARGET = Target(
-    summary="points of the map as a struct for MATLAB and Octave",
+    summary="points of the map, and its law for linear interpolation, as a struct for MATLAB and Octave",
     writes="MAP.mat",
     read_back_by="Octave",
-    add_arguments=lambda parser: None,
+    add_arguments=_add_arguments,
     write=_write,
 )
