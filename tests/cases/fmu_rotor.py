@@ -40,6 +40,8 @@ class Rotor:
         First and last [rad/s].
     duration, step, sample : float
         Of the run, of the steps of `mbs`, between samples [s].
+    slices : int
+        Slices of each roller.
     """
 
     mass: float
@@ -55,6 +57,7 @@ class Rotor:
     duration: float
     step: float
     sample: float
+    slices: int = 41
 
     @property
     def scene(self) -> str:
@@ -65,6 +68,7 @@ class Rotor:
 name = "bearing_{side}"
 inner = "rotor:{side}"
 outer = "ground"
+slices = {self.slices}
 geometry = {{ name = "NU308", diametral_clearance = "{self.clearance!r} m" }}
 """
             for side in SIDES

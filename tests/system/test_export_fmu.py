@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import dataclasses
 import gc
 import resource
@@ -20,7 +21,7 @@ from scipy.linalg import expm
 from ehdmaps.jobs.cli import main
 from ehdmaps.maps.emap import open_map
 from mbs import Bearing, BearingForce
-from tests.cases.fmu import Unit
+from tests.cases.fmu import OUTPUTS, Unit
 from tests.cases.fmu_rotor import Rotor, side_by_side
 from tests.cases.fmu_run import coupled_run
 from tests.cases.jobs import LINE
@@ -30,6 +31,7 @@ T = 310.0
 CLEARANCE = 10e-6
 POSE = ["pose.y", "pose.z", "pose.theta_y", "pose.theta_z"]
 VELOCITY = ["velocity.y", "velocity.z", "velocity.theta_y", "velocity.theta_z"]
+SLICES = 5
 MOTION = [*POSE, *VELOCITY, "spin.inner", "speed.inner", "temperature"]
 FREE = [1, 2, 4, 5]
 
@@ -211,6 +213,124 @@ def test_rotor(units, small_map, tmp_path):
     second order: some 3e-5 at 4 us, a fourth of that at half the step. That of CVODE is below 1e-6.
     """
     found = side_by_side(ROTOR, small_map, (units["2"], units["3"]), tmp_path, 1e-9)
+    assert np.all(found.moved > [1e-7, 1e-7, 1e-7, 1e-7])
+    assert np.all(found.differences < 1e-4), found.differences
+
+
+@pytest.fixture(scope="module")
+def remembering(small_map, tmp_path_factory):
+    """Units of both versions whose films have a memory, with few slices."""
+    folder, found = tmp_path_factory.mktemp("memory"), {}
+    for fmi in "23":
+        options = ["--fmi", fmi, "--films", "memory", "--slices", str(SLICES), "--clearance", "10 um"]
+        assert main(["export", small_map, "--to", "fmu", "-o", str(folder / f"{fmi}.fmu"), *options]) == 0
+        assert validate_fmu(str(folder / f"{fmi}.fmu")) == []
+        found[fmi] = Unit(folder / f"{fmi}.fmu", folder / fmi)
+    return found
+
+
+@pytest.fixture(scope="module")
+def sliced(element):
+    """The bearing of those."""
+    return BearingForce(Bearing(element.bearing.geometry, slices=SLICES), element.law)
+
+
+def film_names(unit, kind="film.xi"):
+    """Names of all states, or of their rates."""
+    return tuple(name for name in unit.references if name.startswith(kind))
+
+
+@pytest.mark.parametrize("fmi", ["2", "3"])
+def test_films(remembering, sliced, fmi):
+    """Films begin in equilibrium, where the force is that of Python at rest and states stay as they are.
+
+    The force is that of cells of another table, right within 1e-5. Derivatives are difference quotients of the unit,
+    but where a slice lifts off within the steps of these.
+    """
+    unit, pose = remembering[fmi], [3e-6, 9e-6, 2e-4, -1e-4]
+    model = unit.instance(begun=False)
+    assert unit.description.numberOfContinuousStates == 12 * SLICES
+    model.enterInitializationMode()
+    unit.put(model, [*POSE, "spin.inner", "speed.inner", "temperature"], [*pose, 0.7, 90.0, T])
+    model.exitInitializationMode()
+    at = sliced.at(sliced.bearing.geometry.entrainment_speed(90.0, 0.0), T)
+    whole = np.zeros(6)
+    whole[FREE] = pose
+    wanted = at(whole, cage_angle=sliced.bearing.cage_angle(0.7))[0][FREE]
+    np.testing.assert_allclose(unit.get(model), wanted, rtol=0.0, atol=1e-5 * np.max(np.abs(wanted)))
+    states, rates = film_names(unit), film_names(unit, "der(film.xi")
+    assert np.max(np.abs(unit.get(model, rates))) < 1e-6  # of motions of up to 10 mm/s
+    unit.put(model, ["pose.y"], [pose[0] + 2e-7])
+    assert np.max(np.abs(unit.get(model, rates))) > 1e-4
+    unknowns = (*OUTPUTS, *rates)
+    for name, step in (("pose.z", 1e-12), ("pose.theta_y", 1e-11), (states[4], 1e-12), ("temperature", 2e-3)):
+        begin, sides = unit.get(model, (name,))[0], []
+        for side in (step, -step):
+            unit.put(model, [name], [begin + side])
+            sides.append(unit.get(model, unknowns))
+        unit.put(model, [name], [begin])
+        quotient, found = (sides[0] - sides[1]) / (2.0 * step), unit.derivatives(model, name, unknowns)
+        for part in (slice(0, 4), slice(4, None)):
+            assert np.max(np.abs(found - quotient)[part]) < 2e-3 * np.max(np.abs(quotient[part]))
+    model.freeInstance()
+
+
+@pytest.mark.parametrize("fmi", ["2", "3"])
+def test_films_kept(remembering, fmi):
+    """States come back as they were, through bytes too; a wrong number of them is refused."""
+    unit = remembering[fmi]
+    model, names = unit.instance(), film_names(unit)
+    unit.put(model, ["pose.y", "speed.inner", names[0]], [3e-6, 50.0, 2e-6])
+    kept, found = model.getFMUState(), unit.get(model, (*OUTPUTS, *names))
+    data = model.serializeFMUState(kept)
+    unit.put(model, ["pose.y", *names], [-2e-6] * (1 + len(names)))
+    model.setFMUState(model.deserializeFMUState(data))
+    np.testing.assert_array_equal(unit.get(model, (*OUTPUTS, *names)), found)
+    room = (ctypes.c_double * 3)()
+    with pytest.raises(FMICallException):
+        model.getContinuousStates(room, 3)
+    model.freeFMUState(kept)
+    model.freeInstance()
+
+
+def test_films_in_cosimulation(remembering, sliced, small_map):
+    """A step is so many of `BearingForce.advance`, with the motion at its beginning; a refused one changes nothing."""
+    unit, step, parts = remembering["3"], 95e-6, 10
+    conditions = dict(
+        cage_angle=0.0, entrainment_speed=sliced.bearing.geometry.entrainment_speed(90.0, 0.0), temperature=T
+    )
+    places = 4e-6 + 3e-6 * np.sin(np.arange(12.0))
+    time = np.arange(places.size) * step
+    signals = np.array(list(zip(time, places, strict=True)), dtype=[("time", float), ("pose.z", float)])
+    found = simulate_fmu(
+        str(unit.folder), fmi_type="CoSimulation", stop_time=time[-1], output_interval=step, input=signals,
+        start_values={"speed.inner": 90.0, "temperature": T}, output=["force.z"],
+    )["force.z"]  # fmt: skip
+    films, wanted = None, []
+    for place in places[:-1]:
+        pose = np.array([0.0, 0.0, place, 0.0, 0.0, 0.0])
+        if films is None:
+            films = resting(sliced, pose, conditions)
+        for _ in range(parts):
+            forces, films = sliced.advance(films, pose, step / parts, **conditions)
+        wanted.append(forces.force[2])
+    np.testing.assert_allclose(found[1:], wanted, rtol=1e-8)
+
+
+def resting(sliced, pose, conditions):
+    """Films in equilibrium that have not made a step."""
+    _, films = sliced.advance(None, pose, 1e6, **conditions)
+    return dataclasses.replace(films, change=np.zeros_like(films.change), step=0.0)
+
+
+def test_rotor_on_films(remembering, small_map, tmp_path):
+    """The rotor on two units with memory, all states in FMPy's CVODE: that of `mbs runup` within 1e-4.
+
+    The bound is the error of the steps of `mbs`, some 5e-5 at 1.25 us. The speed changes slowly: `mbs` reads its tables
+    of films anew every eight steps.
+    """
+    rotor = dataclasses.replace(ROTOR, speeds=(80.0, 81.0), duration=0.01, step=1.25e-6, slices=SLICES)
+    found = side_by_side(rotor, small_map, (remembering["2"], remembering["3"]), tmp_path, 1e-8)
     assert np.all(found.moved > [1e-7, 1e-7, 1e-7, 1e-7])
     assert np.all(found.differences < 1e-4), found.differences
 

@@ -64,7 +64,7 @@ int ehd_film_advance(const ehd_film *film, double step, double last_step, double
 
 /* What keeps rates finite where there is hardly a load. dG/dxi is raised by what makes the shortest relaxation time this
  * [s], and where a contact opens so fast that w falls below this part of p, the film follows more slowly. */
-#define EHD_SHORTEST_MEMORY 1e-8
+#define EHD_SHORTEST_MEMORY 1e-12
 #define EHD_OPENING 1e-3
 
 /* Load and rate at an approach [m] and a state xi [m]: a differential equation, stiff where contacts carry little. */
