@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ehdmaps.ehl.line import Resolution, solve_groups
+from ehdmaps.ehl.line import solve_groups
+from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.reynolds import LineProblem, oil
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.errors import InputError
