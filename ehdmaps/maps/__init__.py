@@ -22,6 +22,7 @@ rolling_film   rolling force and mass flow of each contact at any load, speed an
 dry            stand-in for the film of a dry map
 tail           film below the lowest known load
 contact_curve  approach and damping of one contact over load
+curves         the same of one contact or several in series, dense, for charts and tables
 oil_layer      the film of a contact on an oil layer, from that of the flooded one
 asperities     pressure of asperities, and the mean gap between rough surfaces
 rough_films    Lambda, and the film's share of the load, at the points of a map
