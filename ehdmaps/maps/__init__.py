@@ -34,10 +34,12 @@ elementary     exp and log for compiled code
 lines          splines and states in compiled code
 kernel         the law at run time, one point at a time, for compiled code
 bulk           the law at run time, many points
-excursions     calls outside the map
+excursions     what of some values lies outside the map
+outside_calls  the same as it adds up over the calls of a law
 law_errors     bounds of the errors of a law, from what the map states
 law_change     the table of a law with another stiffness, damping and film
 law_arguments  arguments of a law: arrays of doubles, of one shape, finite
+law_films      below which load the films of a law are a guess, and how they lock
 law            `ContactLaw`, `LawAtPoint`
 =============  =======================================================================================
 
