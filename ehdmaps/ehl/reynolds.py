@@ -106,22 +106,18 @@ _log_viscosity, _density = njit(cache=True)(log_viscosity), njit(cache=True)(den
 
 
 @njit(cache=True)
-def oil(
-    problem: LineProblem,
-    pressure: FloatArray,
-    log_eta: FloatArray,
-    log_eta_slope: FloatArray,
-    rho: FloatArray,
-    rho_slope: FloatArray,
-) -> None:
-    """Fill ln eta, rho and their derivatives at each pressure; a negative trial pressure acts as zero on them."""
-    for i in range(pressure.size):
+def oil(problem: LineProblem, pressure: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """ln eta and its derivative, rho and its, at each pressure; a negative trial pressure acts as zero on them."""
+    n = pressure.size
+    log_eta, log_eta_slope, rho, rho_slope = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    for i in range(n):
         p = max(pressure[i], 0.0)
         log_eta[i], log_eta_slope[i] = _log_viscosity(problem.isotherm, p)
         rho[i], rho_slope[i] = _density(problem.isotherm, p)
         if pressure[i] < 0.0:
             log_eta_slope[i] = 0.0
             rho_slope[i] = 0.0
+    return log_eta, log_eta_slope, rho, rho_slope
 
 
 @njit(cache=True)
@@ -266,8 +262,7 @@ def shear_factors(
     n = x.size - 1
     pressure, gap = node_pressure(unknowns), film(x, kernel, unknowns)
     faces = face_films(gap)
-    log_eta, slope, rho, rho_slope = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
-    oil(problem, pressure, log_eta, slope, rho, rho_slope)
+    log_eta, slope, rho, rho_slope = oil(problem, pressure)
     mass = rho * gap
     means = cell_means(problem, log_eta - np.log(rho), slope - rho_slope / rho, pressure)[0] if soft else rho
     tangent, offset, drops = np.empty(n), np.empty(n), np.empty(n)
@@ -401,8 +396,7 @@ def residual_with(
     n = x.size - 1
     pressure = node_pressure(unknowns)
     outflow, exit_at = unknowns[n - 1], unknowns[n]
-    log_eta, slope, rho, rho_slope = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
-    oil(problem, pressure, log_eta, slope, rho, rho_slope)
+    log_eta, slope, rho, rho_slope = oil(problem, pressure)
     gap = film(x, kernel, unknowns)
     faces = face_films(gap)
     mass = rho * gap

@@ -24,10 +24,7 @@ def stored_mass(
 
     Both have shape (n + 1,): faces 0 .. n-1, then the exit node.
     """
-    n = x.size - 1
-    pressure = node_pressure(unknowns)
-    log_eta, slope, rho, rho_slope = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
-    oil(problem, pressure, log_eta, slope, rho, rho_slope)
+    rho = oil(problem, node_pressure(unknowns))[2]
     mass = rho * film(x, kernel, unknowns)
     return accumulated(mass * step), carried_mass(mass)
 
@@ -52,9 +49,7 @@ def stored_oil(
     problem: LineProblem, x: FloatArray, step: FloatArray, kernel: FloatArray, unknowns: FloatArray
 ) -> StoredOil:
     """Stored oil of each node by film and pressure."""
-    n = x.size - 1
-    log_eta, slope, rho, rho_slope = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
-    oil(problem, node_pressure(unknowns), log_eta, slope, rho, rho_slope)
+    _, _, rho, rho_slope = oil(problem, node_pressure(unknowns))
     return StoredOil(rho * step, rho_slope * film(x, kernel, unknowns) * step)
 
 
@@ -75,9 +70,7 @@ def stored_mass_jacobian(
 ) -> FloatArray:
     """Derivative of `stored_mass`[0] by the unknowns, shape (n + 1, n + 2), on a grid that moves with the exit."""
     n = x.size - 1
-    pressure = node_pressure(unknowns)
-    log_eta, slope, rho, rho_slope = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
-    oil(problem, pressure, log_eta, slope, rho, rho_slope)
+    _, _, rho, rho_slope = oil(problem, node_pressure(unknowns))
     gap = film(x, kernel, unknowns)
     weight = rho * step
     by_unknowns = np.empty((n + 1, n + 2))
