@@ -19,6 +19,9 @@ from ehdmaps.interrupts import STOPPED, careful_interrupts
 
 DONE, NOT_DELIVERED, NO_RESULT, BAD_INPUT = 0, 1, 1, 2
 
+MOST = 1024
+"""Largest number of processes, cores or points that a command line takes."""
+
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 _CONTROLS = {code: f"\\x{code:02x}" for code in (*range(0x20), *range(0x80, 0xA0)) if chr(code) not in "\n\t"}
@@ -70,6 +73,24 @@ class _Version(argparse.Action):
 
         parser._print_message(f"{_plain(parser.prog)} {version()}", sys.stdout)
         parser.exit()
+
+
+def count(text: str) -> int:
+    """Read a number of processes, cores or points of a command line.
+
+    Parameters
+    ----------
+    text : str
+        What was given.
+
+    Raises
+    ------
+    ArgumentTypeError
+        For anything but a whole number from 1 to 1024.
+    """
+    if not (text.isascii() and text.isdigit() and 1 <= int(text[:6]) <= MOST and len(text) <= 4):
+        raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 1 to {MOST}")
+    return int(text)
 
 
 def run(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import multiprocessing
 import os
 import signal
@@ -12,30 +11,10 @@ from typing import Any
 
 from ehdmaps.program import tell
 
-MOST_WORKERS = 1024
-
 
 def available_cores() -> int:
     """Return the cores that this process may use, which may be fewer than the machine has."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def processes(text: str) -> int:
-    """Read a number of processes of a command line.
-
-    Parameters
-    ----------
-    text : str
-        What was given.
-
-    Raises
-    ------
-    ArgumentTypeError
-        For anything but a whole number from 1 to 1024.
-    """
-    if not (text.isascii() and text.isdigit() and 1 <= int(text[:6]) <= MOST_WORKERS and len(text) <= 4):
-        raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 1 to {MOST_WORKERS}")
-    return int(text)
 
 
 def start_worker(told: Any = None) -> None:

@@ -9,8 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ehdmaps.errors import AnalysisError
-from ehdmaps.program import Parser, run
-from ehdmaps.workers import processes
+from ehdmaps.program import Parser, count, run
 from mbs.model.relaxation import DEFAULT_FILMS
 
 VARIED_KEYS = (
@@ -184,7 +183,7 @@ def _supply(command: argparse.ArgumentParser, of: str, compares: bool) -> None:
 def _parallel(command: argparse.ArgumentParser) -> None:
     """Add the number of processes."""
     command.add_argument(
-        "--workers", metavar="N", type=processes, help="processes that compute cases side by side; default: all cores"
+        "--workers", metavar="N", type=count, help="processes that compute cases side by side; default: all cores"
     )
 
 

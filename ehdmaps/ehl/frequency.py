@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.ehl.line import GroupSolution, response_share
+from ehdmaps.ehl.group_solution import GroupSolution, response_share
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.spectrum import film_compliances
 from ehdmaps.physics.spectrum import NEIGHBOUR, neighbours, read_beside

@@ -23,7 +23,8 @@ from scipy.linalg import LinAlgWarning, lu_factor
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid
-from ehdmaps.ehl.reynolds import LineProblem, StoredOil, residual, stored_mass, stored_mass_rate, stored_oil
+from ehdmaps.ehl.reynolds import LineProblem, residual
+from ehdmaps.ehl.stored_mass import StoredOil, stored_mass, stored_mass_rate, stored_oil
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 
 

@@ -16,11 +16,13 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.frequency import group_spectrum
 from ehdmaps.ehl.grid import GridShape
+from ehdmaps.ehl.group_solution import GroupSolution
 from ehdmaps.ehl.limits import SETTING_LIMITS
-from ehdmaps.ehl.line import GroupSolution, Resolution, solve_groups
+from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.meniscus import starved_groups
 from ehdmaps.ehl.newton import CONVERGED, DIVERGED
 from ehdmaps.ehl.profile import Profile
+from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.warm_oil import heat_groups
 from ehdmaps.errors import InputError

@@ -20,7 +20,8 @@ from numba import njit
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.newton import LOG_VISCOSITY_STEP, solve_scaled
 from ehdmaps.ehl.profile import Profile
-from ehdmaps.ehl.reynolds import LineProblem, film, residual, steepest_viscosity_step, stored_mass, stored_mass_jacobian
+from ehdmaps.ehl.reynolds import LineProblem, film, residual, steepest_viscosity_step
+from ehdmaps.ehl.stored_mass import stored_mass, stored_mass_jacobian
 
 MOST_STEPS = 30
 """Newton steps of one time step after which it counts as failed."""

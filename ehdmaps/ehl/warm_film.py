@@ -115,8 +115,7 @@ def asked_flows(
     """
     n = x.size - 1
     pressure, gap = node_pressure(unknowns), film(x, kernel, unknowns)
-    log_eta, slope, rho, rho_slope = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
-    oil(problem, pressure, log_eta, slope, rho, rho_slope)
+    log_eta, slope, rho, rho_slope = oil(problem, pressure)
     means = cell_means(problem, log_eta - np.log(rho), slope - rho_slope / rho, pressure)[0]
     asked = np.full(n, np.nan)
     for f in range(n):

@@ -23,19 +23,9 @@ from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.energy import EnergyEquations, fitted
 from ehdmaps.ehl.grid import Grid
 from ehdmaps.ehl.linearisation import Neighbour, Response
-from ehdmaps.ehl.reynolds import (
-    Factors,
-    LineProblem,
-    StoredOil,
-    accumulated,
-    carried_mass,
-    face_films,
-    film,
-    node_pressure,
-    residual_with,
-    stored_mass_rate,
-)
+from ehdmaps.ehl.reynolds import Factors, LineProblem, face_films, film, node_pressure, residual_with
 from ehdmaps.ehl.spectrum import FilmSpace, arnoldi
+from ehdmaps.ehl.stored_mass import StoredOil, accumulated, carried_mass, stored_mass_rate
 from ehdmaps.ehl.wall_heat import wall_weights
 from ehdmaps.ehl.warm_column import HEIGHTS, POINTS, WEIGHTS, Columns, empty_columns
 from ehdmaps.ehl.warm_march import followed, marched, stored

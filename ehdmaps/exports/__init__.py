@@ -4,6 +4,7 @@
 |---|---|
 | `target` | what a target of `ehdmaps export` is, and which ones are registered |
 | `header` | what every export says of itself: axes, signs, range, provenance |
+| `csv` | curves over load of a law as a table |
 | `matlab_file` | how files of MATLAB are written |
 | `mat` | points and law of a map as a struct for MATLAB and Octave |
 | `resampled` | the law on a grid that linear interpolation reads |

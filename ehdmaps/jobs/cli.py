@@ -8,8 +8,7 @@ import sys
 from collections.abc import Sequence
 
 from ehdmaps.errors import InputError
-from ehdmaps.program import Parser, run
-from ehdmaps.workers import processes
+from ehdmaps.program import Parser, count, run
 
 _KEEP = "openfoam: keep the case folders of all runs; default folder: ehdmaps-cases"
 _SOLVER = (
@@ -52,7 +51,7 @@ def parser() -> argparse.ArgumentParser:
         help='of k, c and film offset of the contact laws, "1 %%": grid and refinement lines are chosen for it, and '
         "confirmed by fresh solves; default: the settings of the job",
     )
-    generate.add_argument("--workers", metavar="N", type=processes, help="processes; default: all cores")
+    generate.add_argument("--workers", metavar="N", type=count, help="processes; default: all cores")
     generate.add_argument("--fresh", action="store_true", help="forget what is solved already")
     generate.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
     generate.add_argument(
@@ -176,10 +175,10 @@ def _add_shards(commands: argparse._SubParsersAction[Parser]) -> None:
             "-o", "--output", metavar="MAP.nc", help="of a job, or the folder of a batch; default: as for generate"
         )
         command.add_argument("--solver", metavar="NAME", help=_SOLVER)
-    merge.add_argument("--workers", metavar="N", type=processes, help="processes; default: all cores")
+    merge.add_argument("--workers", metavar="N", type=count, help="processes; default: all cores")
     merge.add_argument("--rest", action="store_true", help="solve here what shards have not")
     submit.add_argument("--array", metavar="N", type=_shards, required=True, help="number of shards")
-    submit.add_argument("--cpus", metavar="N", type=processes, default=1, help="cores of each shard; default: 1")
+    submit.add_argument("--cpus", metavar="N", type=count, default=1, help="cores of each shard; default: 1")
     submit.add_argument("--time", metavar="LIMIT", help='of each shard, as Slurm has it, "02:00:00"; default: none')
     submit.add_argument("--partition", metavar="NAME", help="of the cluster; default: the cluster's own")
     submit.add_argument(
@@ -250,7 +249,7 @@ def _add_tradeoff(commands: argparse._SubParsersAction[Parser]) -> None:
         default="contact",
         help="contact: single points by every solver; map: contact laws of whole maps between their points",
     )
-    tradeoff.add_argument("--points", metavar="N", type=processes, default=60, help="random points; default: 60")
+    tradeoff.add_argument("--points", metavar="N", type=count, default=60, help="random points; default: 60")
     tradeoff.add_argument("--seed", metavar="S", type=_count, default=1, help="seed of the points; default: 1")
     tradeoff.add_argument(
         "--openfoam",

@@ -287,14 +287,12 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
         if not np.any(mask):
             continue
         where = f"_{region}" if region else ""
-        for column, name in enumerate(("film_compliance", "damping")):
+        shown = ("film_compliance", 0), ("damping", 1), ("stiffness", 4), ("film_offset", 5)
+        for name, column in shown if region in INSIDE else shown[:2]:
             known = table[mask, column][np.isfinite(table[mask, column])]
             record[f"law{where}_{name}_error"] = quantiles_text(known) if known.size else NOTHING[name]
-            record[f"law{where}_{name}_within_bar"] = float(np.mean(table[mask, column + 2]))
-        if region in INSIDE:
-            for column, name in ((4, "stiffness"), (5, "film_offset")):
-                known = table[mask, column][np.isfinite(table[mask, column])]
-                record[f"law{where}_{name}_error"] = quantiles_text(known) if known.size else NOTHING[name]
+            if column < 2:  # the two whose errors have bars
+                record[f"law{where}_{name}_within_bar"] = float(np.mean(table[mask, column + 2]))
     return record
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.figures import WARNING, typeset
-from ehdmaps.jobs.curves import curves, film_between, rough_layers
+from ehdmaps.maps.curves import curves, film_between, rough_layers
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.rough_films import BOUNDARY, FILM_PARAMETER, MIXED

@@ -17,7 +17,6 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullLocator
 
 from ehdmaps.figures import typeset
-from ehdmaps.jobs.curves import law_field
 from ehdmaps.jobs.plot_curves import (
     ASYMPTOTE,
     BELOW,
@@ -32,6 +31,7 @@ from ehdmaps.jobs.plot_curves import (
 )
 from ehdmaps.jobs.report import fitted_pressure, span, status_counts
 from ehdmaps.maps import schema
+from ehdmaps.maps.curves import law_field
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.outputs import write_figure

@@ -22,6 +22,7 @@ rolling_film   rolling force and mass flow of each contact at any load, speed an
 dry            stand-in for the film of a dry map
 tail           film below the lowest known load
 contact_curve  approach and damping of one contact over load
+curves         the same of one contact or several in series, dense, for charts and tables
 oil_layer      the film of a contact on an oil layer, from that of the flooded one
 asperities     pressure of asperities, and the mean gap between rough surfaces
 rough_films    Lambda, and the film's share of the load, at the points of a map
@@ -33,10 +34,12 @@ elementary     exp and log for compiled code
 lines          splines and states in compiled code
 kernel         the law at run time, one point at a time, for compiled code
 bulk           the law at run time, many points
-excursions     calls outside the map
+excursions     what of some values lies outside the map
+outside_calls  the same as it adds up over the calls of a law
 law_errors     bounds of the errors of a law, from what the map states
 law_change     the table of a law with another stiffness, damping and film
 law_arguments  arguments of a law: arrays of doubles, of one shape, finite
+law_films      below which load the films of a law are a guess, and how they lock
 law            `ContactLaw`, `LawAtPoint`
 =============  =======================================================================================
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,20 +20,20 @@ from ehdmaps.maps.compilation import (
     highest_structural_load,
     structural_parameters,
 )
-from ehdmaps.maps.contact_curve import ContactCurve
 from ehdmaps.maps.dry import DryField
 from ehdmaps.maps.excursions import Axis, Excursion, Range
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.law_arguments import broadcast, check_finite, floats
 from ehdmaps.maps.law_change import LawChange, changed_table
 from ehdmaps.maps.law_errors import LawBounds, LawErrors
-from ehdmaps.maps.locked_film import FORMULA, LockedFactors, locked_compliances
-from ehdmaps.maps.low_loads import LowLoads, guessed_at, looked_at, low_loads
+from ehdmaps.maps.law_films import LawFilms
+from ehdmaps.maps.locked_film import LockedFactors
+from ehdmaps.maps.low_loads import LowLoads
 from ehdmaps.maps.memory import FilmMemory, FilmState
-from ehdmaps.maps.oil_layer import oil_layer
+from ehdmaps.maps.outside_calls import OutsideCalls
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.rough_layer import GONE_BELOW
-from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE, ApproachTable, LawTable, Point
+from ehdmaps.maps.tables import LOAD, ApproachTable, LawTable, Point
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
@@ -45,11 +44,6 @@ OutsidePolicy = Literal["error", "clamp", "asymptote"]
 
 LOAD_REACH, SPEED_REACH = 100.0, 10.0
 """How far the policy `asymptote` goes, as multiples of the highest load and speed; it holds the edge beyond."""
-
-_LOAD_STEP = 0.1
-"""Step of ln of the load between the factors of the locked film."""
-
-_CAUSES: Mapping[str, int] = {"load": LOAD, "entrainment_speed": SPEED, "temperature": TEMPERATURE}
 
 
 class ContactLaw:
@@ -126,12 +120,15 @@ class ContactLaw:
         self.load_range = field.load_range
         self.speed_range = field.speed_range
         self.temperature_range = field.temperature_range
-        self.counts: IntArray = np.zeros(4, dtype=np.int64)
-        self._excursions: dict[tuple[str, str], Excursion] = {}
-        self._lubricant = lubricant
-        self._dry = field.dry
+        ends: dict[Axis, tuple[float, float]] = {
+            "load": (-np.inf, self.load_range[1]),
+            "entrainment_speed": (-np.inf, self.speed_range[1]),
+            "temperature": self.temperature_range,
+        }
+        self._outside = OutsideCalls(kind, outside == "error", ends)
         self.surface = surface
-        self._field = DryField(field, not surface.smooth) if field.dry else field
+        films = DryField(field, not surface.smooth) if field.dry else field
+        self._films = LawFilms(self.contacts, lubricant, films, field.dry, supply, rolling)
         self._resolution = resolution
         self.rolling = rolling
         self.supply = supply
@@ -166,9 +163,8 @@ class ContactLaw:
         """
         other = copy.copy(self)
         # Of the copy nothing is kept that follows from the table, or is counted.
-        for name in ("table", "low_loads", "_guessed_below"):
-            other.__dict__.pop(name, None)
-        other.counts, other._excursions, other._latest = np.zeros_like(self.counts), {}, None
+        other.__dict__.pop("table", None)
+        other._outside, other._latest = self._outside.emptied(), None
         own = changed_table(self._plain.own, change)
         other._plain = self._plain._replace(own=own, inner=own, outer=own)
         if self.kind == "series":
@@ -180,13 +176,10 @@ class ContactLaw:
             )
         return other
 
-    @cached_property
+    @property
     def low_loads(self) -> LowLoads | None:
         """Where the film goes over into that of a rigid contact, and whether that is right; None of a dry law."""
-        if self._dry or not self.speed_range[0] > 0.0:
-            return None
-        first, lowest = self._field.first_loads, self.load_range[0]
-        return low_loads(first, self.contacts, self._lubricant, lowest, self.speed_range, self.temperature_range)
+        return self._films.low_loads
 
     def guessed_below(self, entrainment_speed: float, temperature: float) -> float:
         """Load [N/m] below which the film is a guess, see `low_loads`; 0 where it is none.
@@ -196,16 +189,17 @@ class ContactLaw:
         entrainment_speed, temperature : float
             u [m/s], of either sign, and T [K]; held at the edges of the map.
         """
-        if self.low_loads is None or not self.low_loads.guessed:
-            return 0.0
-        (slow, fast), (cold, hot) = self.speed_range, self.temperature_range
-        u, T = min(max(abs(entrainment_speed), slow), fast), min(max(temperature, cold), hot)
-        return guessed_at(self._field.first_loads, self.contacts, self._lubricant, u, T)
+        return self._films.guessed_below(entrainment_speed, temperature)
+
+    @property
+    def counts(self) -> IntArray:
+        """Points outside the map so far by cause, and those that are no numbers, as compiled code counts them."""
+        return self._outside.counts
 
     @property
     def outside_counts(self) -> dict[str, int]:
         """How many points were outside the map so far, by cause."""
-        return {cause: int(self.counts[index]) for cause, index in _CAUSES.items()}
+        return self._outside.by_cause
 
     @property
     def excursions(self) -> tuple[Excursion, ...]:
@@ -214,7 +208,7 @@ class ContactLaw:
         Of calls of the law and of `LawAtPoint`, and of what compiled callers report by `note_outside`. Loads below the
         map are told where the film there is a guess, see `low_loads`; they are no error with any policy.
         """
-        return tuple(self._excursions[key] for key in sorted(self._excursions))
+        return self._outside.excursions
 
     def note_outside(self, axis: Axis, values: npt.ArrayLike) -> None:
         """Take part in `excursions` with values that a caller of the compiled functions met.
@@ -226,28 +220,11 @@ class ContactLaw:
         values : float or array
             [N/m], [m/s] or [K]; those within the map are passed over.
         """
-        self._keep(self._ranges[axis].excursions(np.atleast_1d(np.asarray(values, dtype=np.float64))))
-
-    def _keep(self, excursions: Sequence[Excursion]) -> None:
-        """Add up excursions of one axis and side."""
-        for found in excursions:
-            key = found.axis, found.side
-            self._excursions[key] = self._excursions[key] + found if key in self._excursions else found
-
-    @property
-    def _ranges(self) -> dict[str, Range]:
-        """What is mapped, by axis."""
-        (cold, hot), lowest = self.temperature_range, -np.inf
-        return {
-            "load": Range("load", lowest, self.load_range[1]),
-            "entrainment_speed": Range("entrainment_speed", lowest, self.speed_range[1]),
-            "temperature": Range("temperature", cold, hot),
-        }
+        self._outside.note(axis, np.atleast_1d(np.asarray(values, dtype=np.float64)))
 
     def reset_counts(self) -> None:
         """Start counting again from zero."""
-        self.counts[:] = 0
-        self._excursions.clear()
+        self._outside.reset()
 
     def __call__(
         self,
@@ -296,7 +273,7 @@ class ContactLaw:
         counts = np.zeros(4, dtype=np.int64)
         _evaluate_many(table, flat, forces, counts)
         self._settle(counts, named, flat)
-        self._note_low(forces[0], flat[2], flat[3])
+        self._outside.keep(self._films.guesses(forces[0], flat[2], flat[3]))
         w, dw_ddelta, dw_drate = (force.reshape(shape)[()] for force in forces)
         return w, dw_ddelta, dw_drate
 
@@ -381,34 +358,7 @@ class ContactLaw:
         entrainment_speed, temperature : float
             u [m/s], of either sign, and T [K].
         """
-        field = self._field
-        (slow, fast), (cold, hot) = field.speed_range, field.temperature_range
-        u, T = min(max(abs(entrainment_speed), slow), fast), min(max(temperature, cold), hot)
-        lowest, highest = float(field.first_loads(np.array([u]), np.array([T]))[0, 0]), field.load_range[1]
-        loads = np.geomspace(lowest, highest, 2 + math.ceil(math.log(highest / lowest) / _LOAD_STEP))
-        whole, offset, compliance = np.zeros((3, loads.size))
-        for contact in self.contacts:
-            known = field.locked_factors(contact.name, loads, u, T)
-            if known is None:
-                return FORMULA
-            own_offset, own_compliance = self._films(contact, loads, u, T)
-            by_formula = locked_compliances((contact,), own_offset, loads, own_compliance)
-            whole += by_formula * known
-            offset += own_offset
-            compliance += own_compliance
-        factors = whole / locked_compliances(self.contacts, offset, loads, compliance)
-        return LockedFactors(math.log(lowest), (loads.size - 1) / math.log(highest / lowest), factors)
-
-    def _films(self, contact: LineContact, loads: FloatArray, u: float, T: float) -> tuple[FloatArray, FloatArray]:
-        """Film offset [m] and film compliance [m2/N] of a contact at loads within the map, u and T too; (n,)."""
-        speeds, kelvins, every = np.array([u]), np.array([T]), loads[:, None, None]
-        if self.supply.flooded:
-            films = self._field.films(contact.name, every, speeds, kelvins)
-            return films[0][:, 0, 0], films[1][:, 0, 0]
-        curve = ContactCurve(self._field, contact, speeds, kelvins)
-        layer = oil_layer(contact, self.supply.oil_layer, curve.tail, self.rolling, speeds, kelvins)
-        film = layer(curve.mapped(every))
-        return film.offset[:, 0, 0], -film.slope[:, 0, 0] / (3.0 * np.cbrt(loads) ** 2)
+        return self._films.locked_factors(entrainment_speed, temperature)
 
     def _law_table(self) -> LawTable:
         """Everything but the single contacts of a series."""
@@ -421,7 +371,7 @@ class ContactLaw:
             most = min(highest_structural_load(contact) for contact in self.contacts)
             held = max(held, min(LOAD_REACH * highest, most))
         rough = not self.surface.smooth
-        if rough and not self._dry:
+        if rough and not self._films.dry:
             low /= GONE_BELOW
         self._speeds, self._held_load = (low, high), held
         own = self._approach_table(self.contacts)
@@ -430,7 +380,7 @@ class ContactLaw:
             inner=own,
             outer=own,
             structure=np.array([structural_parameters(contact) for contact in self.contacts]),
-            film_speed=0.0 if rough else np.inf if self._dry else low,
+            film_speed=0.0 if rough else np.inf if self._films.dry else low,
             lowest_speed=low,
             highest_speed=high,
             lowest_temperature=self.temperature_range[0],
@@ -444,13 +394,13 @@ class ContactLaw:
     def _approach_table(self, contacts: Sequence[LineContact]) -> ApproachTable:
         """Table of some contacts in series."""
         return compile_table(
-            self._field,
+            self._films.field,
             contacts,
-            self._lubricant,
+            self._films.lubricant,
             self._speeds,
             self._held_load,
             self._resolution,
-            FLOODED if self._dry else self.supply,
+            FLOODED if self._films.dry else self.supply,
             self.rolling,
             self.surface,
         )
@@ -474,72 +424,15 @@ class ContactLaw:
 
     def _settle(self, counts: IntArray, named: Mapping[str, FloatArray], flat: Sequence[FloatArray]) -> None:
         """Add up the counts of a call, and raise what they ask for."""
-        if counts[NOT_FINITE]:
-            check_finite(named)
-        self.counts += counts
-        if not np.any(counts[[LOAD, SPEED, TEMPERATURE]]):
-            return
-        problems = self._noted(counts, named, flat)
-        if self.outside == "error":
-            raise OutsideMapError(
-                "\n".join(f"contact law {self.kind!r}, {problem}" for problem in problems)
-                + "\nmake a map that reaches there, or take a law with outside='clamp' or outside='asymptote'"
-            )
+        self._outside.settle(counts, named, flat, self._loads_at_rest)
 
-    def _noted(self, counts: IntArray, named: Mapping[str, FloatArray], flat: Sequence[FloatArray]) -> list[str]:
-        """Note what was outside, and say it; nothing but the extremes is worked out here, the counts are known."""
-        problems = []
-        if counts[LOAD]:
-            problems.append(self._load_problem(int(counts[LOAD]), flat))
-        for axis, cause in (("entrainment_speed", SPEED), ("temperature", TEMPERATURE)):
-            if not counts[cause]:
-                continue
-            full = flat[2 if axis == "entrainment_speed" else 3] if len(flat) == 5 else named[axis].reshape(-1)
-            self.note_outside(axis, full)  # type: ignore[arg-type]
-            found = self._ranges[axis].excursions(full)
-            problems += [f"{axis}: got {one.text.removeprefix(axis).strip()}" for one in found]
-        return problems
-
-    def _note_low(self, loads: FloatArray, speeds: FloatArray, temperatures: FloatArray) -> None:
-        """Note loads (n,) that lie where the film is a guess, by the nearest place at which the law was looked at."""
-        if self.low_loads is None or not self.low_loads.guessed:
-            return
-        low = np.nonzero((loads > 0.0) & (loads < self.load_range[0]))[0]
-        if not low.size:
-            return
-        limits = self._guessed_below
-        (slow, fast), (cold, hot) = self.speed_range, self.temperature_range
-        along = np.log(np.clip(np.abs(speeds[low]), slow, fast) / slow) / math.log(fast / slow) if fast > slow else 0.0
-        across = (np.clip(temperatures[low], cold, hot) - cold) / (hot - cold) if hot > cold else 0.0
-        rows, columns = (
-            np.rint(part * (n - 1)).astype(int) for part, n in zip((along, across), limits.shape, strict=True)
-        )
-        of = np.broadcast_to(rows * limits.shape[1] + columns, low.shape)
-        for index in np.unique(of):
-            self._keep(Range("load", float(limits.flat[index]), np.inf).excursions(loads[low[of == index]]))
-
-    @cached_property
-    def _guessed_below(self) -> FloatArray:
-        """`guessed_below` at the places at which the law was looked at."""
-        speeds, temperatures = looked_at(self.speed_range, self.temperature_range)
-        return np.array([[self.guessed_below(u, T) for T in temperatures.tolist()] for u in speeds.tolist()])
-
-    def _load_problem(self, count: int, flat: Sequence[FloatArray]) -> str:
-        """Note the loads that are too high, and say which."""
-        highest = self.load_range[1]
-        if len(flat) < 5:
-            return f"load: got more than is mapped in the outer contact, above the map, which ends at {highest:.6g} N/m"
+    def _loads_at_rest(self, flat: Sequence[FloatArray]) -> FloatArray:
+        """Loads on the inner contact of flat arguments, as if nothing moved [N/m]."""
         forces, counts = np.empty((3, flat[0].size)), np.zeros(4, dtype=np.int64)
         table = self.table if np.any(flat[4]) else self._plain
-        at_rest = np.zeros_like(flat[0])
-        _evaluate_many(table, (flat[0], at_rest, *flat[2:]), forces, counts)
-        self.note_outside("load", forces[0] + flat[4])
-        worst = int(np.argmax(forces[0]))
-        return (
-            f"load: got about {forces[0, worst]:.6g} N/m above the map, which ends at {highest:.6g} N/m, "
-            f"at the approach {flat[0][worst]:.6g} m, {flat[2][worst]:.6g} m/s, {flat[3][worst]:.6g} K "
-            f"({count} of {flat[0].size} points above)"
-        )
+        _evaluate_many(table, (flat[0], np.zeros_like(flat[0]), *flat[2:]), forces, counts)
+        loads: FloatArray = forces[0]
+        return loads
 
 
 @dataclass(frozen=True)
@@ -674,7 +567,7 @@ class LawAtPoint:
             self.law._settle(counts, named, flat)
         if self._guessed_below > 0.0:
             low = forces[0][(forces[0] > 0.0) & (forces[0] < self._guessed_below)]
-            self.law._keep(Range("load", self._guessed_below, np.inf).excursions(low))
+            self.law._outside.keep(Range("load", self._guessed_below, np.inf).excursions(low))
         w, dw_ddelta, dw_drate = (force.reshape(shape)[()] for force in forces)
         return w, dw_ddelta, dw_drate, self.outside or bool(counts.any())
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ehdmaps.outputs import MARK, Kind, has_mark, write_text
 from ehdmaps.stability.findings import Check
+from ehdmaps.units import closest
 
 CHECKS = Kind("a table of checks of ehdmaps or mbs", (".txt", ".json"), has_mark)
 
@@ -80,6 +81,51 @@ def write_checks(path: Path, head: str, checks: Sequence[Check]) -> None:
     """
     text = checks_json(checks) if path.suffix == ".json" else f"{head} ({MARK})\n{checks_text(checks)}"
     write_text(path, f"{text}\n", CHECKS)
+
+
+def unknown_part(only: str | None, names: tuple[str, ...]) -> list[str]:
+    """What is wrong about the part that `--only` names; nothing where it is left out.
+
+    Parameters
+    ----------
+    only : str or None
+        What was given.
+    names : tuple of str
+        Names of all parts.
+    """
+    if only is None or only in names:
+        return []
+    return [f"--only: got {only!r:.60}{closest(only, names)}; allowed: {', '.join(names)}"]
+
+
+def told(head: str, checks: Sequence[Check], output: str | None, as_json: bool) -> tuple[str, int]:
+    """Write checks where a file is asked for, and return what a command prints of them with its status.
+
+    Parameters
+    ----------
+    head : str
+        What was searched.
+    checks : sequence of Check
+        What was found.
+    output : str or None
+        File of `-o`.
+    as_json : bool
+        Whether JSON is printed.
+
+    Returns
+    -------
+    (str, int)
+        Text, and 1 where something failed.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    if output is not None:
+        write_checks(Path(output), head, checks)
+    text = checks_json(checks) if as_json else f"{head}\n{checks_text(checks)}"
+    return text, 1 if any(check.failed for check in checks) else 0
 
 
 def _reasons(check: Check) -> str:

@@ -27,7 +27,7 @@ from mbs.linearised.sweep_result import Sweep
 from mbs.model.system import System
 from mbs.output.critical_data import critical_dataset
 from mbs.output.results import described
-from mbs.scene.assembly import Model, law_attributes, supply_attributes
+from mbs.scene.assembly import Model, law_attributes, laws_attributes
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,9 +185,7 @@ def dataset_of_laws(labels: Sequence[str], results: Sequence[CriticalResult]) ->
     numbered = [part.assign_coords({name: np.arange(part.sizes[name]) for name in bare}) for part in parts]
     law = xr.DataArray(np.array(labels, dtype=np.str_), dims="law", name="law")
     joined = xr.concat(numbered, law, data_vars="all", join="outer", combine_attrs="override").drop_vars(list(bare))
-    named = list(zip(labels, (result.model for result in results), strict=True))
-    words = "; ".join(f"{label}: {model.law}" for label, model in named)
-    return joined.assign_attrs({**parts[0].attrs, "law": words, **supply_attributes(named)})
+    return joined.assign_attrs({**parts[0].attrs, **laws_attributes(labels, [result.model for result in results])})
 
 
 def orders(system: System) -> tuple[float, ...]:

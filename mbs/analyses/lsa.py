@@ -26,7 +26,7 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.results import described, linear_dataset
 from mbs.output.state_data import with_states
-from mbs.scene.assembly import Model, law_attributes, supply_attributes
+from mbs.scene.assembly import Model, law_attributes, laws_attributes
 from mbs.scene.scene import Scene
 
 
@@ -263,9 +263,7 @@ def lsa_dataset(labels: Sequence[str], results: Sequence[LsaResult]) -> xr.Datas
     joined = joined.reindex(state=most["state"], of_state=most["of_state"])
     for name in ("residual", "newton_steps"):
         joined = joined.assign({name: ("law", [part.attrs[name] for part in parts], {"units": "1", "long_name": name})})
-    named = list(zip(labels, (result.model for result in results), strict=True))
-    words = "; ".join(f"{label}: {model.law}" for label, model in named)
     bands = "; ".join(f"{label}: {part.attrs['bands']}" for label, part in zip(labels, parts, strict=True))
     kept = {key: value for key, value in joined.attrs.items() if key not in ("residual", "newton_steps")}
-    joined.attrs = {**kept, "bands": bands, "law": words, **supply_attributes(named)}
+    joined.attrs = {**kept, "bands": bands, **laws_attributes(labels, [result.model for result in results])}
     return joined

@@ -237,10 +237,7 @@ class BearingBlock(FilmBlock[Bearings]):
         ]
         rings = gather_rings(members, films_of)
         films = room_of(tables)
-        course = CourseOfFilms(
-            [table.places for table in tables],
-            lambda film, *places: tables[film].prepare(*places, films.tables[film], films.numbers[film]),
-        )
+        course = course_over(tables, films)
         arrays = Bearings(
             rings=rings,
             rows=np.zeros(rings.most_slices, dtype=np.int64),
@@ -274,6 +271,22 @@ def room_of(tables: Sequence[SpeedTables]) -> Films:
         knots=np.zeros((films, cells)),
         current=np.zeros((films, table.NUMBERS)),
         in_use=np.full((films, 2), -1.0),
+    )
+
+
+def course_over(tables: Sequence[SpeedTables], films: Films) -> CourseOfFilms:
+    """Tables that are made ahead of a run into their room, one for each film.
+
+    Parameters
+    ----------
+    tables : sequence of SpeedTables
+        What makes them.
+    films : Films
+        Room of `room_of`.
+    """
+    return CourseOfFilms(
+        [table.places for table in tables],
+        lambda film, *places: tables[film].prepare(*places, films.tables[film], films.numbers[film]),
     )
 
 

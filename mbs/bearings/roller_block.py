@@ -14,9 +14,9 @@ import numpy as np
 from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
-from mbs.bearings.bearing_block import Films, blend, is_strict, room_of
+from mbs.bearings.bearing_block import Films, blend, course_over, is_strict, room_of
 from mbs.bearings.bearing_kernel import bearing_force, roller_power
-from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
+from mbs.bearings.film_course import Course, FilmBlock, course_of, shared
 from mbs.bearings.flat_law import FlatLaw
 from mbs.bearings.roller_element import RollerElement
 from mbs.bearings.roller_motion import RingMotion, Shape, Work, roller_of, sizes_of
@@ -172,10 +172,7 @@ class RollerBlock(FilmBlock[RollerBearings]):
             tables.append(SpeedTables(plain.bearing, FlatLaw(law), plain.temperature, (plain.rates[1], 0.0)))
         rollers = gather_rollers(members, films_of)
         films = room_of(tables)
-        course = CourseOfFilms(
-            [table.places for table in tables],
-            lambda film, *places: tables[film].prepare(*places, films.tables[film], films.numbers[film]),
-        )
+        course = course_over(tables, films)
         most = int(np.max(rollers.rings.slices, initial=0))
         arrays = RollerBearings(
             rollers=rollers,

@@ -203,6 +203,20 @@ def law_attributes(model: Model) -> Mapping[str, str]:
     return {**named, **supply_attributes([(model.label, model)]), **surface}
 
 
+def laws_attributes(labels: Sequence[str], models: Sequence[Model]) -> dict[str, str]:
+    """What a result of several laws says of them and of their oil supplies.
+
+    Parameters
+    ----------
+    labels : sequence of str
+        What each law is called.
+    models : sequence of Model
+        Their models.
+    """
+    named = list(zip(labels, models, strict=True))
+    return {"law": "; ".join(f"{label}: {model.law}" for label, model in named), **supply_attributes(named)}
+
+
 def supply_attributes(models: Sequence[tuple[str, Model]]) -> dict[str, str]:
     """What a result says of the oil supplies of its models, each with a label where there is more than one.
 

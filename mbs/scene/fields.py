@@ -172,6 +172,15 @@ def vector(
     return None if x is None or y is None or z is None else (x, y, z)
 
 
+def wrench(section: Table) -> FloatArray | None:
+    """Read force and moment of a load, (6,) [N], [N m]; one of them may be absent. None where a problem was noted."""
+    force = vector(section, "force", "N", FORCE)
+    moment = vector(section, "moment", "N m", MOMENT)
+    if "force" not in section and "moment" not in section:
+        section.note("force", 'missing; allowed: force = ["0 N", "100 N", "0 N"], or moment, or both')
+    return None if force is None or moment is None else np.array([*force, *moment])
+
+
 def matrices(
     section: Table, key: str, force: str, moment: str, count: int, least: float = -LARGEST
 ) -> FloatArray | None:

@@ -262,14 +262,11 @@ class _Reader:
     def _load(self, section: Table, name: str) -> Load | None:
         """Read a load."""
         on, against = fields.places(section)
-        force = fields.vector(section, "force", "N", FORCE)
-        moment = fields.vector(section, "moment", "N m", MOMENT)
-        if "force" not in section and "moment" not in section:
-            section.note("force", 'missing; allowed: force = ["0 N", "100 N", "0 N"], or moment, or both')
+        wrench = fields.wrench(section)
         profile = self._profile(section)
-        if on is None or force is None or moment is None:
+        if on is None or wrench is None:
             return None
-        return Load(name, on, np.array([*force, *moment]), against, profile)
+        return Load(name, on, wrench, against, profile)
 
     def _profile(self, section: Table) -> LoadProfile:
         """Read how a load goes over time."""

@@ -17,7 +17,7 @@ from ehdmaps.units import LENGTH, RPM, Display
 from mbs.model.elements import GROUND
 from mbs.model.turning import TurningLoad, unbalance
 from mbs.scene import fields
-from mbs.scene.fields import DEGREE, FORCE, MOMENT
+from mbs.scene.fields import DEGREE
 from mbs.scene.specs import BodySpec, RigidSpec, ShaftSpec
 
 if TYPE_CHECKING:
@@ -188,10 +188,7 @@ def read_excitation(section: Table, name: str) -> OrderLoad | None:
         Name of the excitation.
     """
     on, against = fields.places(section)
-    force = fields.vector(section, "force", "N", FORCE)
-    moment = fields.vector(section, "moment", "N m", MOMENT)
-    if "force" not in section and "moment" not in section:
-        section.note("force", 'missing; allowed: force = ["0 N", "100 N", "0 N"], or moment, or both')
+    wrench = fields.wrench(section)
     order = section.number("order", 1e-6, HIGHEST_ORDER, required=True)
     phase = section.quantity("phase", "rad", -100.0, 100.0, DEGREE)
     of = fields.place(section, "of") if "of" in section else None
@@ -199,9 +196,9 @@ def read_excitation(section: Table, name: str) -> OrderLoad | None:
     reference = section.quantity("reference_speed", "rad/s", 1e-3, 1e5, RPM, required=growth == "square")
     if growth == "constant" and "reference_speed" in section:
         section.note("reference_speed", 'stands without over_speed = "square"; allowed: with it only; delete it')
-    if on is None or force is None or moment is None or order is None:
+    if on is None or wrench is None or order is None:
         return None
-    return OrderLoad(name, on, np.array([*force, *moment]), order, against, of, phase or 0.0, reference)
+    return OrderLoad(name, on, wrench, order, against, of, phase or 0.0, reference)
 
 
 def with_places(bodies: Iterable[BodySpec], unbalances: Sequence[Unbalance]) -> tuple[BodySpec, ...]:

@@ -18,9 +18,11 @@ import numpy as np
 from scipy.optimize import fsolve
 from threadpoolctl import threadpool_limits
 
-from ehdmaps.ehl.line import LOAD, Resolution, solve_groups
+from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import newton
+from ehdmaps.ehl.one_grid import LOAD
 from ehdmaps.ehl.profile import Profile, refined
+from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.reynolds import FITTED_STEP, LineProblem, residual
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.physics.bearing import BearingGeometry

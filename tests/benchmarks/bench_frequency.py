@@ -20,8 +20,9 @@ from collections.abc import Callable
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from ehdmaps.ehl.line import linearised_profile, solve_groups
+from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.linearisation import Linearisation
+from ehdmaps.ehl.moving_grid import linearised_profile
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.ehl.spectrum import film_compliances
 from ehdmaps.physics.bearing import BearingGeometry

@@ -21,9 +21,12 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ehdmaps.ehl.grid import Spike, lay_out
-from ehdmaps.ehl.line import LOOSE_TOLERANCE, GroupSolution, Resolution, converged, solve_groups
+from ehdmaps.ehl.group_solution import GroupSolution
+from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import CONVERGED
+from ehdmaps.ehl.one_grid import LOOSE_TOLERANCE, converged
 from ehdmaps.ehl.profile import Profile, front, moved
+from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.solver import line_problem
 from ehdmaps.physics.bearing import BearingGeometry

@@ -41,6 +41,16 @@ class Time:
 Figure = Given | Time | float
 
 
+def given(text: str) -> list[Figure]:
+    """Numbers that are no figures, separated by blanks."""
+    return [Given(part) for part in text.split()]
+
+
+def significant(value: float, digits: int) -> float:
+    """A value rounded to so many digits, as prose does."""
+    return float(f"{value:.{digits - 1}e}")
+
+
 @dataclass(frozen=True)
 class Block:
     """A marked block of a page; `begin` and `end` are offsets of its text in that of the page."""

@@ -32,7 +32,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tests.benchmarks.page_block import NUMBER, WEIGHTS, Block, Compared, Difference, blocks, compared_texts
-from tests.benchmarks.page_recipes import TIMES, Output, compared, rewritten
+from tests.benchmarks.page_recipes import TIMES, compared, rewritten
+from tests.benchmarks.printed_tables import Output
 
 ROOT = Path(__file__).parents[2]
 PAGES = (

@@ -10,6 +10,14 @@ NUMBER = r"([-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?)"
 
 
 @dataclass(frozen=True)
+class Output:
+    """A command and what it prints."""
+
+    command: str
+    text: str
+
+
+@dataclass(frozen=True)
 class Mode:
     """A row of a mode in a sweep: frequency [Hz], damping ratio, energy in the bearings at the first and last speed."""
 

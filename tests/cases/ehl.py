@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from functools import cache
 
-from ehdmaps.ehl.line import GroupSolution, Resolution, solve_groups
+from ehdmaps.ehl.group_solution import GroupSolution
+from ehdmaps.ehl.line import solve_groups
+from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.physics.isotherm import PressureViscosity
 

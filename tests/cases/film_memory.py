@@ -17,7 +17,10 @@ from scipy.optimize import brentq
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.ehl.elastic import DRY_DATUM
 from ehdmaps.ehl.grid import GridShape
-from ehdmaps.ehl.line import LOAD, GroupSolution, Resolution, solve_groups
+from ehdmaps.ehl.group_solution import GroupSolution
+from ehdmaps.ehl.line import solve_groups
+from ehdmaps.ehl.one_grid import LOAD
+from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.ehl.transient import follow
 from ehdmaps.jobs.generate import generate_in_memory

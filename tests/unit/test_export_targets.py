@@ -22,7 +22,7 @@ def test_every_registered_target_loads_and_is_listed(capsys):
 
 
 def test_a_target_of_another_package_is_found_by_its_entry_point(monkeypatch):
-    _with(monkeypatch, ("mine", "ehdmaps.jobs.curves_export:TARGET"))
+    _with(monkeypatch, ("mine", "ehdmaps.exports.csv:TARGET"))
     assert list(target.registered()) == ["mine"]
     assert target.find("mine") is target.find("mine")
 

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ehdmaps.ehl.line import Resolution, solve_groups
+from ehdmaps.ehl.line import solve_groups
+from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.reynolds import LineProblem, oil
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.errors import InputError
@@ -65,8 +66,7 @@ def test_the_compiled_law_is_the_python_one(form, law):
     unit = 1.3e9
     isotherm = law.isotherm(unit, compressible=True)
     assert isotherm.form == form
-    out = [np.empty(PRESSURES.size) for _ in range(4)]
-    oil(LineProblem(1.0, isotherm), PRESSURES / unit, *out)
+    out = oil(LineProblem(1.0, isotherm), PRESSURES / unit)
     expected = [*log_viscosity(isotherm, PRESSURES / unit), *density(isotherm, PRESSURES / unit)]
     for found, value in zip(out, expected, strict=True):
         np.testing.assert_allclose(found, value, rtol=1e-14)  # round-off of numpy's and the compiler's functions

@@ -44,12 +44,11 @@ def test_the_kernel_takes_the_exponent_zero():
     problem, _, _ = line_problem(CONTACT, state, 2e4, 1.0)
     peak = problem.isotherm.alpha / 2e-8
     pressure = np.array([0.0, 0.3, 0.3 + 1e-6, 1.0])
-    out = [np.empty(4) for _ in range(4)]
-    oil(problem, pressure, *out)
+    out = oil(problem, pressure)
     np.testing.assert_allclose(out[0], law.log_ratio(pressure * peak), rtol=1e-14, atol=1e-14)  # round-off
     assert (out[0][2] - out[0][1]) / 1e-6 == pytest.approx(out[1][1], rel=1e-5)  # truncation 1e-6, round-off 1e-10
     near = PressureViscosity(2e-8, 1e-9, 1.96e8).isotherm(peak)
-    oil(LineProblem(problem.wedge, near), pressure, *(beside := [np.empty(4) for _ in range(4)]))
+    beside = oil(LineProblem(problem.wedge, near), pressure)
     np.testing.assert_allclose(out[0], beside[0], rtol=1e-6)  # z ln(1 + q P) and round-off over z
 
 

@@ -14,7 +14,6 @@ from ehdmaps.jobs import solvers
 from ehdmaps.jobs.assemble import assemble
 from ehdmaps.jobs.compare import compare
 from ehdmaps.jobs.compare_text import comparison_json, comparison_text
-from ehdmaps.jobs.curves import curves, law_field
 from ehdmaps.jobs.describe import describe
 from ehdmaps.jobs.generate import generate
 from ehdmaps.jobs.law_check import STANDS_ON_LINES, STANDS_ON_POINTS, unmet
@@ -25,6 +24,7 @@ from ehdmaps.jobs.summary import summary
 from ehdmaps.jobs.tasks import LATER_FIELDS, LONGEST_LINE, LineTask, line_tasks, solver_version
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
+from ehdmaps.maps.curves import curves, law_field
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.validation import validate
 from ehdmaps.physics.bearing import BearingGeometry

@@ -18,8 +18,9 @@ from tests.benchmarks.page_block import (
     shown_as,
     with_figures,
 )
-from tests.benchmarks.page_recipes import RECIPES, TIMES, Output, compared, printed, rewritten, sweep_cases
+from tests.benchmarks.page_recipes import RECIPES, TIMES, compared, printed, rewritten
 from tests.benchmarks.pages import PAGES, PROGRAMS, ROOT, whole_outputs
+from tests.benchmarks.printed_tables import Output, sweep_cases
 
 ALL = [block for page in PAGES for block in blocks(page, (ROOT / page).read_text(encoding="utf-8"))]
 SWEEP = """Gearbox: law map of NU308

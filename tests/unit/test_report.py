@@ -14,9 +14,9 @@ import pytest
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.cli import main
-from ehdmaps.jobs.curves import curves
 from ehdmaps.jobs.map_charts import MapCurves
 from ehdmaps.jobs.map_report import map_report
+from ehdmaps.maps.curves import curves
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.solution import Status
 from ehdmaps.report.axis import Axis, linear_axis, log_axis, symlog_axis

@@ -10,8 +10,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from ehdmaps.ehl.line import Resolution, solve_groups
+from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import CONVERGED
+from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry

@@ -13,7 +13,11 @@ from scipy.optimize import brentq
 from ehdmaps.ehl import solver as reynolds
 from ehdmaps.ehl.frequency import group_spectrum
 from ehdmaps.ehl.grid import GridShape
-from ehdmaps.ehl.line import LOAD, GroupSolution, Resolution, linearised_profile, solve_groups
+from ehdmaps.ehl.group_solution import GroupSolution
+from ehdmaps.ehl.line import solve_groups
+from ehdmaps.ehl.moving_grid import linearised_profile
+from ehdmaps.ehl.one_grid import LOAD
+from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.ehl.spectrum import film_compliances, film_space
 from ehdmaps.ehl.transient import follow

@@ -78,7 +78,7 @@ def test_law_of_a_map_takes_what_it_holds_between_its_points(oil: str, part: flo
 
 def complex_error(at: LawAtPoint, point: OperatingPoint, stiff: float) -> float:
     """Largest relative error of the complex stiffness of a law with a stiffness of its locked film."""
-    lubricant = at.law._lubricant
+    lubricant = at.law._films.lubricant
     (film,) = ReynoldsSolver().solve_line(CONTACT, lubricant, (point.load,), point.entrainment_speed, point.temperature)
     frequencies = natural_to_hertz(tuple(NATURAL), film, CONTACT, point)
     exact = contact_spectrum(

@@ -13,9 +13,11 @@ from scipy.optimize import brentq
 
 import ehdmaps.ehl.meniscus as meniscus_module
 from ehdmaps.ehl.elastic import log_kernel
-from ehdmaps.ehl.line import LOAD, Resolution, linearised_profile
 from ehdmaps.ehl.meniscus import StarvedGroups, starved_groups
+from ehdmaps.ehl.moving_grid import linearised_profile
 from ehdmaps.ehl.newton import newton
+from ehdmaps.ehl.one_grid import LOAD
+from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.solver import ReynoldsSolver, SuppliedFilm
 from ehdmaps.jobs.reader import read_job

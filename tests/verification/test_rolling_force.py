@@ -10,8 +10,9 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from ehdmaps import STEEL, BearingGeometry, Lubricant
-from ehdmaps.ehl.line import Resolution, solve_groups
+from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.profile import Profile
+from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.errors import MapError

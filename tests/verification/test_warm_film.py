@@ -8,7 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ehdmaps.ehl.line import GroupSolution, Resolution, solve_groups
+from ehdmaps.ehl.group_solution import GroupSolution
+from ehdmaps.ehl.line import solve_groups
+from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.ehl.wall_heat import wall_weights
 from ehdmaps.ehl.warm_column import (

@@ -12,8 +12,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from ehdmaps.ehl.line import GroupSolution, Resolution, solve_groups
+from ehdmaps.ehl.group_solution import GroupSolution
+from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import CONVERGED
+from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.ehl.warm_oil import NO_HEAT, STEP, Heat

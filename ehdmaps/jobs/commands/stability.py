@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.reader import read_job
@@ -13,8 +12,7 @@ from ehdmaps.outputs import Output, output_problems
 from ehdmaps.program import tell
 from ehdmaps.stability.findings import Check
 from ehdmaps.stability.fuzzing import fuzz
-from ehdmaps.stability.report import CHECKS, checks_json, checks_text, write_checks
-from ehdmaps.units import closest
+from ehdmaps.stability.report import CHECKS, told, unknown_part
 
 _CONTACT = "contact"
 
@@ -24,10 +22,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     job = read_job(arguments.job)
     problems = output_problems([Output("-o", arguments.output, CHECKS)], [arguments.job])
     names = (_CONTACT, *READERS)
-    if arguments.only is not None and arguments.only not in names:
-        problems.append(
-            f"--only: got {arguments.only!r:.60}{closest(arguments.only, names)}; allowed: {', '.join(names)}"
-        )
+    problems += unknown_part(arguments.only, names)
     if problems:
         raise InputError(problems)
     checks: list[Check] = []
@@ -38,10 +33,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             _told(f"{arguments.mutations} damaged files for: {name}")
             checks.append(fuzz(make(), arguments.mutations, arguments.seed))
     head = f"{job.title}, {job.lubricant.title}, seed {arguments.seed}"
-    if arguments.output is not None:
-        write_checks(Path(arguments.output), head, checks)
-    text = checks_json(checks) if arguments.json else f"{head}\n{checks_text(checks)}"
-    return text, 1 if any(check.failed for check in checks) else 0
+    return told(head, checks, arguments.output, arguments.json)
 
 
 def _told(line: str) -> None:

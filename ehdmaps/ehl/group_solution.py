@@ -1,0 +1,230 @@
+"""Film of one point in the groups of the problem: response, numbers, and their errors from a fine and a coarse grid."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.ehl.linearisation import Linearisation
+from ehdmaps.ehl.moving_grid import linearised_profile
+from ehdmaps.ehl.newton import CONVERGED, STAGNATED
+from ehdmaps.ehl.profile import Profile, films_of, front_cell
+from ehdmaps.ehl.resolution import Resolution
+from ehdmaps.ehl.warm_response import WarmLinearisation
+from ehdmaps.physics.isotherm import log_viscosity
+from ehdmaps.physics.peak import peak_sampling_error
+
+FOURTH, SECOND = 1.5 / 15.0, 1.5 / 3.0
+"""Share of the difference between both grids that is left where the order is four or two: 1/(2^p - 1), and half as much
+again for safety."""
+
+FIRST_ORDER = 1.5
+"""Share of the difference between both grids that is left where the order is one, half as much again for safety."""
+
+MOST_TIP = 5.0
+"""Pressure of a tip over that of its cell to which an estimate goes: an oil with a largest viscosity has no limit."""
+
+
+@dataclass(frozen=True)
+class GroupSolution:
+    """Film of one point in units of b, p_H, b^2/R and b/u, with estimated relative errors.
+
+    The rolling force has the unit p_H b^2/R, the mass flow b^2/R times density at rest and u. Rises are those of the
+    highest temperatures in the film and of its surfaces [K], NaN of an isothermal film.
+    Those of film offset, film compliance and loss are positive where the value is too large, the others always.
+    `profile` is the fine solution and `rough` the coarse one, `linear` and `rough_linear` the equations about them;
+    None where there is none.
+    """
+
+    outcome: int
+    profile: Profile | None
+    rough: Profile | None = None
+    linear: Linearisation | WarmLinearisation | None = None
+    rough_linear: Linearisation | WarmLinearisation | None = None
+    film_offset: float = math.nan
+    film_compliance: float = math.nan
+    loss: float = math.nan
+    central_film: float = math.nan
+    minimum_film: float = math.nan
+    max_pressure: float = math.nan
+    rolling_force: float = math.nan
+    mass_flow: float = math.nan
+    film_rise: float = math.nan
+    surface_rise: float = math.nan
+    film_offset_error: float = math.nan
+    film_compliance_error: float = math.nan
+    loss_error: float = math.nan
+    central_film_error: float = math.nan
+    minimum_film_error: float = math.nan
+    max_pressure_error: float = math.nan
+    rolling_force_error: float = math.nan
+    mass_flow_error: float = math.nan
+    steps: int = 0
+
+
+def assembled(
+    M: float,
+    L: float,
+    fine: Profile,
+    coarse: Profile,
+    resolution: Resolution,
+    steps: int,
+) -> GroupSolution:
+    """Response, numbers and error estimates from the fine and the coarse solution.
+
+    Parameters
+    ----------
+    M, L : float
+        Moes' load and lubricant parameters of the point.
+    fine, coarse : Profile
+        Converged solutions, one with twice the cells of the other.
+    resolution : Resolution
+        Settings of the solve that gave them.
+    steps : int
+        Newton steps that they took.
+    """
+    linear, rough_linear = linearised_profile(fine, resolution), linearised_profile(coarse, resolution)
+    if linear.singular or rough_linear.singular:
+        return GroupSolution(outcome=STAGNATED, profile=None, steps=steps)
+    response, rough = linear.slow_response(), rough_linear.slow_response()
+    starved = fine.layout.starved
+    # the pressure rises from a meniscus with a kink, where sums are of second order
+    by_offset = SECOND if starved else _offset_share(M, fine.spike is not None)
+    by_response = SECOND if starved else response_share(M, L, fine.spike is not None)
+    inlet = 0.0 if starved else 1.0 / resolution.inlet_length**2
+    central, minimum = films_of(fine)
+    # the coarse grid of a starved contact has the same part of its own flooded flow; films go with the layer
+    scale = fine.mass_flow / coarse.mass_flow if starved else 1.0
+    central_error, minimum_error = _film_errors(fine, coarse, scale, by_offset)
+
+    def error(value: float, rough_value: float, share: float, lost: float, least: float = 0.0) -> float:
+        """Relative, > 0 where refinement lowers the value; what the inlet's end loses is added in magnitude.
+
+        `least` is a difference of grids that this value shares at least.
+        """
+        grid = (rough_value - value) * share / value
+        return math.copysign(max(abs(grid), abs(least * share / value)) + lost * inlet, grid)
+
+    # parts of one complex number: where a spike between two nodes hides the error of the loss, the compliance shows it
+    hidden = rough.compliance - response.compliance if fine.spike is not None or starved else 0.0
+    hidden_too = rough.loss - response.loss if starved else 0.0
+    return GroupSolution(
+        outcome=CONVERGED,
+        profile=fine,
+        rough=coarse,
+        linear=linear,
+        rough_linear=rough_linear,
+        film_offset=fine.film_offset,
+        film_compliance=response.compliance,
+        loss=response.loss,
+        central_film=central,
+        minimum_film=minimum,
+        max_pressure=float(np.max(fine.pressure)),
+        rolling_force=fine.rolling_force,
+        mass_flow=fine.mass_flow,
+        film_rise=math.nan if fine.warmth is None else float(np.max(fine.warmth.rises)),
+        surface_rise=math.nan if fine.warmth is None else float(np.max(fine.warmth.rises[:, [0, -1]])),
+        film_offset_error=error(fine.film_offset, scale * coarse.film_offset, by_offset, 3.0),
+        film_compliance_error=error(response.compliance, rough.compliance, by_response, 6.0, hidden_too),
+        loss_error=error(response.loss, rough.loss, by_response, 6.0, hidden),
+        central_film_error=central_error + 3.0 * inlet,
+        minimum_film_error=minimum_error + 3.0 * inlet,
+        max_pressure_error=_peak_error(fine, coarse),
+        rolling_force_error=_rolling_error(fine, coarse) + inlet,
+        mass_flow_error=0.0 if starved else FOURTH * abs(coarse.mass_flow / fine.mass_flow - 1.0) + 3.0 * inlet,
+        steps=steps,
+    )
+
+
+def _film_errors(fine: Profile, coarse: Profile, scale: float, share: float) -> tuple[float, float]:
+    """Relative errors of the central and the smallest film; `share` is that of the film offset.
+
+    Films of the coarse grid count `scale` times.
+
+    Behind a spike the smallest film follows the spike's place, which is found to first order, and it moves with the
+    whole film, to second order.
+    """
+    (central, minimum), (rough, rough_minimum) = films_of(fine), films_of(coarse)
+    moved_by, narrowed = abs(scale * rough / central - 1.0), abs(scale * rough_minimum / minimum - 1.0)
+    if fine.spike is None:
+        return share * moved_by, share * narrowed
+    return share * moved_by, FIRST_ORDER * narrowed + 0.5 * moved_by
+
+
+def _peak_error(fine: Profile, coarse: Profile) -> float:
+    """Relative error of the largest pressure, which is that of a node.
+
+    What stands between two nodes; the difference between both grids: of the nodes where there is a spike, whose tip is
+    resolved to first order at best, else of the peaks by parabolas, whose order is four; and what the tip of a spike
+    may rise above its cell.
+    """
+    highest, spiked = float(np.max(fine.pressure)), fine.spike is not None
+    between = peak_sampling_error(fine.position, fine.pressure, spiked)
+    if spiked:
+        apart = abs(float(np.max(coarse.pressure)) / highest - 1.0)
+        return between + FIRST_ORDER * apart + max(tip_pressure(fine) / highest - 1.0, 0.0)
+    rough = float(np.max(coarse.pressure)) * (1.0 + peak_sampling_error(coarse.position, coarse.pressure, False))
+    return 1.5 * between + 1.5 / 15.0 * abs(rough / highest - 1.0 - between)
+
+
+def tip_pressure(profile: Profile) -> float:
+    """Pressure that the tip of a spike may have above the cell that holds it [p_H].
+
+    Before a spike the oil is a plug, behind it Q = Int dP/eta falls with the square of the distance x, so that there
+    ln eta ~ -2 ln x, and upstream about -ln x. This goes on down to x = 1/sqrt(pi lambda eta/H^3), where the flow by
+    pressure in the plug is what the film behind takes: with -ln x from the cell to the tip, ln eta rises from that of
+    the highest node of the front by twice the logarithm of the cell over that width. An estimate of size, not a bound.
+
+    Parameters
+    ----------
+    profile : Profile
+        A solution with a spike.
+    """
+    pressure, x = profile.pressure, profile.grid.x
+    cell = front_cell(profile)
+    top = max(cell - 2, 1) + int(np.argmax(pressure[max(cell - 2, 1) : cell + 2]))
+    law = profile.problem.isotherm
+    log_eta = float(log_viscosity(law, float(pressure[top]))[0])
+    squared = math.pi * profile.problem.wedge / float(profile.film[top]) ** 3 * float(x[top + 1] - x[top]) ** 2
+    above = float(pressure[top]) * np.linspace(1.0, MOST_TIP, 200)
+    return float(np.interp(2.0 * log_eta + math.log(squared), log_viscosity(law, above)[0], above))
+
+
+def _rolling_error(fine: Profile, coarse: Profile) -> float:
+    """Relative error of the rolling force.
+
+    Order four; behind a spike the film falls where the pressure does, within few cells and to first order only: there a
+    tenth of what the terms of fourth order change comes to it. At a meniscus the pressure rises where the film is
+    thickest, which is as rough.
+    """
+    moved_by = abs(coarse.rolling_force / fine.rolling_force - 1.0)
+    if fine.spike is None and not fine.layout.starved:
+        return FOURTH * moved_by
+    return FIRST_ORDER * moved_by + 0.1 * fine.fourth_order_share
+
+
+def _offset_share(M: float, spike: bool) -> float:
+    """Share that is left as error of the film offset: p = 4, and 2 where a front narrower than a cell carries load."""
+    return SECOND if spike and M < 20.0 else FOURTH
+
+
+def response_share(M: float, L: float, spike: bool) -> float:
+    """Share of the difference between both grids that is left as error of the response on the finer one.
+
+    p = 4; p = 2 at a front narrower than a cell (L > 12), and at the valley, where the response is a small difference
+    of large parts whose errors have either sign.
+
+    Parameters
+    ----------
+    M, L : float
+        Moes' load and lubricant parameters of the point.
+    spike : bool
+        Whether the grid has a spike term.
+    """
+    if 0.6 < M < 2.0 or L > 30.0 or (spike and L > 12.0):
+        return 1.0 / 3.0
+    if 0.2 < M < 0.6:
+        return 1.5 * FOURTH
+    return FOURTH

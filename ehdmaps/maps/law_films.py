@@ -1,0 +1,147 @@
+"""What a law knows of its films besides its table: below which load they are a guess, and how they lock."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.maps.contact_curve import ContactCurve
+from ehdmaps.maps.excursions import Excursion, Range
+from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.locked_film import FORMULA, LockedFactors, locked_compliances
+from ehdmaps.maps.low_loads import LowLoads, guessed_at, looked_at, low_loads
+from ehdmaps.maps.oil_layer import oil_layer
+from ehdmaps.maps.rolling_film import RollingFilm
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import OilSupply
+
+_LOAD_STEP = 0.1
+"""Step of ln of the load between the factors of the locked film."""
+
+
+@dataclass(frozen=True, eq=False)
+class LawFilms:
+    """Films of the contacts of a law.
+
+    Attributes
+    ----------
+    contacts : tuple of LineContact
+        Contacts of the law.
+    lubricant : Lubricant
+        The oil.
+    field : FilmField
+        Film of each contact; of a dry map its stand-in, see `ehdmaps.maps.dry`.
+    dry : bool
+        Whether the map has no film.
+    supply : OilSupply
+        Oil before each contact.
+    rolling : RollingFilm or None
+        Rolling force and mass flow of the contacts, where the map holds them.
+    """
+
+    contacts: tuple[LineContact, ...]
+    lubricant: Lubricant
+    field: FilmField
+    dry: bool
+    supply: OilSupply
+    rolling: RollingFilm | None
+
+    @cached_property
+    def low_loads(self) -> LowLoads | None:
+        """Where the film goes over into that of a rigid contact, and whether that is right; None of a dry law."""
+        field = self.field
+        if self.dry or not field.speed_range[0] > 0.0:
+            return None
+        first, lowest = field.first_loads, field.load_range[0]
+        return low_loads(first, self.contacts, self.lubricant, lowest, field.speed_range, field.temperature_range)
+
+    def guessed_below(self, entrainment_speed: float, temperature: float) -> float:
+        """Load [N/m] below which the film is a guess, see `low_loads`; 0 where it is none.
+
+        Parameters
+        ----------
+        entrainment_speed, temperature : float
+            u [m/s], of either sign, and T [K]; held at the edges of the map.
+        """
+        if self.low_loads is None or not self.low_loads.guessed:
+            return 0.0
+        u, T = self._held(entrainment_speed, temperature)
+        return guessed_at(self.field.first_loads, self.contacts, self.lubricant, u, T)
+
+    def guesses(self, loads: FloatArray, speeds: FloatArray, temperatures: FloatArray) -> list[Excursion]:
+        """Loads that lie where the film is a guess, by the nearest place at which the law was looked at.
+
+        Parameters
+        ----------
+        loads, speeds, temperatures : array (n,)
+            w [N/m], u [m/s], of either sign, and T [K].
+        """
+        if self.low_loads is None or not self.low_loads.guessed:
+            return []
+        low = np.nonzero((loads > 0.0) & (loads < self.field.load_range[0]))[0]
+        if not low.size:
+            return []
+        limits = self._guessed_below
+        (slow, fast), (cold, hot) = self.field.speed_range, self.field.temperature_range
+        along = np.log(np.clip(np.abs(speeds[low]), slow, fast) / slow) / math.log(fast / slow) if fast > slow else 0.0
+        across = (np.clip(temperatures[low], cold, hot) - cold) / (hot - cold) if hot > cold else 0.0
+        rows, columns = (
+            np.rint(part * (n - 1)).astype(int) for part, n in zip((along, across), limits.shape, strict=True)
+        )
+        of = np.broadcast_to(rows * limits.shape[1] + columns, low.shape)
+        found: list[Excursion] = []
+        for index in np.unique(of):
+            found += Range("load", float(limits.flat[index]), np.inf).excursions(loads[low[of == index]])
+        return found
+
+    @cached_property
+    def _guessed_below(self) -> FloatArray:
+        """`guessed_below` at the places at which the law was looked at."""
+        speeds, temperatures = looked_at(self.field.speed_range, self.field.temperature_range)
+        return np.array([[self.guessed_below(u, T) for T in temperatures.tolist()] for u in speeds.tolist()])
+
+    def locked_factors(self, entrainment_speed: float, temperature: float) -> LockedFactors:
+        """What the map says of the locked film, see `ContactLaw.locked_factors`.
+
+        Parameters
+        ----------
+        entrainment_speed, temperature : float
+            u [m/s], of either sign, and T [K]; held at the edges of the map.
+        """
+        field = self.field
+        u, T = self._held(entrainment_speed, temperature)
+        lowest, highest = float(field.first_loads(np.array([u]), np.array([T]))[0, 0]), field.load_range[1]
+        loads = np.geomspace(lowest, highest, 2 + math.ceil(math.log(highest / lowest) / _LOAD_STEP))
+        whole, offset, compliance = np.zeros((3, loads.size))
+        for contact in self.contacts:
+            known = field.locked_factors(contact.name, loads, u, T)
+            if known is None:
+                return FORMULA
+            own_offset, own_compliance = self._films(contact, loads, u, T)
+            by_formula = locked_compliances((contact,), own_offset, loads, own_compliance)
+            whole += by_formula * known
+            offset += own_offset
+            compliance += own_compliance
+        factors = whole / locked_compliances(self.contacts, offset, loads, compliance)
+        return LockedFactors(math.log(lowest), (loads.size - 1) / math.log(highest / lowest), factors)
+
+    def _held(self, entrainment_speed: float, temperature: float) -> tuple[float, float]:
+        """Speed without its sign and temperature, both held at the edges of the map."""
+        (slow, fast), (cold, hot) = self.field.speed_range, self.field.temperature_range
+        return min(max(abs(entrainment_speed), slow), fast), min(max(temperature, cold), hot)
+
+    def _films(self, contact: LineContact, loads: FloatArray, u: float, T: float) -> tuple[FloatArray, FloatArray]:
+        """Film offset [m] and film compliance [m2/N] of a contact at loads within the map, u and T too; (n,)."""
+        speeds, kelvins, every = np.array([u]), np.array([T]), loads[:, None, None]
+        if self.supply.flooded:
+            films = self.field.films(contact.name, every, speeds, kelvins)
+            return films[0][:, 0, 0], films[1][:, 0, 0]
+        curve = ContactCurve(self.field, contact, speeds, kelvins)
+        layer = oil_layer(contact, self.supply.oil_layer, curve.tail, self.rolling, speeds, kelvins)
+        film = layer(curve.mapped(every))
+        return film.offset[:, 0, 0], -film.slope[:, 0, 0] / (3.0 * np.cbrt(loads) ** 2)
