@@ -10,8 +10,8 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # its parts at first use: scipy.signal takes half a second
 from scipy.optimize import linear_sum_assignment
-from scipy.signal import find_peaks
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import AnalysisError
@@ -119,7 +119,7 @@ class LinearReference:
         seen = (found.frequency <= highest) & (found.damping_ratio <= MOST_DAMPED) & (found.frequency > 1.0)
         peaks = []
         for column in range(look.levels.shape[1]):
-            places, _ = find_peaks(look.levels[:, column], prominence=_PROMINENCE)
+            places, _ = scipy.signal.find_peaks(look.levels[:, column], prominence=_PROMINENCE)
             peaks += [(column, float(look.frequencies[k])) for k in places if look.frequencies[k] <= highest]
         return cls(look, np.asarray(np.flatnonzero(seen), dtype=np.int64), tuple(peaks))
 

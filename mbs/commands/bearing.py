@@ -11,7 +11,6 @@ from mbs.bearings import laws
 from mbs.bearings.laws import Law
 from mbs.commands.bearing_request import BearingRequest, read_request
 from mbs.output.bearing_data import bearing_dataset, write_csv
-from mbs.output.bearing_plot import bearing_figure
 from mbs.output.bearing_text import bearing_text
 from mbs.output.results import write_dataset
 from mbs.scene.contact_laws import Damper, hertz_damper, table_path
@@ -37,6 +36,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             write_dataset(dataset, Path(arguments.output))
         lines.append(f"{arguments.output}: written")
     if arguments.plot:
+        from mbs.output.bearing_plot import bearing_figure
+
         write_figure(bearing_figure(request.description, points), arguments.plot, RESOLUTION)
         lines.append(f"{arguments.plot}: written")
     problems = any(point.problems for row in points for point in row)

@@ -5,10 +5,9 @@ from __future__ import annotations
 import argparse
 import dataclasses
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import InputError
@@ -30,15 +29,18 @@ from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
 from mbs.output.campbell_data import with_measured
-from mbs.output.campbell_plot import MOST_LAWS, Overlay, Reach, campbell_figure
 from mbs.output.campbell_text import PEAKS, highest_line, peak_line, peak_lines, resolution_lines, sensor_line
 from mbs.output.energy_text import drive_lines, energy_lines
-from mbs.output.sensors_plot import sensors_figure
 from mbs.output.time_files import is_time_data, write_time_data
 from mbs.scene.assembly import Model
 from mbs.settings import CampbellSettings
 from mbs.spectral.levels import Reference, difference_text
 from mbs.spectral.orders import OrderPeak
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from mbs.output.campbell_plot import Overlay, Reach
 
 _LEAST_SHARE = 0.05
 """Of the strain energy in bearings, of a mode that is drawn in."""
@@ -137,6 +139,8 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
             tolerance = read_tolerance(arguments.tolerance)
         except InputError as error:
             problems.append(f"--tolerance: {error.problems[0]}")
+    from mbs.output.campbell_plot import MOST_LAWS
+
     looked = read_look(arguments, problems)
     try:
         cases = load_cases(
@@ -172,6 +176,9 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
 
 def _figure(found: CampbellResult, measured: RecordedRun | None) -> Figure:
     """The figure, with modes and with what is not valid marked; of several sensors the levels alone."""
+    from mbs.output.campbell_plot import campbell_figure
+    from mbs.output.sensors_plot import sensors_figure
+
     labels = [entry.case.label for entry in found.runs]
     results = [entry.spectra for entry in found.runs]
     if measured is not None:
@@ -196,6 +203,8 @@ def _figure(found: CampbellResult, measured: RecordedRun | None) -> Figure:
 
 def _overlay(entry: LawRun) -> Overlay | None:
     """Natural frequencies to draw: of modes with strain energy in the bearings that are no mere decay."""
+    from mbs.output.campbell_plot import Overlay
+
     if entry.modes is None:
         return None
     found = entry.modes.damped
@@ -206,6 +215,8 @@ def _overlay(entry: LawRun) -> Overlay | None:
 
 def _reach(entry: LawRun) -> Reach:
     """Where the films of a law are not valid, over the speeds of the run."""
+    from mbs.output.campbell_plot import Reach
+
     speeds = entry.spectra[0].campbell.speeds
     at = np.linspace(float(speeds.min()), float(speeds.max()), MODE_SPEEDS)
     return Reach(at, notable_from(entry.case.model, at), float(speeds[_fading(entry)].max(initial=0.0)))

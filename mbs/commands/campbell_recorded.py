@@ -7,8 +7,7 @@ import dataclasses
 import math
 from dataclasses import dataclass
 from pathlib import Path
-
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import FIGURE, Output, output_problems
@@ -26,10 +25,8 @@ from mbs.analyses.recorded import (
 )
 from mbs.analyses.sensors import ALL_SENSORS, chosen_sensors
 from mbs.commands.common import read_option, write
-from mbs.output.campbell_plot import MOST_LAWS, campbell_figure
 from mbs.output.campbell_text import highest_line, peak_lines, resolution_lines, sensor_line
 from mbs.output.results import RESULT
-from mbs.output.sensors_plot import sensors_figure
 from mbs.output.time_files import is_time_data, read_time_data, signal_outputs, write_time_data
 from mbs.scene.assembly import Model
 from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
@@ -39,6 +36,9 @@ from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, difference_text
 from mbs.timedata.records import TimeChannel, TimeData
 from mbs.timedata.speed import AS_IT_IS, SpeedSource, with_speed
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _MOST_ORDERS, _LARGEST_ORDER = 50, 1e4
 _OF_A_SCENE = (
@@ -279,8 +279,11 @@ def recorded_data(arguments: argparse.Namespace, of_a_scene: tuple[str, ...]) ->
         raise InputError(tuple(dict.fromkeys(problems)))
     data = read_time_data(arguments.scene)
     problems += signal_outputs("--signals", arguments.signals, len(data.records))[1]
-    if len(data.records) > MOST_LAWS and arguments.plot:
-        problems.append(f"--plot: got {len(data.records)} runs in {arguments.scene}; allowed: up to {MOST_LAWS}")
+    if arguments.plot:
+        from mbs.output.campbell_plot import MOST_LAWS
+
+        if len(data.records) > MOST_LAWS:
+            problems.append(f"--plot: got {len(data.records)} runs in {arguments.scene}; allowed: up to {MOST_LAWS}")
     if problems:
         raise InputError(problems)
     return data, look
@@ -297,6 +300,9 @@ def _run_lines(label: str, run: RecordedRun) -> list[str]:
 
 def _figure(data: TimeData, found: RecordedResult) -> Figure:
     """The figure of recorded runs."""
+    from mbs.output.campbell_plot import campbell_figure
+    from mbs.output.sensors_plot import sensors_figure
+
     labels = [run.record.label for run in found.runs]
     channels = found.runs[0].channels
     results: list[tuple[RunUpSpectra, ...]] = [run.spectra for run in found.runs]

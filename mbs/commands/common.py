@@ -6,11 +6,10 @@ import argparse
 import warnings
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
-from matplotlib.text import Text
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import Bar, Lines, progress
@@ -33,6 +32,9 @@ from mbs.scene.assembly import Model
 from mbs.scene.contact_laws import FILM_WORDS
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.transient.numerical_damping import RESOLVED
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 RESOLUTION = 150
 
@@ -315,6 +317,8 @@ def write_plot(figure: Figure, path: str) -> list[str]:
     path : str
         The file.
     """
+    from matplotlib.text import Text
+
     # Names of a scene are no formulas.
     for text in figure.findobj(Text):
         text.set_text(text.get_text().replace("$", r"\$"))

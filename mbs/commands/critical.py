@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -25,7 +25,9 @@ from mbs.commands.sweep import read_speeds
 from mbs.linearised.critical import CriticalSpeed
 from mbs.linearised.linear import sensor_unit
 from mbs.output.critical_data import orbits, sensed
-from mbs.output.critical_plot import CriticalCurves, critical_figure
+
+if TYPE_CHECKING:
+    from mbs.output.critical_plot import CriticalCurves
 
 _HEAD = "critical speeds      order       speed   frequency/Hz   damping ratio   whirl"
 _WIDTH = 102
@@ -56,7 +58,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         lines += _report(entry, label if found[1:] else "")
     if found[1:]:
         lines += _beside(found)
-    figure = critical_figure([_curves(label, entry) for label, entry in found]) if arguments.plot else None
+    figure = None
+    if arguments.plot:
+        from mbs.output.critical_plot import critical_figure
+
+        figure = critical_figure([_curves(label, entry) for label, entry in found])
     dataset = dataset_of_laws([label for label, _ in found], [entry for _, entry in found])
     lines += outside + write(arguments, dataset, figure)
     return "\n".join(lines), 1 if outside else done.status
@@ -102,6 +108,8 @@ def _outside(found: CriticalResult) -> list[str]:
 
 def _curves(label: str, found: CriticalResult) -> CriticalCurves:
     """What is drawn of a law."""
+    from mbs.output.critical_plot import CriticalCurves
+
     return CriticalCurves(
         label, found.model, found.sweep, found.found, found.speeds, found.responses, orders(found.model.system)
     )

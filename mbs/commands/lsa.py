@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from scipy.signal import find_peaks
+import scipy  # its parts at first use: scipy.signal takes half a second
 
 from ehdmaps.errors import InputError
 from ehdmaps.exports.matlab_file import KIND
@@ -23,7 +23,6 @@ from mbs.commands.sweep import whole
 from mbs.linearised.linear import response_unit
 from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.validity import DynamicLoad
-from mbs.output.response_plot import Curves, comparison_figure, response_figure
 from mbs.output.results import RESULT
 from mbs.output.state_space_file import write_spaces
 from mbs.scene.assembly import Model
@@ -49,6 +48,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     found = done.result
     figure = None
     if arguments.plot:
+        from mbs.output.response_plot import Curves, comparison_figure, response_figure
+
         curves = [
             Curves(
                 label,
@@ -149,7 +150,7 @@ def _peaks(model: Model, found: LsaResult) -> list[str]:
         for i, entry in enumerate(model.scene.inputs):
             size = np.abs(responses[:, s, i])
             # A peak stands out of both valleys beside it.
-            places, _ = find_peaks(np.log(np.maximum(size, 1e-300)), prominence=0.05)
+            places, _ = scipy.signal.find_peaks(np.log(np.maximum(size, 1e-300)), prominence=0.05)
             shown = [
                 f"{frequencies[k]:.5g} Hz ({size[k]:.3g}{'' if bands is None else f' +- {bands[k, s, i]:.2g} dB'})"
                 for k in places

@@ -21,7 +21,6 @@ from mbs.modal.uff import UFF, Measurement
 from mbs.modal.uff_reading import read_uff
 from mbs.modal.uff_writing import write_uff
 from mbs.modal.windows import needed_decay
-from mbs.output.modal_plot import fit_figure
 from mbs.output.results import RESULT, described, write_dataset
 
 TOLERANCE = 0.2
@@ -194,6 +193,8 @@ def _write(
         write_uff(Path(arguments.responses), Measurement(measured.title, (), responses))
         lines.append(f"{arguments.responses}: written")
     if arguments.plot:
+        from mbs.output.modal_plot import fit_figure
+
         write_figure(fit_figure(measured.title or Path(arguments.file).name, fits), arguments.plot, RESOLUTION)
         lines.append(f"{arguments.plot}: written")
     return lines

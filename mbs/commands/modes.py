@@ -30,12 +30,10 @@ from mbs.commands.common import (
 from mbs.commands.reach import fade_lines
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import skeleton
-from mbs.output.modes_plot import modes_figure
 from mbs.output.modes_text import kinds, share_words
 from mbs.output.results import RESULT
 from mbs.output.shapes_file import MOST_SHAPES as MOST_WRITTEN
 from mbs.output.shapes_file import SHAPES, write_shapes
-from mbs.output.shapes_plot import MOST_SHAPES, shapes_figure
 from mbs.scene.assembly import Model
 from mbs.scene.campbell import HIGHEST_HIGHEST, LOWEST_HIGHEST
 from mbs.scene.fields import HERTZ, MILLISECOND
@@ -58,6 +56,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     notes = [*_free(free), *_above(found, above, highest)]
     figure = None
     if arguments.plot:
+        from mbs.output.modes_plot import modes_figure
+
         limit = min((entry.frequency for entry in result.errors), default=math.inf)
         figure = modes_figure(model, found, shown, limit, "; ".join([*notes, *_overdamped_count(overdamped)]))
     outside = outside_at(model, result.balance)
@@ -103,8 +103,11 @@ def _shape_problems(arguments: argparse.Namespace, model: Model | None) -> list[
             problems.append("--shape-modes: stands without --shapes and --shapes-file; allowed: with one of them")
         wrong = [text for text in numbers if not (text.isascii() and text.isdigit() and 1 <= int(text[:9]) <= _LAST)]
         problems += [f"--shape-modes: got {text!r:.40}; allowed: numbers of modes from 1 on" for text in wrong]
-        if picture is not None and len(numbers) > MOST_SHAPES:
-            problems.append(f"--shape-modes: got {len(numbers)} modes for a picture; allowed: up to {MOST_SHAPES}")
+        if picture is not None:
+            from mbs.output.shapes_plot import MOST_SHAPES
+
+            if len(numbers) > MOST_SHAPES:
+                problems.append(f"--shape-modes: got {len(numbers)} modes for a picture; allowed: up to {MOST_SHAPES}")
     if file is not None:
         problems += lacking("flexible", "meshio", "--shapes-file")
     read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *(model.scene.files if model else ())]
@@ -135,6 +138,8 @@ def _write_shapes(arguments: argparse.Namespace, result: ModesResult, shown: Int
         write_shapes(Path(file), result.modes, bones, wanted)
         lines.append(f"{file}: written, {min(len(wanted), MOST_WRITTEN)} modes")
     if picture is not None:
+        from mbs.output.shapes_plot import MOST_SHAPES, shapes_figure
+
         drawn = wanted[:MOST_SHAPES]
         at = RPM.text(result.model.scene.speed)
         lines += write_plot(shapes_figure(result.model, result.modes, bones, drawn, at), picture)

@@ -6,9 +6,9 @@ import argparse
 import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
@@ -28,7 +28,6 @@ from mbs.commands.common import Told, film_course, heading, held_lines, read_opt
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.output.energy_text import drive_lines, energy_lines
 from mbs.output.results import described
-from mbs.output.run_plot import run_figure, signals_figure
 from mbs.output.signal_text import signal_lines
 from mbs.output.spectrum_data import with_spectra
 from mbs.output.time_files import is_time_data, read_time_data, write_time_data
@@ -40,6 +39,9 @@ from mbs.spectral.spectra import AmplitudeSpectrum
 from mbs.timedata.netcdf_file import signal_variables
 from mbs.timedata.records import TimeChannel, TimeData, TimeRecord
 from mbs.timedata.speed import SpeedSource, with_speed
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _MOST_SPECTRA = 4
 _LARGEST_SPEED = 1e6 / RPM.factor
@@ -188,7 +190,11 @@ def _recorded(arguments: argparse.Namespace) -> tuple[str, int]:
     ]
     attributes = {key: words for key, words in (data.attributes or {}).items() if not key.endswith("version")}
     dataset = described(signal_variables(data), **attributes)
-    figure = signals_figure(data, spectra) if arguments.plot else None
+    figure = None
+    if arguments.plot:
+        from mbs.output.run_plot import signals_figure
+
+        figure = signals_figure(data, spectra)
     lines += write(arguments, with_spectra(dataset, spectra), figure)
     if arguments.signals:
         lines += write_time_data(arguments.signals, data)
@@ -270,6 +276,8 @@ def _figure(
     fade: Fade | None,
 ) -> Figure:
     """The figure, with the fade of the first law shaded."""
+    from mbs.output.run_plot import run_figure
+
     first, *others = [(entry.model, entry.record) for entry in found.runs]
     words = ""
     if fade is not None:

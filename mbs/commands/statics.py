@@ -24,7 +24,6 @@ from mbs.linearised.validity import NOTABLE
 from mbs.model.equilibrium import Equilibrium
 from mbs.output.bearing_text import flooded_note, loss_words
 from mbs.output.gear_data import gear_lines
-from mbs.output.plot import statics_figure
 from mbs.scene.assembly import Model
 
 _SHOWN = (1, 2, 4, 5)
@@ -39,7 +38,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     found = done.result
     model = found.model
     balance, contacts = found.balance, found.contacts
-    figure = statics_figure(model, balance, contacts, found.overloads) if arguments.plot else None
+    figure = None
+    if arguments.plot:
+        from mbs.output.plot import statics_figure
+
+        figure = statics_figure(model, balance, contacts, found.overloads)
     lines = [
         *done.lines,
         *heading(model, model.scene.speed),

@@ -5,11 +5,10 @@ from __future__ import annotations
 import argparse
 import dataclasses
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from matplotlib.figure import Figure
-from scipy.signal import find_peaks
+import scipy  # its parts at first use: scipy.signal takes half a second
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
@@ -32,9 +31,11 @@ from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Operation
 from mbs.output.bearing_text import flooded_note
 from mbs.output.state_text import state_lines
-from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import Model
 from mbs.settings import MOST_SPEEDS, SweepRange
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _LEAST_SHARE = 0.05
 _PROMINENCE = 0.05
@@ -99,6 +100,8 @@ def _looks_at(asked: _Asked) -> Looked:
 
 def _figure(cases: Sequence[Case], found: Sequence[Sweep]) -> Figure:
     """The figure, with what is not valid marked."""
+    from mbs.output.sweep_plot import sweep_figure
+
     scene = cases[0].model.scene
     one_law = len({case.model.law for case in cases}) == 1
     clearances = {entry.geometry.diametral_clearance for case in cases for entry in case.model.scene.bearings}
@@ -314,7 +317,7 @@ def _responses(result: Sweep) -> list[str]:
 
 def _peaks(frequencies: FloatArray, size: FloatArray) -> list[str]:
     """The highest peaks of a response, each with its frequency, in the order of these."""
-    places, _ = find_peaks(np.log(np.maximum(size, 1e-300)), prominence=_PROMINENCE)
+    places, _ = scipy.signal.find_peaks(np.log(np.maximum(size, 1e-300)), prominence=_PROMINENCE)
     highest = np.sort(places[np.argsort(-size[places], kind="stable")][:_PEAKS])
     return [f"{size[k]:.3g} ({frequencies[k]:.5g} Hz)" for k in highest]
 

@@ -16,7 +16,6 @@ from mbs.analyses.varied import VARIED, LawChoice
 from mbs.commands.cases import read_compared
 from mbs.commands.common import Told, held_lines, read_option, write
 from mbs.commands.reach import outside_lines
-from mbs.output.variants_plot import variants_figure
 from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.scene import Scene
@@ -33,9 +32,12 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     found = variants(scene, laws, variations, clearance, settings, Told("step"), keep_partial=True, workers=workers)
     lines = [*_heading(found), *_tables(found), *_ranges(found), *_warnings(found)]
     title = f"{scene.title}\n{_base(found)}; one change at a time"
-    lines += write(
-        arguments, found.dataset, variants_figure(title, found.dataset, found.labels) if arguments.plot else None
-    )
+    figure = None
+    if arguments.plot:
+        from mbs.output.variants_plot import variants_figure
+
+        figure = variants_figure(title, found.dataset, found.labels)
+    lines += write(arguments, found.dataset, figure)
     return "\n".join(lines), 1 if any(row.problem or row.outside for row in found.variants) else 0
 
 

@@ -19,9 +19,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # its parts at first use: scipy.signal takes half a second
 from scipy.fft import next_fast_len
 from scipy.interpolate import make_interp_spline
-from scipy.signal import ShortTimeFFT, find_peaks, firwin, get_window, kaiserord, oaconvolve
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
@@ -244,7 +244,7 @@ def order_spectra(signal: AngleSignal, window: float | None = None) -> OrderSpec
     # Whole turns put whole orders on lines.
     turns = (math.floor(eighth) or eighth) if window is None else window
     length, hop, weights = _windows(signal, turns, "spectra")
-    transform = ShortTimeFFT(weights, hop, signal.per_turn, mfft=_DENSITY * length)
+    transform = scipy.signal.ShortTimeFFT(weights, hop, signal.per_turn, mfft=_DENSITY * length)
     # Above this order the band ends at every speed that the record has.
     highest = signal.highest * _TURN / float(signal.speed.min())
     lines = np.flatnonzero(transform.f <= highest)
@@ -309,7 +309,7 @@ def track_orders(signal: AngleSignal, orders: Sequence[float], window: float | N
     kernel = 2.0 * weights / weights.sum()
     for column, order in enumerate(wanted):
         still = signal.signal * np.exp(-1j * _TURN * order * signal.turns)
-        amplitude[:, column] = oaconvolve(still, kernel, mode="valid")[middles - length // 2]
+        amplitude[:, column] = scipy.signal.oaconvolve(still, kernel, mode="valid")[middles - length // 2]
     speeds = signal.speed[middles]
     amplitude[speeds[:, None] * wanted > _TURN * signal.highest] = np.nan
     return OrderTracks(signal.time[middles], speeds, wanted, amplitude, length / signal.per_turn)
@@ -339,7 +339,7 @@ def order_peaks(
     found = []
     for column, order in enumerate(tracks.orders):
         there = np.flatnonzero(np.isfinite(levels[:, column]))
-        places, properties = find_peaks(levels[there, column], prominence=prominence)
+        places, properties = scipy.signal.find_peaks(levels[there, column], prominence=prominence)
         for place, height in zip(there[places], properties["prominences"], strict=True):
             speed = float(tracks.speeds[place])
             found.append(
@@ -361,17 +361,17 @@ def _band_limited(run: RunSignal, highest: float) -> tuple[FloatArray, FloatArra
     nyquist = 0.5 * rate
     # The pass band ends at `highest`, the stop band begins where aliases of the angles, and mirror images, begin.
     stop = 0.5 * LEAST_OVERSAMPLING * highest
-    taps, beta = kaiserord(_STOP, (stop - highest) / nyquist)
+    taps, beta = scipy.signal.kaiserord(_STOP, (stop - highest) / nyquist)
     taps += 1 - taps % 2
     if taps > factor * run.signal.size // 2:
         raise InputError(
             f"orders, record: got {run.duration:.4g} s; allowed: at least {2.0 * taps / rate:.4g} s for a band up to "
             f"{highest:.6g} Hz; record for longer"
         )
-    kernel = factor * firwin(taps, 0.5 * (highest + stop) / nyquist, window=("kaiser", beta))
+    kernel = factor * scipy.signal.firwin(taps, 0.5 * (highest + stop) / nyquist, window=("kaiser", beta))
     stuffed = np.zeros((run.signal.size - 1) * factor + 1)
     stuffed[::factor] = run.signal
-    dense = oaconvolve(stuffed, kernel, mode="valid")
+    dense = scipy.signal.oaconvolve(stuffed, kernel, mode="valid")
     times = run.time[0] + (taps // 2 + np.arange(dense.size)) / rate
     return times, np.asarray(dense, dtype=np.float64)
 
@@ -385,4 +385,4 @@ def _windows(signal: AngleSignal, turns: float, what: str) -> tuple[int, int, Fl
             f"orders, window of the {what}: got {turns!r} turns; allowed: {8.0 / signal.per_turn:.3g} turns to half "
             f"the record, {longest:.4g} turns; choose one between, or record more turns"
         )
-    return length, max(length // 4, 1), get_window("hann", length)
+    return length, max(length // 4, 1), scipy.signal.get_window("hann", length)

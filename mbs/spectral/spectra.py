@@ -21,8 +21,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # its parts at first use: scipy.signal takes half a second
 from scipy.fft import next_fast_len
-from scipy.signal import ShortTimeFFT, get_window
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
@@ -118,8 +118,8 @@ def short_time_spectra(run: RunSignal, window: float, band: tuple[float, float])
         raise InputError(problems)
     length = 2 * round(0.5 * window * run.rate)
     hop = max(length // 4, 1)
-    weights = get_window("hann", length)
-    transform = ShortTimeFFT(weights, hop, run.rate, mfft=next_fast_len(_DENSITY * length, real=True))
+    weights = scipy.signal.get_window("hann", length)
+    transform = scipy.signal.ShortTimeFFT(weights, hop, run.rate, mfft=next_fast_len(_DENSITY * length, real=True))
     lines = np.flatnonzero((transform.f >= band[0]) & (transform.f <= band[1]))
     first, last = transform.lower_border_end[1], transform.upper_border_begin(run.signal.size)[1]
     if last - first > MOST_WINDOWS or (last - first) * lines.size > _MOST_VALUES:
@@ -197,7 +197,7 @@ def amplitude_spectrum(run: RunSignal, speed: float, window: float, highest: flo
         )
     near = np.flatnonzero(np.abs(inner - speed) <= np.abs(inner - speed).min() + slack)
     middle = half + int(near[-1] if high - low <= 2.0 * slack else near[near.size // 2])
-    weights = get_window("hann", 2 * half)
+    weights = scipy.signal.get_window("hann", 2 * half)
     part = without_mean(weights)(run.signal[middle - half : middle + half]) * weights
     size = next_fast_len(_DENSITY * part.size, real=True)
     lines = np.arange(size // 2 + 1) * run.rate / size

@@ -13,9 +13,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # its parts at first use: scipy.signal takes half a second
 from scipy.fft import next_fast_len
 from scipy.linalg import expm
-from scipy.signal import firwin, upfirdn
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
@@ -297,9 +297,9 @@ def _decay(through: FloatArray, outputs: FloatArray, state: FloatArray, samples:
 
 def _filtered(fine: FloatArray, test: HammerTest) -> FloatArray:
     """Records (channels, samples) of computed channels, through the anti-aliasing filter."""
-    taps = firwin(_TAPS, 0.5 / OVERSAMPLING, window=("kaiser", 8.0), fs=1.0)
+    taps = scipy.signal.firwin(_TAPS, 0.5 / OVERSAMPLING, window=("kaiser", 8.0), fs=1.0)
     delay = _TAPS // (2 * OVERSAMPLING)
-    filtered = upfirdn(taps, fine, down=OVERSAMPLING, axis=-1)
+    filtered = scipy.signal.upfirdn(taps, fine, down=OVERSAMPLING, axis=-1)
     return np.asarray(filtered[:, delay : delay + test.samples], dtype=np.float64)
 
 
