@@ -30,6 +30,9 @@ MOST_NAMED, MOST_ORDERS = 12, 6
 MOST_DAMPED = 0.5
 """Damping ratio up to which a crossing is told: above, a response has hardly a peak by the mode."""
 
+MOST_CASES = 6
+"""Cases or laws of a result that are drawn."""
+
 _SPEEDS, _FREQUENCIES, _CLASS = 70, 90, 6.0
 """Cells of a drawing of levels, and decibels of a class."""
 
@@ -119,22 +122,27 @@ def saved_campbell(dataset: xr.Dataset, orders: Sequence[tuple[float, str]], hig
     source : str
         Name of the file.
     """
-    if "level" in dataset:
-        return _levels(dataset, orders, source)
-    first = dataset.isel(case=0)
-    speeds = np.asarray(first["speed"].values, dtype=np.float64)
+    dim, drawn = ("law", _levels) if "level" in dataset else ("case", _modes)
+    names = [str(name) for name in dataset[dim].values]
+    diagrams = [drawn(dataset.isel({dim: n}), orders, highest, source, n) for n in range(min(len(names), MOST_CASES))]
+    left = tag("p", f"Not drawn: {', '.join(names[MOST_CASES:])}.") if len(names) > MOST_CASES else None
+    return joined(*diagrams, left)
+
+
+def _modes(one: xr.Dataset, orders: Sequence[tuple[float, str]], highest: float, source: str, n: int) -> Markup:
+    """The modes over speed of a case."""
     lines = Lines(
-        speeds,
-        first["complex_frequency"].values,
-        first["complex_damping_ratio"].values,
-        first["complex_bearing_share"].values,
-        np.asarray(first["complex_number"].values, dtype=np.float64),
+        np.asarray(one["speed"].values, dtype=np.float64),
+        one["complex_frequency"].values,
+        one["complex_damping_ratio"].values,
+        one["complex_bearing_share"].values,
+        np.asarray(one["complex_number"].values, dtype=np.float64),
     )
-    return campbell(lines, orders, highest, None, f"From {source}. ")
+    return campbell(lines, orders, highest, None, f"{one['case'].values}. From {source}. ", n)
 
 
 def campbell(
-    lines: Lines, orders: Sequence[tuple[float, str]], highest: float, speed: float | None, begins: str = ""
+    lines: Lines, orders: Sequence[tuple[float, str]], highest: float, speed: float | None, begins: str = "", n: int = 0
 ) -> Markup:
     """Return the diagram of modes over speed, with what excites them.
 
@@ -149,7 +157,9 @@ def campbell(
     speed : float or None
         Operating speed, which is marked [rad/s].
     begins : str
-        Begins what is said.
+        Beginning of what is said.
+    n : int
+        Number of the diagram on its page, from 0 on.
     """
     rpm = RPM.factor * lines.speeds
     inside = np.flatnonzero(np.any(lines.frequency <= highest, axis=0))
@@ -184,7 +194,7 @@ def campbell(
             Points("operating speed", np.array([RPM.factor * speed]), np.array([np.nan]), "diamond", "#5a0010")
         )
     chart = Chart(
-        "campbell",
+        _name(n),
         "Frequencies of the modes over speed",
         begins + " ".join(_says(lines, crossings, speed)),
         linear_axis("speed", "rpm", rpm, from_zero=False),
@@ -195,6 +205,11 @@ def campbell(
         frame=WIDE,
     )
     return tag("div", figure(chart), class_="single")
+
+
+def _name(n: int) -> str:
+    """Name of a diagram on its page."""
+    return f"campbell-{n + 1}" if n else "campbell"
 
 
 def _order_curves(speeds: FloatArray, orders: Sequence[tuple[float, str]]) -> list[Curve]:
@@ -241,14 +256,13 @@ def _says(lines: Lines, crossings: Sequence[tuple[float, float, str, int]], spee
     ]
 
 
-def _levels(dataset: xr.Dataset, orders: Sequence[tuple[float, str]], source: str) -> Markup:
-    """The levels of a run over speed and frequency, in classes."""
-    first = dataset.isel(law=0)
-    speeds, frequencies = (np.asarray(first[name].values, dtype=np.float64) for name in ("speed", "frequency"))
-    level = np.asarray(first["level"].values, dtype=np.float64)
+def _levels(one: xr.Dataset, orders: Sequence[tuple[float, str]], highest: float, source: str, n: int) -> Markup:
+    """The levels of a run with a law over speed and frequency, in classes."""
+    speeds, frequencies = (np.asarray(one[name].values, dtype=np.float64) for name in ("speed", "frequency"))
+    level = np.asarray(one["level"].values, dtype=np.float64)
     level = level[np.argsort(speeds)]
     speeds = np.sort(speeds)
-    unit = str(first["level"].attrs.get("units", "dB"))
+    unit = str(one["level"].attrs.get("units", "dB"))
     across, along = (min(speeds.size, _SPEEDS), min(frequencies.size, _FREQUENCIES))
     columns, rows = (
         np.linspace(0, size, parts + 1).astype(int)
@@ -276,12 +290,12 @@ def _levels(dataset: xr.Dataset, orders: Sequence[tuple[float, str]], source: st
             for kind, colour in enumerate(_LEVELS)
         )
     )
-    sums = np.asarray(first["sum_level"].values, dtype=np.float64) if "sum_level" in first else np.array([np.nan])
+    sums = np.asarray(one["sum_level"].values, dtype=np.float64) if "sum_level" in one else np.array([np.nan])
     loudest = int(np.nanargmax(sums)) if np.isfinite(sums).any() else 0
-    begins = np.asarray(first["speed"].values, dtype=np.float64)
+    begins = np.asarray(one["speed"].values, dtype=np.float64)
     chart = Chart(
-        "campbell",
-        f"Levels of a run over speed, {dataset['law'].values[0]}",
+        _name(n),
+        f"Levels of a run over speed, {one['law'].values}",
         f"From {source}. The darkest class is {top - _CLASS:g} to {top:g} {unit}, each lighter one {_CLASS:g} dB less. "
         f"The sum level is highest, {number(float(sums[loudest]), 4)} {unit}, at "
         f"{number(RPM.value(float(begins[loudest])))} rpm.",

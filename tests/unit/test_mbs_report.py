@@ -98,6 +98,14 @@ def test_saved_results_are_drawn(tmp_path):
     assert len(darkest) == 1 and str(darkest[0]["d"]).count("M") == 1
 
 
+def test_all_cases_of_a_result_are_drawn():
+    one = sweep_result(60.0)
+    many = xr.concat([one.assign_coords(case=[f"case {n}"]) for n in range(8)], "case", data_vars="minimal")
+    report = Report(str(saved_campbell(many, [(2.0, "2")], 500.0, "sweep.nc")))
+    assert sorted(report.charts) == ["campbell", *(f"campbell-{n}" for n in range(2, 7))]
+    assert "case 5. From sweep.nc." in report.words and "Not drawn: case 6, case 7." in report.words
+
+
 def test_other_files_are_no_results(tmp_path):
     (tmp_path / "text.nc").write_text("no netCDF")
     write_dataset(xr.Dataset({"a": 1.0}), tmp_path / "other.nc")
