@@ -2,7 +2,8 @@
 
 At one speed and temperature the law is a table of cubics: w^(1/3) and ln(c/w) over
 s = asinh((approach - offset)/scale). The cells of s are evenly spaced. The package has these very cubics, so that it
-differs from the law by round-off only.
+differs from the law by round-off only. The derivative of the function in time is a function, too, and exact, so that no
+tool has to take difference quotients for it.
 """
 
 from __future__ import annotations
@@ -35,6 +36,9 @@ _WORDS = """
 """
 """Words of the language (Modelica Language Specification 3.5, section 2.3.3)."""
 
+_OWN = ("Table", "atRest", "force", "forceDerivative", "Example")
+"""Names inside the package."""
+
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 
 _BODY = """package {name} "{title}"
@@ -50,12 +54,14 @@ _BODY = """package {name} "{title}"
       {rows}}} "cubics over the part of a cell: four numbers of w^(1/3), four of ln(c/w)";
   end Table;
 
-  function force "Load of a contact, its stiffness and damping, per unit length"
+  function atRest "Load at rest and ln(c/w) of a contact, with two derivatives by the approach"
     input Real approach(unit = "m", nominal = {nominal}) "positive together";
-    input Real rate(unit = "m/s", nominal = 1e-3) "of the approach";
-    output Real w(unit = "N/m", nominal = {load}) "presses the bodies together";
-    output Real k(unit = "N/m2", nominal = {stiffness}) "dw/dapproach";
-    output Real c(unit = "N.s/m2", nominal = {damping}) "dw/drate";
+    output Real rest(unit = "N/m", nominal = {load});
+    output Real drest(unit = "N/m2");
+    output Real ddrest(unit = "N/m3");
+    output Real ratio(unit = "s/m") "c/w";
+    output Real slope(unit = "1/m") "of ln(c/w)";
+    output Real bend(unit = "1/m2") "of ln(c/w)";
   protected
     Real z;
     Real root;
@@ -63,18 +69,12 @@ _BODY = """package {name} "{title}"
     Real x;
     Integer cell;
     Real t;
+    Real scale;
+    Real dscale;
     Real g;
     Real dg;
+    Real ddg;
     Real logRatio;
-    Real dlogRatio;
-    Real scale;
-    Real rest;
-    Real drest;
-    Real ratio;
-    Real drag;
-    Real ddrag;
-    Real part;
-    Real share;
   algorithm
     assert(approach <= Table.highestApproach, "approach is above the map");
     z := (approach - Table.offset) * Table.inverseScale;
@@ -84,17 +84,46 @@ _BODY = """package {name} "{title}"
     cell := integer(min(floor(x), Table.cells - 1)) + 1;
     t := x - (cell - 1);
     scale := Table.step * Table.inverseScale / root;
+    dscale := -scale * Table.inverseScale * z / (root * root);
     g := max(0.0, Table.cubic[cell, 1] + t * (Table.cubic[cell, 2] + t * (Table.cubic[cell, 3]
       + t * Table.cubic[cell, 4])));
-    dg := (Table.cubic[cell, 2] + t * (2.0 * Table.cubic[cell, 3] + 3.0 * t * Table.cubic[cell, 4])) * scale;
+    dg := Table.cubic[cell, 2] + t * (2.0 * Table.cubic[cell, 3] + 3.0 * t * Table.cubic[cell, 4]);
+    ddg := 2.0 * Table.cubic[cell, 3] + 6.0 * t * Table.cubic[cell, 4];
+    ddg := ddg * scale * scale + dg * dscale;
+    dg := dg * scale;
     logRatio := Table.cubic[cell, 5] + t * (Table.cubic[cell, 6] + t * (Table.cubic[cell, 7]
       + t * Table.cubic[cell, 8]));
-    dlogRatio := (Table.cubic[cell, 6] + t * (2.0 * Table.cubic[cell, 7] + 3.0 * t * Table.cubic[cell, 8])) * scale;
+    slope := Table.cubic[cell, 6] + t * (2.0 * Table.cubic[cell, 7] + 3.0 * t * Table.cubic[cell, 8]);
+    bend := 2.0 * Table.cubic[cell, 7] + 6.0 * t * Table.cubic[cell, 8];
+    bend := bend * scale * scale + slope * dscale;
+    slope := slope * scale;
     rest := g ^ 3;
     drest := 3.0 * g * g * dg;
+    ddrest := 3.0 * g * (2.0 * dg * dg + g * ddg);
     ratio := exp(max(-700.0, min(logRatio, 700.0)));
+  end atRest;
+
+  function force "Load of a contact, its stiffness and damping, per unit length"
+    input Real approach(unit = "m", nominal = {nominal}) "positive together";
+    input Real rate(unit = "m/s", nominal = 1e-3) "of the approach";
+    output Real w(unit = "N/m", nominal = {load}) "presses the bodies together";
+    output Real k(unit = "N/m2", nominal = {stiffness}) "dw/dapproach";
+    output Real c(unit = "N.s/m2", nominal = {damping}) "dw/drate";
+  protected
+    Real rest;
+    Real drest;
+    Real ddrest;
+    Real ratio;
+    Real slope;
+    Real bend;
+    Real drag;
+    Real ddrag;
+    Real part;
+    Real share;
+  algorithm
+    (rest, drest, ddrest, ratio, slope, bend) := atRest(approach);
     drag := rest * ratio;
-    ddrag := ratio * (drest + rest * dlogRatio);
+    ddrag := ratio * (drest + rest * slope);
     part := drag * rate;
     if rest <= 0.0 then
       w := 0.0;
@@ -110,8 +139,53 @@ _BODY = """package {name} "{title}"
       k := 0.25 * share * (share * ddrag * rate - 2.0 * drest);
       c := 0.25 * share * share * drag;
     end if;
-    annotation(smoothOrder = 1);
+    annotation(derivative = forceDerivative, smoothOrder = 1);
   end force;
+
+  function forceDerivative "Rates of load, stiffness and damping in time: the derivative of force"
+    input Real approach(unit = "m", nominal = {nominal}) "positive together";
+    input Real rate(unit = "m/s", nominal = 1e-3) "of the approach";
+    input Real der_approach(unit = "m/s") "of the approach, as force has it";
+    input Real der_rate(unit = "m/s2") "of the rate, as force has it";
+    output Real der_w(unit = "N/(m.s)");
+    output Real der_k(unit = "N/(m2.s)");
+    output Real der_c(unit = "N/m2");
+  protected
+    Real rest;
+    Real drest;
+    Real ddrest;
+    Real ratio;
+    Real slope;
+    Real bend;
+    Real q;
+    Real dq;
+    Real ddq;
+    Real mixed;
+  algorithm
+    (rest, drest, ddrest, ratio, slope, bend) := atRest(approach);
+    if rest <= 0.0 then
+      der_w := 0.0;
+      der_k := 0.0;
+      der_c := 0.0;
+    elseif ratio * rate >= -0.5 then
+      // w = rest + q * rate
+      q := rest * ratio;
+      dq := ratio * (drest + rest * slope);
+      ddq := ratio * (ddrest + 2.0 * drest * slope + rest * (bend + slope * slope));
+      der_w := (drest + dq * rate) * der_approach + q * der_rate;
+      der_k := (ddrest + ddq * rate) * der_approach + dq * der_rate;
+      der_c := dq * der_approach;
+    else
+      // w = -q / (4 * rate)
+      q := rest / ratio;
+      dq := (drest - rest * slope) / ratio;
+      ddq := (ddrest - 2.0 * drest * slope + rest * (slope * slope - bend)) / ratio;
+      mixed := 0.25 * dq / (rate * rate);
+      der_w := -0.25 * dq / rate * der_approach + 0.25 * q / (rate * rate) * der_rate;
+      der_k := -0.25 * ddq / rate * der_approach + mixed * der_rate;
+      der_c := mixed * der_approach - 0.5 * q / (rate * rate * rate) * der_rate;
+    end if;
+  end forceDerivative;
 
   model Example "A mass on the contact, under a constant load"
     parameter Real mass(unit = "kg/m") = {mass} "per unit length of contact";
@@ -147,7 +221,7 @@ def package(law: LawAtPoint, name: str, lines: Iterable[str]) -> str:
     InputError
         If the name is not allowed in Modelica, or if the speed is below the mapped ones, where films fade.
     """
-    if not _NAME.fullmatch(name) or name in _WORDS.split() or name in ("Table", "force", "Example"):
+    if not _NAME.fullmatch(name) or name in _WORDS.split() or name in _OWN:
         raise InputError(
             f"--name: got {name!r:.60}; allowed: up to 63 letters, digits and _, a letter first, no word of Modelica"
         )
@@ -248,7 +322,7 @@ def _chosen(
 TARGET = Target(
     summary="the contact law at one speed and temperature as pure functions, with an example",
     writes="MAP.mo",
-    read_back_by="rumoca (tests.benchmarks.modelica_export)",
+    read_back_by="rumoca",
     add_arguments=_add_arguments,
     write=_write,
 )

@@ -1,6 +1,7 @@
 """A rotor that runs up on two units in FMPy's CVODE, beside `mbs runup`.
 
 Run: python -m tests.benchmarks.fmu_rotor nu308.nc
+     python -m tests.benchmarks.fmu_rotor nu308.nc --films memory
 
 It exports the map twice, by FMI 2.0 for one bearing and by FMI 3.0 for the other, and prints the largest difference of
 each coordinate as a part of what it moves, and what both runs cost. `mbs` makes its steps at three lengths: its error
@@ -29,30 +30,39 @@ ROTOR = Rotor(
 )  # fmt: skip
 """From standstill to 2000 rpm."""
 
+ON_FILMS = dataclasses.replace(ROTOR, speeds=(150.0, 152.0), duration=0.05, slices=9)
+"""From 1432 to 1451 rpm: with memory each slice has a state, and `mbs` reads its tables of films every eight steps."""
+
+FILM_STEPS = (5e-6, 2.5e-6, 1.25e-6)
+
 
 def main() -> None:
     """Print differences and costs."""
     parser = argparse.ArgumentParser(description="A rotor on two units beside mbs runup.")
     parser.add_argument("map", help="map of the NU308, by `ehdmaps generate nu308`")
+    parser.add_argument("--films", choices=("slow", "memory"), default="slow", help="films of both")
     given = parser.parse_args()
+    rotor, steps = (ROTOR, STEPS) if given.films == "slow" else (ON_FILMS, FILM_STEPS)
     with tempfile.TemporaryDirectory() as name, contextlib.redirect_stderr(io.StringIO()):
         folder = Path(name)
         units = []
         for fmi in "23":
             options = ["--to", "fmu", "--fmi", fmi, "--clearance", "10 um", "-o", str(folder / f"{fmi}.fmu")]
+            options += ["--films", given.films, "--slices", str(rotor.slices)]
             with contextlib.redirect_stdout(io.StringIO()):
                 assert export(["export", given.map, *options]) == 0
             units.append(Unit(folder / f"{fmi}.fmu", folder / fmi))
         left, right = units
         states = left.description.numberOfContinuousStates
         print(
-            f"{ROTOR.duration:g} s from 0 to 2000 rpm, {states} states in a unit; differences of y, z, theta_y, theta_z"
+            f"{rotor.duration:g} s from {rotor.speeds[0]:g} to {rotor.speeds[1]:g} rad/s, {states} states in a unit; "
+            "differences of y, z, theta_y, theta_z"
         )
-        _one(ROTOR, given.map, (left, right), folder, TOLERANCES[-1], "to compile, not to be counted")
-        for step in STEPS:
-            _one(dataclasses.replace(ROTOR, step=step), given.map, (left, right), folder, TOLERANCES[-1])
+        _one(rotor, given.map, (left, right), folder, TOLERANCES[-1], "to compile, not to be counted")
+        for step in steps:
+            _one(dataclasses.replace(rotor, step=step), given.map, (left, right), folder, TOLERANCES[-1])
         for tolerance in TOLERANCES[:-1]:
-            _one(dataclasses.replace(ROTOR, step=STEPS[-1]), given.map, (left, right), folder, tolerance)
+            _one(dataclasses.replace(rotor, step=steps[-1]), given.map, (left, right), folder, tolerance)
 
 
 def _one(rotor: Rotor, map_file: str, units: tuple[Unit, Unit], folder: Path, tolerance: float, note: str = "") -> None:

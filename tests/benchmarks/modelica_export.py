@@ -3,9 +3,10 @@
 python -m venv RUMOCA && RUMOCA/bin/pip install "rumoca>=0.10.2,<0.11"
 python -m tests.benchmarks.modelica_export nu308.nc RUMOCA/bin/python
 
-rumoca has many releases and takes some seconds for each simulation of the table, so that it is no part of the
-tests. The law is compared over the whole table at three rates, the example with DOP853 on the law in Python, and an
-approach above the map has to stop the simulation.
+rumoca takes some seconds for each simulation of the table: `tests/system/test_export_modelica_read.py` makes two short
+ones. Here the law is compared over the whole table at three rates, its derivative in time with the statements of the
+package run by Python, which the unit tests compare with difference quotients, the example with DOP853 on the law in
+Python, and an approach above the map has to stop the simulation.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from scipy.integrate import solve_ivp
 
 import ehdmaps
 from ehdmaps.jobs.cli import main as export
+from tests.cases.modelica_text import functions
 
 SPEED, TEMPERATURE = 1.7, 313.15
 RATES = (0.0, 1e-3, -1.0)
@@ -34,9 +36,13 @@ SWEEP = """
     Real w;
     Real k;
     Real c;
+    Real dw;
+    Real dk;
+    Real dc;
   equation
     der(place) = 1.0;
     (w, k, c) = force(-2e-6 + (Table.highestApproach + 2e-6) * place, rate);
+    (dw, dk, dc) = forceDerivative(-2e-6 + (Table.highestApproach + 2e-6) * place, rate, 1e-3, 1.0);
   end Sweep;
 """
 
@@ -78,11 +84,14 @@ def main() -> None:
     done = subprocess.run([given.python, "-c", PROGRAM], input=asked, capture_output=True, text=True, check=True)
     *sweeps, above, example = json.loads(done.stdout)
     law = ehdmaps.open_map(given.map).law("series").at(SPEED, TEMPERATURE)
+    derivative = functions(text)["forceDerivative"]
     (highest,) = (float(x) for x in re.findall(r"highestApproach.* = (\S+) ", text))
     for rate, found in zip(RATES, sweeps, strict=True):
-        expected = law(-2e-6 + (highest + 2e-6) * np.array(found["place"]), rate)
+        approaches = -2e-6 + (highest + 2e-6) * np.array(found["place"])
+        derivatives = np.array([derivative(approach, rate, 1e-3, 1.0) for approach in approaches.tolist()]).T
+        expected = [*law(approaches, rate), *derivatives]
         shown = []
-        for name, values in zip("wkc", expected, strict=True):
+        for name, values in zip(("w", "k", "c", "dw", "dk", "dc"), expected, strict=True):
             differences = np.abs(np.array(found[name]) - values)
             shown.append(f"{name} {np.max(differences / np.maximum(np.abs(values), 1e-12 * np.abs(values).max())):.1e}")
         print(f"rate {rate:g} m/s, {len(found['w'])} places: largest relative differences {', '.join(shown)}")

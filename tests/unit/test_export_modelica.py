@@ -13,6 +13,7 @@ from ehdmaps.jobs.generate import generate
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.physics.closed_form import FormulaSolver
 from tests.cases.jobs import SMALL
+from tests.cases.modelica_text import functions
 
 AT = ("--speed", "0.7 m/s", "--temperature", "30 degC")
 
@@ -32,6 +33,7 @@ def test_the_table_gives_the_law(path, tmp_path, capsys):
     """The cubics by numpy, as a second reader of the text: 1e-12, round-off."""
     assert main(["export", str(path), "--to", "modelica", *AT, "-o", str(tmp_path / "a.mo")]) == 0
     text = (tmp_path / "a.mo").read_bytes().decode("ascii")
+    assert "annotation(derivative = forceDerivative, smoothOrder = 1)" in text
     assert "contact: series, entrainment speed 0.7 m/s, temperature 30 degC" in text
     table = text.split("cubic[")[1].split("{\n")[1].split('"')[0]
     cubics = np.array([row.split(",") for row in re.findall(r"\{([^{}]+)\}", table)], dtype=float)
@@ -50,6 +52,46 @@ def test_the_table_gives_the_law(path, tmp_path, capsys):
     assert w[-1] == pytest.approx(1e6, rel=1e-9), "the table ends where the map ends"
 
 
+@pytest.fixture(scope="module")
+def both(path, tmp_path_factory):
+    """Functions of the package, its law, and approaches from below lift-off to the end of the map."""
+    file = tmp_path_factory.mktemp("package") / "a.mo"
+    assert main(["export", str(path), "--to", "modelica", *AT, "-o", str(file)]) == 0
+    text = file.read_text()
+    law = ehdmaps.open_map(path).law("series").at(0.7, 303.15)
+    return functions(text), law, np.linspace(-4e-6, 0.999 * number(text, "highestApproach"), 60)
+
+
+RATES = (0.0, 1e-3, -1e-4, -1.0)
+"""At rest, together, slowly apart, and so fast that the contact cannot follow, which is another branch [m/s]."""
+
+
+def test_the_functions_give_the_law(both):
+    """The statements of the package, run: 1e-12, round-off; above the map they refuse."""
+    package, law, approaches = both
+    for rate in RATES:
+        found = np.array([package["force"](approach, rate) for approach in approaches])
+        for values, wanted in zip(found.T, law(approaches, rate), strict=True):
+            np.testing.assert_allclose(values, wanted, rtol=1e-12, atol=1e-12 * np.max(wanted))
+    with pytest.raises(ValueError, match="approach is above the map"):
+        package["force"](1.0, 0.0)
+
+
+def test_the_derivative(both):
+    """By approach and by rate, and along both at once, against central quotients of the law.
+
+    1e-5 is the error of the second order of their steps, 1e-14 of the values the round-off that is in a difference.
+    """
+    package, law, approaches = both
+    for rate in RATES:
+        for steps in ((1e-10, 0.0), (0.0, max(1e-3 * abs(rate), 1e-6)), (1e-10, 1e-3 * abs(rate))):
+            found = np.array([package["forceDerivative"](approach, rate, *steps) for approach in approaches]).T
+            sides = [law(approaches + side * steps[0], rate + side * steps[1]) for side in (1.0, -1.0)]
+            for values, above, below in zip(found, *sides, strict=True):
+                quotient = 0.5 * (above - below)
+                assert np.all(np.abs(values - quotient) <= 1e-5 * np.abs(quotient) + 1e-14 * np.abs(above))
+
+
 @pytest.mark.parametrize(
     ("options", "said"),
     [
@@ -58,6 +100,7 @@ def test_the_table_gives_the_law(path, tmp_path, capsys):
         ((*AT, "--contact", "line"), "--contact: got 'line'"),
         ((*AT, "--name", "x; end"), "--name: got 'x; end'"),
         ((*AT, "--name", "model"), "--name: got 'model'"),
+        ((*AT, "--name", "forceDerivative"), "--name: got 'forceDerivative'"),
     ],
 )
 def test_what_is_refused(path, tmp_path, capsys, options, said):
