@@ -109,8 +109,8 @@ def test_other_laws(tmp_path, job, options):
         assert_law(kernel, law, u, T, 0.0)
 
 
-def assert_bearing(kernel, force, rng, size, u, T, q):
-    """A bearing at some poses."""
+def assert_bearing(kernel, force, rng, size, u, T, q, level=False):
+    """A bearing at some poses, tilted or level."""
     kernel.prepare(u, T, q)
     at = force.at(u, T, q)
     units = np.array([1.0, 1.0, 1.0, 100.0, 100.0, 100.0])
@@ -118,6 +118,8 @@ def assert_bearing(kernel, force, rng, size, u, T, q):
     scale = np.vstack([arms, np.outer(arms, arms), np.outer(arms, arms)])
     for speed in (0.0, 1e-4, 3e-2):
         pose, velocity = rng.normal(size=(2, 6)) * units * [[size], [speed]]
+        if level:
+            pose[3:] = velocity[3:] = 0.0
         cage = float(rng.uniform(-7.0, 7.0))
         wanted = at.evaluate(pose, velocity, cage)
         status, found = kernel.force(pose, velocity, cage)
@@ -142,13 +144,32 @@ def test_bearing(centrifugal, law, small_map, clearance, slices, q):
             assert_bearing(centrifugal, force, rng, size, u, T, own)
 
 
+@pytest.mark.parametrize("slices", [1, 2, 5, 12, 41])
+def test_level(centrifugal, law, small_map, slices):
+    """Level rollers, of which C computes one half: odd and even numbers of slices, slow and fast motion."""
+    geometry = dataclasses.replace(open_map(small_map).bearing, diametral_clearance=4e-6)
+    force, rng = BearingForce(Bearing(geometry, slices=slices), law), np.random.default_rng(slices)
+    assert centrifugal.make(4e-6, slices) == 0
+    for u, T, q in conditions(law, 4, q=(0.0, 300.0), seed=slices):
+        for size in (4e-6, 4e-5):
+            assert_bearing(centrifugal, force, rng, size, u, T, q, level=True)
+
+
+def test_beyond_the_cells(centrifugal, law, small_map):
+    """Rollers as far in and out as a pose may be: farther than the table of a prepared law reaches."""
+    force, rng = BearingForce(Bearing(open_map(small_map).bearing, slices=8), law), np.random.default_rng(5)
+    assert centrifugal.make(open_map(small_map).bearing.diametral_clearance, 8) == 0
+    for u, T, q in conditions(law, 6, q=(0.0, 300.0)):
+        assert_bearing(centrifugal, force, rng, 2e-3, u, T, q, level=True)
+
+
 def test_profile(centrifugal, law, small_map):
     """Rollers of another profile, and numbers of slices that are not allowed."""
     bearing = Bearing(open_map(small_map).bearing, slices=7, profile=tuple(np.linspace(0.0, 6e-6, 7)))
     assert centrifugal.make(0.0, 7, bearing.profile_depths) == 0
-    assert_bearing(
-        centrifugal, BearingForce(bearing, law), np.random.default_rng(0), 1e-5, 1.0, law.temperature_range[0], 0.0
-    )
+    force, rng = BearingForce(bearing, law), np.random.default_rng(0)
+    for level in (False, True):
+        assert_bearing(centrifugal, force, rng, 1e-5, 1.0, law.temperature_range[0], 0.0, level=level)
     for slices in (0, 202):
         assert centrifugal.make(0.0, slices) == BAD_ARGUMENT
 

@@ -17,16 +17,18 @@
 /* What does not change of a bearing; made by ehd_bearing_make. */
 typedef struct ehd_bearing {
     int slices;
-    double clearance, slice_length, least_profile; /* [m] */
-    double position[EHD_MOST_SLICES];              /* middles of the slices along the roller [m] */
-    double profile[EHD_MOST_SLICES];               /* twice the depth of the roller's profile there [m] */
-    double cosine[EHD_ROLLERS], sine[EHD_ROLLERS]; /* directions of the rollers in the cage */
+    int symmetric;                                               /* whether the profile is */
+    double clearance, slice_length, least_profile, most_profile; /* [m] */
+    double position[EHD_MOST_SLICES + 1];                        /* middles of the slices along the roller [m] */
+    double profile[EHD_MOST_SLICES + 1];                         /* twice the depth of the roller's profile there [m] */
+    double cosine[EHD_ROLLERS], sine[EHD_ROLLERS];               /* directions of the rollers in the cage */
 } ehd_bearing;
 
 /* The law at one speed, temperature and centrifugal load, as a table that a bearing reads in nanoseconds; made by
  * ehd_prepare. Some 150 kB: make it static, or on the heap, and one for each thread. The cells are the binary digits of
  * 1 + |z|, z = (approach - centre) inverse_scale: no logarithm is needed to find one. */
 typedef struct ehd_prepared {
+    double cell[2 * EHD_ROWS][4][2];    /* cubics of load and damping, in turns */
     ehd_point point;
     int kind;
     double centre, inverse_scale;       /* of the cells [m], [1/m] */
@@ -36,7 +38,6 @@ typedef struct ehd_prepared {
     double lift_off;                    /* up to it there is no load [m] */
     double slope;                       /* what slopes are multiplied by */
     double held_approach, held_damping; /* of the tangent above the held load */
-    double cell[2 * EHD_ROWS][4][2];    /* cubics of load and damping, in turns */
     double knot[2 * EHD_ROWS];          /* where cells begin [m], below the lowest mapped speed */
     double node[6][EHD_NODES];          /* work space */
 } ehd_prepared;
