@@ -14,8 +14,8 @@ from mbs.stability import readers as of_mbs
 
 READERS = {**of_ehdmaps.READERS, **of_mbs.READERS}
 
-MUTATIONS = 500
-"""Damaged files for each reader; the long form has 10000."""
+MUTATIONS = 250
+"""Damaged files for each reader; the long form, the commands `stability` of both programs, has 10000."""
 
 
 @pytest.mark.parametrize("name", READERS)

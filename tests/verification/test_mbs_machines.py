@@ -49,11 +49,10 @@ def with_load(scene, factor):
 
 @pytest.fixture(scope="module")
 def films(emap):
-    """Sweeps of the gearbox with films, by clearance."""
-    speeds = np.linspace(FROM, TO, 11)
+    """Sweeps of the gearbox with films, by clearance; shifts are summed over the steps of those with clearance."""
     return {
-        clearance: sweep(assemble(read_scene("gearbox"), "map", emap, clearance).system, speeds)
-        for clearance in (0.0, 20e-6, 40e-6)
+        clearance: sweep(assemble(read_scene("gearbox"), "map", emap, clearance).system, np.linspace(FROM, TO, points))
+        for clearance, points in ((0.0, 4), (20e-6, 11), (40e-6, 11))
     }
 
 
@@ -134,8 +133,8 @@ class TestGearbox:
             speed = SpeedProfile.constant(1500.0 * RPM)
             start = equilibrium(model.system, Operation(1500.0 * RPM))
             settings = Settings(step, 20e-6, 0.9)
-            recorded = run(model.system, speed, 0.2, settings, self.scene.sensors, displacement=start.displacement)
-            found.append(recorded.signals[5000:])
+            recorded = run(model.system, speed, 0.12, settings, self.scene.sensors, displacement=start.displacement)
+            found.append(recorded.signals[2000:])  # two turns, after five decay times of a mode at 1.1 kHz with 2 %
         levels = [20.0 * np.log10(np.sqrt(np.mean(part**2, axis=0))) for part in found]
         # Periods at 5 kHz differ by 0.6 % between these steps, which moves resonances under the orders.
         np.testing.assert_allclose(levels[0], levels[1], atol=0.5)

@@ -16,7 +16,7 @@ namespace Foam
 
 
 //- Change of v and of a temperature [T_b] over which the equations are linear
-static constexpr scalar pressureStep = 1e-7, warmthStep = 1e-7;
+static constexpr scalar stressPressureStep = 1e-7, stressWarmthStep = 1e-7;
 
 
 //- Viscosity between two places, of layers under one stress: over 1 over the mean of 1/mu of an exponential mu
@@ -101,8 +101,8 @@ Foam::scalar Foam::fullStress::cellStep
     const label row
 ) const
 {
-    if (kind == pressure) return pressureStep;
-    if (kind == warmth) return warmthStep;
+    if (kind == pressure) return stressPressureStep;
+    if (kind == warmth) return stressWarmthStep;
     auto speed = [&](const label j) { return state.local[place(column, j, along)]; };
     const scalar here = speed(row), unit = contact_.entrainment();
     return velocityStep

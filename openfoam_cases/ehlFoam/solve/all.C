@@ -1,0 +1,16 @@
+/*---------------------------------------------------------------------------*\
+  ehlFoam - film-resolved elastohydrodynamic line contacts
+  Copyright (C) 2026 the ehdmaps authors
+  SPDX-License-Identifier: GPL-3.0-or-later
+\*---------------------------------------------------------------------------*/
+
+// All of this folder in one piece: the headers of OpenFOAM take longer to read than this code.
+
+#include "blockTridiagonal.C"
+#include "slice.C"
+#include "linearisation.C"
+#include "newton.C"
+#include "startPressure.C"
+#include "steadyState.C"
+#include "response.C"
+#include "oscillation.C"
