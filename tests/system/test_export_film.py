@@ -72,7 +72,7 @@ def assert_steps(kernel, memory, lowest, rng, size):
         status, found, held = kernel.film_advance(held, delta, step, state.step)
         assert status & (NOT_FINITE | BAD_ARGUMENT) == 0
         assert abs(found[0] - w) <= EXACT * (w + lowest)
-        if w > 0.0:
+        if w > 1e-9 * lowest:  # hardly a load has a stiffness of rounding
             # where the rate of squeezing turns, stiffness changes a hundred times as fast as the load
             assert abs(found[1] - tangent) <= 100.0 * EXACT * tangent * (1.0 + lowest / w)
         state = after

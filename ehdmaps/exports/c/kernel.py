@@ -102,13 +102,16 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) ->
     law = emap.law(kind, options.outside)
     bearing = emap.bearing if kind == "series" else None
     banner = _comment(header)
-    parts = ("law", "film", "bearing", "film_bearing") if bearing is not None else ("law", "film")
+    heads, bodies = ["law", "film"], ["law", "cells", "film"]
+    if bearing is not None:
+        heads += ["bearing", "film_bearing"]
+        bodies += ["prepare", "bearing", "film_bearing"]
     guard = "EHD_H"
     top = [
         banner, f"#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n",
         _public_numbers(law, bearing, options),
         '#ifdef __cplusplus\nextern "C" {\n#endif\n',
-        *(_template(f"{part}.h") for part in parts),
+        *(_template(f"{part}.h") for part in heads),
         f"#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n",
     ]  # fmt: skip
     source = [
@@ -116,8 +119,7 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) ->
         _template("tables.c"),
         _private_numbers(law, options.centrifugal),
         _film_numbers(law),
-        _template("law.c"), _template("cells.c"),
-        *(_template(f"{part}.c") for part in parts[1:]),
+        *(_template(f"{part}.c") for part in bodies),
     ]  # fmt: skip
     texts = {"ehd.h": "\n".join(top), "ehd.c": "\n".join(source)}
     if bearing is not None:
