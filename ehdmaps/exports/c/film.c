@@ -309,9 +309,9 @@ int ehd_film_advance(const ehd_film *film, double step, double last_step, double
     return status;
 }
 
-/* Place in a cell from 0 to its width h, of either sign, at which a cubic that rises has a value. */
-static double place_in(const double cubic[4], double h, double value) {
-    double low = h < 0.0 ? h : 0.0, high = h < 0.0 ? 0.0 : h, t = 0.5 * h;
+/* Place in a cell, from 0 to its width, at which a cubic that rises has a value. */
+static double place_in(const double cubic[4], double width, double value) {
+    double low = 0.0, high = width, t = 0.5 * width;
     for (int n = 0; n < FILM_STEPS; n++) {
         const reading at = read_cubic(cubic, t);
         if (at.value > value)
@@ -322,7 +322,7 @@ static double place_in(const double cubic[4], double h, double value) {
         if (!(low <= following && following <= high)) following = 0.5 * (low + high);
         const double moved = fabs(following - t);
         t = following;
-        if (moved <= FILM_EXACT * fabs(h)) break;
+        if (moved <= FILM_EXACT * width) break;
     }
     return t;
 }

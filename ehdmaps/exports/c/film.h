@@ -20,17 +20,17 @@
 #define EHD_NODES (2 * EHD_ROWS + 1)
 #define EHD_LOAD_ROWS 768
 
-/* The law with memory at one speed and temperature; made by ehd_film_at. Some 170 kB: make it static, or on the heap,
+/* The law with memory at one speed and temperature; made by ehd_film_at. Some 190 kB: make it static, or on the heap,
  * and one for each thread. Its fields are for the functions here. */
 typedef struct ehd_film {
     ehd_point point;
-    double centre, inverse_scale;         /* of the cells [m], [1/m] */
-    double lift_off;                      /* approach up to which nothing is carried [m] */
-    double highest;                       /* load above which slices are outside the map [N/m] */
-    double least_damping;                 /* what is added to dG/dxi for rates [N s/m2] */
-    double cell[2 * EHD_ROWS][3][4];      /* cubics of p [N/m], y [m] and G [N s/m2] */
-    double load_cell[EHD_LOAD_ROWS][4];   /* cubics of a [m] */
-    double node[9][EHD_NODES];            /* work space */
+    double centre, inverse_scale;       /* of the cells [m], [1/m] */
+    double lift_off;                    /* approach up to which nothing is carried [m] */
+    double highest;                     /* load above which slices are outside the map [N/m] */
+    double least_damping;               /* what is added to dG/dxi for rates [N s/m2] */
+    double cell[2 * EHD_ROWS][3][4];    /* cubics of p [N/m], y [m] and G [N s/m2] */
+    double load_cell[EHD_LOAD_ROWS][4]; /* cubics of a [m] */
+    double node[9][EHD_NODES];          /* work space */
 } ehd_film;
 
 /* A film between two discrete steps: the approach at which it would be in equilibrium [m], what the last step changed
@@ -46,8 +46,9 @@ typedef struct ehd_film_rates {
     double rate, rate_by_approach, rate_by_state;
 } ehd_film_rates;
 
-/* The law with memory at an entrainment speed [m/s], of either sign, and temperature [K]. Takes some tenths of a
- * millisecond; the last call's film is kept where neither has changed: set everything in it to zero before the first. */
+/* The law with memory at an entrainment speed [m/s], of either sign, and temperature [K]. Takes some 0.1 ms
+ * where one of them is new; where neither is, the film is left as it is: set everything in it to zero before the first
+ * call. */
 int ehd_film_at(ehd_film *film, double u, double T);
 
 /* A film in equilibrium at an approach [m]. */

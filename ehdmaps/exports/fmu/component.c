@@ -154,6 +154,7 @@ static void quotients_by(component *of, unsigned known) {
     ehd_film_rates rates[FILMS + 1];
     const double step = step_of(known, of->now.values[known]);
     if (of->asked == known) return;
+    const snapshot now = of->now; /* films that have not begun settle at the inputs of each call */
     for (int side = 0; side < 2; side++) {
         memcpy(values, of->now.values, sizeof values);
         values[known] += side ? step : -step;
@@ -166,6 +167,7 @@ static void quotients_by(component *of, unsigned known) {
         for (int i = 0; i < OUTPUTS; i++) found[side][i] = result.force[DIRECTION[i]];
         for (int n = 0; n < FILMS; n++) found[side][OUTPUTS + n] = rates[n].rate;
     }
+    of->now = now;
     for (int i = 0; i < OUTPUTS + FILMS; i++) of->quotients[i] = (found[1][i] - found[0][i]) / (place[1] - place[0]);
     of->asked = known;
 }
