@@ -60,6 +60,30 @@ class Lines:
     number: FloatArray
 
 
+@dataclass(frozen=True)
+class Place:
+    """Place of a diagram among several of a result.
+
+    Attributes
+    ----------
+    number : int
+        Number of the diagram, from 0 on.
+    case : str
+        Name of its case.
+    begins : str
+        Beginning of what is said.
+    """
+
+    number: int = 0
+    case: str = ""
+    begins: str = ""
+
+    @property
+    def name(self) -> str:
+        """Name on the page."""
+        return f"campbell-{self.number + 1}" if self.number else "campbell"
+
+
 def lines_of(found: Sweep) -> Lines:
     """Return the complex modes of a sweep.
 
@@ -138,11 +162,11 @@ def _modes(one: xr.Dataset, orders: Sequence[tuple[float, str]], highest: float,
         one["complex_bearing_share"].values,
         np.asarray(one["complex_number"].values, dtype=np.float64),
     )
-    return campbell(lines, orders, highest, None, f"{one['case'].values}. From {source}. ", n)
+    return campbell(lines, orders, highest, None, Place(n, str(one["case"].values), f"From {source}. "))
 
 
 def campbell(
-    lines: Lines, orders: Sequence[tuple[float, str]], highest: float, speed: float | None, begins: str = "", n: int = 0
+    lines: Lines, orders: Sequence[tuple[float, str]], highest: float, speed: float | None, place: Place | None = None
 ) -> Markup:
     """Return the diagram of modes over speed, with what excites them.
 
@@ -156,11 +180,10 @@ def campbell(
         Highest frequency that is drawn [Hz].
     speed : float or None
         Operating speed, which is marked [rad/s].
-    begins : str
-        Beginning of what is said.
-    n : int
-        Number of the diagram on its page, from 0 on.
+    place : Place or None
+        Place among several diagrams.
     """
+    place = place or Place()
     rpm = RPM.factor * lines.speeds
     inside = np.flatnonzero(np.any(lines.frequency <= highest, axis=0))
     with_bearings = bool(np.nanmax(lines.share, initial=0.0) > 0.0)
@@ -194,9 +217,9 @@ def campbell(
             Points("operating speed", np.array([RPM.factor * speed]), np.array([np.nan]), "diamond", "#5a0010")
         )
     chart = Chart(
-        _name(n),
-        "Frequencies of the modes over speed",
-        begins + " ".join(_says(lines, crossings, speed)),
+        place.name,
+        "Frequencies of the modes over speed" + (f", {place.case}" if place.case else ""),
+        place.begins + " ".join(_says(lines, crossings, speed)),
         linear_axis("speed", "rpm", rpm, from_zero=False),
         linear_axis("frequency", "Hz", np.array([0.0, highest])),
         rpm,
@@ -205,11 +228,6 @@ def campbell(
         frame=WIDE,
     )
     return tag("div", figure(chart), class_="single")
-
-
-def _name(n: int) -> str:
-    """Name of a diagram on its page."""
-    return f"campbell-{n + 1}" if n else "campbell"
 
 
 def _order_curves(speeds: FloatArray, orders: Sequence[tuple[float, str]]) -> list[Curve]:
@@ -294,7 +312,7 @@ def _levels(one: xr.Dataset, orders: Sequence[tuple[float, str]], highest: float
     loudest = int(np.nanargmax(sums)) if np.isfinite(sums).any() else 0
     begins = np.asarray(one["speed"].values, dtype=np.float64)
     chart = Chart(
-        _name(n),
+        Place(n).name,
         f"Levels of a run over speed, {one['law'].values}",
         f"From {source}. The darkest class is {top - _CLASS:g} to {top:g} {unit}, each lighter one {_CLASS:g} dB less. "
         f"The sum level is highest, {number(float(sums[loudest]), 4)} {unit}, at "

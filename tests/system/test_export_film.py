@@ -21,8 +21,9 @@ from tests.cases.c_kernel import Kernel, compiled
 from tests.cases.jobs import LINE
 from tests.conftest import made_map
 
-EXACT = 1e-11
-"""What Newton's method leaves of a state, 1e-13 of its place, as a part of the load and of the lowest mapped one."""
+EXACT = 1e-9
+"""Rounding, as a part of the load and of the lowest mapped one. A short step after a long one magnifies that of a state,
+1e-13 of its place, by the film's damping over its length."""
 
 ABOVE_SPEED, NOT_FINITE, BAD_ARGUMENT = 2, 8, 64
 
@@ -73,8 +74,8 @@ def assert_steps(kernel, memory, lowest, rng, size):
         assert status & (NOT_FINITE | BAD_ARGUMENT) == 0
         assert abs(found[0] - w) <= EXACT * (w + lowest)
         if w > 1e-9 * lowest:  # hardly a load has a stiffness of rounding
-            # where the rate of squeezing turns, stiffness changes a hundred times as fast as the load
-            assert abs(found[1] - tangent) <= 100.0 * EXACT * tangent * (1.0 + lowest / w)
+            # where the rate of squeezing turns, stiffness changes faster than the load
+            assert abs(found[1] - tangent) <= 10.0 * EXACT * tangent * (1.0 + lowest / w)
         state = after
 
 

@@ -103,7 +103,9 @@ def test_all_cases_of_a_result_are_drawn():
     many = xr.concat([one.assign_coords(case=[f"case {n}"]) for n in range(8)], "case", data_vars="minimal")
     report = Report(str(saved_campbell(many, [(2.0, "2")], 500.0, "sweep.nc")))
     assert sorted(report.charts) == ["campbell", *(f"campbell-{n}" for n in range(2, 7))]
-    assert "case 5. From sweep.nc." in report.words and "Not drawn: case 6, case 7." in report.words
+    assert (
+        "Frequencies of the modes over speed, case 5" in report.words and "Not drawn: case 6, case 7." in report.words
+    )
 
 
 def test_other_files_are_no_results(tmp_path):
