@@ -22,8 +22,8 @@ from tests.cases.jobs import LINE
 from tests.conftest import made_map
 
 EXACT = 1e-9
-"""Rounding, as a part of the load and of the lowest mapped one. A short step after a long one magnifies that of a state,
-1e-13 of its place, by the film's damping over its length."""
+"""Rounding, as a part of the load and of the lowest mapped one. A short step after a long one magnifies that of a
+state, 1e-13 of its place, by the film's damping over its length."""
 
 ABOVE_SPEED, NOT_FINITE, BAD_ARGUMENT = 2, 8, 64
 
