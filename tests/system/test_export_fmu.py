@@ -317,6 +317,21 @@ def test_films_in_cosimulation(remembering, sliced, small_map):
     np.testing.assert_allclose(found[1:], wanted, rtol=1e-8)
 
 
+def test_films_far_off(remembering):
+    """Solvers try states far from where they end: loads above the map refuse the force, and its reason is told."""
+    for unit in remembering.values():
+        model, count = unit.instance(), unit.description.numberOfContinuousStates
+        room = (ctypes.c_double * count)(*[-1e-3] * count)
+        unit.put(model, ["pose.y", "speed.inner", "temperature"], [2e-4, 90.0, T])
+        model.setContinuousStates(room, count)
+        rates = model.getDerivatives if unit.second else model.getContinuousStateDerivatives
+        rates(room, count)
+        assert np.all(np.isfinite(list(room))) and np.max(room) > 1.0
+        with pytest.raises(FMICallException):
+            unit.get(model)
+        model.freeInstance()
+
+
 def resting(sliced, pose, conditions):
     """Films in equilibrium that have not made a step."""
     _, films = sliced.advance(None, pose, 1e6, **conditions)

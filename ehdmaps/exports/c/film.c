@@ -384,9 +384,7 @@ int ehd_film_rate(const ehd_film *film, double approach, double state, ehd_film_
         if (!is_finite(rates->load + fabs(rates->rate) + fabs(rates->rate_by_approach) + fabs(rates->rate_by_state)))
             status |= EHD_NOT_FINITE;
     }
-    if (EHD_REFUSES(status)) {
-        rates->load = rates->stiffness = rates->by_state = NAN;
-        rates->rate = rates->rate_by_approach = rates->rate_by_state = NAN;
-    }
+    if (EHD_REFUSES(status)) rates->load = rates->stiffness = rates->by_state = NAN;
+    if (EHD_REFUSES(status & ~EHD_ABOVE_LOAD)) rates->rate = rates->rate_by_approach = rates->rate_by_state = NAN;
     return status;
 }

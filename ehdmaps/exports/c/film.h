@@ -68,7 +68,8 @@ int ehd_film_advance(const ehd_film *film, double step, double last_step, double
 #define EHD_SHORTEST_MEMORY 1e-12
 #define EHD_OPENING 1e-3
 
-/* Load and rate at an approach [m] and a state xi [m]: a differential equation, stiff where contacts carry little. */
+/* Load and rate at an approach [m] and a state xi [m]: a differential equation, stiff where contacts carry little. The
+ * rate and its derivatives are numbers above the highest mapped load too: solvers try states far from where they end. */
 int ehd_film_rate(const ehd_film *film, double approach, double state, ehd_film_rates *rates);
 
 /* Size of a film in bytes, for callers in other languages. */

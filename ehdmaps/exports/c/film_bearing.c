@@ -48,7 +48,7 @@ int ehd_bearing_advance(const ehd_bearing *bearing, const ehd_film *film, double
             const int n = j * bearing->slices + i;
             ehd_force force;
             status |= ehd_film_advance(film, step, last_step, approach_of(bearing, &r, i), &before[n], &after[n], &force);
-            add_slice(bearing->position[i], force.load, force.stiffness, &sum);
+            if (!EHD_REFUSES(status)) add_slice(bearing->position[i], force.load, force.stiffness, &sum);
         }
         add_roller(&r, &sum, result);
     }
@@ -69,7 +69,7 @@ int ehd_bearing_rates(const ehd_bearing *bearing, const ehd_film *film, const do
         for (int i = 0; i < bearing->slices; i++) {
             const int n = j * bearing->slices + i;
             status |= ehd_film_rate(film, approach_of(bearing, &r, i), states[n], &rates[n]);
-            add_slice(bearing->position[i], rates[n].load, rates[n].stiffness, &sum);
+            if (!EHD_REFUSES(status)) add_slice(bearing->position[i], rates[n].load, rates[n].stiffness, &sum);
         }
         add_roller(&r, &sum, result);
     }

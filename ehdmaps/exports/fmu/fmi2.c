@@ -216,7 +216,8 @@ fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real x[], size_t n) {
     return n ? refuse(c, "there are no event indicators") : fmi2OK;
 }
 
-/* States of films, and their rates: none without memory. */
+/* States of films, and their rates: none without memory. Solvers try states far from where they end: loads above the
+ * map refuse forces, but no rates. */
 
 static const char WRONG_COUNT[] = "another number of continuous states than there are";
 
@@ -230,7 +231,7 @@ fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n
 
 static fmi2Status get_all(instance *self, unsigned first, fmi2Real x[], size_t n) {
     if (n != FILMS) return refuse(self, WRONG_COUNT);
-    const fmi2Status status = n ? judged(self, component_update(self->of)) : fmi2OK;
+    const fmi2Status status = n ? judged(self, component_update(self->of) & ~EHD_ABOVE_LOAD) : fmi2OK;
     for (size_t i = 0; i < n; i++) component_get(self->of, first + (unsigned)i, &x[i]);
     return status;
 }

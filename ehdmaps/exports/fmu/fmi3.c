@@ -345,7 +345,8 @@ fmi3Status fmi3GetEventIndicators(fmi3Instance c, fmi3Float64 x[], size_t n) {
     return n ? refuse(c, "there are no event indicators") : fmi3OK;
 }
 
-/* States of films, and their rates: none without memory. */
+/* States of films, and their rates: none without memory. Solvers try states far from where they end: loads above the
+ * map refuse forces, but no rates. */
 
 static const char WRONG_COUNT[] = "another number of continuous states than there are";
 
@@ -359,7 +360,7 @@ fmi3Status fmi3SetContinuousStates(fmi3Instance c, const fmi3Float64 x[], size_t
 
 static fmi3Status get_all(instance *self, unsigned first, fmi3Float64 x[], size_t n) {
     if (n != FILMS) return refuse(self, WRONG_COUNT);
-    const fmi3Status status = n ? judged(self, component_update(self->of)) : fmi3OK;
+    const fmi3Status status = n ? judged(self, component_update(self->of) & ~EHD_ABOVE_LOAD) : fmi3OK;
     for (size_t i = 0; i < n; i++) component_get(self->of, first + (unsigned)i, &x[i]);
     return status;
 }

@@ -49,7 +49,8 @@ static int film_sound(const ehd_film *film) {
     if (!sound(status, &force.load, 1) || !sound(status, &force.stiffness, 1) || force.load < 0.0) return 0;
     if (!sound(status, &state.approach, 1) || force.stiffness < 0.0) return 0;
     status = ehd_film_rate(film, approach, number(1e-4), &rates);
-    return sound(status, &rates.load, 6) && !(rates.load < 0.0) && !(rates.stiffness < 0.0);
+    if (!sound(status & ~EHD_ABOVE_LOAD, &rates.rate, 3)) return 0;
+    return sound(status, &rates.load, 3) && !(rates.load < 0.0) && !(rates.stiffness < 0.0);
 }
 
 int main(int count, char **arguments) {
