@@ -338,6 +338,7 @@ def resting(sliced, pose, conditions):
     return dataclasses.replace(films, change=np.zeros_like(films.change), step=0.0)
 
 
+@pytest.mark.slow
 def test_rotor_on_films(remembering, small_map, tmp_path):
     """The rotor on two units with memory, all states in FMPy's CVODE: that of `mbs runup` within 1e-4.
 
