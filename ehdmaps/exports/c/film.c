@@ -18,8 +18,9 @@
 /* Cubics of a cell. */
 enum { P_OF, Y_OF, G_OF };
 
-/* Rows of ehd_film.node: p, then what the table is made of. */
-enum { NODE_P, NODE_Z, NODE_K, NODE_Y, NODE_G, NODE_BY_Y, NODE_BY_C, NODE_BEYOND, NODE_SLOPE };
+/* Rows of ehd_film.node: place z, load p, stiffness k, y and G at the nodes; slopes of y and G by the approach; what a
+ * has beyond the structure, and its slope by the load. */
+enum { NODE_Z, NODE_P, NODE_K, NODE_Y, NODE_G, NODE_BY_Y, NODE_BY_C, NODE_BEYOND, NODE_SLOPE };
 
 /* A value that is read from a cell, and its slope. */
 typedef struct reading {
