@@ -6,12 +6,11 @@ kind of slice, a tenth of all that is compiled.
 
 from __future__ import annotations
 
-from numba import njit
-
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(error_model="numpy", forceinline=True)
 def put(values: FloatArray, out: FloatArray) -> None:
     """Copy one row into another, as long as the latter.
 

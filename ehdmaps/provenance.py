@@ -1,21 +1,34 @@
-"""Which state of the sources runs: the commit of the clone, or else a hash of what the packages contain."""
+"""Which state of the sources runs: the commit of the clone, and one hash of all that a number is computed with.
+
+The hash is the only thing that says whether two numbers come from the same code. Compiled code (`ehdmaps.compiled`),
+solved points (`ehdmaps.jobs.tasks`) and reduced bodies (`mbs.flexible.kept`) are kept under it, and maps and results
+state it. So nothing that an older version made is ever taken for the work of a newer one.
+"""
 
 from __future__ import annotations
 
 import functools
 import hashlib
 import os
+import platform
 import subprocess
+from importlib import metadata
 from pathlib import Path
 
 PACKAGES = ("ehdmaps", "mbs")
 """Packages of the distribution."""
 
+ROOT = Path(__file__).parents[1]
+"""The folder that holds the packages: of a clone its top, of an installation its `site-packages`."""
+
 DIGITS = 10
-"""Of the commit and of the hash: enough that no two states of a project share them."""
+"""Of the commit and of the hash of a version: enough that no two states of a project share them."""
 
 PATIENCE = 2.0
 """Seconds that git is given; it needs some milliseconds."""
+
+_COMPUTE = ("numba", "llvmlite", "numpy", "scipy")
+"""Distributions whose version may change the last digits of a number, or the compiled code."""
 
 
 @functools.cache
@@ -25,16 +38,67 @@ def source_state(root: Path) -> str:
     Parameters
     ----------
     root : Path
-        The folder that holds the packages: of a clone its top, of an installation its `site-packages`.
+        The folder that holds the packages.
 
     Returns
     -------
     str
-        State of the sources. In a clone it is the commit: "g19eceb2715", with ".dirty" where a file that git tracks was
-        changed. Elsewhere, and where git is missing or refuses, a hash of the packages' Python files: "src.5d41402abc".
-        Empty where there is neither. Found once a process, in some 10 ms.
+        State of the sources. In a clone it is the commit: "g19eceb2715", with ".dirty" and a hash of the packages'
+        Python files where a file that git tracks was changed: "g19eceb2715.dirty.5d41402abc". Elsewhere, and where git
+        is missing or refuses, the hash alone: "src.5d41402abc". Empty where there is neither. Found once a process, in
+        some 20 ms.
     """
-    return _commit(root) or _hash(root)
+    commit = _commit(root)
+    if commit and not commit.endswith(".dirty"):
+        return commit
+    found = sources_hash(root)[:DIGITS]
+    return ".".join(filter(None, (commit or (found and "src"), found)))
+
+
+def sources_hash(root: Path = ROOT) -> str:
+    """Return a hash over names and contents of the packages' Python files.
+
+    Parameters
+    ----------
+    root : Path
+        The folder that holds the packages.
+
+    Returns
+    -------
+    str
+        64 hexadecimal digits; empty where no file is found, or one cannot be read.
+    """
+    found = hashlib.sha256()
+    names = sorted(
+        path.relative_to(root).as_posix() for package in PACKAGES for path in root.glob(f"{package}/**/*.py")
+    )
+    try:
+        for name in names:
+            content = (root / name).read_bytes()
+            found.update(f"{name}\0{len(content)}\0".encode() + content)
+    except OSError:
+        return ""
+    return found.hexdigest() if names else ""
+
+
+@functools.cache
+def code_hash() -> str:
+    """Return the hash of all that a number is computed with.
+
+    Returns
+    -------
+    str
+        16 hexadecimal digits, over the Python files of this distribution and the versions of Python, numba, LLVM's
+        binding, numpy and scipy. The processor is not in it: points that the nodes of a cluster solve belong together.
+        Compiled code is kept apart by processor besides.
+    """
+    versions = [f"{platform.python_implementation()} {platform.python_version()}"]
+    for name in _COMPUTE:
+        try:
+            versions.append(f"{name} {metadata.version(name)}")
+        except metadata.PackageNotFoundError:
+            versions.append(f"{name} missing")
+    return hashlib.sha256("\0".join((sources_hash(), *versions)).encode()).hexdigest()[:16]
 
 
 def _commit(root: Path) -> str:
@@ -58,18 +122,3 @@ def _commit(root: Path) -> str:
         return ""
     commit, _, mark = found.stdout.strip().partition("-")
     return f"g{commit}" + (f".{mark}" if mark else "")
-
-
-def _hash(root: Path) -> str:
-    """Hash over names and contents of the Python files."""
-    found = hashlib.sha256()
-    names = sorted(
-        path.relative_to(root).as_posix() for package in PACKAGES for path in root.glob(f"{package}/**/*.py")
-    )
-    try:
-        for name in names:
-            content = (root / name).read_bytes()
-            found.update(f"{name}\0{len(content)}\0".encode() + content)
-    except OSError:
-        return ""
-    return f"src.{found.hexdigest()[:DIGITS]}" if names else ""

@@ -15,8 +15,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from ehdmaps.compiled import njit
 from ehdmaps.physics.rheology import LIMITING, ShearLaw, thinning, yielding
 
 POINTS = 24
@@ -35,7 +35,7 @@ FLAT = 1e-5
 _places, _weights = np.polynomial.legendre.leggauss(POINTS)
 _ZETA, _WEIGHT = 0.5 * (_places + 1.0), 0.5 * _weights
 
-_thinning, _yielding = njit(cache=True)(thinning), njit(cache=True)(yielding)
+_thinning, _yielding = njit(thinning), njit(yielding)
 
 
 class Column(NamedTuple):
@@ -62,7 +62,7 @@ class Column(NamedTuple):
     mean_stress: float
 
 
-@njit(cache=True)
+@njit
 def mean_stress(law: ShearLaw, pressure: float, rise: float, sliding: float) -> float:
     """Mean stress tau_0 + s/2 of a column, of the sign of `sliding`.
 
@@ -107,7 +107,7 @@ def mean_stress(law: ShearLaw, pressure: float, rise: float, sliding: float) -> 
     return math.copysign(trial, sliding)
 
 
-@njit(cache=True)
+@njit
 def sheared_column(law: ShearLaw, pressure: float, rise: float, sliding: float, slide: float) -> Column:
     """Factors of one column with their exact derivatives.
 

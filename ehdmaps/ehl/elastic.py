@@ -12,9 +12,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 
 ZETA_PRIME_MINUS_TWO = -0.030448457058393270780
 """zeta'(-2) = -zeta(3)/(4 pi^2): weight of the second difference at the singular node."""
@@ -23,7 +23,7 @@ DRY_DATUM = -0.25 * (1.0 + 2.0 * math.log(2.0))
 """H0 of the dry Hertz contact for this kernel: H(X) = H0 + X^2/2 - (1/pi) Int P ln|X - S| dS vanishes for |X| <= 1."""
 
 
-@njit(cache=True)
+@njit
 def log_kernel(x: FloatArray, step: FloatArray) -> FloatArray:
     """Matrix K with (K P)_i = (1/pi) Int P ln|x_i - S| dS.
 

@@ -20,9 +20,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.warm_column import CONDUCTION, HEIGHTS, POINTS, WEIGHTS, Columns
 
@@ -72,7 +72,7 @@ class EnergyEquations(NamedTuple):
     last_back: int
 
 
-@njit(cache=True)
+@njit
 def fitted(peclet: float) -> tuple[float, float]:
     """How much more than conduction alone an exponentially fitted face leads, P/2 coth P/2 - 1, and its derivative.
 
@@ -118,7 +118,7 @@ def energy(
     return found
 
 
-@njit(cache=True, forceinline=True)
+@njit(forceinline=True)
 def _add_product(matrix: FloatArray, vector: FloatArray, out: FloatArray) -> None:
     """Add a product of matrix and vector to the first entries of a row."""
     for i in range(matrix.shape[0]):
@@ -126,7 +126,7 @@ def _add_product(matrix: FloatArray, vector: FloatArray, out: FloatArray) -> Non
             out[i] += matrix[i, j] * vector[j]
 
 
-@njit(cache=True)
+@njit
 def _energy(
     problem: LineProblem, columns: Columns, face_step: FloatArray, walls: FloatArray, rises: FloatArray, first: int
 ) -> EnergyEquations:

@@ -14,9 +14,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 
 RIGID_EXIT_SQUARED = 0.226
 """X_exit^2/(2 H) of rigid surfaces and constant viscosity: c^2 with c = 0.475, the root of
@@ -182,7 +182,7 @@ def zone_width(film: float) -> float:
     return thin / (1.0 + thin / math.sqrt(2.0 * film))
 
 
-@njit(cache=True)
+@njit
 def _index(x: float, edge: float, blur: float, core: float, terms: FloatArray) -> tuple[float, float]:
     """The uniform index s at x, and ds/dx."""
     left = math.hypot(x - edge, blur)
@@ -196,7 +196,7 @@ def _index(x: float, edge: float, blur: float, core: float, terms: FloatArray) -
     return index, slope
 
 
-@njit(cache=True)
+@njit
 def _nodes(
     count: int, length: float, edge: float, blur: float, core: float, terms: FloatArray
 ) -> tuple[FloatArray, FloatArray]:

@@ -17,10 +17,10 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from scipy.linalg import LinAlgWarning, lu_factor
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import njit
 from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid
 from ehdmaps.ehl.reynolds import LineProblem, residual
@@ -99,7 +99,7 @@ class Arrays(NamedTuple):
     grid_mass: FloatArray
 
 
-@njit(cache=True, fastmath={"contract", "reassoc"})
+@njit(fastmath={"contract", "reassoc"})
 def solved(linear: Arrays, right: FloatArray) -> FloatArray:
     """Solve matrix z = right, both of shape (size,)."""
     factors, size = linear.factors, right.size
@@ -119,7 +119,7 @@ def solved(linear: Arrays, right: FloatArray) -> FloatArray:
     return found
 
 
-@njit(cache=True)
+@njit
 def storage(linear: Arrays, rate: FloatArray) -> FloatArray:
     """What the time derivative adds to the equations for a rate of the unknowns, both of shape (size,)."""
     n = linear.x.size - 1

@@ -6,9 +6,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.copies import put
 from ehdmaps.ehl.reynolds import (
     LineProblem,
@@ -65,7 +65,7 @@ class NewtonResult(NamedTuple):
     last_step: float
 
 
-@njit(cache=True)
+@njit
 def solve_scaled(jacobian: FloatArray, right_hand_side: FloatArray) -> FloatArray:
     """Solve a dense system after scaling each row by its largest entry; overwrites both arguments."""
     for i in range(jacobian.shape[0]):
@@ -79,7 +79,7 @@ def solve_scaled(jacobian: FloatArray, right_hand_side: FloatArray) -> FloatArra
     return np.linalg.solve(jacobian, right_hand_side)  # type: ignore[return-value]
 
 
-@njit(cache=True)
+@njit
 def step_size(unknowns: FloatArray, move: FloatArray) -> float:
     """Size of a step: pressure relative to its maximum, film and exit relative to film and exit."""
     n = unknowns.size - 2
@@ -97,7 +97,7 @@ def step_size(unknowns: FloatArray, move: FloatArray) -> float:
     return size
 
 
-@njit(cache=True)
+@njit
 def step_length(
     problem: LineProblem,
     x: FloatArray,
@@ -136,7 +136,7 @@ def step_length(
     return length
 
 
-@njit(cache=True)
+@njit
 def lifted(x: FloatArray, kernel: FloatArray, start: FloatArray) -> FloatArray:
     """A start, clear of contact: one that is interpolated from another grid can touch.
 
@@ -153,7 +153,7 @@ def lifted(x: FloatArray, kernel: FloatArray, start: FloatArray) -> FloatArray:
     return unknowns
 
 
-@njit(cache=True)
+@njit
 def relaxed(move: FloatArray, old: FloatArray, before: float) -> float:
     """Part of a step to take: half as much where pressures turn back, half as much again where they go on.
 
@@ -177,7 +177,7 @@ def relaxed(move: FloatArray, old: FloatArray, before: float) -> float:
     return min(1.0, 1.5 * before)
 
 
-@njit(cache=True)
+@njit
 def newton(
     problem: LineProblem,
     x: FloatArray,
@@ -237,7 +237,7 @@ def newton(
     return NewtonResult(unknowns, STAGNATED, most_steps, last)
 
 
-@njit(cache=True)
+@njit
 def hertz_start(
     x: FloatArray, step: FloatArray, kernel: FloatArray, film_guess: float, exit_guess: float, load: float
 ) -> FloatArray:

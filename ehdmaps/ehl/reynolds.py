@@ -27,9 +27,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.copies import put
 from ehdmaps.ehl.column import sheared_column
 from ehdmaps.ehl.warm_oil import NO_HEAT, Heat
@@ -102,10 +102,10 @@ class Factors(NamedTuple):
     carriage_rows: FloatArray
 
 
-_log_viscosity, _density = njit(cache=True)(log_viscosity), njit(cache=True)(density)
+_log_viscosity, _density = njit(log_viscosity), njit(density)
 
 
-@njit(cache=True)
+@njit
 def oil(problem: LineProblem, pressure: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """ln eta and its derivative, rho and its, at each pressure; a negative trial pressure acts as zero on them."""
     n = pressure.size
@@ -120,7 +120,7 @@ def oil(problem: LineProblem, pressure: FloatArray) -> tuple[FloatArray, FloatAr
     return log_eta, log_eta_slope, rho, rho_slope
 
 
-@njit(cache=True)
+@njit
 def steepest_viscosity_step(problem: LineProblem, unknowns: FloatArray, move: FloatArray) -> float:
     """Largest change of ln eta by a move of the unknowns, to first order."""
     largest = 0.0
@@ -130,7 +130,7 @@ def steepest_viscosity_step(problem: LineProblem, unknowns: FloatArray, move: Fl
     return largest
 
 
-@njit(cache=True)
+@njit
 def node_pressure(unknowns: FloatArray) -> FloatArray:
     """Pressure at all nodes, shape (n + 1,), from the unknowns, shape (n + 2,)."""
     n = unknowns.size - 2
@@ -139,7 +139,7 @@ def node_pressure(unknowns: FloatArray) -> FloatArray:
     return pressure
 
 
-@njit(cache=True)
+@njit
 def film(x: FloatArray, kernel: FloatArray, unknowns: FloatArray) -> FloatArray:
     """Film H at all nodes, shape (n + 1,) [b^2/R]."""
     n = x.size - 1
@@ -148,7 +148,7 @@ def film(x: FloatArray, kernel: FloatArray, unknowns: FloatArray) -> FloatArray:
     return gap
 
 
-@njit(cache=True)
+@njit
 def _bend(d: float) -> tuple[float, float]:
     """Weight r of a bend of ln eta in the mean of 1/eta, and its derivative; d is the step of ln eta.
 
@@ -163,7 +163,7 @@ def _bend(d: float) -> tuple[float, float]:
     return r, slope
 
 
-@njit(cache=True)
+@njit
 def cell_means(
     problem: LineProblem, kinematic: FloatArray, slope: FloatArray, pressure: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -204,7 +204,7 @@ def cell_means(
     return means, left, right, jump
 
 
-@njit(cache=True)
+@njit
 def face_films(gap: FloatArray) -> FloatArray:
     """H at the faces, shape (n,), from the nodes: central inside, one-sided at the exit."""
     n = gap.size - 1
@@ -218,7 +218,7 @@ def face_films(gap: FloatArray) -> FloatArray:
     return faces
 
 
-@njit(cache=True)
+@njit
 def face_weights(f: int, n: int) -> tuple[int, tuple[float, float, float, float]]:
     """First of the four nodes that give the film at a face, and their weights.
 
@@ -234,14 +234,14 @@ def face_weights(f: int, n: int) -> tuple[int, tuple[float, float, float, float]
     return f - 1, (-1.0 / 16.0, 9.0 / 16.0, 9.0 / 16.0, -1.0 / 16.0)
 
 
-@njit(cache=True)
+@njit
 def no_factors() -> Factors:
     """Factors of a Newtonian film of one temperature."""
     none, nothing = np.empty(0), np.empty((0, 0))
     return Factors(none, none, none, none, nothing, nothing, nothing, nothing)
 
 
-@njit(cache=True)
+@njit
 def shear_factors(
     problem: LineProblem, x: FloatArray, face_step: FloatArray, kernel: FloatArray, unknowns: FloatArray, soft: bool
 ) -> tuple[Factors, FloatArray]:
@@ -306,7 +306,7 @@ def shear_factors(
     return Factors(tangent, offset, drops, carriage, mobility_slopes, carriage_slopes, none, none), stress
 
 
-@njit(cache=True)
+@njit
 def _drop_asked(
     problem: LineProblem, pressure: float, per_drop: float, sliding: float, asked: float, start: float
 ) -> float:
@@ -337,7 +337,7 @@ def _drop_asked(
     return math.copysign(trial, asked)
 
 
-@njit(cache=True)
+@njit
 def upwind(f: int) -> tuple[float, float, float, float]:
     """Weights of the nodes f-2 .. f+1 in what the walls carry through a face."""
     if f == 0:
@@ -347,7 +347,7 @@ def upwind(f: int) -> tuple[float, float, float, float]:
     return 1.0 / 16.0, -5.0 / 16.0, 15.0 / 16.0, 5.0 / 16.0
 
 
-@njit(cache=True)
+@njit
 def residual(
     problem: LineProblem,
     x: FloatArray,
@@ -369,7 +369,7 @@ def residual(
     return residual_with(problem, factors, x, step, face_step, kernel, unknowns, load, out, jacobian)
 
 
-@njit(cache=True)
+@njit
 def residual_with(
     problem: LineProblem,
     factors: Factors,

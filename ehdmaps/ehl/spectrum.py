@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.ehl.linearisation import Arrays, Linearisation, solved, storage
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 
@@ -130,7 +130,7 @@ def arnoldi(step: Callable[[FloatArray], FloatArray], static: FloatArray, height
     return FilmSpace(norm, hessenberg[:count, :count].copy(), basis[:count, height].copy())
 
 
-@njit(cache=True)
+@njit
 def _space(linear: Arrays, unit: FloatArray, height: int, fastest: float) -> tuple[float, FloatArray, FloatArray]:
     """Length of the static response, T in the space of its vectors, and the unknown `height` of these."""
     static = solved(linear, unit)
@@ -150,13 +150,13 @@ def _space(linear: Arrays, unit: FloatArray, height: int, fastest: float) -> tup
     return norm, hessenberg[:count, :count].copy(), basis[:count, height].copy()
 
 
-@njit(cache=True)
+@njit
 def _extend(linear: Arrays, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
     """Add T times the last vector to the basis, orthogonal to all before it; twice, for round-off."""
     _orthogonalised(solved(linear, storage(linear, basis[count])), basis, hessenberg, count)
 
 
-@njit(cache=True)
+@njit
 def _orthogonalised(found: FloatArray, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
     """Add a vector to the basis, orthogonal to all before it."""
     for _ in range(2):
@@ -169,14 +169,14 @@ def _orthogonalised(found: FloatArray, basis: FloatArray, hessenberg: FloatArray
     basis[count + 1] = found / max(length, _TINY)
 
 
-@njit(cache=True)
+@njit
 def _residual(hessenberg: FloatArray, count: int, frequency: float) -> float:
     """What the space leaves of the equations at a frequency, relative to the static response."""
     last = abs(_reduced(hessenberg, count, frequency)[count - 1])
     return float(frequency * hessenberg[count, count - 1] * last)
 
 
-@njit(cache=True)
+@njit
 def _projected(
     hessenberg: FloatArray, count: int, heights: FloatArray, frequencies: FloatArray | ComplexArray
 ) -> ComplexArray:
@@ -191,7 +191,7 @@ def _projected(
     return found
 
 
-@njit(cache=True)
+@njit
 def _reduced(hessenberg: FloatArray, count: int, frequency: complex) -> ComplexArray:
     """Solve (I + i Omega H) y = e_1 by elimination: a Hessenberg matrix has one entry a column to eliminate."""
     matrix = 1j * frequency * hessenberg[:count, :count]

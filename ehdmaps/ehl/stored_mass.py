@@ -9,14 +9,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.copies import put
 from ehdmaps.ehl.reynolds import LineProblem, film, node_pressure, oil
 
 
-@njit(cache=True)
+@njit
 def stored_mass(
     problem: LineProblem, x: FloatArray, step: FloatArray, kernel: FloatArray, unknowns: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
@@ -44,7 +44,7 @@ class StoredOil(NamedTuple):
     by_pressure: FloatArray
 
 
-@njit(cache=True)
+@njit
 def stored_oil(
     problem: LineProblem, x: FloatArray, step: FloatArray, kernel: FloatArray, unknowns: FloatArray
 ) -> StoredOil:
@@ -53,7 +53,7 @@ def stored_oil(
     return StoredOil(rho * step, rho_slope * film(x, kernel, unknowns) * step)
 
 
-@njit(cache=True)
+@njit
 def stored_mass_rate(
     stored: StoredOil, x: FloatArray, kernel: FloatArray, exit_at: float, rate: FloatArray
 ) -> FloatArray:
@@ -64,7 +64,7 @@ def stored_mass_rate(
     return accumulated(stored.by_film * gap_rate + stored.by_pressure * pressure_rate)
 
 
-@njit(cache=True)
+@njit
 def stored_mass_jacobian(
     problem: LineProblem, x: FloatArray, step: FloatArray, kernel: FloatArray, unknowns: FloatArray
 ) -> FloatArray:
@@ -84,7 +84,7 @@ def stored_mass_jacobian(
     return by_unknowns
 
 
-@njit(cache=True)
+@njit
 def accumulated(density: FloatArray) -> FloatArray:
     """Minus the integral over s from each face (and from the exit: 0) to the exit; fourth order inside.
 
@@ -101,7 +101,7 @@ def accumulated(density: FloatArray) -> FloatArray:
     return total
 
 
-@njit(cache=True)
+@njit
 def carried_mass(mass: FloatArray) -> FloatArray:
     """rho H at the faces, interpolated as in the wedge term, and at the exit node."""
     n = mass.size - 1

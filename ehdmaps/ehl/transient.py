@@ -15,9 +15,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.ehl.newton import LOG_VISCOSITY_STEP, solve_scaled
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import LineProblem, film, residual, steepest_viscosity_step
@@ -71,7 +71,7 @@ def follow(profile: Profile, loads: FloatArray, time_step: float, tolerance: flo
     return Motion(height, newton_steps)
 
 
-@njit(cache=True)
+@njit
 def _follow(
     problem: LineProblem,
     x: FloatArray,
@@ -122,7 +122,7 @@ def _follow(
     return height, total
 
 
-@njit(cache=True)
+@njit
 def _one_step(
     problem: LineProblem,
     x: FloatArray,

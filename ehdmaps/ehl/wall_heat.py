@@ -8,12 +8,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 
 
-@njit(cache=True)
+@njit
 def wall_weights(x: FloatArray, first: int) -> FloatArray:
     """Matrix of Int q(S)/sqrt(X - S) dS from place `first` on, q linear between places.
 

@@ -20,9 +20,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.warm_oil import warm_viscosity
 from ehdmaps.physics.isotherm import density
@@ -36,8 +36,8 @@ than 0.1 %."""
 MOST_STEPS = 200
 """Steps towards the stress of a column."""
 
-_thinning, _yielding = njit(cache=True)(thinning), njit(cache=True)(yielding)
-_density = njit(cache=True)(density)
+_thinning, _yielding = njit(thinning), njit(yielding)
+_density = njit(density)
 
 
 def _lobatto(points: int) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -100,7 +100,7 @@ class Columns(NamedTuple):
     gradient_warm: FloatArray
 
 
-@njit(cache=True)
+@njit
 def empty_columns(n: int) -> Columns:
     """Return columns to be filled."""
     k = POINTS
@@ -124,7 +124,7 @@ def empty_columns(n: int) -> Columns:
     )
 
 
-@njit(cache=True)
+@njit
 def gradient_asked(
     problem: LineProblem, pressure: float, film: float, rises: FloatArray, asked: float, start: float
 ) -> float:
@@ -197,7 +197,7 @@ def gradient_asked(
     return sign * trial
 
 
-@njit(cache=True)
+@njit
 def lower_stress(law: ShearLaw, pressure: float, rise: float, rate: float, fluid: FloatArray, guess: float) -> float:
     """Stress at the lower wall for which the column shears by `rate`: Newton in a bracket.
 
@@ -256,7 +256,7 @@ def lower_stress(law: ShearLaw, pressure: float, rise: float, rate: float, fluid
     return sign * trial
 
 
-@njit(cache=True)
+@njit
 def fill_column(
     problem: LineProblem,
     i: int,

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.ehl.reynolds import YIELDING, LineProblem, cell_means, face_films, film, node_pressure, oil, upwind
 from ehdmaps.ehl.warm_column import POINTS, Columns, fill_column, gradient_asked
 
@@ -16,7 +16,7 @@ HEATED_FROM = 100.0
 contact in cold oil, 5 N/mm at 5 m/s and 20 degC, differs by 0.5 or 0.07 %, others by less."""
 
 
-@njit(cache=True)
+@njit
 def first_column(gap: FloatArray, outflow: float) -> int:
     """The last face before which the film is thicker than `HEATED_FROM` times that of the flow; at least 1."""
     faces = face_films(gap)
@@ -28,7 +28,7 @@ def first_column(gap: FloatArray, outflow: float) -> int:
     return first
 
 
-@njit(cache=True)
+@njit
 def fill_columns(
     problem: LineProblem,
     x: FloatArray,
@@ -75,7 +75,7 @@ def fill_columns(
                     columns.flow_warm[f, j, q] += columns.flow_slopes[f, 2, j] * columns.gradient_warm[f, q]
 
 
-@njit(cache=True)
+@njit
 def hold_gradients(problem: LineProblem, outflow: float, rises: FloatArray, columns: Columns) -> None:
     """Fill all columns at the gradients that they have, which no longer follow the temperatures.
 
@@ -96,7 +96,7 @@ def hold_gradients(problem: LineProblem, outflow: float, rises: FloatArray, colu
         fill_column(problem, f, pressure, film_here, gradient, outflow, rises[f], columns)
 
 
-@njit(cache=True)
+@njit
 def asked_flows(
     problem: LineProblem,
     x: FloatArray,

@@ -8,9 +8,9 @@ with that the exact Jacobian of the film with its temperatures.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.ehl.energy import ROWS, EnergyEquations
 from ehdmaps.ehl.reynolds import face_weights, node_pressure
 from ehdmaps.ehl.warm_column import POINTS, Columns
@@ -39,7 +39,7 @@ def marched(equations: EnergyEquations, right: FloatArray, first: int) -> FloatA
     return found
 
 
-@njit(cache=True)
+@njit
 def _one_by_one(equations: EnergyEquations, right: FloatArray, first: int, start: int, found: FloatArray) -> None:
     """Fill the temperatures of the columns from `start` on; those before are known."""
     n, k, many = found.shape
@@ -59,7 +59,7 @@ def _one_by_one(equations: EnergyEquations, right: FloatArray, first: int, start
         _wall_fluxes(equations, right, first, f, found, fluxes)
 
 
-@njit(cache=True)
+@njit
 def _wall_fluxes(
     equations: EnergyEquations, right: FloatArray, first: int, f: int, found: FloatArray, fluxes: FloatArray
 ) -> None:
@@ -70,7 +70,7 @@ def _wall_fluxes(
             fluxes[wall, f] += equations.flux_warm[f, g, wall] @ found[f - g]
 
 
-@njit(cache=True)
+@njit
 def _together(equations: EnergyEquations, right: FloatArray, start: int, end: int) -> tuple[FloatArray, FloatArray]:
     """Matrix and right-hand sides of the columns from `start` to before `end`."""
     k, many = POINTS, right.shape[2]
@@ -104,7 +104,7 @@ def _together(equations: EnergyEquations, right: FloatArray, start: int, end: in
     return matrix, side
 
 
-@njit(cache=True)
+@njit
 def stored(equations: EnergyEquations, columns: Columns, added: FloatArray) -> FloatArray:
     """Right-hand sides, shape (n, k + 2, 1), of what is added to the energy of the cells.
 
@@ -163,7 +163,7 @@ def followed(
     return found, *_factor_rows(columns, face_step, films, apart, found)
 
 
-@njit(cache=True)
+@njit
 def _films(x: FloatArray, kernel: FloatArray, exit_at: float) -> FloatArray:
     """Derivatives of the films at the faces by all unknowns, shape (n, n + 2)."""
     n = x.size - 1
@@ -179,7 +179,7 @@ def _films(x: FloatArray, kernel: FloatArray, exit_at: float) -> FloatArray:
     return films
 
 
-@njit(cache=True)
+@njit
 def _by_unknowns(
     equations: EnergyEquations, face_step: FloatArray, films: FloatArray, apart: FloatArray, first: int
 ) -> FloatArray:
@@ -205,7 +205,7 @@ def _by_unknowns(
     return right
 
 
-@njit(cache=True)
+@njit
 def _factor_rows(
     columns: Columns, face_step: FloatArray, films: FloatArray, apart: FloatArray, found: FloatArray
 ) -> tuple[FloatArray, FloatArray]:

@@ -12,9 +12,9 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.errors import InputError
 from ehdmaps.physics.heat import HeatData
 from ehdmaps.physics.isotherm import Isotherm, log_viscosity
@@ -149,10 +149,10 @@ def _laws(lubricant: Lubricant, temperature: float) -> tuple[float, FloatArray]:
     return places[0] * STEP, np.array([rows[place] for place in places]).T.copy()
 
 
-_log_viscosity = njit(cache=True)(log_viscosity)
+_log_viscosity = njit(log_viscosity)
 
 
-@njit(cache=True)
+@njit
 def warm_viscosity(
     isotherm: Isotherm,
     heat: Heat,

@@ -15,10 +15,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from scipy.linalg import lu_factor, lu_solve
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import njit
 from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.energy import EnergyEquations, fitted
 from ehdmaps.ehl.grid import Grid
@@ -266,7 +266,7 @@ def _from_inlet(values: FloatArray, x: FloatArray) -> FloatArray:
     return np.concatenate([[0.0], np.cumsum(pieces)])
 
 
-@njit(cache=True)
+@njit
 def _along(values: FloatArray, face_step: FloatArray, f: int) -> float:
     """Derivative by X at face f."""
     last = values.size - 1
@@ -277,7 +277,7 @@ def _along(values: FloatArray, face_step: FloatArray, f: int) -> float:
     return float(0.5 * (values[f + 1] - values[f - 1]) / face_step[f])
 
 
-@njit(cache=True)
+@njit
 def _cell_storage(
     problem: LineProblem,
     columns: Columns,

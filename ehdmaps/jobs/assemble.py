@@ -24,6 +24,7 @@ from ehdmaps.maps.structure import MODEL_ERRORS, derived
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.solution import ContactSolver, Status
+from ehdmaps.provenance import code_hash
 from ehdmaps.version import version
 
 _PACKAGES = ("ehdmaps", "numpy", "scipy", "numba", "xarray", "netCDF4", "PyFoam")
@@ -205,6 +206,7 @@ def _attributes(job: Job, solver: ContactSolver) -> dict[str, Any]:
         **({} if job.supply is None else {schema.OIL_SUPPLY: record_json(job.supply)}),
         **({} if job.surface is None else {schema.SURFACE: surface_json(job.surface)}),
         "package_versions": record_json(package_versions()),
+        schema.CODE: code_hash(),
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
     }
 

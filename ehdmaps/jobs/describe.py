@@ -289,6 +289,8 @@ def provenance_rows(attributes: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield "OpenFOAM", f"{version}; ehlFoam built with {plain(attributes['openfoam_build'])}"
     versions = record_from_json(attributes["package_versions"], "package_versions")
     yield "versions", ", ".join(f"{package} {version}" for package, version in versions.items())
+    if schema.CODE in attributes:
+        yield "code", f"hash {plain(attributes[schema.CODE])} of all sources, Python, numba, LLVM, numpy and scipy"
     yield (
         "content",
         f"as made (sha256 {attributes[schema.CHECKSUM][:12]}...)"

@@ -22,6 +22,7 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.provenance import code_hash
 
 AXES = ("load", "entrainment_speed", "temperature")
 """What an operating point is made of."""
@@ -166,4 +167,5 @@ def _attributes(contacts: Sequence[LineContact], lubricant: Lubricant, solver: C
         "contacts": contacts_json(contacts),
         "lubricant": record_json(lubricant.record()),
         "package_versions": record_json(package_versions()),
+        schema.CODE: code_hash(),
     }

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from functools import cached_property, lru_cache
-from importlib import resources
+from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from ehdmaps.physics.heat import ISOTHERMAL
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import Material
 from ehdmaps.physics.solution import ContactSolver, FilmSolution, FilmSpectrum, Status, no_spectrum
+from ehdmaps.provenance import PACKAGES, code_hash
 
 LONGEST_LINE = 32
 """Loads of one task, which is lost as a whole when its process is killed: well under a second."""
@@ -183,21 +185,13 @@ def solver_version(solver: ContactSolver) -> str:
     """Return what tells one version of a solver from the next.
 
     Its `version` where that is not None: results that took days should not be lost to an edited comment.
-    Else a hash of the sources of its package and of the physics, so that a changed formula never meets stale results.
+    Else the hash of all that numbers are computed with, so that a changed formula never meets stale results; of a
+    solver from elsewhere with a hash of its file.
     """
-    if (version := solver.version) is not None:
-        return version
-    own = type(solver).__module__.rpartition(".")[0]
-    return _sources_hash(tuple(sorted({"ehdmaps.physics", own} - {""})))
-
-
-@lru_cache(maxsize=8)
-def _sources_hash(packages: tuple[str, ...]) -> str:
-    """Hash the sources of some packages."""
-    digest = hashlib.sha256()
-    for package in packages:
-        for entry in sorted(resources.files(package).iterdir(), key=lambda entry: entry.name):
-            if entry.name.endswith(".py"):
-                digest.update(entry.name.encode())
-                digest.update(entry.read_bytes())
-    return digest.hexdigest()
+    if solver.version is not None:
+        return solver.version
+    module = type(solver).__module__
+    if module.partition(".")[0] in PACKAGES:
+        return code_hash()
+    path = getattr(sys.modules.get(module), "__file__", None)
+    return f"{code_hash()}-{hashlib.sha256(Path(path).read_bytes()).hexdigest()[:16] if path else module}"

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import ByteArray, FloatArray, IntArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.elementary import log
 from ehdmaps.maps.kernel import collapse, evaluate_at, within_map
 from ehdmaps.maps.lines import (
@@ -32,7 +32,7 @@ from ehdmaps.maps.tables import COLDEST, NOT_FINITE, ApproachTable, LawTable, Li
 _BLOCK = 256
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _places(
     delta: FloatArray,
     offset: FloatArray,
@@ -49,7 +49,7 @@ def _places(
         scales[i] = step * ds * inverse_scale[i]
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _line_cubics(coefficients: FloatArray, places: FloatArray, found: FloatArray) -> None:
     """Splines of a line and their slopes, into `found` (4, n)."""
     cells = coefficients.shape[0]
@@ -59,7 +59,7 @@ def _line_cubics(coefficients: FloatArray, places: FloatArray, found: FloatArray
         g[i], dg[i], q[i], dq[i] = cubics(coefficients, cell, places[i] - cell)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _forces(
     found: FloatArray, scales: FloatArray, rate: FloatArray, w: FloatArray, dw: FloatArray, dc: FloatArray
 ) -> None:
@@ -70,7 +70,7 @@ def _forces(
         w[i], dw[i], dc[i] = force_of(state, rate[i])
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def evaluate_many_at(point: Point, delta: FloatArray, rate: FloatArray, forces: FloatArray, counts: IntArray) -> None:
     """`kernel.evaluate_at` for arrays (n,), into `forces` (3, n)."""
     if point.film < 1.0 or point.centrifugal_load > 0.0:
@@ -95,7 +95,7 @@ def evaluate_many_at(point: Point, delta: FloatArray, rate: FloatArray, forces: 
                 w[i], dw[i], dc[i] = evaluate_at(point, d[i], r[i], counts)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def rest_states(point: Point, delta: FloatArray, states: FloatArray) -> None:
     """Loads at rest with the whole film, their slopes, damping and its slopes.
 
@@ -123,7 +123,7 @@ def rest_states(point: Point, delta: FloatArray, states: FloatArray) -> None:
         c[i] = w[i] * ratio
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _speed_places(speeds: FloatArray, table: LawTable, nodes: IntArray, weights: FloatArray) -> None:
     """Nearest nodes of speeds, and weights (3, n) of the splines there."""
     own: ApproachTable = table.own
@@ -137,7 +137,7 @@ def _speed_places(speeds: FloatArray, table: LawTable, nodes: IntArray, weights:
         w0[n], w1[n], w2[n] = quadratic_weights(place - nodes[n])
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _temperature_places(temperatures: FloatArray, own: ApproachTable, nodes: IntArray, weights: FloatArray) -> None:
     """Nearest nodes of temperatures, and weights (3, n) of the splines there."""
     start, step, last = own.temperature_start, own.temperature_step, own.place.shape[1] - 3
@@ -148,7 +148,7 @@ def _temperature_places(temperatures: FloatArray, own: ApproachTable, nodes: Int
         w0[n], w1[n], w2[n] = quadratic_weights(place - nodes[n])
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _alignments(own: ApproachTable, count: int, nodes: IntArray, weights: FloatArray, found: FloatArray) -> None:
     """Offsets and inverse scales, into `found` (2, n); nodes (2, n) and weights (6, n) of speed and temperature."""
     sums = np.empty(2)
@@ -161,7 +161,7 @@ def _alignments(own: ApproachTable, count: int, nodes: IntArray, weights: FloatA
         offset[n], inverse_scale[n] = sums[0], sums[1]
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _table_splines(
     own: ApproachTable, places: FloatArray, nodes: IntArray, weights: FloatArray, found: FloatArray
 ) -> None:
@@ -178,7 +178,7 @@ def _table_splines(
         g[n], dg[n], q[n], dq[n] = splines(sums, places[n] - k)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _others(
     table: LawTable,
     delta: FloatArray,
@@ -202,7 +202,7 @@ def _others(
     return count
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _one_by_one(
     table: LawTable,
     workspace: FloatArray,
@@ -240,7 +240,7 @@ def _one_by_one(
         forces[0, i], forces[1, i], forces[2, i] = evaluate_at(point, d, r, counts)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def evaluate_many(
     table: LawTable,
     workspace: FloatArray,

@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+
+from ehdmaps.compiled import njit
 
 _LN2_HIGH, _LN2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10
 _LOG2_E = 1.4426950408889634
@@ -20,7 +21,7 @@ _WHOLE_VALUE = 2.0**52 + 1023.0
 _MANTISSA = np.uint64(52)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "nsz"}, forceinline=True)
+@njit(error_model="numpy", fastmath={"contract", "nsz"}, forceinline=True)
 def exp(x: float) -> float:
     """e^x for |x| < 700; held there beyond."""
     x = x if x > -700.0 else -700.0
@@ -38,7 +39,7 @@ def exp(x: float) -> float:
     return series * power
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "nsz"}, forceinline=True)
+@njit(error_model="numpy", fastmath={"contract", "nsz"}, forceinline=True)
 def log(x: float) -> float:
     """Natural logarithm of a positive normal number."""
     bits = np.float64(x).view(np.uint64)

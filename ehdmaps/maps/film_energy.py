@@ -7,9 +7,9 @@ state xi alone. The last one is taken up for good. This holds at one speed and t
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.memory_table import LIGHTEST, LOAD_ROWS, NODES, ROWS, MemoryTable, cubic_at, equilibrium_at
 from ehdmaps.maps.memory_table import LOAD_NODES as _LOAD_NODES
 
@@ -18,7 +18,7 @@ _WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
 _WIDTHS, _LOAD_WIDTHS = np.diff(NODES), np.diff(_LOAD_NODES)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def spent_by(table: MemoryTable, before: float, load_before: float, state: float, load: float) -> float:
     """Energy that a film takes up over a step, (w - p) dy by the trapezoidal rule [J/m].
 
@@ -38,7 +38,7 @@ def spent_by(table: MemoryTable, before: float, load_before: float, state: float
     return 0.5 * (load_before - p0 + load - p1) * (y1 - y0)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def spent_by_all(
     table: MemoryTable,
     before: FloatArray,
@@ -62,7 +62,7 @@ def spent_by_all(
         out[i] = spent_by(table, before[i], loads_before[i], states[i], loads[i])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _over_cell(cells: FloatArray, first: int, second: int, begin: float, end: float) -> float:
     """Integral of one cubic by another over a part of a cell; exact, by three points."""
     total = 0.0
@@ -72,7 +72,7 @@ def _over_cell(cells: FloatArray, first: int, second: int, begin: float, end: fl
     return total * (end - begin)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _film_energy(table: MemoryTable, state: float) -> float:
     """Integral of p dy up to a state [J/m], cell by cell: those below the centre, then those above it."""
     z, total = (state - table.centre) * table.inverse_scale, 0.0
@@ -93,7 +93,7 @@ def _film_energy(table: MemoryTable, state: float) -> float:
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _load_energy(table: MemoryTable, load: float) -> float:
     """Integral of w da up to a load [J/m]."""
     total, begin, end = 0.0, 0.0, load / LIGHTEST
@@ -109,7 +109,7 @@ def _load_energy(table: MemoryTable, load: float) -> float:
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def energies_of(table: MemoryTable, states: FloatArray, loads: FloatArray, out: FloatArray) -> None:
     """Stored energy of many contacts (n,) into `out` [J/m]; without contact it is zero.
 

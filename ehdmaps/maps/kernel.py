@@ -25,9 +25,8 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.elementary import exp, log
 from ehdmaps.maps.lines import (
     FAST,
@@ -52,7 +51,7 @@ EDGE_TOLERANCE = 1e-6
 _STEPS = 100
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def structural_state(structure: FloatArray, centrifugal_load: float, load: float) -> tuple[float, float]:
     """Structural approach of the contacts at a load, and its derivative; the last one carries more.
 
@@ -79,7 +78,7 @@ def structural_state(structure: FloatArray, centrifugal_load: float, load: float
     return approach, compliance
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def full_state(point: Point, delta: float) -> State:
     """State with the whole film, at rest."""
     if point.centrifugal_load > 0.0:
@@ -87,7 +86,7 @@ def full_state(point: Point, delta: float) -> State:
     return line_state(point.own, delta)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def _faded_state(point: Point, delta: float) -> State:
     """State with a part of the film: film offset and c at equal load are that part of the whole ones.
 
@@ -134,7 +133,7 @@ def _faded_state(point: Point, delta: float) -> State:
     return w, dw / slope, part * ratio, part * dc / slope
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _rest_state(point: Point, delta: float) -> State:
     """State at rest, before the hold above the highest load."""
     if point.film < 1.0:
@@ -142,14 +141,14 @@ def _rest_state(point: Point, delta: float) -> State:
     return full_state(point, delta)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def _held(point: Point, delta: float) -> State:
     """State on the tangent above the held load."""
     w = point.held_load + point.held_stiffness * (delta - point.held_approach)
     return w, point.held_stiffness, point.held_damping / w, 0.0
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def evaluate_at(point: Point, delta: float, rate: float, counts: IntArray) -> Force:
     """Load and derivatives at a point of speed, temperature and centrifugal load.
 
@@ -183,7 +182,7 @@ def evaluate_at(point: Point, delta: float, rate: float, counts: IntArray) -> Fo
     return force_of(state, rate)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(error_model="numpy", forceinline=True)
 def within_map(table: LawTable, entrainment_speed: float, temperature: float, counts: IntArray) -> tuple[float, float]:
     """Size of the speed, and temperature, held at the edges of the map and counted outside.
 
@@ -207,7 +206,7 @@ def within_map(table: LawTable, entrainment_speed: float, temperature: float, co
     return min(speed, table.highest_speed), min(max(temperature, low), high)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def film_part(speed: float, film_speed: float) -> float:
     """Part of the film that is there at a speed >= 0 [m/s]: 0 at standstill, 1 from `film_speed` on."""
     part = 1.0 if speed >= film_speed else speed / film_speed
@@ -215,7 +214,7 @@ def film_part(speed: float, film_speed: float) -> float:
     return film
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def collapse(
     table: LawTable,
     workspace: FloatArray,
@@ -270,7 +269,7 @@ def collapse(
     )  # fmt: skip
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _through_point(
     table: LawTable,
     workspace: FloatArray,
@@ -286,7 +285,7 @@ def _through_point(
     return evaluate_at(point, delta, rate, counts)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def evaluate(
     table: LawTable,
     workspace: FloatArray,

@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.elementary import exp, log
 from ehdmaps.maps.tables import COLDEST, ApproachTable, Line
 from ehdmaps.physics.unilateral import Force
@@ -29,14 +29,14 @@ unilateral_force = njit(error_model="numpy", fastmath=FAST, forceinline=True)(ru
 """The rule without tension, compiled as the kernels are that it becomes a part of."""
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def quadratic_weights(t: float) -> Triple:
     """Quadratic B-splines around a node, at t steps from it, -1/2 <= t <= 1/2."""
     low, high = 0.5 - t, 0.5 + t
     return 0.5 * low * low, 0.75 - t * t, 0.5 * high * high
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def spline_weights(t: float) -> Quad:
     """Cubic B-splines over a cell, at its part t."""
     r = 1.0 - t
@@ -49,14 +49,14 @@ def spline_weights(t: float) -> Quad:
     )
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def spline_slopes(t: float) -> Quad:
     """Derivatives of the cubic B-splines by t."""
     r = 1.0 - t
     return (-0.5 * r * r, t * (1.5 * t - 2.0), -r * (1.5 * r - 2.0), 0.5 * t * t)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def place_within(x: float, cells: int) -> float:
     """Place x, in steps from the first node, held to so many cells; zero for NaN."""
     last = float(cells)
@@ -64,13 +64,13 @@ def place_within(x: float, cells: int) -> float:
     return x if x < last else last
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def cell_of(x: float, cells: int) -> int:
     """Cell of a place within an axis."""
     return min(int(x), max(cells - 1, 0))
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def stretched(z: float) -> tuple[float, float]:
     """Return asinh(z), with a small absolute error, and its derivative."""
     root = math.sqrt(1.0 + z * z)
@@ -78,7 +78,7 @@ def stretched(z: float) -> tuple[float, float]:
     return (size if z >= 0.0 else -size), 1.0 / root
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def state_of(g: float, dg: float, log_ratio: float, dlog_ratio: float) -> State:
     """State at rest from g, ln(c/w) and their derivatives by the approach; zero for g < 0.
 
@@ -99,7 +99,7 @@ def state_of(g: float, dg: float, log_ratio: float, dlog_ratio: float) -> State:
     return w, dw, ratio, ratio * (dw + w * dlog_ratio)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def force_of(state: State, rate: float) -> Force:
     """Force of a state at a rate, and its derivatives, see `ehdmaps.physics.unilateral`."""
     w, dw, ratio, dc = state
@@ -107,7 +107,7 @@ def force_of(state: State, rate: float) -> Force:
     return force
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def collapsed_row(
     values: FloatArray, i: int, j: int, along_u: Triple, along_t: Triple, k: int, count: int, sums: FloatArray
 ) -> None:
@@ -127,7 +127,7 @@ def collapsed_row(
         )
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def cubics(coefficients: FloatArray, cell: int, t: float) -> tuple[float, float, float, float]:
     """Both cubics of a cell of a line, and their derivatives by t.
 
@@ -151,7 +151,7 @@ def cubics(coefficients: FloatArray, cell: int, t: float) -> tuple[float, float,
     )
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def splines(sums: FloatArray, t: float) -> tuple[float, float, float, float]:
     """Both splines from their coefficients side by side, and their derivatives by t."""
     b0, b1, b2, b3 = spline_weights(t)
@@ -164,7 +164,7 @@ def splines(sums: FloatArray, t: float) -> tuple[float, float, float, float]:
     )
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def place_of(table: ApproachTable, log_speed: float, temperature: float) -> tuple[int, float, int, float]:
     """Nearest nodes of a speed and a temperature, and the steps from them.
 
@@ -185,7 +185,7 @@ def place_of(table: ApproachTable, log_speed: float, temperature: float) -> tupl
     return i, x - i, j, y - j
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def collapsed_line(
     table: ApproachTable, cubics: FloatArray, sums: FloatArray, log_speed: float, temperature: float
 ) -> Line:
@@ -221,7 +221,7 @@ def collapsed_line(
     return Line(cubics[:cells], offset, inverse_scale, table.start, table.step)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def table_state(table: ApproachTable, delta: float, log_speed: float, temperature: float, sums: FloatArray) -> State:
     """State of a table at an approach, speed and temperature within it; `sums` is scratch for 8 numbers.
 
@@ -252,7 +252,7 @@ def table_state(table: ApproachTable, delta: float, log_speed: float, temperatur
     return state_of(g, dg * scale, q, dq * scale)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def line_state(line: Line, delta: float) -> State:
     """State of a line at an approach."""
     s, ds = stretched((delta - line.offset) * line.inverse_scale)
@@ -265,7 +265,7 @@ def line_state(line: Line, delta: float) -> State:
     return state_of(g, dg * scale, q, dq * scale)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def line_load(line: Line, delta: float) -> tuple[float, float]:
     """Load of a line at an approach, and its slope: all that an equilibrium of contacts asks for."""
     s, ds = stretched((delta - line.offset) * line.inverse_scale)
@@ -280,7 +280,7 @@ def line_load(line: Line, delta: float) -> tuple[float, float]:
     return g * g * g, 3.0 * g * g * dg
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def bent_state(line: Line, delta: float) -> tuple[State, float]:
     """State of a line at an approach, and the second derivative of its load by the approach.
 
@@ -306,7 +306,7 @@ def bent_state(line: Line, delta: float) -> tuple[State, float]:
     return state_of(g, dg, q, dq * scale), 6.0 * g * dg * dg + 3.0 * g * g * ddg
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def line_approach(line: Line, load: float) -> float:
     """Approach at which a line carries a load; the highest with none for zero."""
     c = line.coefficients

@@ -13,9 +13,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.physics.contact import LineContact
 
 LOCKED, LOCKED_BY_LOAD = 0.02, 0.087
@@ -75,7 +75,7 @@ FORMULA = LockedFactors(0.0, 0.0, np.ones(2))
 """The closed formula as it stands, for maps that know nothing better."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def factor_at(factors: LockedFactors, load: float) -> float:
     """Factor of the closed formula at a load > 0 [N/m]; straight between its values."""
     last = factors.values.size - 1
@@ -86,7 +86,7 @@ def factor_at(factors: LockedFactors, load: float) -> float:
     return value
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def locked_compliance(film: Film, offset: float, load: float, compliance: float) -> float:
     """Compliance that locked oil takes off, by the closed formula [m2/N].
 
@@ -137,7 +137,7 @@ def locked_compliances(
     return _many(film_of(contacts, 0.0), offsets, loads, compliances)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _many(film: Film, offsets: FloatArray, loads: FloatArray, compliances: FloatArray) -> FloatArray:
     """`locked_compliance` of arrays."""
     found = np.empty(loads.size)
@@ -146,7 +146,7 @@ def _many(film: Film, offsets: FloatArray, loads: FloatArray, compliances: Float
     return found
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def locked_stiffness(film: Film, offset: float, load: float, k: float, c: float, solids: float, factor: float) -> float:
     """Stiffness k_s of a contact whose film cannot give way [N/m2].
 

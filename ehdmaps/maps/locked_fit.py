@@ -14,9 +14,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.locked_film import Film, locked_stiffness
 
 DOUBT = 1e-3
@@ -30,7 +30,7 @@ _ROUNDS = 25
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def fitted_factor(
     film: Film, load: float, offset: float, solids: float, compliance: float, loss: float, natural: FloatArray,
     response: ComplexArray, error: float,
@@ -73,13 +73,13 @@ def fitted_factor(
     return math.exp(0.5 * (low + high))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _tried(i: int, reach: float) -> float:
     """Logarithm of a factor that is tried."""
     return reach * (2.0 * i / (_TRIES - 1) - 1.0)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _difference(
     film: Film, load: float, offset: float, solids: float, compliance: float, loss: float, natural: FloatArray,
     response: ComplexArray, doubt: float, log_factor: float,

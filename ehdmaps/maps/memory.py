@@ -19,9 +19,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.errors import InputError
 from ehdmaps.maps import memory_table
 from ehdmaps.maps.film_energy import energies_of, spent_by_all
@@ -179,14 +179,14 @@ class FilmMemory:
         return out.reshape(state.approach.shape)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _loads_at_rest(table: MemoryTable, approach: FloatArray, loads: FloatArray) -> None:
     """Loads of films in equilibrium, flat."""
     for i in range(approach.size):
         loads[i] = equilibrium_at(table, approach[i])[0]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _advance_many(
     table: MemoryTable,
     h: float,

@@ -28,9 +28,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.binary_cells import FIRST, SHIFT, last_of, nodes_of, rows_of
 from ehdmaps.maps.kernel import evaluate_at, structural_state
 from ehdmaps.maps.lines import FAST
@@ -77,7 +77,7 @@ class MemoryTable(NamedTuple):
     lift_off: float
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _cubic(y0: float, y1: float, s0: float, s1: float, h: float, out: FloatArray) -> None:
     """Cubic through values and slopes at the ends of a cell; slopes are held so that it rises if the values do."""
     secant = (y1 - y0) / h
@@ -87,7 +87,7 @@ def _cubic(y0: float, y1: float, s0: float, s1: float, h: float, out: FloatArray
     out[3] = (s0 + s1 - 2.0 * secant) / (h * h)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def fill_memory(
     point: Point, film: Film, factors: LockedFactors, nodes: FloatArray, load_nodes: FloatArray, cells: FloatArray,
     load_cells: FloatArray, counts: IntArray,
@@ -155,7 +155,7 @@ def fill_memory(
     return MemoryTable(cells, load_cells, centre, inverse, lift_off)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _fill_loads(
     point: Point, p: FloatArray, beyond: FloatArray, slopes: FloatArray, nodes: FloatArray, load_cells: FloatArray
 ) -> None:
@@ -179,7 +179,7 @@ def _fill_loads(
         before, slope_before = value, per_load
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def state_cell(table: MemoryTable, xi: float) -> tuple[int, float]:
     """Row of the cells in which a state is, and its place there."""
     z = (xi - table.centre) * table.inverse_scale
@@ -191,7 +191,7 @@ def state_cell(table: MemoryTable, xi: float) -> tuple[int, float]:
     return (row, t) if z >= 0.0 else (row + ROWS, -t)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def cubic_at(c: FloatArray, first: int, t: float) -> tuple[float, float]:
     """Value and slope of a cubic.
 
@@ -210,7 +210,7 @@ def cubic_at(c: FloatArray, first: int, t: float) -> tuple[float, float]:
     return c[first] + t * mean, mean + t * (bend + t * high)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def load_cell(load: float) -> tuple[int, float]:
     """Row of the cells of a in which a load w >= 0 is, and its place there."""
     a = 1.0 + load / LIGHTEST
@@ -219,7 +219,7 @@ def load_cell(load: float) -> tuple[int, float]:
     return int(np.int64(cell) - FIRST), a - np.uint64(cell << SHIFT).view(np.float64)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def approach_at(table: MemoryTable, load: float) -> tuple[float, float]:
     """Approach a of a load w >= 0, and da/dw = 1/k_s."""
     row, t = load_cell(load)
@@ -227,7 +227,7 @@ def approach_at(table: MemoryTable, load: float) -> tuple[float, float]:
     return a, slope / LIGHTEST
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def load_of(p: float, dp: float, x: float, dx: float) -> tuple[float, float]:
     """w = x + sqrt(x^2 + p^2), without cancellation, and its derivative.
 
@@ -243,7 +243,7 @@ def load_of(p: float, dp: float, x: float, dx: float) -> tuple[float, float]:
     return w, (w * dx + p * dp) / root
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def equilibrium_at(table: MemoryTable, xi: float) -> tuple[float, float, float, float, float, float]:
     """p, y and G of a state, each with its slope."""
     row, t = state_cell(table, xi)
@@ -275,7 +275,7 @@ MOST_GROWTH = 1.2
 """Ratio of a step to the last one above which backward Euler takes it: what follows would no longer rise."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def step_of(h: float, last: float) -> Step:
     """Weights of a step of h [s] after one of `last` [s]; 0 or less if there was none."""
     if last <= 0.0 or h > MOST_GROWTH * last:
@@ -284,13 +284,13 @@ def step_of(h: float, last: float) -> Step:
     return Step(1.0 / h, (1.0 + 2.0 * r) / (1.0 + r), r * r / (1.0 + r))
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def fading_of(last: float) -> float:
     """1.5 by the size of the last change of G: what `rate_of` fades with [1/(N s/m2)]."""
     return 1.5 / (abs(last) + _NO_CHANGE)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def rate_of(step: Step, change: float, last: float, fading: float) -> tuple[float, float]:
     """x = G' at the end of a step by the changes of G over it and over the last step, and dx/dG.
 
@@ -316,7 +316,7 @@ def rate_of(step: Step, change: float, last: float, fading: float) -> tuple[floa
     )
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def advanced(
     table: MemoryTable, step: Step, delta: float, before: float, last: float, start: float
 ) -> tuple[float, float, float]:

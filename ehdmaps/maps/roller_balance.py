@@ -9,9 +9,9 @@ take their steps together, in loops that the processor overlaps.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.elementary import log
 from ehdmaps.maps.lines import (
     FAST,
@@ -38,7 +38,7 @@ _REACH = 0.25
 """How far apart approaches that are solved first may be, as a part of the scale and of how far they are from it."""
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _start(point: Point, delta: float) -> float:
     """Where to begin without a neighbour."""
     inner, outer, q = point.inner, point.outer, point.centrifugal_load
@@ -51,7 +51,7 @@ def _start(point: Point, delta: float) -> float:
     return float(inner.offset + (delta - inner.offset - outer.offset) * share)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _divided(point: Point, delta: float, start: float) -> float:
     """Approach of the inner contact in equilibrium, from a start."""
     inner, outer, q = point.inner, point.outer, point.centrifugal_load
@@ -77,7 +77,7 @@ def _divided(point: Point, delta: float, start: float) -> float:
     return float(min(max(a, low), high)) if low < high else a
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _joined(point: Point, delta: float, a: float) -> tuple[State, float, float]:
     """State of the roller, the part of a growing approach that the inner contact takes, and how that part changes."""
     (w, k_i, r_i, dc_i), curve_i = bent_state(point.inner, a)
@@ -92,7 +92,7 @@ def _joined(point: Point, delta: float, a: float) -> tuple[State, float, float]:
     return (w, k_i * part_i, r_i * part_i**2 + w_o / w * r_o * part_o**2, dc), part_i, change
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def balanced_state(point: Point, delta: float) -> State:
     """State of the roller at rest, at one approach.
 
@@ -109,7 +109,7 @@ def balanced_state(point: Point, delta: float) -> State:
     return state
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _starts(point: Point, delta: FloatArray, a: FloatArray) -> None:
     """Starts for the equilibria at rising approaches above lift-off: some are solved, the others lie between these."""
     centre, scale = point.inner.offset + point.outer.offset, 1.0 / point.inner.inverse_scale
@@ -132,7 +132,7 @@ def _starts(point: Point, delta: FloatArray, a: FloatArray) -> None:
         here, part = ahead, next_part
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _roots(line: Line, at: FloatArray, g: FloatArray, dg: FloatArray) -> None:
     """Cube roots of the loads of a line at many approaches, and their slopes."""
     offset, inverse, start, step, c = line.offset, line.inverse_scale, line.start, line.step, line.coefficients
@@ -148,7 +148,7 @@ def _roots(line: Line, at: FloatArray, g: FloatArray, dg: FloatArray) -> None:
         dg[i] *= a1 + t * (2.0 * a2 + 3.0 * t * a3)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _approached(point: Point, delta: FloatArray, a: FloatArray, work: FloatArray) -> bool:
     """A step of Newton's method at all approaches; whether it was the last."""
     q, other, g_i, dg_i, g_o, dg_o = point.centrifugal_load, work[0], work[1], work[2], work[3], work[4]
@@ -167,7 +167,7 @@ def _approached(point: Point, delta: FloatArray, a: FloatArray, work: FloatArray
     return left == 0.0
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def balanced_states(point: Point, delta: FloatArray, states: FloatArray) -> None:
     """States of the roller at rest, at approaches that rise; fast where they rise in small steps.
 
@@ -205,7 +205,7 @@ def balanced_states(point: Point, delta: FloatArray, states: FloatArray) -> None
         w[k], dw[k], c[k], dc[k] = state[0], state[1], state[0] * state[2], state[3]
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def balanced_approach(point: Point, load: float) -> float:
     """Approach at which the inner contact carries a load, the outer one that and the centrifugal load."""
     approach: float = line_approach(point.inner, load) + line_approach(point.outer, load + point.centrifugal_load)

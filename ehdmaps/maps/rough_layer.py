@@ -31,10 +31,10 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.asperities import asperity_pressure, mean_gap
 from ehdmaps.maps.contact_curve import FilmSamples
 from ehdmaps.physics.contact import LineContact
@@ -111,7 +111,7 @@ def asperities_of(surface: Surface, reduced_modulus: float) -> Asperities:
     return Asperities(float(even[0]), distance, slope, np.log(gap), by_gap / gap * slope)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _along(start: float, values: FloatArray, slopes: FloatArray, place: float) -> tuple[float, float]:
     """Value and slope of the cubics; straight beyond their ends."""
     t = (place - start) / _STEP
@@ -127,7 +127,7 @@ def _along(start: float, values: FloatArray, slopes: FloatArray, place: float) -
     return value + (t - inside) * _STEP * slope, slope
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _moes(log_load: float, log_oil: float) -> tuple[float, float, float]:
     """ln H of `ehdmaps.physics.films.moes_central`, and its derivatives by ln M and ln L."""
     rigid, elastic = math.log(3.0) - log_load, math.log(2.621) - 0.2 * log_load
@@ -151,7 +151,7 @@ def _moes(log_load: float, log_oil: float) -> tuple[float, float, float]:
     return log_q + log_sum / s, slope, weight * oil_slope_p
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def scaled_film(log_load: float, log_oil: float, log_share: float) -> tuple[float, float, float]:
     """ln of h_f(g)/h_f(1), and its derivatives by ln g and by ln M.
 
@@ -164,7 +164,7 @@ def scaled_film(log_load: float, log_oil: float, log_share: float) -> tuple[floa
     return _scaled(log_load, log_oil, whole[0], whole[1], log_share)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _scaled(
     log_load: float, log_oil: float, whole: float, whole_slope: float, log_share: float
 ) -> tuple[float, float, float]:
@@ -180,13 +180,13 @@ def _scaled(
     )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _softplus(s: float) -> float:
     """ln(1 + e^s)."""
     return s + math.log1p(math.exp(-s)) if s > 0.0 else math.log1p(math.exp(s))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _balance(
     asperities: Asperities, log_film: float, log_pressure: float, log_load: float, log_oil: float, first: float
 ) -> tuple[float, float, float]:
@@ -224,7 +224,7 @@ def _balance(
     return s, -by_p / by_s, 1.0 / by_s
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _shared(
     asperities: Asperities, sigma: float, roots: FloatArray, pressures: FloatArray, pressure_slopes: FloatArray,
     unit_loads: FloatArray, oils: FloatArray, film: FloatArray, slope: FloatArray, out: FloatArray,

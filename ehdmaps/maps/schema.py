@@ -349,6 +349,9 @@ FAMILY = "family"
 """Attribute of a map whose points were read from lines that several maps share, JSON: how many maps and points of
 lines, and how the laws of some of them were found to be."""
 
+CODE = "code_hash"
+"""Attribute with the hash of all that the map was computed with, see `ehdmaps.provenance.code_hash`."""
+
 TEXTS = (
     "title",
     "job_name",
@@ -361,6 +364,7 @@ TEXTS = (
     SURFACE,
     CORRECTION,
     FAMILY,
+    CODE,
     CHECKSUM,
 )
 """Attributes that are texts, where a map has them; others than those named here are left alone."""

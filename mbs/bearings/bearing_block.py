@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.compiled import njit
 from ehdmaps.copies import put
 from ehdmaps.maps.lines import FAST
 from mbs.bearings import slice_table as table
@@ -75,7 +75,7 @@ class Bearings(NamedTuple):
     strict: BoolArray
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _between(low: FloatArray, high: FloatArray, weight: float, out: FloatArray) -> None:
     """Straight between the numbers of two laws; bounds stay bounds."""
     for i in range(out.size):
@@ -103,7 +103,7 @@ def _between(low: FloatArray, high: FloatArray, weight: float, out: FloatArray) 
     store_numbers(bounded, out)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def blend(films: Films, film: int, node: int, weight: float) -> None:
     """Bring the table in use to a place between two nodes: straight in ln of the speed, cell by cell.
 
@@ -148,7 +148,7 @@ def blend(films: Films, film: int, node: int, weight: float) -> None:
         mixed[i] = first[i] + weight * (second[i] - first[i])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _force(bearings: Bearings, b: int, moment: Moment, motion: FloatArray, out: FloatArray) -> int:
     """Force, stiffness and damping of a bearing into `out` (13, 6); status as of `bearing_force`."""
     rings, films = bearings.rings, bearings.films
@@ -164,7 +164,7 @@ def _force(bearings: Bearings, b: int, moment: Moment, motion: FloatArray, out: 
     return status
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def bearings_answer(bearings: Bearings, moment: Moment, motion: FloatArray, answers: Answers) -> int:
     """Forces and slopes of all bearings; see `mbs.model.blocks.Kind`.
 
@@ -195,7 +195,7 @@ def bearings_answer(bearings: Bearings, moment: Moment, motion: FloatArray, answ
     return FOUND
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def bearings_powers(bearings: Bearings, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
     """What contacts dissipate, and what the cage brings in; see `mbs.model.blocks.Kind`.
 

@@ -11,9 +11,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.kernel import evaluate_at
 from ehdmaps.maps.lines import FAST, unilateral_force
 from ehdmaps.maps.tables import LOAD, Point
@@ -51,7 +51,7 @@ Motion = tuple[float, float]
 Sums = tuple[float, float, float, float, float, float, float, float, float]
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def _moderate_sums(
     positions: FloatArray, w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, motion: Motion, j: int
 ) -> Sums:
@@ -79,7 +79,7 @@ def _moderate_sums(
     return w0, w1, k0, k1, k2, c0, c1, c2, lifting
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _lifting_sums(
     positions: FloatArray, w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, motion: Motion, j: int
 ) -> Sums:
@@ -101,7 +101,7 @@ def _lifting_sums(
     return w0, w1, k0, k1, k2, c0, c1, c2, 0.0
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def added(plane: Plane, roller: Roller, flat: float, mixed: float, tilted: float) -> Plane:
     """The sum with one more roller, from its sums over 1, x and x^2.
 
@@ -129,7 +129,7 @@ def added(plane: Plane, roller: Roller, flat: float, mixed: float, tilted: float
     )
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def write_plane(plane: Plane, length: float, out: FloatArray) -> None:
     """Write a sum into `out` (6, 6), for slices of a length.
 
@@ -155,7 +155,7 @@ def write_plane(plane: Plane, length: float, out: FloatArray) -> None:
     out[4, 5] = out[5, 4] = plane.ab * length
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def assemble(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray, out: FloatArray) -> int:
     """Force, stiffness and damping, into `out` (13, 6); returns how many rollers are above the mapped load.
 
@@ -203,7 +203,7 @@ def assemble(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: Floa
     return above
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def roller_power(
     roller: Roller, positions: FloatArray, weights: FloatArray, states: FloatArray, j: int
 ) -> tuple[float, float, float]:
@@ -237,7 +237,7 @@ def roller_power(
     return lost, flat, tilted
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def ring_powers(
     motion: RingMotion, shape: Shape, weights: FloatArray, numbers: LawNumbers, states: FloatArray, cage_rate: float
 ) -> tuple[float, float]:
@@ -271,7 +271,7 @@ def ring_powers(
     return lost * length, torque * cage_rate * length
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def assemble_slices(motion: RingMotion, shape: Shape, states: FloatArray, out: FloatArray) -> None:
     """`assemble` for slices whose states are those of the motion itself, with whole slopes and loads of any size.
 
@@ -289,7 +289,7 @@ def assemble_slices(motion: RingMotion, shape: Shape, states: FloatArray, out: F
     assemble(motion, shape, unbounded(), states, out)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def bearing_force(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work, out: FloatArray) -> int:
     """Force on the inner ring, stiffness and damping.
 
@@ -319,7 +319,7 @@ def bearing_force(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work
     return 1 if above > 0 else 0
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def bearing_force_of_point(
     point: Point,
     motion: RingMotion,
@@ -366,7 +366,7 @@ def bearing_force_of_point(
     return 1 if counts[LOAD] > before else 0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def force_of_arrays(
     state: FloatArray,
     sizes: FloatArray,
@@ -406,7 +406,7 @@ def force_of_arrays(
     return status
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def force_of_point_arrays(
     point: Point,
     state: FloatArray,
@@ -438,7 +438,7 @@ def force_of_point_arrays(
     return status
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def assemble_arrays(
     state: FloatArray, sizes: FloatArray, slices: FloatArray, angles: FloatArray, states: FloatArray, out: FloatArray
 ) -> None:

@@ -7,9 +7,8 @@ slices are. As long as the conditions stay, later calls make what is still missi
 
 from __future__ import annotations
 
-from numba import njit
-
 from ehdmaps.arrays import ByteArray, FloatArray, IntArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.kernel import collapse
 from mbs.bearings.bearing_kernel import assemble
 from mbs.bearings.flat_law import FlatTable, counted_load, law_table
@@ -29,7 +28,7 @@ NO_TABLE, CELLS_MISSING = -4, -5
 """Status where no table fits the law, and where slices are in cells that are not made yet."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def changed_force(
     law: FlatTable,
     workspace: FloatArray,
@@ -91,7 +90,7 @@ def changed_force(
     return 1 if assemble(motion, shape, prepared.numbers, states, out) > 0 else 0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def remade_force(
     marks: ByteArray,
     state: FloatArray,

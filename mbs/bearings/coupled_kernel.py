@@ -20,9 +20,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.binary_cells import FIRST, SHIFT
 from ehdmaps.maps.kernel import evaluate_at
 from ehdmaps.maps.lines import unilateral_force
@@ -44,7 +44,7 @@ _WEAK = 1e-4
 """Product of coupling and slope below which one step of a series is exact to its square."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _read_law(
     point: Any,
     numbers: LawNumbers,
@@ -84,7 +84,7 @@ def _read_law(
             dc[i] = numbers.damping_time * (numbers.exponent - 1.0) * dw[i] / own[i]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _factor(coupling: FloatArray, root: FloatArray, out: FloatArray) -> bool:
     """Cholesky factor of 1 + root C root, in the lower half; False where there is none."""
     for i in range(root.size):
@@ -103,7 +103,7 @@ def _factor(coupling: FloatArray, root: FloatArray, out: FloatArray) -> bool:
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _relieved(
     coupling: FloatArray, root: FloatArray, factor: FloatArray, weak: bool, given: FloatArray, out: FloatArray
 ) -> None:
@@ -136,7 +136,7 @@ def _relieved(
         out[i] = total
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _left(overlap: FloatArray, own: FloatArray, coupling: FloatArray, w: FloatArray, out: FloatArray) -> float:
     """What approaches miss, overlap - own - C w, and the largest of it."""
     largest = 0.0
@@ -149,7 +149,7 @@ def _left(overlap: FloatArray, own: FloatArray, coupling: FloatArray, w: FloatAr
     return largest
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _settle(
     point: Any,
     numbers: LawNumbers,
@@ -204,7 +204,7 @@ def _settle(
     return NO_LOADS
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def coupled_arrays(
     point: Any,
     state: FloatArray,

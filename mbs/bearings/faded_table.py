@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.kernel import structural_state
 from ehdmaps.maps.lines import FAST
 from ehdmaps.maps.tables import Point
@@ -28,7 +28,7 @@ WHOLE, DRY, RISE, LOADS, SLOPES, DAMPINGS, BENDS = range(7)
 former; load [N/m] and damping [N s/m2], each with its slope by the approach with the whole film."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def write_film(point: Point, nodes: FloatArray, out: FloatArray, highest: float, numbers: FloatArray) -> bool:
     """Nodes of a film of which only a part is there: what holds for every part of it.
 
@@ -76,7 +76,7 @@ def write_film(point: Point, nodes: FloatArray, out: FloatArray, highest: float,
     return True
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def fade(
     film: FloatArray, given: FloatArray, part: float, cells: FloatArray, knots: FloatArray, numbers: FloatArray
 ) -> None:

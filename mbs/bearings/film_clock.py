@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.memory import FilmState
 from mbs.bearings.film_course import Course
 from mbs.bearings.memory_kernel import CHANGE, KEPT, LATEST, LOAD, resume
@@ -29,7 +29,7 @@ def new_clock() -> FloatArray:
     return np.array([math.nan, 0.0, math.nan, 0.0])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def begin_step(clock: FloatArray, films: MemoryFilms, course: Course, moment: Moment) -> float:
     """Begin a step: its time, and the tables; the length of the step by that of the last one, 0 at the first.
 
@@ -51,7 +51,7 @@ def begin_step(clock: FloatArray, films: MemoryFilms, course: Course, moment: Mo
     return (moment.time - clock[ACCEPTED]) / clock[LAST] if clock[LAST] > 0.0 else 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def make_step(clock: FloatArray, moment: Moment) -> None:
     """Count a step that is made.
 

@@ -8,9 +8,9 @@ the law which films with memory follow in time, for small oscillations about an 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.law import LawAtPoint
 from ehdmaps.maps.memory_table import MemoryTable, equilibrium_at
 from ehdmaps.physics.hertz import half_width
@@ -18,7 +18,7 @@ from mbs.bearings.roller_loads import RollerLoads
 from mbs.model.relaxation import Relaxation
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _fill_times(table: MemoryTable, approaches: FloatArray, times: FloatArray) -> None:
     """Relaxation times of contacts at rest; 0 without load."""
     for i in range(approaches.size):
@@ -42,7 +42,7 @@ def relaxation_times(law: LawAtPoint, approach: FloatArray) -> FloatArray:
     return times.reshape(approach.shape)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _fill_rest(table: MemoryTable, approaches: FloatArray, loads: FloatArray, films: FloatArray) -> None:
     """Loads of contacts at rest, and their films: what the approach is less than that of the structure."""
     for i in range(approaches.size):

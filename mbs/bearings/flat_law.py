@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import ByteArray, FloatArray, IntArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.kernel import LOAD_TOLERANCE, collapse
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.tables import ApproachTable, LawTable, Point
@@ -82,7 +82,7 @@ class FlatLaw:
         return self._made[centrifugal]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def law_table(flat: FlatTable) -> LawTable:
     """The `LawTable` of a flat one again."""
     return LawTable(
@@ -94,14 +94,14 @@ def law_table(flat: FlatTable) -> LawTable:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def counted_load(point: Point) -> float:
     """Load above which slices are outside the map [N/m]."""
     load: float = point.highest_load * (1.0 + LOAD_TOLERANCE)
     return load
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def tabulate_law(
     law: FlatTable,
     workspace: FloatArray,

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import in_python
 from ehdmaps.errors import AnalysisError, InputError, OutsideMapError
 from ehdmaps.maps.kernel import LOAD_TOLERANCE, film_part
 from ehdmaps.maps.law import ContactLaw, LawAtPoint
@@ -349,7 +350,7 @@ def is_faded(law: ContactLaw, entrainment_speed: float) -> bool:
 
 def part_of_film(law: ContactLaw, entrainment_speed: float) -> float:
     """Part of the film of a law that is there at a speed [m/s]."""
-    return float(film_part.py_func(abs(entrainment_speed), law.plain_table.film_speed))
+    return float(in_python(film_part)(abs(entrainment_speed), law.plain_table.film_speed))
 
 
 def coupling_beside(bearing: Bearing, law: Law) -> FloatArray | None:

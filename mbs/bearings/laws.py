@@ -16,9 +16,9 @@ from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
@@ -195,7 +195,7 @@ def unilateral_forces(
     return load, stiffness, damping
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _fill_forces(
     w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, rate: FloatArray, forces: FloatArray
 ) -> None:

@@ -8,16 +8,16 @@ their number as its weight; moments, and what tilts would change, are not comput
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.lines import FAST, unilateral_force
 from mbs.bearings.roller_motion import RingMotion, Shape, Work, check_motion, roller_of
 from mbs.bearings.slice_states import rest_states
 from mbs.bearings.slice_table import LawNumbers, PreparedLaw, unbounded
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def _moderate_sums(
     weights: FloatArray, w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, rate: float
 ) -> tuple[float, float, float, float]:
@@ -34,7 +34,7 @@ def _moderate_sums(
     return load, stiffness, damping, lifting
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _lifting_sums(
     weights: FloatArray, w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, rate: float
 ) -> tuple[float, float, float, float]:
@@ -48,7 +48,7 @@ def _lifting_sums(
     return load, stiffness, damping, 0.0
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def assemble_level(
     motion: RingMotion, shape: Shape, weights: FloatArray, numbers: LawNumbers, states: FloatArray, out: FloatArray
 ) -> int:
@@ -95,7 +95,7 @@ def assemble_level(
     return above
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def assemble_level_slices(
     motion: RingMotion, shape: Shape, weights: FloatArray, states: FloatArray, out: FloatArray
 ) -> None:
@@ -113,7 +113,7 @@ def assemble_level_slices(
     assemble_level(motion, shape, weights, unbounded(), states, out)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def level_force(
     motion: RingMotion, shape: Shape, weights: FloatArray, law: PreparedLaw, work: Work, out: FloatArray
 ) -> int:

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.compiled import in_python, njit
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.memory import FilmState
 from ehdmaps.maps.memory_table import step_of
@@ -86,7 +86,7 @@ class MemoryBearings(NamedTuple):
     course: Course
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def memory_of(bearings: MemoryBearings, b: int) -> FloatArray:
     """Memory of the slices of a bearing, shape (MEMORY, Z n), contiguous."""
     size = bearings.rings.rollers[b] * bearings.rings.slices[b]
@@ -94,7 +94,7 @@ def memory_of(bearings: MemoryBearings, b: int) -> FloatArray:
     return memory
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _begin(bearings: MemoryBearings, moment: Moment) -> None:
     """Begin a step: tables, and what its slices start from."""
     films, steps = bearings.films, int(bearings.clock[STEPS])
@@ -103,7 +103,7 @@ def _begin(bearings: MemoryBearings, moment: Moment) -> None:
         begin(table_in_use(films, bearings.rings.films_of[b]), growth, steps, memory_of(bearings, b))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _answer(bearings: MemoryBearings, b: int, moment: Moment, motion: FloatArray, out: FloatArray) -> int:
     """Force and tangent of a bearing into `out` (13, 6); status as of `bearing_force`."""
     rings = bearings.rings
@@ -125,7 +125,7 @@ def _answer(bearings: MemoryBearings, b: int, moment: Moment, motion: FloatArray
     return 1 if np.max(states[0]) > bearings.films.mixed[film, HIGHEST] else 0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def memory_answer(bearings: MemoryBearings, moment: Moment, motion: FloatArray, answers: Answers) -> int:
     """Forces and tangents of all bearings at the end of a step; see `mbs.model.blocks.Kind`.
 
@@ -156,7 +156,7 @@ def memory_answer(bearings: MemoryBearings, moment: Moment, motion: FloatArray, 
     return FOUND
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def memory_accept(bearings: MemoryBearings, moment: Moment) -> None:
     """Make the step: states go on; see `mbs.model.blocks.Kind`.
 
@@ -177,7 +177,7 @@ def memory_accept(bearings: MemoryBearings, moment: Moment) -> None:
     make_step(bearings.clock, moment)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def memory_powers(
     bearings: MemoryBearings, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray
 ) -> None:
@@ -258,7 +258,7 @@ class MemoryBlock(FilmBlock[MemoryBearings]):
 
     def _rows(self, b: int) -> FloatArray:
         """Memory of the slices of a bearing."""
-        rows: FloatArray = memory_of.py_func(self._arrays, b)
+        rows: FloatArray = in_python(memory_of)(self._arrays, b)
         return rows
 
 

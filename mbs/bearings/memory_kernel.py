@@ -12,9 +12,8 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.copies import put
 from ehdmaps.maps.film_energy import spent_by
 from ehdmaps.maps.lines import FAST
@@ -53,7 +52,7 @@ _ROUNDS = 12
 _LEAST = 1e-30
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def resume(approach: FloatArray, change: FloatArray, load: FloatArray, memory: FloatArray) -> None:
     """Go on from states, as of `ehdmaps.maps.memory.FilmState`.
 
@@ -72,7 +71,7 @@ def resume(approach: FloatArray, change: FloatArray, load: FloatArray, memory: F
         memory[LOAD, i], memory[AROUND, i] = load[i], math.inf
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def begin(table: MemoryTable, growth: float, count: int, memory: FloatArray) -> None:
     """Begin a step.
 
@@ -99,7 +98,7 @@ def begin(table: MemoryTable, growth: float, count: int, memory: FloatArray) -> 
             _read(table, memory, i)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _read(table: MemoryTable, memory: FloatArray, i: int) -> None:
     """Parabolas of a slice around the state of the trial and the last load."""
     per, per_load = table.inverse_scale, 1.0 / LIGHTEST
@@ -132,7 +131,7 @@ def _read(table: MemoryTable, memory: FloatArray, i: int) -> None:
     memory[LOAD_REACH, i] = _LOAD_PART * (load + LIGHTEST) / math.sqrt(slope * memory[P + 1, i] + _LEAST)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _round(step: Step, memory: FloatArray, delta: FloatArray, load: FloatArray, tangent: FloatArray) -> float:
     """A Newton step for the states of all slices, with loads and tangents there; how many still move."""
     trial, around, change, fading, loaded = memory[TRIAL], memory[AROUND], memory[CHANGE], memory[FADE], memory[LOADED]
@@ -161,7 +160,7 @@ def _round(step: Step, memory: FloatArray, delta: FloatArray, load: FloatArray, 
     return left
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _unsettled(step: Step, memory: FloatArray, delta: FloatArray, load: FloatArray, tangent: FloatArray) -> None:
     """Give the slices that Newton's steps on parabolas do not settle to the table, whose steps have a bracket.
 
@@ -174,7 +173,7 @@ def _unsettled(step: Step, memory: FloatArray, delta: FloatArray, load: FloatArr
             memory[TRIAL, i] = math.inf
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def loads(
     table: MemoryTable, step: Step, memory: FloatArray, delta: FloatArray, load: FloatArray, tangent: FloatArray
 ) -> None:
@@ -224,7 +223,7 @@ def loads(
             load[i], tangent[i], trial[i] = advanced(table, step, delta[i], before, memory[CHANGE, i], xi)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def commit(table: MemoryTable, memory: FloatArray, load: FloatArray) -> None:
     """Make the step: the trial becomes the state.
 
@@ -262,7 +261,7 @@ def commit(table: MemoryTable, memory: FloatArray, load: FloatArray) -> None:
     put(load, memory[LOAD])
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def spent(table: MemoryTable, memory: FloatArray, load: FloatArray, weights: FloatArray) -> float:
     """Energy that all films take up over a step, before `commit`, for each length of a slice [J/m].
 

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.compiled import in_python, njit
 from ehdmaps.maps.memory_table import step_of
 from mbs.bearings.film_clock import (
     ACCEPTED,
@@ -82,7 +82,7 @@ class MemoryRollerBearings(NamedTuple):
     course: Course
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _memory_of(bearings: MemoryRollerBearings, b: int, side: int) -> FloatArray:
     """Memory of the slices of one side of a bearing, shape (MEMORY, Z n), contiguous."""
     size = bearings.rollers.rings.rollers[b] * bearings.rollers.rings.slices[b]
@@ -90,7 +90,7 @@ def _memory_of(bearings: MemoryRollerBearings, b: int, side: int) -> FloatArray:
     return memory
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _begin(bearings: MemoryRollerBearings, moment: Moment) -> None:
     """Begin a step: tables, and what slices start from."""
     films, rollers, steps = bearings.films, bearings.rollers, int(bearings.clock[STEPS])
@@ -100,14 +100,14 @@ def _begin(bearings: MemoryRollerBearings, moment: Moment) -> None:
             begin(table_in_use(films, rollers.films_of[b, side]), growth, steps, _memory_of(bearings, b, side))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _moves_within(place: Place, sizes: Sizes) -> bool:
     """Whether approaches are finite and within reason."""
     far, tilt = sizes.most_travel, sizes.most_tilt
     return abs(place.approach[0]) <= far and abs(place.approach[1]) <= far and abs(place.tilt) <= tilt
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _answer(
     bearings: MemoryRollerBearings, b: int, moment: Moment, motion: FloatArray, answers: Answers
 ) -> tuple[bool, bool]:
@@ -152,7 +152,7 @@ def _answer(
     return True, above
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def memory_rollers_answer(bearings: MemoryRollerBearings, moment: Moment, motion: FloatArray, answers: Answers) -> int:
     """Forces and tangents of all bearings at the end of a step; see `mbs.model.blocks.Kind`.
 
@@ -183,7 +183,7 @@ def memory_rollers_answer(bearings: MemoryRollerBearings, moment: Moment, motion
     return FOUND
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def memory_rollers_powers(
     bearings: MemoryRollerBearings, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray
 ) -> None:
@@ -205,7 +205,7 @@ def memory_rollers_powers(
         out[rings.places[b], 1] = torque * rings.cage_rates[b] * moment.speed + outward
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def memory_rollers_accept(bearings: MemoryRollerBearings, moment: Moment) -> None:
     """Make the step: states go on; see `mbs.model.blocks.Kind`.
 
@@ -291,7 +291,7 @@ class MemoryRollerBlock(FilmBlock[MemoryRollerBearings]):
 
     def _rows(self, b: int, side: int) -> FloatArray:
         """Memory of the slices of one side of a bearing."""
-        rows: FloatArray = _memory_of.py_func(self._arrays, b, side)
+        rows: FloatArray = in_python(_memory_of)(self._arrays, b, side)
         return rows
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.compiled import njit
 from ehdmaps.errors import EhdmapsError
 from ehdmaps.maps.kernel import LOAD_TOLERANCE
 from ehdmaps.maps.law import ContactLaw
@@ -62,7 +62,7 @@ def room(films: int) -> MemoryFilms:
     )
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def mix(films: MemoryFilms, film: int, node: int, weight: float) -> None:
     """Bring the table in use to a place between two nodes, straight in ln of the speed.
 
@@ -88,14 +88,14 @@ def mix(films: MemoryFilms, film: int, node: int, weight: float) -> None:
     _straight(films.numbers[film, node], films.numbers[film, other], weight, films.mixed[film])
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _straight(low: FloatArray, high: FloatArray, weight: float, out: FloatArray) -> None:
     """Straight between two arrays."""
     for i in range(out.size):
         out[i] = low[i] + weight * (high[i] - low[i])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def table_in_use(films: MemoryFilms, film: int) -> MemoryTable:
     """The table in use.
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from ehdmaps.compiled import njit
 from ehdmaps.maps.elementary import log
 
 _LOG2_E = 1.4426950408889634
@@ -14,7 +14,7 @@ _MANTISSA = np.uint64(52)
 _BIAS = np.uint64(1023)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "nsz"}, forceinline=True)
+@njit(error_model="numpy", fastmath={"contract", "nsz"}, forceinline=True)
 def power(x: float, b: float) -> float:
     """x^b for a positive normal x, and a result between 1e-300 and 1e300; to some 1e-15 relative."""
     y = b * log(x)

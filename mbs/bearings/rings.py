@@ -15,9 +15,9 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import njit
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.force_at_point import Arrays
 from mbs.bearings.roller_motion import RingMotion, Shape, sizes_of
@@ -80,7 +80,7 @@ class Rings(NamedTuple):
         return int(np.max(self.rollers * self.slices, initial=0))
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(error_model="numpy", forceinline=True)
 def motion_of(rings: Rings, b: int, moment: Moment, motion: FloatArray) -> RingMotion:
     """Motion of the inner ring of a bearing against the outer one.
 
@@ -103,7 +103,7 @@ def motion_of(rings: Rings, b: int, moment: Moment, motion: FloatArray) -> RingM
     return RingMotion(x[i], x[i + 1], x[i + 2], x[i + 3], y[i], y[i + 1], y[i + 2], y[i + 3], c, s)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(error_model="numpy", forceinline=True)
 def shape_of(rings: Rings, b: int) -> Shape:
     """What does not change of a bearing."""
     z, n = rings.rollers[b], rings.slices[b]
@@ -112,7 +112,7 @@ def shape_of(rings: Rings, b: int) -> Shape:
     )
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(error_model="numpy", forceinline=True)
 def answer_ring(first: int, felt: int, moment: Moment, out: FloatArray, answers: Answers) -> None:
     """Put force, stiffness and damping of a bearing among the answers of all elements.
 
@@ -135,7 +135,7 @@ def answer_ring(first: int, felt: int, moment: Moment, out: FloatArray, answers:
             answers.slopes[first + i, first + j] = slope
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@njit(error_model="numpy", forceinline=True)
 def turned_by(first: int, pairs: int, motion: FloatArray, answers: Answers) -> float:
     """Moment that a bearing asks of its cage [N m]: sum of y f_z - z f_y over pairs of what it feels, tilts likewise.
 

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.compiled import njit
 from mbs.bearings.bearing_block import Films, blend, course_over, is_strict, room_of
 from mbs.bearings.bearing_kernel import bearing_force, roller_power
 from mbs.bearings.film_course import Course, FilmBlock, course_of, shared
@@ -68,7 +68,7 @@ class RollerBearings(NamedTuple):
     strict: BoolArray
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def rollers_answer(bearings: RollerBearings, moment: Moment, motion: FloatArray, answers: Answers) -> int:
     """Forces and slopes of all bearings; see `mbs.model.blocks.Kind`.
 
@@ -133,7 +133,7 @@ def rollers_answer(bearings: RollerBearings, moment: Moment, motion: FloatArray,
     return FOUND
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def rollers_powers(
     bearings: RollerBearings, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray
 ) -> None:

@@ -6,9 +6,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.lines import FAST
 from mbs.bearings.slice_table import fixed_tuple
 
@@ -123,7 +123,7 @@ class Work(NamedTuple):
     states: FloatArray
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def roller_of(motion: RingMotion, shape: Shape, j: int) -> Roller:
     """Where a roller stands, and how it moves.
 
@@ -152,7 +152,7 @@ def roller_of(motion: RingMotion, shape: Shape, j: int) -> Roller:
     )
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def slice_approaches(motion: RingMotion, shape: Shape, out: FloatArray) -> None:
     """Approach of all slices of all rollers.
 
@@ -173,7 +173,7 @@ def slice_approaches(motion: RingMotion, shape: Shape, out: FloatArray) -> None:
             row[i] = roller.gap + x[i] * roller.tilt - lost[i]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def check_motion(motion: RingMotion, sizes: Sizes) -> int:
     """Zero, or what is wrong about the motion: `NOT_FINITE`, `TOO_FAR`."""
     total = abs(motion.y) + abs(motion.z) + abs(motion.theta_y) + abs(motion.theta_z)
@@ -186,20 +186,20 @@ def check_motion(motion: RingMotion, sizes: Sizes) -> int:
     return 0 if within else TOO_FAR
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def sizes_of(numbers: FloatArray) -> Sizes:
     """Sizes from an array (6,) in their order."""
     return Sizes(*fixed_tuple(numbers, 6))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def ring_motion(state: FloatArray) -> RingMotion:
     """What rollers feel of pose (6,), velocity (6,) and cage angle in a row."""
     c, s = math.cos(state[12]), math.sin(state[12])
     return RingMotion(state[1], state[2], state[4], state[5], state[7], state[8], state[10], state[11], c, s)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def all_finite(state: FloatArray) -> bool:
     """Whether all numbers are finite, and their sum is."""
     total = 0.0
@@ -208,7 +208,7 @@ def all_finite(state: FloatArray) -> bool:
     return total < math.inf
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def rollers_of_arrays(state: FloatArray, sizes: FloatArray, slices: FloatArray, angles: FloatArray) -> FloatArray:
     """Gap, tilt and their rates of all rollers, shape (4, Z), for callers in Python.
 
@@ -226,7 +226,7 @@ def rollers_of_arrays(state: FloatArray, sizes: FloatArray, slices: FloatArray, 
     return found
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def approaches_of_arrays(
     state: FloatArray, sizes: FloatArray, slices: FloatArray, angles: FloatArray, out: FloatArray
 ) -> int:

@@ -11,9 +11,9 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import njit
 from mbs.bearings.rings import Rings, gather_rings
 from mbs.bearings.roller_element import RollerElement
 from mbs.model.blocks import Answers, Member, Moment
@@ -85,7 +85,7 @@ class Contact(NamedTuple):
     tilted: float
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def place_of(rollers: Rollers, b: int, j: int, cage: tuple[float, float], motion: FloatArray) -> Place:
     """Where a roller stands.
 
@@ -117,7 +117,7 @@ def place_of(rollers: Rollers, b: int, j: int, cage: tuple[float, float], motion
     )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def begin_answer(rollers: Rollers, b: int, moment: Moment, answers: Answers) -> None:
     """Begin the answer of a bearing: centrifugal forces of its rollers, and nothing else yet.
 
@@ -145,7 +145,7 @@ def begin_answer(rollers: Rollers, b: int, moment: Moment, answers: Answers) -> 
         slopes[first : first + _FELT, r] = 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def add_contact(rollers: Rollers, b: int, j: int, side: int, place: Place, contact: Contact, answers: Answers) -> None:
     """Add what a contact of a roller does to the ring and to the roller.
 
@@ -176,7 +176,7 @@ def add_contact(rollers: Rollers, b: int, j: int, side: int, place: Place, conta
             answers.slopes[at[p], at[q]] += by_flat * flat[q] + by_tilt * tilted[q]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def outward_power(rollers: Rollers, b: int, moment: Moment, motion: FloatArray) -> float:
     """Power of the centrifugal forces on the rollers of a bearing [W].
 

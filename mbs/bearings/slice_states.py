@@ -7,9 +7,9 @@ the law is held at, all go on along its tangent.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import njit
 from ehdmaps.maps.binary_cells import FIRST, SHIFT
 from ehdmaps.maps.lines import FAST
 from mbs.bearings.powers import power
@@ -19,7 +19,7 @@ from mbs.bearings.slice_table import CELLS, LAST, POWER, ROWS, LawNumbers, Prepa
 _NO_APPROACH = 1e-30
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def find_cells(motion: RingMotion, shape: Shape, numbers: LawNumbers, rows: IntArray, places: FloatArray) -> None:
     """Row of the table of each slice, and the place in the cell.
 
@@ -52,7 +52,7 @@ def find_cells(motion: RingMotion, shape: Shape, numbers: LawNumbers, rows: IntA
             row[i] = np.int64(cell) - FIRST + (0 if z >= 0.0 else ROWS)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray) -> None:
     """States of w = a delta^b with c = damping + damping_time dw; rollers without load are left out.
 
@@ -90,7 +90,7 @@ def power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: 
             dc[i] = bend * dw[i] * dw[i] / (w[i] if loaded else 1.0)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def find_knots(motion: RingMotion, shape: Shape, knots: FloatArray, rows: IntArray, places: FloatArray) -> None:
     """Cell between knots of each slice, and the place there, as `find_cells`.
 
@@ -126,7 +126,7 @@ def find_knots(motion: RingMotion, shape: Shape, knots: FloatArray, rows: IntArr
             row[i], place[i] = found, delta - knots[found]
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _hold(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray) -> None:
     """States on the tangent, for slices above the held load."""
     x, lost = shape.positions, shape.profile
@@ -142,7 +142,7 @@ def _hold(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatAr
                 dw[i], c[i], dc[i] = numbers.held_stiffness / numbers.slope, numbers.held_damping, 0.0
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def read_states(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work) -> None:
     """States of all slices at rest, from the rows of a table and the places there.
 
@@ -157,7 +157,7 @@ def read_states(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work) 
     _hold(motion, shape, law.numbers, work.states)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def rest_states(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work) -> None:
     """States of all slices at rest.
 

@@ -17,10 +17,10 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from ehdmaps.arrays import ByteArray, FloatArray, IntArray
+from ehdmaps.compiled import COMPILES, njit
 from ehdmaps.maps.binary_cells import last_of, nodes_of, rows_of
 from ehdmaps.maps.bulk import rest_states
 from ehdmaps.maps.kernel import full_state
@@ -28,8 +28,8 @@ from ehdmaps.maps.lines import FAST, line_approach, line_state
 from ehdmaps.maps.roller_balance import balanced_approach
 from ehdmaps.maps.tables import Point
 
-fixed_tuple: Any = to_fixed_tuple
-"""The first numbers of an array as a tuple, in compiled code."""
+fixed_tuple: Any = to_fixed_tuple if COMPILES else lambda values, size: tuple(values[:size])
+"""The first numbers of an array as a tuple."""
 
 ROWS = rows_of(14)
 """Rows of the table on each side of the centre."""
@@ -118,27 +118,27 @@ class PreparedLaw(NamedTuple):
     knots: FloatArray
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def law_numbers(numbers: FloatArray) -> LawNumbers:
     """The numbers of a law from an array (NUMBERS,) in their order."""
     return LawNumbers(*fixed_tuple(numbers, 15))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def store_numbers(found: LawNumbers, numbers: FloatArray) -> None:
     """Write the numbers of a law into an array (NUMBERS,)."""
     for i in range(len(found)):
         numbers[i] = found[i]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def unbounded() -> LawNumbers:
     """Numbers for states that are there already: whole slopes, loads of any size."""
     inf = math.inf
     return LawNumbers(POWER, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, inf, inf, -inf, 1.0, inf, inf, 0.0, 0.0)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def read_cells(cells: FloatArray, rows: IntArray, states: FloatArray) -> None:
     """Load, slope, damping and its slope, into `states` (4, n), from rows (n,) and places in the cells, states[0]."""
     w, dw, c, dc = states[0], states[1], states[2], states[3]
@@ -154,7 +154,7 @@ def read_cells(cells: FloatArray, rows: IntArray, states: FloatArray) -> None:
         c[i], dc[i] = cells[m, np.uint64(4)] + t * mean, mean + t * (bend + t * high)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _centre(point: Point) -> float:
     """Approach around which the law is finest."""
     if point.centrifugal_load == 0.0:
@@ -164,7 +164,7 @@ def _centre(point: Point) -> float:
     return approach
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def whole_approach(point: Point, load: float) -> float:
     """Approach at which a point with its whole film carries a load.
 
@@ -181,7 +181,7 @@ def whole_approach(point: Point, load: float) -> float:
     return approach
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def nodes_up_to(centre: float, scale: float, approach: float) -> int:
     """How many nodes lie at or below an approach.
 
@@ -200,7 +200,7 @@ def nodes_up_to(centre: float, scale: float, approach: float) -> int:
     return low
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def place_numbers(point: Point, highest: float) -> LawNumbers:
     """Where the cells of a point with its whole film lie, and the limits of its law.
 
@@ -234,13 +234,13 @@ def place_numbers(point: Point, highest: float) -> LawNumbers:
     )  # fmt: skip
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def is_placed(numbers: LawNumbers) -> bool:
     """Whether the nodes of a table reach down to lift-off."""
     return numbers.lift_off < math.inf
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def node_states(point: Point, numbers: LawNumbers, wanted: IntArray, nodes: FloatArray) -> None:
     """States of the whole film at some nodes.
 
@@ -277,7 +277,7 @@ def node_states(point: Point, numbers: LawNumbers, wanted: IntArray, nodes: Floa
         nodes[1, wanted[i]], nodes[2, wanted[i]], nodes[3, wanted[i]] = found[1, -1], found[2, -1], 0.0
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def _held_slopes(nodes: FloatArray, scale: float, i: int) -> tuple[float, float]:
     """Slopes of load and damping by z at a node, held so that neither falls below where it must not."""
     k, below, above = np.uint64(i), np.uint64(max(i - 1, 0)), np.uint64(min(i + 1, NODES - 1))
@@ -295,7 +295,7 @@ def _held_slopes(nodes: FloatArray, scale: float, i: int) -> tuple[float, float]
     return (slope if slope > 0.0 else 0.0), change
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST, forceinline=True)
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def _write_cell(nodes: FloatArray, scale: float, row: int, cells: FloatArray) -> None:
     """Cubics of a cell, over the distance from the end that is nearer to the centre."""
     upwards = row < ROWS
@@ -313,7 +313,7 @@ def _write_cell(nodes: FloatArray, scale: float, row: int, cells: FloatArray) ->
     cells[k, np.uint64(7)] = (bend + far_bend - 2.0 * secant) * by * by
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def all_made(rows: IntArray, marks: ByteArray) -> bool:
     """Whether the cells of some rows are made, see `fill`."""
     missing = 0
@@ -322,7 +322,7 @@ def all_made(rows: IntArray, marks: ByteArray) -> bool:
     return missing == 0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def fill(
     point: Point, numbers: LawNumbers, rows: IntArray, nodes: FloatArray, marks: ByteArray, cells: FloatArray
 ) -> None:
@@ -372,7 +372,7 @@ def fill(
         _write_cell(nodes, scale, pending[i], cells)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def tabulate(
     point: Point, nodes: FloatArray, marks: ByteArray, cells: FloatArray, highest: float, numbers: FloatArray
 ) -> bool:

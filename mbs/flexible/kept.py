@@ -8,18 +8,15 @@ removed at any time. What cannot be read there is made again, and where nothing 
 from __future__ import annotations
 
 import contextlib
-import functools
 import hashlib
 import os
 from collections.abc import Mapping
 from pathlib import Path
 
-import numpy as np
-import scipy
-
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import check_input
 from ehdmaps.outputs import Kind, cache_folder
+from ehdmaps.provenance import code_hash
 from mbs.flexible.carry_out import carry_out
 from mbs.flexible.number_table import LONGEST_FILE
 from mbs.flexible.plan import ReductionPlan
@@ -69,7 +66,7 @@ def plan_key(plan: ReductionPlan) -> str:
     InputError
         If a file cannot be read.
     """
-    found = hashlib.sha256(_code_state().encode())
+    found = hashlib.sha256(code_hash().encode())
     for name in ("stiffness", "mass", "dofs", "mesh"):
         path = getattr(plan, name)
         found.update(f"\0{name}:{file_digest(path) if path is not None else ''}".encode())
@@ -106,16 +103,6 @@ def file_digest(path: Path) -> str:
 def kept_folder(environment: Mapping[str, str]) -> Path:
     """Return where reductions are kept: $EHDMAPS_REDUCED, or in the user's folder for caches."""
     return cache_folder("reduced", FOLDER_VARIABLE, environment)
-
-
-@functools.cache
-def _code_state() -> str:
-    """Hash of the code that reduces, with the versions of what it calls."""
-    here = Path(__file__).parent
-    found = hashlib.sha256(f"numpy {np.__version__} scipy {scipy.__version__}".encode())
-    for path in [*sorted(here.glob("*.py")), here.parent / "model" / "body.py"]:
-        found.update(f"\0{path.name}\0".encode() + path.read_bytes())
-    return found.hexdigest()
 
 
 def _from_disk(key: str) -> ReducedBody | None:

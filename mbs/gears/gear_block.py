@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import njit
 from mbs.gears.gear import GearMesh
 from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_force, mesh_powers
 from mbs.model.blocks import FOUND, Answers, Kind, Member, Moment, SteadyBlock
@@ -31,7 +31,7 @@ class Meshes(NamedTuple):
     series: FloatArray
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def meshes_answer(meshes: Meshes, moment: Moment, motion: FloatArray, answers: Answers) -> int:
     """Forces and slopes of all flanks; see `mbs.model.blocks.Kind`.
 
@@ -62,7 +62,7 @@ def meshes_answer(meshes: Meshes, moment: Moment, motion: FloatArray, answers: A
     return FOUND
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def meshes_powers(meshes: Meshes, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
     """What flanks dissipate, and what stiffness and error bring in; see `mbs.model.blocks.Kind`.
 

@@ -12,9 +12,8 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.physics.unilateral import Force, unilateral_force
 
 _unilateral_force = njit(error_model="numpy")(unilateral_force)
@@ -33,7 +32,7 @@ FORCE, SLOPE, BY_RATE = range(3)
 """Columns of what a flank returns."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def flank_force(compression: float, rate: float, stiffness: float, damping: float) -> Force:
     """Force of a flank, and its derivatives by compression and by rate.
 
@@ -61,7 +60,7 @@ def flank_force(compression: float, rate: float, stiffness: float, damping: floa
     return force
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def mesh_course(constants: FloatArray, series: FloatArray, angle: float, speed: float) -> tuple[float, float, float]:
     """Stiffness [N/m], transmission error [m] and its rate [m/s] at an angle and speed of the system.
 
@@ -88,7 +87,7 @@ def mesh_course(constants: FloatArray, series: FloatArray, angle: float, speed: 
     return constants[STIFFNESS] * part, error, error_rate
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def mesh_force(
     constants: FloatArray,
     series: FloatArray,
@@ -120,7 +119,7 @@ def mesh_force(
         out[flank, FORCE], out[flank, SLOPE], out[flank, BY_RATE] = found
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def flank_energy(compression: float) -> float:
     """Energy of a flank at rest for each stiffness [m2]: the integral of its load over the compression [m]."""
     if compression <= 0.0:
@@ -131,7 +130,7 @@ def flank_energy(compression: float) -> float:
     return TOUCH * TOUCH / 6.0 + 0.5 * (middle * middle - 0.25 * TOUCH * TOUCH)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def mesh_powers(
     constants: FloatArray, series: FloatArray, angle: float, speed: float, motion: FloatArray, rate: FloatArray
 ) -> tuple[float, float]:
@@ -164,7 +163,7 @@ def mesh_powers(
     return dissipated, driven
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def mesh_energy(constants: FloatArray, series: FloatArray, angle: float, motion: FloatArray) -> float:
     """Energy that both flanks store [J].
 

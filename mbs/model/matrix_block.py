@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import njit
 from mbs.model.blocks import FOUND, Answers, Kind, Member, Moment, SteadyBlock
 from mbs.model.matrices import MatrixElement
 
@@ -33,7 +33,7 @@ class Matrices(NamedTuple):
     tables: FloatArray
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _at(matrices: Matrices, e: int, speed: float, out: FloatArray) -> bool:
     """Write stiffness and damping of an element at a speed; whether that lies beyond its table."""
     count, speeds, tables = matrices.counts[e], matrices.speeds[e], matrices.tables[e]
@@ -52,7 +52,7 @@ def _at(matrices: Matrices, e: int, speed: float, out: FloatArray) -> bool:
     return bool(count > 1 and (speed < speeds[0] or speed > speeds[count - 1]))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def matrices_answer(matrices: Matrices, moment: Moment, motion: FloatArray, answers: Answers) -> int:
     """Forces and slopes of all connections; see `mbs.model.blocks.Kind`.
 
@@ -82,7 +82,7 @@ def matrices_answer(matrices: Matrices, moment: Moment, motion: FloatArray, answ
     return FOUND
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def matrices_powers(matrices: Matrices, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
     """What dampings take, and what skew stiffnesses bring in; see `mbs.model.blocks.Kind`.
 

@@ -12,6 +12,7 @@ import xarray as xr
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.outputs import MADE_AS, dataset_kind, written_aside
+from ehdmaps.provenance import code_hash
 from ehdmaps.version import version
 from mbs.bearings.bearing_element import RingElement
 from mbs.bearings.contact_report import BearingContacts
@@ -248,7 +249,9 @@ def write_dataset(dataset: xr.Dataset, path: Path) -> None:
 
 def described(dataset: xr.Dataset, **attributes: str) -> xr.Dataset:
     """The dataset with its provenance: scene, law and versions."""
-    return dataset.assign_attrs(schema_version=SCHEMA_VERSION, ehdmaps_version=version(), **attributes)
+    return dataset.assign_attrs(
+        schema_version=SCHEMA_VERSION, ehdmaps_version=version(), code_hash=code_hash(), **attributes
+    )
 
 
 def _by_kind(system: System, values: FloatArray, dims: tuple[str, ...], order: str) -> dict[str, Any]:

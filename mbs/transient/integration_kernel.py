@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def port_motion(transform: FloatArray, q: FloatArray, v: FloatArray, motion: FloatArray) -> None:
     """Displacement and velocity of all ports, into `motion` (2, m), from those of the coordinates.
 
@@ -34,7 +33,7 @@ def port_motion(transform: FloatArray, q: FloatArray, v: FloatArray, motion: Flo
         motion[1, i] = rate
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def unbalanced(
     mass: FloatArray,
     damping: FloatArray,
@@ -80,7 +79,7 @@ def unbalanced(
     return math.sqrt(size), math.sqrt(max(by_load, by_contact, by_inertia))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def eliminate(matrix: FloatArray, right: FloatArray) -> bool:
     """Gaussian elimination with partial pivoting, in place: no allocation; False if singular or not finite.
 
@@ -122,7 +121,7 @@ def eliminate(matrix: FloatArray, right: FloatArray) -> bool:
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def correction(
     linear: FloatArray,
     transform: FloatArray,

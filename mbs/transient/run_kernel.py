@@ -24,13 +24,13 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numba.extending import overload
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import in_python, njit
 from ehdmaps.copies import put
 from ehdmaps.maps.lines import FAST
-from mbs.model.blocks import FOUND, NO_SOLUTION, Answers, Moment
+from mbs.model.blocks import FOUND, NO_SOLUTION, Answers, Kind, Moment
 from mbs.transient.integration_kernel import eliminate
 from mbs.transient.kinds import KINDS
 from mbs.transient.run_arrays import Course, Energies, Linear, Numbers, Records, State
@@ -39,7 +39,7 @@ DONE, TOO_LARGE = FOUND, 3
 """How `advance` ended, besides `NO_SOLUTION` and `IN_PYTHON`: all steps made; error above the tolerance."""
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _times(matrix: FloatArray, x: FloatArray, out: FloatArray) -> None:
     """Matrix times vector."""
     for i in range(matrix.shape[0]):
@@ -50,7 +50,7 @@ def _times(matrix: FloatArray, x: FloatArray, out: FloatArray) -> None:
         out[i] = total
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _expanded_times(matrices: FloatArray, by: float, x: FloatArray, out: FloatArray) -> None:
     """(M0 + by M1 + by^2 M2) times vector."""
     for i in range(matrices.shape[1]):
@@ -63,7 +63,7 @@ def _expanded_times(matrices: FloatArray, by: float, x: FloatArray, out: FloatAr
         out[i] = t0 + by * (t1 + by * t2)
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _expanded(matrices: FloatArray, by: float, out: FloatArray) -> None:
     """M0 + by M1 + by^2 M2."""
     for i in range(out.shape[0]):
@@ -72,7 +72,7 @@ def _expanded(matrices: FloatArray, by: float, out: FloatArray) -> None:
             row[j] = r0[j] + by * (r1[j] + by * r2[j])
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _size(matrix: FloatArray, x: FloatArray) -> float:
     """Root of x^T M x."""
     total = 0.0
@@ -85,7 +85,7 @@ def _size(matrix: FloatArray, x: FloatArray) -> float:
     return math.sqrt(max(total, 0.0))
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _norm(x: FloatArray) -> float:
     """Euclidean norm."""
     total = 0.0
@@ -94,8 +94,13 @@ def _norm(x: FloatArray) -> float:
     return math.sqrt(total)
 
 
+def _kind(arrays: type) -> Kind:
+    """Kind of a block by the class of its arrays."""
+    return {kind.arrays: kind for kind in KINDS.values()}[arrays]
+
+
 def all_answer(blocks: tuple[Any, ...], moment: Moment, motion: FloatArray, answers: Answers) -> int:
-    """Answers of all elements, in compiled code only: each block by the function of its kind.
+    """Answers of all elements: each block by the function of its kind.
 
     Parameters
     ----------
@@ -108,7 +113,11 @@ def all_answer(blocks: tuple[Any, ...], moment: Moment, motion: FloatArray, answ
     answers : Answers
         Answers of all elements, filled.
     """
-    raise NotImplementedError
+    for block in blocks:
+        status = _kind(type(block)).answer(block, moment, motion, answers)
+        if status != FOUND:
+            return status
+    return FOUND
 
 
 @overload(all_answer, jit_options={"error_model": "numpy"})
@@ -120,7 +129,7 @@ def _all_answer(blocks: Any, moment: Any, motion: Any, answers: Any) -> Callable
             return FOUND
 
         return none
-    answer = {kind.arrays: kind.answer for kind in KINDS.values()}[blocks[0].instance_class]
+    answer = _kind(blocks[0].instance_class).answer
 
     def first_and_rest(blocks: Any, moment: Any, motion: Any, answers: Any) -> int:
         status = answer(blocks[0], moment, motion, answers)
@@ -132,7 +141,7 @@ def _all_answer(blocks: Any, moment: Any, motion: Any, answers: Any) -> Callable
 
 
 def all_accept(blocks: tuple[Any, ...], moment: Moment) -> None:
-    """Tell all elements with states of their own that a step is made, in compiled code only.
+    """Tell all elements with states of their own that a step is made.
 
     Parameters
     ----------
@@ -141,7 +150,10 @@ def all_accept(blocks: tuple[Any, ...], moment: Moment) -> None:
     moment : Moment
         The step.
     """
-    raise NotImplementedError
+    for block in blocks:
+        accept = _kind(type(block)).accept
+        if accept is not None:
+            accept(block, moment)
 
 
 @overload(all_accept, jit_options={"error_model": "numpy"})
@@ -153,7 +165,7 @@ def _all_accept(blocks: Any, moment: Any) -> Callable[..., None]:
             return
 
         return none
-    accept = {kind.arrays: kind.accept for kind in KINDS.values()}[blocks[0].instance_class]
+    accept = _kind(blocks[0].instance_class).accept
     if accept is None:
 
         def rest(blocks: Any, moment: Any) -> None:
@@ -169,7 +181,7 @@ def _all_accept(blocks: Any, moment: Any) -> Callable[..., None]:
 
 
 def all_powers(blocks: tuple[Any, ...], moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
-    """Powers of all elements at the end of a step that is made, in compiled code only.
+    """Powers of all elements at the end of a step that is made.
 
     Parameters
     ----------
@@ -178,7 +190,10 @@ def all_powers(blocks: tuple[Any, ...], moment: Moment, motion: FloatArray, answ
     out : array (elements, 3)
         Numbers of `mbs.model.elements.Powers` of each; written where its kind says so.
     """
-    raise NotImplementedError
+    for block in blocks:
+        powers = _kind(type(block)).powers
+        if powers is not None:
+            powers(block, moment, motion, answers, out)
 
 
 @overload(all_powers, jit_options={"error_model": "numpy"})
@@ -190,7 +205,7 @@ def _all_powers(blocks: Any, moment: Any, motion: Any, answers: Any, out: Any) -
             return
 
         return none
-    powers = {kind.arrays: kind.powers for kind in KINDS.values()}[blocks[0].instance_class]
+    powers = _kind(blocks[0].instance_class).powers
     if powers is None:
 
         def rest(blocks: Any, moment: Any, motion: Any, answers: Any, out: Any) -> None:
@@ -205,7 +220,7 @@ def _all_powers(blocks: Any, moment: Any, motion: Any, answers: Any, out: Any) -
     return first_and_rest
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _account(
     linear: Linear,
     numbers: Numbers,
@@ -249,7 +264,7 @@ def _account(
         energies.lost[part] += h * power
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST)
 def _jacobian(slopes: FloatArray, receptance: FloatArray, alone: int, out: FloatArray) -> None:
     """1 + (by_q K + by_v C) R; slopes are zero but for the elements' own, R is diagonal for what is alone."""
     m = out.shape[0]
@@ -267,7 +282,7 @@ def _jacobian(slopes: FloatArray, receptance: FloatArray, alone: int, out: Float
                     row[j] += slope * by[j]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def observe(state: State, records: Records, row: int) -> None:
     """Record the state.
 
@@ -295,7 +310,7 @@ def observe(state: State, records: Records, row: int) -> None:
             put(state.motion[order], records.motions[sample, order])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def advance(
     linear: Linear,
     numbers: Numbers,
@@ -432,5 +447,5 @@ def advance(
     return course.speeds.size, DONE, error
 
 
-advance_anew = njit(error_model="numpy")(advance.py_func)
+advance_anew = njit(error_model="numpy", cache=False)(in_python(advance))
 """`advance`, compiled anew in each process: for kinds of elements from elsewhere, see `mbs.transient.kinds`."""

@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[2]
 
 ALLOWED = {
     "ehdmaps.arrays": set(),
-    "ehdmaps.copies": {"ehdmaps.arrays"},
+    "ehdmaps.copies": {"ehdmaps.arrays", "ehdmaps.compiled"},
     "ehdmaps.errors": set(),
     "ehdmaps.extras": {"ehdmaps.errors"},
     "ehdmaps.units": {"ehdmaps.errors"},
@@ -28,14 +28,16 @@ ALLOWED = {
     "ehdmaps.outputs": {"ehdmaps.errors", "ehdmaps.netcdf_structure"},
     "ehdmaps.provenance": set(),
     "ehdmaps.version": {"ehdmaps.provenance"},
+    "ehdmaps.compiled": {"ehdmaps.outputs", "ehdmaps.program", "ehdmaps.provenance"},
     "ehdmaps.interrupts": set(),
     "ehdmaps.program": {"ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.version"},
     "ehdmaps.compiling": set(),
     "ehdmaps.workers": {"ehdmaps.compiling", "ehdmaps.program"},
     "ehdmaps.physics": {"ehdmaps.arrays", "ehdmaps.errors"},
-    "ehdmaps.ehl": {"ehdmaps.arrays", "ehdmaps.copies", "ehdmaps.errors", "ehdmaps.physics"},
+    "ehdmaps.ehl": {"ehdmaps.arrays", "ehdmaps.compiled", "ehdmaps.copies", "ehdmaps.errors", "ehdmaps.physics"},
     "ehdmaps.maps": {
         "ehdmaps.arrays",
+        "ehdmaps.compiled",
         "ehdmaps.errors",
         "ehdmaps.inputs",
         "ehdmaps.netcdf_structure",
@@ -75,6 +77,7 @@ ALLOWED = {
         "ehdmaps.exports",
         "ehdmaps.arrays",
         "ehdmaps.compiling",
+        "ehdmaps.provenance",
         "ehdmaps.workers",
         "ehdmaps.errors",
         "ehdmaps.extras",
@@ -98,6 +101,8 @@ ALLOWED = {
     "mbs": {
         "ehdmaps.exports",
         "ehdmaps.arrays",
+        "ehdmaps.compiled",
+        "ehdmaps.provenance",
         "ehdmaps.interrupts",
         "ehdmaps.workers",
         "ehdmaps.copies",
@@ -120,6 +125,7 @@ ALLOWED = {
     "mbs.scene.scene": {
         "ehdmaps.exports",
         "ehdmaps.arrays",
+        "ehdmaps.provenance",
         "ehdmaps.interrupts",
         "ehdmaps.workers",
         "ehdmaps.copies",

@@ -114,7 +114,7 @@ def test_a_changed_file_is_reduced_again(plan, counted):
 
 def test_other_code_reduces_again(plan, counted, monkeypatch):
     kept.reduced_body(plan)
-    monkeypatch.setattr(kept, "_code_state", lambda: "another version")
+    monkeypatch.setattr(kept, "code_hash", lambda: "another version")
     kept.reduced_body(plan)
     assert len(counted) == 2
 

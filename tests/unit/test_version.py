@@ -19,7 +19,7 @@ from ehdmaps.provenance import source_state
 from ehdmaps.version import version
 
 ROOT = Path(__file__).parents[2]
-OURS = re.compile(r"\d+\.\d+\.\d+\+(g[0-9a-f]{10}(\.dirty)?|src\.[0-9a-f]{10})")
+OURS = re.compile(r"\d+\.\d+\.\d+\+(g[0-9a-f]{10}(\.dirty\.[0-9a-f]{10})?|src\.[0-9a-f]{10})")
 PROJECT = '[project]\nname = "ehdmaps"\nversion = "1.2.3"\n'
 
 
@@ -103,7 +103,7 @@ def test_a_clone_names_its_commit_and_whether_it_was_changed(clone, monkeypatch)
     assert version() == f"1.2.3+g{commit}"
     source_state.cache_clear()
     (clone / "mbs" / "a.py").write_text("x = 2\n")
-    assert version() == f"1.2.3+g{commit}.dirty"
+    assert re.fullmatch(rf"1\.2\.3\+g{commit}\.dirty\.[0-9a-f]{{10}}", version())
 
 
 def test_tags_and_variables_of_git_do_not_change_the_text(clone, monkeypatch, tmp_path):
