@@ -96,7 +96,7 @@ def njit(function: Callable[..., Any] | None = None, /, *, cache: bool = True, *
     kept = found._cache
     if not Path(kept.cache_path).is_relative_to(folder):  # it can no longer be written, and numba chose another one
         return numba.njit(**options)(function)
-    kept.load_overload = functools.partial(_load, kept.load_overload)
+    kept.load_overload = functools.partial(_load, kept.load_overload, kept.flush)
     kept.save_overload = functools.partial(_save, kept.save_overload, folder)
     return found
 
@@ -106,11 +106,13 @@ def in_python(function: Any) -> Any:
     return getattr(function, "py_func", function)
 
 
-def _load(load: Callable[..., Any], *arguments: Any) -> Any:
-    """Read kept code; what is damaged, or was removed meanwhile, is compiled again."""
+def _load(load: Callable[..., Any], flush: Callable[[], None], *arguments: Any) -> Any:
+    """Read kept code; what is damaged, or was removed meanwhile, is forgotten and compiled again."""
     try:
         return load(*arguments)
     except Exception:  # a damaged pickle raises anything
+        with contextlib.suppress(OSError):
+            flush()
         return None
 
 
