@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import subprocess
 import sys
 from typing import NamedTuple
@@ -181,3 +182,27 @@ def test_compiled_steps_are_kept_from_process_to_process():
         result = subprocess.run([sys.executable, "-c", CACHED], capture_output=True, text=True, check=True)
         found.append(result.stdout.split())
     assert found[1] == ["1", "0"]
+
+
+IN_PYTHON = """
+import dataclasses, sys
+import numpy as np
+from mbs import assemble, read_scene, runup
+model = assemble(read_scene("nu308_rigid"), *sys.argv[1:])
+short = dataclasses.replace(model.scene.run_up, duration=2e-4)
+print(*runup(model, short).dataset["signal"].sel(sensor="approach").values)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("memory", [False, True], ids=["hertz", "films with memory"])
+def test_steps_in_python_are_those_of_compiled_code(memory, small_map):
+    """For debuggers and for coverage: NUMBA_DISABLE_JIT=1 runs all kernels as Python."""
+    command = [sys.executable, "-c", IN_PYTHON, *(["map", small_map] if memory else ["hertz"])]
+    found = {}
+    for disabled in ("0", "1"):
+        environment = {**os.environ, "NUMBA_DISABLE_JIT": disabled}
+        result = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
+        found[disabled] = np.array(result.stdout.split(), dtype=float)
+    # round-off of other orders of summation, over ten steps
+    np.testing.assert_allclose(found["1"], found["0"], rtol=1e-12)
