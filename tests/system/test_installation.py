@@ -1,6 +1,6 @@
 """Real installations, in new folders: README's two commands in one clone, upgrades, and a wheel installed elsewhere.
 
-What ehdmaps needs is linked from the environment of the tests, so that pip finds it and downloads nothing but setuptools.
+What ehdmaps needs is linked from the environment of the tests, so that pip finds it and downloads setuptools alone.
 """
 
 import json
@@ -78,8 +78,9 @@ def run(*command, folder, **variables):
     """Output of a command in a folder, of a user who has set nothing but the path; HOME is not set either."""
     kept = {name: os.environ[name] for name in ("PATH", "PIP_INDEX_URL", "PIP_CONFIG_FILE") if name in os.environ}
     settings = {**kept, "PIP_DISABLE_PIP_VERSION_CHECK": "1", "LC_ALL": "C.UTF-8", **variables}
-    found = subprocess.run([str(word) for word in command], capture_output=True, text=True, cwd=folder, env=settings)
-    assert found.returncode == 0, f"{command}: {found.stdout}\n{found.stderr}"
+    words = [str(word) for word in command]
+    found = subprocess.run(words, capture_output=True, text=True, cwd=folder, env=settings, check=False)
+    assert found.returncode == 0, f"{words}: {found.stdout}\n{found.stderr}"
     return found.stdout
 
 
