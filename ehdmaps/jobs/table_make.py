@@ -28,7 +28,7 @@ from ehdmaps.physics.pressure_viscosity import ROELANDS_PRESSURE
 from ehdmaps.physics.rheology import ShearLaw
 from ehdmaps.table.coordinates import exponent_of, load_number_at
 from ehdmaps.table.fields import FIELDS, FILMS, NATURAL_FREQUENCIES
-from ehdmaps.table.file import TableFile, rounded
+from ehdmaps.table.file import ROUNDING, TableFile, rounded
 from ehdmaps.table.films import LARGEST_ERROR, FilmTable, encoded
 from ehdmaps.table.interpolation import Axes, left_out
 from ehdmaps.version import version
@@ -211,8 +211,8 @@ def _along(zeta: FloatArray, line: FloatArray, known: BoolArray) -> FloatArray:
 def assembled_table(axes: Axes, values: FloatArray, errors: FloatArray, compressible: bool) -> FilmTable:
     """A table of solved films.
 
-    Its errors are those that the solver states, of the worst of neighbouring nodes along zeta and ln L, and what
-    reading between the nodes is wrong by, from leaving nodes out.
+    Its errors are those that the solver states, what reading between the nodes is wrong by, from leaving nodes out, and
+    what rounding takes; the worst of neighbouring nodes along zeta and ln L.
 
     Parameters
     ----------
@@ -224,7 +224,7 @@ def assembled_table(axes: Axes, values: FloatArray, errors: FloatArray, compress
         Whether the density is that of Dowson and Higginson.
     """
     lifted, wrong = filled(axes, values, errors)
-    total = np.nan_to_num(wrong, nan=LARGEST_ERROR) + left_out(axes, lifted)
+    total = np.nan_to_num(wrong, nan=LARGEST_ERROR) + left_out(axes, lifted) + ROUNDING * np.abs(lifted)
     nearby = maximum_filter(total, size=(3, 3, 1, 1, 1), mode="nearest")
     return FilmTable(axes, rounded(lifted), encoded(nearby), compressible)
 

@@ -8,5 +8,6 @@ oils            an oil's isotherm in these coordinates
 family          which solvers' films these are
 films           `FilmTable.films`: films of points in SI with their errors
 file            the shipped file
+solver          `TableSolver`: the table as a contact solver, that has solved what it does not know
 ==============  ================================================================================================
 """

@@ -37,7 +37,10 @@ _MEANING = {
     "bend": ("(1 - z) sqrt(17/GPa / alpha) with the exponent z of Roelands' law", "1"),
 }
 _BITS = 18
-"""Bits of a value's mantissa that are kept: 4e-6 of it, far below every error."""
+"""Bits of a value's mantissa that are kept."""
+
+ROUNDING = 2.0 ** -(_BITS + 1)
+"""What keeping these changes a value by, relatively, at most."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -90,6 +90,9 @@ class TableFilms:
         magnitude, shape (..., k).
     viscosity_extrapolated : ndarray of bool
         The pressure left the range in which the viscosity law was fitted.
+    law_error : ndarray
+        Largest error of the smooth forms of film offset, film compliance and loss compliance, see
+        `ehdmaps.table.fields`: unlike a relative error it stays finite where these run through zero.
     """
 
     status: npt.NDArray[np.int8]
@@ -106,6 +109,7 @@ class TableFilms:
     response: ComplexArray
     errors: Mapping[str, FloatArray]
     viscosity_extrapolated: BoolArray
+    law_error: FloatArray
 
     @property
     def usable(self) -> BoolArray:
@@ -165,6 +169,7 @@ class FilmTable:
         temperature: npt.ArrayLike,
         others: bool = True,
         response: bool = False,
+        thickest_film: float = THICKEST_FILM,
     ) -> TableFilms:
         """Films at points.
 
@@ -180,6 +185,8 @@ class FilmTable:
             Whether more is wanted than film offset, film compliance and loss compliance.
         response : bool
             Whether the film compliance at the natural frequencies is wanted.
+        thickest_film : float
+            Largest h/R that is no refusal; infinite for points that stand for their groups only.
 
         Raises
         ------
@@ -198,8 +205,11 @@ class FilmTable:
         good = np.flatnonzero(cause == _NONE)
         read = self._reader(points, good)
         numbers, errors = ({field.name: np.full(w.size, np.nan) for field in FILMS} for _ in range(2))
+        law_error = np.full(w.size, np.nan)
         for fields, held in ((LAW, self._law), *(((OTHER_FILMS, self._others),) if others else ())):
             reduced, wrong = read(fields, held)
+            if fields is LAW:
+                law_error[good] = np.max(wrong, axis=1)
             for k, field in enumerate(fields):
                 numbers[field.name][good] = reduced[:, k] * points.unit.of(field)[good]
                 errors[field.name][good] = field.relative_error(reduced[:, k], wrong[:, k])
@@ -211,9 +221,9 @@ class FilmTable:
             found = reduced[:, 0::2] + 1j * reduced[:, 1::2]
             complex_response[good] = found * points.unit.compliance[good, None]
             errors["response"][good] = np.hypot(wrong[:, 0::2], wrong[:, 1::2]) / np.abs(found)
-        cause[good] = _noted(numbers, errors, contact.radius, good)
+        cause[good] = _noted(numbers, law_error, thickest_film * contact.radius, contact.radius, good)
         refused, dry = cause > _DRY, cause == _DRY
-        for number in (*numbers.values(), *errors.values(), complex_response):
+        for number in (*numbers.values(), *errors.values(), complex_response, law_error):
             number[refused], number[dry] = np.nan, 0.0
         numbers["max_pressure"][dry] = points.unit.pressure[dry]
         status = np.where(refused, int(Status.OUTSIDE_VALIDITY), int(Status.CONVERGED)).astype(np.int8)
@@ -227,6 +237,7 @@ class FilmTable:
             status=shaped(status),
             cause=shaped(cause),
             response=shaped(complex_response),
+            law_error=shaped(law_error),
             errors={name: shaped(values) for name, values in errors.items()},
             viscosity_extrapolated=shaped(~refused & (top > points.fitted_pressure)),
             **{name: shaped(values) for name, values in numbers.items()},
@@ -336,14 +347,14 @@ def _on_axes(
 
 
 def _noted(
-    numbers: Mapping[str, FloatArray], errors: Mapping[str, FloatArray], radius: float, good: IndexArray
+    numbers: Mapping[str, FloatArray], law_error: FloatArray, thickest: float, radius: float, good: IndexArray
 ) -> npt.NDArray[np.int8]:
     """What is said of films that were read."""
-    thickness = numbers["film_offset"][good] / radius
+    film = numbers["film_offset"][good]
     tests = (
-        (~(errors["film_offset"][good] < WORST_ERROR), _HOLE),
-        (thickness > THICKEST_FILM, _TOO_THICK),
-        (thickness > THIN_FILM_LIMIT, _THICK),
+        (~(law_error[good] < WORST_ERROR), _HOLE),
+        (film > thickest, _TOO_THICK),
+        (film > THIN_FILM_LIMIT * radius, _THICK),
         (numbers["loss_compliance"][good] < 0.0, _NEGATIVE),
     )
     return np.select([test for test, _ in tests], [cause for _, cause in tests], _NONE).astype(np.int8)

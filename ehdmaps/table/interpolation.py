@@ -1,8 +1,8 @@
 """Between the nodes: cubic splines along zeta and ln L, polynomials through all nodes of ln alpha and the bend.
 
 Beyond the ends the numbers go on with the slope that they have there. Below the lowest zeta they go over to the powers
-of a rigid film; above the highest one films go on as powers of M, as film compliance and loss fade, responses come to rest; below
-the lowest L they are linear in L, as an oil of hardly any piezoviscosity is.
+of a rigid film. Above the highest one films go on as powers of M, film compliance and loss fade, and responses come to
+rest. Below the lowest L all are linear in L, as an oil of hardly any piezoviscosity is.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ Roelands' law with his p_0 is on the axes as it is, and Barus' law is its z = 1.
 Roelands' law has the same viscosity at one pressure, besides the same slope at no pressure. Which pressure that is says
 the film: what an inlet feels of an oil are pressures of some 1/alpha, higher ones for larger L, and still higher ones
 where film compliance and loss dive through the damping valley. `matched_pressure` was fitted to solved films of FVA 3.
-The z of a pressure that is a third higher tells what this is worth.
+The z of twice that pressure tells what this is worth.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from ehdmaps.table.interpolation import lagrange_weights
 MATCHED = (0.7, 1.4, 2.8, 5.6)
 """alpha p at which the z of a law of another form is found; between them its polynomial in ln(alpha p) is read."""
 
-BESIDE = 4.0 / 3.0
+BESIDE = 2.0
 """Factor of the pressure at which a mapping is tried."""
 
 VALLEY_WIDTH = 0.35
