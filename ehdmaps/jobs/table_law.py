@@ -33,10 +33,10 @@ def law(
     entrainment_speeds: tuple[float, float] = SPEEDS,
     temperatures: tuple[float, float] = TEMPERATURES,
     outside: OutsidePolicy = "error",
-    structural_law: StructuralLaw = "iso16281",
-    material: Material = STEEL,
     supply: OilSupply = FLOODED,
     surface: Surface = SMOOTH,
+    structural_law: StructuralLaw = "iso16281",
+    material: Material = STEEL,
     solver: ContactSolver | None = None,
 ) -> ContactLaw:
     """Make a contact law without a map, in about a second.
@@ -50,11 +50,11 @@ def law(
     lubricant : Lubricant
         The oil.
     kind : {"series", "inner", "outer", "line"}, optional
-        Of a bearing: a roller between both raceways, which is the default, or one of its contacts.
+        Contact of a bearing, or a roller between both raceways, which is the default.
     loads, entrainment_speeds, temperatures : (float, float)
         Ranges of the law [N/m], [m/s] > 0, [K].
     outside, supply, surface
-        As of `EHDMap.law`.
+        Arguments of `EHDMap.law`.
     structural_law : str
         Law of the solids of a bearing's contacts.
     material : Material

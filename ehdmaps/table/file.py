@@ -52,7 +52,7 @@ class TableFile:
     tables : mapping of str to FilmTable
         Tables by density law.
     attributes : mapping of str to str
-        Provenance.
+        Provenance of the tables, by name.
     """
 
     tables: Mapping[str, FilmTable]

@@ -17,7 +17,13 @@ import numpy.typing as npt
 from ehdmaps.arrays import BoolArray, ByteArray, ComplexArray, FloatArray, IndexArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.film_limits import THICK_NOTE, THICKEST_FILM, THIN_FILM_LIMIT
+from ehdmaps.physics.film_limits import (
+    HEAVIEST_LOAD_NUMBER,
+    LIGHTEST_LOAD_NUMBER,
+    THICK_NOTE,
+    THICKEST_FILM,
+    THIN_FILM_LIMIT,
+)
 from ehdmaps.physics.hertz import LARGEST_PRESSURE
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
@@ -27,9 +33,6 @@ from ehdmaps.table.fields import FIELDS, FILMS, LAW, NATURAL_FREQUENCIES, RESPON
 from ehdmaps.table.interpolation import Axes, Place, coefficients, place_of
 from ehdmaps.table.interpolation import read as read_fields
 from ehdmaps.table.oils import BESIDE, OilStates, exponent_at, matched_pressure, oil_states
-
-HEAVIEST_LOAD_NUMBER, LIGHTEST_LOAD_NUMBER = 2e6, 1e-12
-"""Moes' M beyond which there are no solved films to compare with."""
 
 BEYOND_HEAVY, BEYOND_FLAT, BEYOND_LIGHT = 0.1, 0.05, 1e-3
 """What smooth forms are wrong by, a unit of zeta above the table; at L = 0 below it; and far below its lowest zeta."""
@@ -80,7 +83,7 @@ class TableFilms:
     cause : ndarray of int8
         Why, as a number; `reason` has it in words.
     film_offset, film_compliance, loss_compliance, central_film, minimum_film, max_pressure, rolling_force, mass_flow
-        As of `FilmSolution`.
+        Numbers of the film, see `FilmSolution`.
     wall_stress : ndarray
         Largest shear stress at a wall in pure rolling [Pa].
     response : ndarray, shape (..., k)

@@ -229,9 +229,9 @@ def lagrange_weights(nodes: FloatArray, x: FloatArray) -> FloatArray:
     Parameters
     ----------
     nodes : ndarray, shape (nodes,)
-        Where it is known.
+        Places at which it is known.
     x : ndarray, shape (n,)
-        Where it is read.
+        Places at which it is read.
     """
     apart = x[:, None] - nodes
     weights = np.empty_like(apart)
