@@ -12,13 +12,14 @@
 open_map            a map file, as `EHDMap`
 generate            make a map: of a job file, a shipped job, or a `Job`; `read_job`, `Job.build`
 generate_batch      make the maps of a batch file
+law                 a contact law without a map: films from the film table
 compare             two maps, as a `Comparison`
 solve               one contact at one operating point, without a map
 solve_points        contacts at many operating points: dataset in, dataset out
 frequency_response  stiffness and damping of contacts over frequency, as a dataset
 physics types       `BearingGeometry`, `LineContact`, `Material`, `STEEL`, `Lubricant`, `OperatingPoint`,
                     `ContactSolution`, `Status`
-law                 `EHDMap`, `ContactLaw`, `LawAtPoint`
+laws                `EHDMap`, `ContactLaw`, `LawAtPoint`
 ==================  ================================================================================
 
 The names are loaded when they are first used, so that importing the package is quick.
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from ehdmaps.jobs.compare import Comparison
     from ehdmaps.jobs.job import Job
     from ehdmaps.jobs.reader import read_job
+    from ehdmaps.jobs.table_law import law
     from ehdmaps.maps.emap import EHDMap, open_map
     from ehdmaps.maps.law import ContactLaw, LawAtPoint
     from ehdmaps.physics.bearing import BearingGeometry
@@ -62,6 +64,7 @@ __all__ = [
     "frequency_response",
     "generate",
     "generate_batch",
+    "law",
     "open_map",
     "read_job",
     "solve",
@@ -73,6 +76,7 @@ _HOMES = {
     "frequency_response": "jobs.calls",
     "generate": "jobs.calls",
     "generate_batch": "jobs.calls",
+    "law": "jobs.table_law",
     "solve": "jobs.calls",
     "solve_points": "jobs.calls",
     "Comparison": "jobs.compare",

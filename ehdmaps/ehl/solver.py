@@ -27,7 +27,14 @@ from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.warm_oil import heat_groups
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.film_limits import THICK_NOTE, THICKEST_FILM, THIN_FILM_LIMIT, too_thick
+from ehdmaps.physics.film_limits import (
+    HEAVIEST_LOAD_NUMBER,
+    LIGHTEST_LOAD_NUMBER,
+    THICK_NOTE,
+    THICKEST_FILM,
+    THIN_FILM_LIMIT,
+    too_thick,
+)
 from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, PHYSICS, THERMAL, heat_data
 from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.inlet_heat import heated, heated_spectrum, inlet_heat
@@ -47,13 +54,6 @@ from ehdmaps.physics.solution import (
 )
 from ehdmaps.physics.traction import FilmProfile
 from ehdmaps.physics.wall_stress import wall_stress_note
-
-HEAVIEST_LOAD_NUMBER = 2e6
-"""Moes' M above which the film is too thin for double precision to see it beside the elastic deflection."""
-
-LIGHTEST_LOAD_NUMBER = 1e-12
-"""Moes' M below which double precision does not see the elastic deflection, of size b^2/R, beside the film, H ~ 1/M:
-the linear response, made of both, loses digits, and its equations are singular from 1e-16 on."""
 
 LARGEST_OIL_NUMBER = 150.0
 """Moes' L above which no solve is tried."""

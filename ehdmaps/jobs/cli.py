@@ -162,6 +162,7 @@ def parser() -> argparse.ArgumentParser:
     _add_compare(commands)
     _add_tradeoff(commands)
     _add_stability(commands)
+    _add_table(commands)
     return top
 
 
@@ -278,6 +279,16 @@ def _add_stability(commands: argparse._SubParsersAction[Parser]) -> None:
     stability.add_argument("--only", metavar="NAME", help="contact, or a reader such as map; default: all")
     stability.add_argument("--json", action="store_true", help="the checks as JSON")
     stability.add_argument("-o", "--output", metavar="FILE", help="the same into a file, .txt or .json")
+
+
+def _add_table(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Add the command `table`."""
+    table = commands.add_parser("table", help="the film table, from which films are read without solving")
+    parts = table.add_subparsers(dest="part", required=True, metavar="PART")
+    make = parts.add_parser("make", help="solve it anew; minutes of one core")
+    make.add_argument("-o", "--output", metavar="FILE.nc", default="film_table.nc", help="default: film_table.nc")
+    show = parts.add_parser("show", help="nodes, provenance and errors")
+    show.add_argument("file", metavar="FILE.nc", nargs="?", help="default: the table that is shipped")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -24,6 +24,7 @@ from ehdmaps.maps.rolling_film import NAMES as ROLLING
 from ehdmaps.maps.usable import check_backbone
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.solution import ContactSolver, Status
+from ehdmaps.table.solver import TableSolver
 
 MOST_LINE_POINTS = 40_000
 """Points of the lines that are not exceeded by halving a step: minutes on one core."""
@@ -70,7 +71,7 @@ def refinement(job: Job, solver: ContactSolver, steps: Steps | None = None) -> R
     if not plans:
         return None
     # these lines stand for their groups: how thick their own film is does not matter
-    of_groups = replace(solver, thickest_film=math.inf) if isinstance(solver, ReynoldsSolver) else solver
+    of_groups = _of_groups(solver)
     tasks = tuple(
         LineTask(
             contact=plan.contact,
@@ -85,6 +86,13 @@ def refinement(job: Job, solver: ContactSolver, steps: Steps | None = None) -> R
         for line in plan.lines
     )
     return Refinement(plans, steps, tasks)
+
+
+def _of_groups(solver: ContactSolver) -> ContactSolver:
+    """The solver for lines whose own thickness does not matter."""
+    if isinstance(solver, TableSolver):
+        return replace(solver, other=_of_groups(solver.other), thickest_film=math.inf)
+    return replace(solver, thickest_film=math.inf) if isinstance(solver, ReynoldsSolver) else solver
 
 
 def backbone_group(refined: Refinement, results: Mapping[str, Arrays]) -> xr.Dataset:

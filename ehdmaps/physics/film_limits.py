@@ -27,6 +27,13 @@ CONTINUUM = 1e-9
 NO_CONTINUUM, BELOW_ROUGHNESS = "film below 1 nm: no continuum", "film below the roughness"
 """What is said of films that are too thin for their solution to be taken as it is."""
 
+HEAVIEST_LOAD_NUMBER = 2e6
+"""Moes' M above which the film is too thin for double precision to see it beside the elastic deflection."""
+
+LIGHTEST_LOAD_NUMBER = 1e-12
+"""Moes' M below which double precision does not see the elastic deflection, of size b^2/R, beside the film, H ~ 1/M:
+the linear response, made of both, loses digits, and its equations are singular from 1e-16 on."""
+
 
 def too_thick(film: float, radius: float, thickest: float = THICKEST_FILM) -> str:
     """Why a film is refused; empty where it is not.

@@ -44,6 +44,7 @@ ALLOWED = {
         "ehdmaps.units",
         "ehdmaps.physics",
     },
+    "ehdmaps.table": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.outputs", "ehdmaps.physics"},
     "ehdmaps.openfoam": {
         "ehdmaps.arrays",
         "ehdmaps.errors",
@@ -96,6 +97,7 @@ ALLOWED = {
         "ehdmaps.report",
         "ehdmaps.solids",
         "ehdmaps.stability",
+        "ehdmaps.table",
         "ehdmaps.trade",
     },
     "mbs": {

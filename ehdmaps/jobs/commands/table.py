@@ -1,0 +1,55 @@
+"""`ehdmaps table`: make the film table, or tell what it holds."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from ehdmaps.outputs import Output, check_outputs, dataset_kind, written_aside
+from ehdmaps.program import tell
+from ehdmaps.table.file import KIND, TableFile, read_tables, shipped_tables, write_tables
+
+_TOLD_EVERY = 20
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Make a table, or show one."""
+    if arguments.part == "make":
+        return _make(Path(arguments.output))
+    given = arguments.file
+    return _shown(shipped_tables() if given is None else read_tables(Path(given))), 0
+
+
+def _make(path: Path) -> tuple[str, int]:
+    """Solve all nodes and write them."""
+    from ehdmaps.jobs.table_make import make_tables
+
+    kind = dataset_kind("a film table of ehdmaps", KIND, (".nc",))
+    check_outputs([Output("-o", path, kind)])
+
+    def progress(law: str, done: int, of: int) -> None:
+        if done % _TOLD_EVERY == 0 or done == of:
+            tell(f"ehdmaps table: {law}, {done} of {of} lines")
+
+    tables = make_tables(progress)
+    with written_aside(path, kind) as aside:
+        write_tables(aside, tables)
+    return f"{path}: written\n{_shown(tables)}", 0
+
+
+def _shown(tables: TableFile) -> str:
+    """Nodes, provenance and errors as text."""
+    lines = [f"{name}: {value}" for name, value in sorted(tables.attributes.items())]
+    for law, table in tables.tables.items():
+        axes = table.axes
+        ends = (
+            ("zeta", axes.zeta, ""),
+            ("L", np.exp(axes.log_l), ""),
+            ("alpha", 1e9 * np.exp(axes.log_alpha), " 1/GPa"),
+            ("bend", axes.bend, ""),
+        )
+        nodes = ", ".join(f"{name} {x[0]:.3g} to {x[-1]:.3g}{unit} ({x.size})" for name, x, unit in ends)
+        lines.append(f"{law}: {nodes}; {np.prod(axes.shape)} films")
+    return "\n".join(lines)

@@ -1,0 +1,13 @@
+"""Films without solving: one table for the line contacts of all bearings, materials and oils of a family.
+
+==============  ================================================================================================
+coordinates     zeta, ln L, ln alpha and bend: what the films of the family depend on
+fields          the numbers of the table: their units, and the forms in which they are smooth
+interpolation   between the nodes, and beyond the ends
+oils            an oil's isotherm in these coordinates
+family          which solvers' films these are
+films           `FilmTable.films`: films of points in SI with their errors
+file            the shipped file
+solver          `TableSolver`: the table as a contact solver, that has solved what it does not know
+==============  ================================================================================================
+"""

@@ -1,0 +1,393 @@
+"""Films of any contact and oil of the family, read from the table.
+
+The family: smooth line contacts, fully flooded, with a Newtonian, isothermal oil whose density goes after Dowson and
+Higginson, or is constant where the table holds such an oil too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.arrays import BoolArray, ByteArray, ComplexArray, FloatArray, IndexArray
+from ehdmaps.errors import InputError
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.film_limits import (
+    HEAVIEST_LOAD_NUMBER,
+    LIGHTEST_LOAD_NUMBER,
+    THICK_NOTE,
+    THICKEST_FILM,
+    THIN_FILM_LIMIT,
+)
+from ehdmaps.physics.hertz import LARGEST_PRESSURE
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solution import Status
+from ehdmaps.table.coordinates import bend_of, zeta_of
+from ehdmaps.table.fields import FIELDS, FILMS, LAW, NATURAL_FREQUENCIES, RESPONSES, Field, Units, units
+from ehdmaps.table.interpolation import Axes, Place, coefficients, place_of
+from ehdmaps.table.interpolation import read as read_fields
+from ehdmaps.table.oils import BESIDE, OilStates, exponent_at, matched_pressure, oil_states
+
+BEYOND_HEAVY, BEYOND_FLAT, BEYOND_LIGHT = 0.1, 0.05, 1e-3
+"""What smooth forms are wrong by, a unit of zeta above the table; at L = 0 below it; and far below its lowest zeta."""
+
+FARTHEST = 3.0
+"""Units of zeta above the table up to which its ends are taken."""
+
+WORST_ERROR = 0.5
+"""Error of the smooth form of a film above which the table has no number there."""
+
+CODES = 255
+LEAST_ERROR, LARGEST_ERROR = 1e-7, 1e2
+"""Errors are held in a byte each, as logarithms between these."""
+
+OTHER_FILMS = FILMS[len(LAW) :]
+
+_SLACK = 1e-9
+_TINY = float(np.finfo(float).tiny)
+
+_CAUSES = (
+    "",
+    THICK_NOTE,
+    "negative damping at the valley of an isothermal, Newtonian film; a contact law takes zero",
+    "no entrainment: dry contact",
+    "film table: the oil has no state at this temperature",
+    "film table: groups M and L are not finite: load, speed or viscosity is absurd",
+    f"film table: Hertz pressure above {LARGEST_PRESSURE / 1e9:g} GPa",
+    f"film table: M outside {LIGHTEST_LOAD_NUMBER:g} to {HEAVIEST_LOAD_NUMBER:g}",
+    "film table: L above its range",
+    "film table: pressure-viscosity coefficient outside its range",
+    "film table: viscosity bends over pressure as none of its oils does",
+    "film table: beyond its highest loads",
+    f"film thicker than {THICKEST_FILM:g} of the radius: neither thin-film theory nor a parabolic gap holds",
+    "film table: no solved film near",
+)
+_NONE, _THICK, _NEGATIVE, _DRY, _NO_STATE, _ABSURD, _PRESSURE = range(7)
+_LOAD, _SPEED, _ALPHA, _BEND, _HEAVY, _TOO_THICK, _HOLE = range(7, len(_CAUSES))
+
+
+@dataclass(frozen=True, eq=False)
+class TableFilms:
+    """Films of points, arrays of the shape of the points; NaN where the status is not usable or not asked for.
+
+    Attributes
+    ----------
+    status : ndarray of int8
+        Values of `Status`.
+    cause : ndarray of int8
+        Why, as a number; `reason` has it in words.
+    film_offset, film_compliance, loss_compliance, central_film, minimum_film, max_pressure, rolling_force, mass_flow
+        Numbers of the film, see `FilmSolution`.
+    wall_stress : ndarray
+        Largest shear stress at a wall in pure rolling [Pa].
+    response : ndarray, shape (..., k)
+        Film compliance at the natural frequencies, complex [m2/N]; k = 0 where it was not asked for.
+    errors : mapping of str to ndarray
+        Estimated relative errors without a sign, by the name of the number; that of "response" relative to its
+        magnitude, shape (..., k).
+    viscosity_extrapolated : ndarray of bool
+        The pressure left the range in which the viscosity law was fitted.
+    law_error : ndarray
+        Largest error of the smooth forms of film offset, film compliance and loss compliance, see
+        `ehdmaps.table.fields`: unlike a relative error it stays finite where these run through zero.
+    """
+
+    status: npt.NDArray[np.int8]
+    cause: npt.NDArray[np.int8]
+    film_offset: FloatArray
+    film_compliance: FloatArray
+    loss_compliance: FloatArray
+    central_film: FloatArray
+    minimum_film: FloatArray
+    max_pressure: FloatArray
+    rolling_force: FloatArray
+    mass_flow: FloatArray
+    wall_stress: FloatArray
+    response: ComplexArray
+    errors: Mapping[str, FloatArray]
+    viscosity_extrapolated: BoolArray
+    law_error: FloatArray
+
+    @property
+    def usable(self) -> BoolArray:
+        """Where there are films."""
+        return np.asarray(self.status <= int(Status.ASYMPTOTE))
+
+    @property
+    def reason(self) -> npt.NDArray[np.str_]:
+        """Cause of the status in words; empty for a plain film."""
+        return np.array(_CAUSES)[self.cause]
+
+
+@dataclass(frozen=True, eq=False)
+class FilmTable:
+    """Films of one density law.
+
+    Attributes
+    ----------
+    axes : Axes
+        The nodes.
+    values : ndarray of float32, shape (n_zeta, n_L, n_alpha, n_bend, fields)
+        Smooth forms of `FIELDS` at the nodes.
+    codes : ndarray of uint8
+        Their errors, see `decoded`; of the same shape.
+    compressible : bool
+        Whether the density is that of Dowson and Higginson; constant if not.
+    """
+
+    axes: Axes
+    values: npt.NDArray[np.float32]
+    codes: ByteArray
+    compressible: bool
+
+    @cached_property
+    def _law(self) -> FloatArray:
+        return self._coefficients(LAW)
+
+    @cached_property
+    def _others(self) -> FloatArray:
+        return self._coefficients(OTHER_FILMS)
+
+    @cached_property
+    def _responses(self) -> FloatArray:
+        return self._coefficients(RESPONSES)
+
+    def _coefficients(self, fields: tuple[Field, ...]) -> FloatArray:
+        """Coefficients of neighbouring fields."""
+        first = FIELDS.index(fields[0])
+        return coefficients(self.axes, self.values[..., first : first + len(fields)].astype(float))
+
+    def films(
+        self,
+        contact: LineContact,
+        lubricant: Lubricant,
+        load: npt.ArrayLike,
+        entrainment_speed: npt.ArrayLike,
+        temperature: npt.ArrayLike,
+        others: bool = True,
+        response: bool = False,
+        thickest_film: float = THICKEST_FILM,
+    ) -> TableFilms:
+        """Films at points.
+
+        Parameters
+        ----------
+        contact : LineContact
+            The contact: its radius and its material.
+        lubricant : Lubricant
+            The oil.
+        load, entrainment_speed, temperature : float or ndarray
+            w [N/m] > 0, u [m/s] >= 0 and T [K] > 0; they are broadcast.
+        others : bool
+            Whether more is wanted than film offset, film compliance and loss compliance.
+        response : bool
+            Whether the film compliance at the natural frequencies is wanted.
+        thickest_film : float
+            Largest h/R that is no refusal; infinite for points that stand for their groups only.
+
+        Raises
+        ------
+        InputError
+            For loads, speeds and temperatures that no point can have, and an oil with the other density law.
+        """
+        if (lubricant.density_law != "incompressible") != self.compressible:
+            held = "dowson-higginson" if self.compressible else "incompressible"
+            raise InputError(
+                f"film table, density_law: got {lubricant.density_law!r}; this table holds {held}; take the table of "
+                "the other law"
+            )
+        w, u, T = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in (load, entrainment_speed, temperature)))
+        points = _points(contact, lubricant, w.ravel(), u.ravel(), T.ravel())
+        cause = self._refused(points)
+        good = np.flatnonzero(cause == _NONE)
+        read = self._reader(points, good)
+        numbers, errors = ({field.name: np.full(w.size, np.nan) for field in FILMS} for _ in range(2))
+        law_error = np.full(w.size, np.nan)
+        for fields, held in ((LAW, self._law), *(((OTHER_FILMS, self._others),) if others else ())):
+            reduced, wrong = read(fields, held)
+            if fields is LAW:
+                law_error[good] = np.max(wrong, axis=1)
+            for k, field in enumerate(fields):
+                numbers[field.name][good] = reduced[:, k] * points.unit.of(field)[good]
+                errors[field.name][good] = field.relative_error(reduced[:, k], wrong[:, k])
+        complex_response = np.full((w.size, len(NATURAL_FREQUENCIES) if response else 0), complex(np.nan, np.nan))
+        errors["response"] = np.full(complex_response.shape, np.nan)
+        if response:
+            reduced, wrong = read(RESPONSES, self._responses)
+            wrong *= np.hypot(reduced, [field.scale for field in RESPONSES])
+            found = reduced[:, 0::2] + 1j * reduced[:, 1::2]
+            complex_response[good] = found * points.unit.compliance[good, None]
+            errors["response"][good] = np.hypot(wrong[:, 0::2], wrong[:, 1::2]) / np.abs(found)
+        cause[good] = _noted(numbers, law_error, thickest_film * contact.radius, contact.radius, good)
+        refused, dry = cause > _DRY, cause == _DRY
+        for number in (*numbers.values(), *errors.values(), complex_response, law_error):
+            number[refused], number[dry] = np.nan, 0.0
+        numbers["max_pressure"][dry] = points.unit.pressure[dry]
+        status = np.where(refused, int(Status.OUTSIDE_VALIDITY), int(Status.CONVERGED)).astype(np.int8)
+        status[dry | (cause == _THICK)] = int(Status.ASYMPTOTE)
+        top = np.fmax(numbers["max_pressure"], points.unit.pressure)
+
+        def shaped(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+            return values.reshape(w.shape + values.shape[1:])
+
+        return TableFilms(
+            status=shaped(status),
+            cause=shaped(cause),
+            response=shaped(complex_response),
+            law_error=shaped(law_error),
+            errors={name: shaped(values) for name, values in errors.items()},
+            viscosity_extrapolated=shaped(~refused & (top > points.fitted_pressure)),
+            **{name: shaped(values) for name, values in numbers.items()},
+        )
+
+    def _refused(self, points: _Points) -> npt.NDArray[np.int8]:
+        """Why there is no film at points, before it is read."""
+        axes, M, L = self.axes, points.load_number, points.oil_number
+        alpha = np.fmax(points.alpha, _TINY)
+        with np.errstate(invalid="ignore"):
+            tests = (
+                (points.speed == 0.0, _DRY),
+                (np.isnan(points.alpha), _NO_STATE),
+                (~(np.isfinite(M) & np.isfinite(L) & (M > 0.0)), _ABSURD),
+                (points.unit.pressure > LARGEST_PRESSURE, _PRESSURE),
+                ((M > HEAVIEST_LOAD_NUMBER) | (M < LIGHTEST_LOAD_NUMBER), _LOAD),
+                (np.exp(axes.log_l[-1]) * (1.0 + _SLACK) < L, _SPEED),
+                (~_within(np.log(alpha), axes.log_alpha), _ALPHA),
+                (~_within(bend_of(alpha, points.exponent), axes.bend), _BEND),
+                (points.zeta > axes.zeta[-1] + FARTHEST, _HEAVY),
+            )
+        return np.select([test for test, _ in tests], [cause for _, cause in tests], _NONE).astype(np.int8)
+
+    def _reader(
+        self, points: _Points, good: IndexArray
+    ) -> Callable[[tuple[Field, ...], FloatArray], tuple[FloatArray, FloatArray]]:
+        """What reads reduced numbers of some points, and the errors of their smooth forms, both (n, fields)."""
+        place = self._place(points, good, points.exponent[good])
+        mapped = np.flatnonzero(points.beside[good] != points.exponent[good])
+        other = None
+        if mapped.size:
+            at = good[mapped]
+            alpha, exponent, beside = points.alpha[at], points.exponent[at], points.beside[at]
+            # an oil that is beyond the nodes counts on the other side
+            inside = _within(bend_of(alpha, beside), self.axes.bend)
+            other = self._place(points, at, np.where(inside, beside, 2.0 * exponent - beside))
+
+        def read(fields: tuple[Field, ...], held: FloatArray) -> tuple[FloatArray, FloatArray]:
+            lifted = read_fields(place, held, fields)
+            wrong = self._errors(place, fields)
+            if other is not None:
+                wrong[mapped] += np.abs(read_fields(other, held, fields) - lifted[mapped])
+            return np.column_stack([field.reduced(lifted[:, k]) for k, field in enumerate(fields)]), wrong
+
+        return read
+
+    def _place(self, points: _Points, at: IndexArray, exponent: FloatArray) -> Place:
+        """Place of points with one z or another."""
+        M, L, alpha = points.load_number[at], points.oil_number[at], points.alpha[at]
+        bend = np.clip(bend_of(alpha, exponent), self.axes.bend[0], self.axes.bend[-1])
+        return place_of(self.axes, zeta_of(M, L, alpha, exponent), np.log(L), np.log(alpha), bend)
+
+    def _errors(self, place: Place, fields: tuple[Field, ...]) -> FloatArray:
+        """Errors of smooth forms, shape (n, fields)."""
+        first = FIELDS.index(fields[0])
+        codes = self.codes.reshape(-1, len(FIELDS))[place.nearest, first : first + len(fields)]
+        beyond = BEYOND_HEAVY * place.above - BEYOND_FLAT * place.flatter - BEYOND_LIGHT * np.expm1(place.below)
+        return _DECODED[codes] + beyond[:, None]
+
+
+class _Points(NamedTuple):
+    """Points in the groups of the table, arrays of shape (n,); `beside` is the z of an oil matched elsewhere."""
+
+    speed: FloatArray
+    unit: Units
+    load_number: FloatArray
+    oil_number: FloatArray
+    alpha: FloatArray
+    exponent: FloatArray
+    beside: FloatArray
+    zeta: FloatArray
+    fitted_pressure: float
+
+
+def _points(
+    contact: LineContact, lubricant: Lubricant, load: FloatArray, speed: FloatArray, temperature: FloatArray
+) -> _Points:
+    """Groups of points, NaN where the oil has no state."""
+    _check(load, speed, temperature)
+    unique, index = np.unique(temperature, return_inverse=True)
+    oil = oil_states(lubricant, unique)
+    viscosity, density, alpha = (x[index] for x in (oil.viscosity, oil.density, oil.alpha))
+    R, E = contact.radius, contact.reduced_modulus
+    with np.errstate(all="ignore"):
+        unit = units(load, np.maximum(speed, _TINY), viscosity, density, R, E)
+        number = 2.0 * viscosity * speed / (E * R)
+        M, L = load / (E * R) / np.sqrt(number), alpha * E * np.sqrt(np.sqrt(number))
+        exponent, beside = _on_axes(oil, index, M, L, alpha)
+        zeta = zeta_of(M, L, alpha, exponent)
+    return _Points(speed, unit, M, L, alpha, exponent, beside, zeta, oil.fitted_pressure)
+
+
+def _on_axes(
+    oil: OilStates, index: IndexArray, M: FloatArray, L: FloatArray, alpha: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Roelands' z of points, and that of an oil matched at another pressure; the same of his own law."""
+    exponents = oil.exponents[index]
+    middle = exponents[:, 1]
+    own = np.all(oil.exponents == oil.exponents[:, 1:2], axis=1)[index]
+    if np.all(own | np.isnan(middle)):
+        return middle, middle
+    matched = matched_pressure(zeta_of(M, L, alpha, middle), L)
+    return (
+        np.where(own, middle, exponent_at(exponents, matched)),
+        np.where(own, middle, exponent_at(exponents, BESIDE * matched)),
+    )
+
+
+def _noted(
+    numbers: Mapping[str, FloatArray], law_error: FloatArray, thickest: float, radius: float, good: IndexArray
+) -> npt.NDArray[np.int8]:
+    """What is said of films that were read."""
+    film = numbers["film_offset"][good]
+    tests = (
+        (~(law_error[good] < WORST_ERROR), _HOLE),
+        (film > thickest, _TOO_THICK),
+        (film > THIN_FILM_LIMIT * radius, _THICK),
+        (numbers["loss_compliance"][good] < 0.0, _NEGATIVE),
+    )
+    return np.select([test for test, _ in tests], [cause for _, cause in tests], _NONE).astype(np.int8)
+
+
+def _within(x: FloatArray, nodes: FloatArray) -> BoolArray:
+    """Whether places lie within nodes, but for round-off."""
+    slack = _SLACK * (nodes[-1] - nodes[0])
+    return np.asarray((x >= nodes[0] - slack) & (x <= nodes[-1] + slack))
+
+
+def _check(load: FloatArray, speed: FloatArray, temperature: FloatArray) -> None:
+    """Refuse what no point can have."""
+    wrong = ~((load > 0.0) & np.isfinite(load) & (speed >= 0.0) & np.isfinite(speed))
+    wrong |= ~((temperature > 0.0) & np.isfinite(temperature))
+    for i in np.flatnonzero(wrong)[:1]:
+        OperatingPoint(float(load[i]), float(speed[i]), float(temperature[i]))
+
+
+def encoded(errors: FloatArray) -> ByteArray:
+    """Errors in a byte each, rounded up; NaN becomes the largest.
+
+    Parameters
+    ----------
+    errors : ndarray
+        Errors of smooth forms, >= 0.
+    """
+    held = np.clip(np.where(np.isnan(errors), LARGEST_ERROR, errors), LEAST_ERROR, LARGEST_ERROR)
+    span = np.log(LARGEST_ERROR / LEAST_ERROR)
+    return np.asarray(np.ceil(CODES * np.log(held / LEAST_ERROR) / span - 1e-9).astype(np.uint8))
+
+
+_DECODED = LEAST_ERROR * (LARGEST_ERROR / LEAST_ERROR) ** (np.arange(CODES + 1) / CODES)

@@ -1,0 +1,73 @@
+"""Contact laws from the film table beside laws from solved lines, and the table as a solver beside `reynolds`."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+import ehdmaps
+from ehdmaps.ehl.solver import ReynoldsSolver
+from ehdmaps.errors import InputError
+from ehdmaps.jobs.table_law import law
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.table.solver import TableSolver
+
+OIL = Lubricant.named("FVA3")
+LINE = LineContact("line", 6e-3, STEEL, "half_space", reference_depth=6e-3)
+narrow_law = partial(law, LINE, OIL, loads=(2e3, 4e5), entrainment_speeds=(0.5, 3.0), temperatures=(320.0, 345.0))
+
+
+@pytest.mark.slow
+def test_a_law_from_the_table_is_that_from_solved_lines() -> None:
+    """Load and stiffness within 0.05 %; damping within 2 % of itself or of 0.02 k b/u, the errors of the table."""
+    read, solved = narrow_law(), narrow_law(solver=ReynoldsSolver())
+    random = np.random.default_rng(4)
+    n = 400
+    delta = random.uniform(0.0, 20e-6, n)
+    u, T = np.exp(random.uniform(np.log(0.5), np.log(3.0), n)), random.uniform(320.0, 345.0, n)
+    (w, k, c), (w0, k0, c0) = read(delta, 0.0, u, T), solved(delta, 0.0, u, T)
+    within = (w0 > 2e3) & (w0 < 4e5)
+    assert np.count_nonzero(within) > 100
+    assert np.max(np.abs(w / w0 - 1.0)[within]) < 5e-4
+    assert np.max(np.abs(k / k0 - 1.0)[within]) < 5e-4
+    half = np.sqrt(8.0 * w0 * LINE.radius / (np.pi * LINE.reduced_modulus))
+    wrong = np.abs(c - c0) / np.maximum(c0, 0.02 * k0 * half / u)
+    assert np.quantile(wrong[within], 0.95) < 0.02
+
+
+def test_a_kind_that_there_is_not_is_refused() -> None:
+    """Of a bare contact and of a bearing."""
+    with pytest.raises(InputError, match="kind: got 'series'; allowed: line"):
+        ehdmaps.law(LINE, OIL, "series")
+    with pytest.raises(InputError, match="kind: got 'line'; allowed: series, inner, outer"):
+        ehdmaps.law(ehdmaps.BearingGeometry.named("NU308"), OIL, "line")
+
+
+def test_the_table_as_a_solver_reads_what_it_knows_and_has_the_rest_solved() -> None:
+    """Films within a per mille; a load beyond its pressures is refused by the other solver's words."""
+    reynolds = ReynoldsSolver()
+    loads = (5e3, 1e5, 5e7)
+    read = TableSolver(reynolds).line_spectra(LINE, OIL, loads, 1.5, 330.0)
+    solved = reynolds.line_spectra(LINE, OIL, loads, 1.5, 330.0)
+    for one, other in zip(read[:2], solved[:2], strict=True):
+        assert one.film.iterations == 0
+        assert one.film.film_offset == pytest.approx(other.film.film_offset, rel=1e-3)
+        assert one.film.rolling_force == pytest.approx(other.film.rolling_force, rel=5e-3)
+        assert np.allclose(one.frequencies, other.frequencies, rtol=1e-3)
+        assert np.allclose(one.compliance, other.compliance, rtol=0.02)
+    assert read[2].film.status == solved[2].film.status
+    assert read[2].film.reason == solved[2].film.reason
+    assert "film_table" in TableSolver(reynolds).settings()
+    assert TableSolver(reynolds).solve_line(LINE, OIL, loads, 1.5, 330.0)[0] == read[0].film
+
+
+def test_films_with_heat_are_all_solved() -> None:
+    """The table knows none of them."""
+    warm = ReynoldsSolver(physics="inlet-heat")
+    (film,) = TableSolver(warm).solve_line(LINE, OIL, (1e5,), 1.5, 330.0)
+    (same,) = warm.solve_line(LINE, OIL, (1e5,), 1.5, 330.0)
+    assert film.film_offset == same.film_offset
