@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import scipy  # its parts at first use: scipy.signal takes half a second
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
@@ -38,9 +37,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _LEAST_SHARE = 0.05
-_PROMINENCE = 0.05
-"""How far a peak stands out of both valleys beside it, as a logarithm."""
-
 _PEAKS = 5
 _LEAST_ASSURANCE = 0.5
 
@@ -299,11 +295,11 @@ def _complex(result: Sweep) -> list[str]:
 
 
 def _responses(result: Sweep) -> list[str]:
-    """Lines on the highest peaks of each response at the first and last speed, by the frequencies of [linear]."""
+    """Lines on the highest peaks of each response at the first and last speed."""
     found = result.responses
     lines = []
     for s, i in np.ndindex(found.values.shape[2:]) if found.frequencies.size else ():
-        ends = [_peaks(found.frequencies, np.abs(found.values[k, :, s, i])) for k in (0, -1)]
+        ends = [_peaks(found.peak_frequency[k, :, s, i], found.peak_size[k, :, s, i]) for k in (0, -1)]
         if not any(ends):
             continue
         at = [
@@ -315,11 +311,11 @@ def _responses(result: Sweep) -> list[str]:
     return lines
 
 
-def _peaks(frequencies: FloatArray, size: FloatArray) -> list[str]:
-    """The highest peaks of a response, each with its frequency, in the order of these."""
-    places, _ = scipy.signal.find_peaks(np.log(np.maximum(size, 1e-300)), prominence=_PROMINENCE)
-    highest = np.sort(places[np.argsort(-size[places], kind="stable")][:_PEAKS])
-    return [f"{size[k]:.3g} ({frequencies[k]:.5g} Hz)" for k in highest]
+def _peaks(frequency: FloatArray, size: FloatArray) -> list[str]:
+    """The highest peaks of a response, each with its frequency, in the order of these; not those that are NaN."""
+    there = np.flatnonzero(np.isfinite(size))
+    highest = np.sort(there[np.argsort(-size[there], kind="stable")][:_PEAKS])
+    return [f"{size[k]:.3g} ({frequency[k]:.5g} Hz)" for k in highest]
 
 
 def _exchanged(result: Sweep) -> list[str]:

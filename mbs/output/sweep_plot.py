@@ -232,7 +232,7 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits:
     axes = grid.ravel()
     found = maps[0].responses
     unit = response_unit(found.sensors[0], found.inputs[0]).replace("s2", "s²")
-    levels = [20.0 * np.log10(np.maximum(np.abs(entry.responses.values[:, :, 0, 0]), 1e-300)) for entry in maps]
+    levels = [20.0 * np.log10(np.maximum(entry.responses.largest(0, 0), 1e-300)) for entry in maps]
     # The last tenths of a per cent are the tips of undamped resonances, which would take the scale for themselves.
     lowest, highest = (5.0 * np.round(np.percentile(np.stack(levels), part) / 5.0) for part in (1.0, 99.7))
     lowest, highest = max(lowest, highest - _LEVELS_SHOWN), max(highest, lowest + 5.0)
