@@ -82,6 +82,7 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
             for name in model.system.weightless
         ),
         *state_lines(model.states),
+        *model.warnings,
     ]
 
 

@@ -158,7 +158,8 @@ def _ranges(found: VariantsResult) -> list[str]:
 
 def _warnings(found: VariantsResult) -> list[str]:
     """Lines on what has no result, and on what lies outside the map."""
-    lines = [f"warning: {row.words}: {row.problem}" for row in found.variants if row.problem]
+    lines = list(dict.fromkeys(line for model in found.models for line in model.warnings))
+    lines += [f"warning: {row.words}: {row.problem}" for row in found.variants if row.problem]
     speeds = found.course.speed.course.values
     axes = axes_outside(found.models[1], max(abs(speed) for speed in speeds))
     for row in found.variants:

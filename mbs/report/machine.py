@@ -26,6 +26,7 @@ from mbs.report.bearings import loaded
 from mbs.report.examination import Examination
 from mbs.scene.contact_laws import supply_words
 from mbs.scene.fields import FORCE, HERTZ
+from mbs.scene.oils import by_oil
 
 
 def machine(found: Examination) -> Markup:
@@ -43,7 +44,7 @@ def machine(found: Examination) -> Markup:
         ("contact law", model.law),
         ("temperature", typeset(temperature_text(model))),
         ("diametral clearance", typeset(clearance_text(model) or "none")),
-        *([("oil", scene.lubricant.title)] if scene.lubricant else []),
+        *_oil(found),
         *([("oil supply", typeset(supply_words(model.supplies)))] if model.supplies else []),
         *([("surfaces", typeset(model.surface.label))] if model.surface else []),
         ("assumed", f"{len(scene.assumed)} keys of the scene, marked there" if scene.assumed else "nothing"),
@@ -80,6 +81,16 @@ def machine(found: Examination) -> Markup:
         else None,
         table(("load", "at", "force x, y, z, N", "moment x, y, z, N m"), loads, "Loads", (0, 1)) if loads else None,
     )
+
+
+def _oil(found: Examination) -> list[tuple[str, str]]:
+    """The oil of the bearings, or that of the scene where the law has none."""
+    used = by_oil(found.model.oils)
+    if not used:
+        stated = found.model.scene.lubricant
+        return [("oil", stated.title)] if stated else []
+    words = [oil.title + (f" ({', '.join(names)})" if len(used) > 1 else "") for oil, names in used.items()]
+    return [("oil", typeset("; ".join(words)))]
 
 
 def in_short(found: Examination) -> Iterator[str]:
@@ -141,6 +152,7 @@ def warnings(found: Examination) -> list[str]:
     """
     balance, model = found.statics.balance, found.model
     lines = [
+        *model.warnings,
         *found.statics.overloads,
         *found.statics.free,
         *outside_at(model, balance),

@@ -284,6 +284,14 @@ class ContactLaws:
         return {spec.name: self.supply(spec) for spec in self.scene.bearings} if self._has_films else {}
 
     @property
+    def oils(self) -> dict[str, Lubricant]:
+        """The oil of each bearing by its name, that of its map where there is one; none for laws without films."""
+        if not self._has_films:
+            return {}
+        bearings, maps = self.scene.bearings, self._maps_in_force
+        return {spec.name: self.lubricant for spec in bearings} if maps is None else maps.oils(bearings)
+
+    @property
     def _maps_in_force(self) -> MapSet | None:
         """The maps, where the law is that of maps."""
         return self.maps if self.chosen == "map" else None

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from ehdmaps.errors import InputError
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.lubricant import Lubricant
 from mbs.scene.specs import BearingSpec
 
 _SAME = 1e-9
@@ -60,6 +61,17 @@ class MapSet:
             Geometry of the bearing.
         """
         return next((emap for emap in self.maps if suits(emap, geometry)), None)
+
+    def oils(self, bearings: Iterable[BearingSpec]) -> dict[str, Lubricant]:
+        """The oil of each bearing that has a map, by its name: that of the map.
+
+        Parameters
+        ----------
+        bearings : iterable of BearingSpec
+            Bearings of the scene.
+        """
+        found = {spec.name: self.of(spec.geometry) for spec in bearings}
+        return {name: emap.lubricant for name, emap in found.items() if emap is not None}
 
     def problems(self, where: str, geometry: BearingGeometry) -> list[str]:
         """Why a bearing, which messages call `where`, gets no map of these.
