@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullLocator
 
-from ehdmaps.figures import typeset
+from ehdmaps.figures import keep_within, typeset
 from ehdmaps.jobs.plot_curves import (
     ASYMPTOTE,
     BELOW,
@@ -224,6 +224,23 @@ def _heading(figure: Figure, emap: EHDMap, shown: int) -> None:
         f"{typeset(span(dataset['temperature'].values, TEMPERATURE))} of the raceways.",
         8,
     )
+    write_estimated(figure, 0.909, emap)
+
+
+def write_estimated(figure: Figure, height: float, emap: EHDMap) -> None:
+    """Write how the inner geometry of the bearing was estimated, where it was.
+
+    Parameters
+    ----------
+    figure : Figure
+        The page.
+    height : float
+        Place of the middle of the line, as a share of the page.
+    emap : EHDMap
+        The map.
+    """
+    if emap.bearing is not None and emap.bearing.estimated:
+        write_line(figure, height, f"{emap.bearing.name}: {emap.bearing.estimated}.", 7.5)
 
 
 def what_is_mapped(emap: EHDMap) -> tuple[str, str]:
@@ -244,7 +261,7 @@ def what_is_mapped(emap: EHDMap) -> tuple[str, str]:
 def write_line(
     figure: Figure, height: float, text: str, size: float, weight: str = "normal", colour: str = "black"
 ) -> None:
-    """Write a line of the page; texts of a map are no formulas.
+    """Write a line of the page, in smaller letters where it is long; texts of a map are no formulas.
 
     Parameters
     ----------
@@ -259,7 +276,10 @@ def write_line(
     weight, colour : str
         Their weight and colour.
     """
-    figure.text(0.057, height, text, fontsize=size, fontweight=weight, color=colour, va="center", parse_math=False)
+    line = figure.text(
+        0.057, height, text, fontsize=size, fontweight=weight, color=colour, va="center", parse_math=False
+    )
+    keep_within(figure, line)
 
 
 def page_legend(figure: Figure, entries: Sequence[Line2D | Patch]) -> Legend:

@@ -167,7 +167,7 @@ def point_table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, 
     # a long status must not run into the next column
     cells = [[record["contact"] for record in records], *([_shown(value) for value in row[2]] for row in rows)]
     width = max(14, *(len(cell) + 2 for line in cells for cell in line))
-    lines = [header, place, f"{'':38s}" + "".join(f"{cell:>{width}s}" for cell in cells[0])]
+    lines = [header, *job.estimates, place, f"{'':38s}" + "".join(f"{cell:>{width}s}" for cell in cells[0])]
     for (label, unit, _), values in zip(rows, cells[1:], strict=True):
         shown = "".join(f"{cell:>{width}s}" for cell in values)
         lines.append(f"  {label:22s} {unit:12s} {shown}")

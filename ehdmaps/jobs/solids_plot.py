@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ehdmaps.figures import write_heading
 from ehdmaps.outputs import write_figure
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.bearing import BearingGeometry, with_law
@@ -74,7 +75,8 @@ def solids_figure(contacts: Sequence[LineContact], bearing: BearingGeometry, sec
         _meshes(row[0], roller, ring)
         row[0].set_title(f"{contact.name} contact, meshes (coarser than solved)", fontsize=8.5)
         _laws(row[1], row[2], contact, bearing)
-    figure.suptitle(f"{bearing.title}: solids by plane finite elements", fontsize=10)
+    estimated = f"\n{bearing.estimated}" if bearing.estimated else ""
+    write_heading(figure, f"{bearing.title}: solids by plane finite elements{estimated}", 10)
     return figure
 
 

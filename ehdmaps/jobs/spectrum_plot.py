@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.figures import write_heading
 from ehdmaps.jobs.spectrum_report import spectrum_place
 from ehdmaps.outputs import write_figure
 from ehdmaps.physics.solution import Status
@@ -62,7 +63,7 @@ def spectrum_figure(dataset: xr.Dataset, title: str) -> Figure:
     contacts = dataset["contact"].values.tolist()
     figure = Figure(figsize=(COLUMN[0] * max(len(contacts), 1), COLUMN[1]), layout="constrained")
     place = spectrum_place(dataset).replace("degC", "°C")
-    figure.suptitle(f"{title}: {place}; {dataset.attrs['solver']}", fontsize=10, fontweight="bold")
+    write_heading(figure, f"{title}: {place}; {dataset.attrs['solver']}", 10, "bold")
     panels = figure.subplots(3, len(contacts), squeeze=False, sharex=True)
     for contact, column in zip(contacts, panels.T, strict=True):
         _column(dataset.sel(contact=contact), contact, list(column))

@@ -67,7 +67,8 @@ def spectrum_table(job: Job, dataset: xr.Dataset, length: float | None) -> str:
     if length is not None:
         place += f", slice of {LENGTH.text(length)} ({dataset.attrs['load'] * length:.5g} N)"
     law = job.contacts[0].structural_law
-    lines = [f"{job.title}, {job.lubricant.title}, solver {dataset.attrs['solver']}, structural law {law}", place]
+    head = f"{job.title}, {job.lubricant.title}, solver {dataset.attrs['solver']}, structural law {law}"
+    lines = [head, *job.estimates, place]
     for contact in dataset["contact"].values.tolist():
         lines.extend(["", *_block(dataset.sel(contact=contact), contact, length)])
     return "\n".join(lines)

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehdmaps.figures import COLOURS
+from ehdmaps.figures import COLOURS, write_heading
 from mbs.modal.records import Channel
 from mbs.modal.result import ModalFit
 
@@ -32,7 +32,7 @@ def fit_figure(title: str, fits: Sequence[ModalFit]) -> Figure:
     """
     first = fits[0]
     figure = Figure(figsize=_SIZE, layout="constrained")
-    figure.suptitle(f"{title}\n{_summary(first)}", fontsize=10)
+    write_heading(figure, f"{title}\n{_summary(first)}", 10)
     shown = _shown_rows(first)
     known = np.any(np.isfinite(first.responses.coherence[shown]))
     units = list(dict.fromkeys(_unit(*first.responses.pairs[row]) for row in shown))

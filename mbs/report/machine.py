@@ -12,7 +12,7 @@ from ehdmaps.report.markup import Markup, joined, tag
 from ehdmaps.report.numbers import number, shown
 from ehdmaps.report.tables import pairs, table
 from ehdmaps.units import FILM, LENGTH, PRESSURE, RPM
-from mbs.analyses.case import clearance_text, temperature_text
+from mbs.analyses.case import clearance_text, temperature_text, weight_text
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.rings import ring_motions
 from mbs.commands.common import outside_at
@@ -44,6 +44,7 @@ def machine(found: Examination) -> Markup:
         ("contact law", model.law),
         ("temperature", typeset(temperature_text(model))),
         ("diametral clearance", typeset(clearance_text(model) or "none")),
+        ("equilibrium", typeset(weight_text(model))),
         *_oil(found),
         *([("oil supply", typeset(supply_words(model.supplies)))] if model.supplies else []),
         *([("surfaces", typeset(model.surface.label))] if model.surface else []),
@@ -52,7 +53,7 @@ def machine(found: Examination) -> Markup:
     bearings = [
         (
             entry.name,
-            entry.geometry.label or entry.geometry.name,
+            entry.geometry.title,
             f"{entry.geometry.rollers}",
             number(LENGTH.value(entry.geometry.roller_diameter), 5),
             number(LENGTH.value(entry.geometry.roller_length), 5),
@@ -170,7 +171,7 @@ def notes(found: Examination) -> list[str]:
         What was found.
     """
     balance, model = found.statics.balance, found.model
-    geometry = {entry.geometry.estimated: entry.geometry.label or entry.geometry.name for entry in model.scene.bearings}
+    geometry = {entry.geometry.estimated: entry.geometry.title for entry in model.scene.bearings}
     torque = max((loss.torque for loss in found.statics.losses), default=math.nan)
     return [
         *(f"{name}: {words}" for words, name in geometry.items() if words),

@@ -124,7 +124,7 @@ class MapSet:
         """The maps, for people; what they have in common is said once."""
         names: dict[str, list[str]] = {}
         for emap in self.maps:
-            names.setdefault(f"{emap.lubricant.title}, {_made_by(emap)}", []).append(_title(emap))
+            names.setdefault(f"{emap.lubricant.title}, {_made_by(emap)}", []).append(_made_for(emap))
         return "; ".join(
             f"{'map' if len(several) == 1 else 'maps'} of {' and '.join(several)}, {how}"
             for how, several in names.items()
@@ -266,11 +266,6 @@ def _same_type(first: EHDMap, second: EHDMap) -> bool:
 def _made_for(emap: EHDMap) -> str:
     """What a map was made for."""
     return emap.bearing.title if emap.bearing else "a bare contact"
-
-
-def _title(emap: EHDMap) -> str:
-    """What a map was made for, in a name; that its bearing is estimated is said with the scene."""
-    return "a bare contact" if emap.bearing is None else emap.bearing.label or emap.bearing.name
 
 
 def _made_by(emap: EHDMap) -> str:

@@ -64,6 +64,25 @@ def test_the_loads_of_all_loaded_rollers_are_listed(here, capsys):
     assert found[:, 0] @ np.sin(angles) == pytest.approx(100.0, rel=1e-3)
 
 
+@pytest.mark.parametrize("command", ["statics", "modes", "lsa", "sweep", "variants", "report"])
+def test_heads_say_whether_weight_is_in_the_equilibrium(here, capsys, command):
+    short = (
+        ("points = 2000", "points = 3"),
+        ('duration = "0.2 s"', 'duration = "0.05 s"'),
+        ("slices = 41", "slices = 5"),
+    )
+    heavy = ("[operation]\n", '[operation]\ngravity = ["0 m/s^2", "3 m/s^2", "-4 m/s^2"]\n')
+    more = {
+        "sweep": ["--speeds", "500 rpm", "600 rpm", "2"],
+        "report": ["-o", "page.html"],
+        "variants": ["--law", "hertz", "--law", "hertz:1e-6 s", "--vary", "clearance", "1 um"],
+    }
+    for changes, words in ((short, "without weight (no gravity in [operation])"), ((*short, heavy), "in y, -z)")):
+        status, told, _ = run(capsys, command, scene(here, *changes), *more.get(command, []))
+        assert status == 0
+        assert words in ((here / "page.html").read_text(encoding="utf-8") if command == "report" else told)
+
+
 @pytest.mark.parametrize("law", ["map", "formula"])
 def test_films_where_the_law_knows_them(here, capsys, formula_map, law):
     options = ("--map", formula_map) if law == "map" else ("--law", "formula")
