@@ -74,7 +74,7 @@ def legend_columns(labels: Sequence[str], letters: int, most: int) -> int:
     Parameters
     ----------
     labels : sequence of str
-        Its labels.
+        Labels of the legend.
     letters : int
         Letters that have room beside each other.
     most : int

@@ -24,12 +24,13 @@ from ehdmaps.jobs.plot_curves import (
     HATCH,
     LOST,
     MOST_CURVES,
+    REACH,
     Sheet,
     draw_curves,
     keep_corners_free,
     spread,
 )
-from ehdmaps.jobs.report import fitted_pressure, span, status_counts
+from ehdmaps.jobs.report import span, status_counts
 from ehdmaps.maps import schema
 from ehdmaps.maps.curves import law_field
 from ehdmaps.maps.emap import EHDMap
@@ -38,7 +39,7 @@ from ehdmaps.outputs import write_figure
 from ehdmaps.physics.film_limits import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
 from ehdmaps.physics.solution import Status
 from ehdmaps.program import plain
-from ehdmaps.units import DAMPING, FILM, LOAD, SPEED, STIFFNESS, TEMPERATURE, Display
+from ehdmaps.units import DAMPING, FILM, LOAD, PRESSURE, SPEED, STIFFNESS, TEMPERATURE, Display
 
 A4_LANDSCAPE = (11.69, 8.27)
 RESOLUTION = 200
@@ -342,8 +343,13 @@ def mark_entries(sheet: Sheet) -> list[Line2D | Patch]:
     lost = ~np.isin(status, [int(known) for known in Status if known.usable])
     entries: list[Line2D | Patch] = []
     if sheet.extrapolated_from:
-        where = f"viscosity extrapolated at some speed: above {fitted_pressure(dataset)}"
-        entries.append(Patch(label=where, **HATCH))
+        oil = sheet.emap.lubricant
+        above = f"at some speed above {PRESSURE.text(oil.fitted_pressure)}"
+        if oil.reach_assumed:
+            where = f"right of it {above}: how far the viscosity law reaches is assumed, not stated"
+            entries.append(Line2D([], [], label=where, **REACH))
+        else:
+            entries.append(Patch(label=f"viscosity extrapolated: {above}", **HATCH))
     if (status == int(Status.ASYMPTOTE)).any():
         entries.append(Line2D([], [], ls="", mec="0.3", label=f"asymptote: {_limits(dataset)}", **ASYMPTOTE))
     if (lost & filled).any():

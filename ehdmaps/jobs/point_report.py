@@ -185,11 +185,10 @@ def _speed(job: Job, point: OperatingPoint) -> str:
 
 
 def _extrapolated(job: Job, record: dict[str, Any]) -> str:
-    """Say that the pressure of a contact lies beyond the viscosity's fit; empty where it does not."""
+    """Say that the pressure of a contact lies beyond the reach of the viscosity; empty where it does not."""
     if not record["viscosity_extrapolated"]:
         return ""
-    limit = PRESSURE.text(job.lubricant.fitted_pressure)
-    return f"viscosity extrapolated: pressure above {limit}, to which it was fitted"
+    return f"viscosity extrapolated: pressure above {job.lubricant.reach}"
 
 
 def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple[str, str, list[Any]]]:

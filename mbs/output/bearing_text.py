@@ -57,7 +57,7 @@ def bearing_heading(description: BearingDescription) -> list[str]:
     clearance = f"clearance {MICROMETRE.text(bearing.geometry.diametral_clearance)}"
     state = clearance if description.state is None else state_words(description.state)
     return [
-        f"{bearing.geometry.name}: law {description.law}; {description.films}",
+        f"{bearing.geometry.title}: law {description.law}; {description.films}",
         f"  {TEMPERATURE.text(description.temperature)}, {state}, profile {bearing.profile}, {_slices(bearing)}, "
         f"load at {description.direction:.4g} deg from y (a roller) towards z, {surface_label(description.surface)}",
         f"  assumed: {', '.join(description.assumed) or 'nothing'}",

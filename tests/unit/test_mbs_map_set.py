@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import re
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 from types import SimpleNamespace
@@ -154,6 +155,19 @@ def test_what_is_missing_or_too_much_is_named(small):
     rough = EHDMap(second.dataset.assign_attrs({schema.SURFACE: '{"roughness": 3e-07}'}))
     with pytest.raises(InputError, match=r"different surfaces .*; state \[surface\] in the scene"):
         assemble(scene(), emap=[first, rough])
+
+
+def test_a_map_of_the_same_name_says_in_what_it_differs(small):
+    """Both are called NU308; the rollers of the scene are 1 mm longer."""
+    longer = replace(small[0].bearing, roller_length=16e-3)
+    bearings = tuple(replace(spec, geometry=replace(longer, diametral_clearance=0.0)) for spec in scene(TEXT).bearings)
+    words = "roller_length 15 mm and not 16 mm"
+    assert MapSet(small[:1]).problems("here", longer) == [
+        f"--map: is made for NU308: {words} as the NU308 of here; generate a map of that bearing"
+    ]
+    assert f"given are maps of NU308 ({words}), N1014; allowed" in MapSet(small).problems("here", longer)[0]
+    with pytest.raises(InputError, match=rf"a is made for NU308 \({words}\), which no bearing of the scene is"):
+        map_sets([("a", small[0]), ("b", small[1])], bearings)
 
 
 def test_commands_take_several_maps_as_one_case_or_more(tmp_path, formula_maps):
