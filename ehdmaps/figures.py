@@ -21,8 +21,8 @@ _MARGIN = 0.02
 _HANDLE = 8
 """Letters that the handle of a label takes, with the room beside it."""
 
-_LETTERS = {"um": "µm", "degC": "°C", "deg": "°", "s2": "s²"}
-_UNIT = re.compile(r"(?<![A-Za-z0-9])(?:um|degC|s2)(?![A-Za-z0-9])|(?<=[0-9]) deg(?![A-Za-z])")
+_LETTERS = {"um": "µm", "urad": "µrad", "degC": "°C", "deg": "°", "s2": "s²", "mm2": "mm²"}
+_UNIT = re.compile(r"(?<![A-Za-z0-9])(?:um|urad|degC|s2|mm2)(?![A-Za-z0-9])|(?<=[0-9]) deg(?![A-Za-z])")
 
 
 def typeset(text: str) -> str:

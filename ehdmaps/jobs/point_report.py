@@ -21,7 +21,21 @@ from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.roughness import SMOOTH, Surface
 from ehdmaps.physics.solution import ContactSolution, Status
-from ehdmaps.units import FILM, LENGTH, LOAD, MASS_FLOW, PRESSURE, ROLLING_FORCE, RPM, TEMPERATURE, Display
+from ehdmaps.units import (
+    DAMPER,
+    DAMPING,
+    FILM,
+    LENGTH,
+    LOAD,
+    MASS_FLOW,
+    PRESSURE,
+    ROLLING_FORCE,
+    RPM,
+    SPRING,
+    STIFFNESS,
+    TEMPERATURE,
+    Display,
+)
 
 _SOLUTION_FIELDS = (
     "approach",
@@ -217,11 +231,11 @@ def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple
     for name, words, display in FOUND_BY_SOME:
         if any(record[name] is not None for record in records):
             yield row(words, name, display)
-    yield row("stiffness k", "stiffness", Display("N/m2"))
-    yield row("damping c", "damping", Display("N s/m2"))
+    yield row("stiffness k", "stiffness", STIFFNESS)
+    yield row("damping c", "damping", DAMPING)
     if length is not None:
-        yield row("k x length", "stiffness", Display("N/m"), length)
-        yield row("c x length", "damping", Display("N s/m"), length)
+        yield row("k x length", "stiffness", SPRING, length)
+        yield row("c x length", "damping", DAMPER, length)
     for name in ERRORS:
         stated = [_stated(record, name) for record in records]
         yield f"error of {name.removesuffix('_error').replace('_', ' ')}", "", stated

@@ -14,6 +14,7 @@ import numpy as np
 import scipy  # its parts at first use: scipy.signal takes half a second
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
+from ehdmaps.units import MOTIONS, Display
 from mbs.linearised.dynamic import dynamic_stiffness, system_film_states
 from mbs.model.elements import Input, Quantity, Sensor
 from mbs.model.equilibrium import Equilibrium
@@ -83,6 +84,13 @@ def response_unit(sensor: Sensor, entry: Input) -> str:
 def sensor_unit(sensor: Sensor) -> str:
     """Unit of a sensor, such as m/s2; rad for rotations."""
     return f"{'rad' if np.any(sensor.direction[3:]) else 'm'}{_PER_TIME[_ORDER[sensor.quantity]]}"
+
+
+def response_display(sensor: Sensor, entry: Input) -> Display:
+    """How people are shown the response of a sensor to an input, such as um/N."""
+    shown = MOTIONS[sensor_unit(sensor)]
+    per = response_unit(sensor, entry).removeprefix(sensor_unit(sensor))
+    return Display(shown.unit + per, shown.factor)
 
 
 @dataclass(frozen=True, eq=False)

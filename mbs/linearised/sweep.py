@@ -111,6 +111,7 @@ def sweep(
         peaks.append(_peaks(axis, np.abs(there)))
         points.append(_record(point))
         before = point
+    peak_frequency, peak_size = _padded(peaks, values)
     return Sweep(
         speeds=speeds,
         displacement=np.array([point.displacement for point in points]),
@@ -120,7 +121,7 @@ def sweep(
         undamped=straightened(_undamped(points, links, first, before)),
         damped=_damped(points, links, bearing_parts(first.balance)),
         bearings=_bearings(points, first),
-        responses=ResponseSweep(frequencies, tuple(inputs), tuple(sensors), values, *_padded(peaks, values), errors),
+        responses=ResponseSweep(frequencies, tuple(inputs), tuple(sensors), values, peak_frequency, peak_size, errors),
         between=sum(link.between for link in links),
     )
 

@@ -16,8 +16,8 @@ from matplotlib.patches import Patch
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.figures import COLOURS, legend_columns, typeset, write_heading
-from ehdmaps.units import RPM
-from mbs.linearised.linear import response_unit
+from ehdmaps.units import DAMPER, RPM, SPRING
+from mbs.linearised.linear import response_display
 from mbs.linearised.sweep_result import Sweep, UndampedSweep
 from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, shade, shade_handle, whole_numbers
 
@@ -90,8 +90,8 @@ def sweep_figure(
     _axes(top[0], "frequency, Hz", "log")
     _axes(top[1], "change of frequency, %" if any(relaxing) else "change of undamped frequency, %")
     _axes(middle[0], "damping ratio, %", "log")
-    _axes(middle[1], "bearing k along its load, N/µm")
-    _axes(middle[2], "bearing c along its load, N s/m")
+    _axes(middle[1], typeset(f"bearing k along its load, {SPRING.unit}"))
+    _axes(middle[2], f"bearing c along its load, {DAMPER.unit}")
     for panel in middle[1:]:
         panel.set_ylim(0.0, 1.05 * panel.get_ylim()[1])
     _limit(top[0], sweeps, lambda found: found.frequency)
@@ -184,11 +184,14 @@ def _bearings(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
     """Stiffness and damping of each bearing over speed; bearings that do the same lie on each other."""
     rpm = entry.speeds * RPM.factor
     for index, dashes in zip(range(len(entry.bearings.names)), _DASHES * 16, strict=False):
-        axes[0].plot(rpm, 1e-6 * entry.bearings.stiffness[:, index], ls=dashes, color=colour, lw=1.3)
-        axes[1].plot(rpm, entry.bearings.damping[:, index], ls=dashes, color=colour, lw=1.3)
+        axes[0].plot(rpm, SPRING.factor * entry.bearings.stiffness[:, index], ls=dashes, color=colour, lw=1.3)
+        axes[1].plot(rpm, DAMPER.factor * entry.bearings.damping[:, index], ls=dashes, color=colour, lw=1.3)
         of = entry.bearings
-        _band(axes[0], rpm, 1e-6 * of.stiffness[:, index], 1e-6 * of.stiffness_error[:, index], colour)
-        _band(axes[1], rpm, of.damping[:, index], of.damping_error[:, index], colour)
+        for panel, display, values, errors in (
+            (axes[0], SPRING, of.stiffness, of.stiffness_error),
+            (axes[1], DAMPER, of.damping, of.damping_error),
+        ):
+            _band(panel, rpm, display.factor * values[:, index], display.factor * errors[:, index], colour)
 
 
 def _band(panel: Axes, rpm: FloatArray, values: FloatArray, errors: FloatArray, colour: str) -> None:
@@ -236,10 +239,10 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits:
     grid = part.subplots(rows, math.ceil(len(maps) / rows), sharex=True, sharey=True, squeeze=False)
     axes = grid.ravel()
     found = maps[0].responses
-    unit = response_unit(found.sensors[0], found.inputs[0]).replace("s2", "s²")
-    levels = [_level(entry.responses.largest(0, 0)) for entry in maps]
+    display = response_display(found.sensors[0], found.inputs[0])
+    levels = [_level(display.factor * entry.responses.largest(0, 0)) for entry in maps]
     # Not the tips of resonances, which would take the scale for themselves.
-    beside = _level(np.stack([entry.responses.values[:, :, 0, 0] for entry in maps]))
+    beside = _level(display.factor * np.stack([entry.responses.values[:, :, 0, 0] for entry in maps]))
     lowest, highest = (5.0 * np.round(np.percentile(beside, part) / 5.0) for part in (1.0, 99.7))
     lowest, highest = max(lowest, highest - _LEVELS_SHOWN), max(highest, lowest + 5.0)
     # The axis goes as the frequencies were asked for: the middle of a logarithmic one lies low.
@@ -275,7 +278,7 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits:
         lowest_panel.tick_params(labelbottom=True)
     if image is not None:
         bar = part.colorbar(image, ax=list(axes[: len(maps)]), pad=0.01, extend="both")
-        bar.set_label(f"{found.sensors[0].name} by {found.inputs[0].name}, dB re 1 {unit}", fontsize=8)
+        bar.set_label(f"{found.sensors[0].name} by {found.inputs[0].name}, dB re 1 {typeset(display.unit)}", fontsize=8)
         bar.ax.tick_params(labelsize=8)
 
 

@@ -574,7 +574,7 @@ def test_the_page_names_what_it_shows(tmp_path, monkeypatch):
         "EHD contact map: NU308, oil FVA3",
         "structural law iso16281",
         "stiffness k, N/(µm mm)",
-        "damping c, N s/(m mm)",
+        "damping c, N s/mm²",
         "central film, µm",
         "entrainment speed, m/s",
         "load, N/mm",
