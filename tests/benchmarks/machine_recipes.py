@@ -196,7 +196,7 @@ def highest_peak(text: str) -> tuple[float, float]:
     """Frequency and height of the highest peak of sensor S1 that `mbs lsa` prints."""
     found = re.search(r"(?m)^  S1 .*: peaks at (.*)$", text)
     assert found is not None
-    peaks = [tuple(map(float, peak)) for peak in re.findall(rf"{NUMBER} Hz \({NUMBER}\)", found[1])]
+    peaks = [tuple(map(float, peak)) for peak in re.findall(rf"{NUMBER} Hz \({NUMBER}(?: [^)]*)?\)", found[1])]
     frequency, height = max(peaks, key=lambda peak: peak[1])
     return frequency, height
 
