@@ -28,7 +28,6 @@ from ehdmaps.physics.pressure_viscosity import (
     law_record,
 )
 from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw, VogelViscosity
-from ehdmaps.units import PRESSURE
 
 __all__ = ["DENSITY_LAWS", "LUBRICANTS", "DensityLaw", "FreeVolume", "Lubricant", "LubricantState", "PressureViscosity"]
 
@@ -218,7 +217,7 @@ class Lubricant:
         """
         if math.isinf(self.fitted_pressure):
             return "those of its data"
-        pressure = PRESSURE.text(self.fitted_pressure)
+        pressure = f"{1e-9 * self.fitted_pressure:.4g} GPa"
         if self.reach_assumed:
             return f"{pressure}, the reach that is assumed for {self.title} (none is stated)"
         return f"{pressure}, up to which {self.title} is stated"
