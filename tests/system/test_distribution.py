@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -90,22 +91,44 @@ def test_what_source_distribution_and_wheel_hold(distributions):
     assert "](docs/" not in told.get_payload()
 
 
-@pytest.mark.slow
-def test_an_installation_elsewhere_finds_what_builds_its_solver(distributions, tmp_path):
-    """Of the wheel, in an environment of its own, which borrows what ehdmaps needs; in a folder with a blank."""
-    folder = tmp_path / "else where"
-    done([sys.executable, "-m", "venv", folder], tmp_path)
-    done([folder / "bin/pip", "install", "--quiet", "--no-deps", distributions[1]], tmp_path)
+@pytest.fixture(scope="module")
+def installed(distributions, tmp_path_factory):
+    """The wheel in an environment of its own, which borrows what ehdmaps needs; in a folder with blanks and umlauts."""
+    folder = tmp_path_factory.mktemp("elsewhere") / "else where, für alle"
+    done([sys.executable, "-m", "venv", folder], folder.parent)
+    done([folder / "bin/pip", "install", "--quiet", "--no-deps", distributions[1]], folder.parent)
     (packages,) = folder.glob("lib/python*/site-packages")
     borrowed = [path for path in sys.path if path.endswith("site-packages")]
     (packages / "zz_borrowed.pth").write_text("\n".join(borrowed), encoding="utf-8")
     where = "import ehdmaps, mbs; print(ehdmaps.__file__, mbs.__file__, sep='\\n')"
-    found = done([folder / "bin/python", "-c", where], tmp_path).splitlines()
+    found = done([folder / "bin/python", "-c", where], folder.parent).splitlines()
     assert found == [str(packages / name / "__init__.py") for name in ("ehdmaps", "mbs")]
-    scripts = folder / "share/ehdmaps/openfoam_cases"
+    return folder
+
+
+@pytest.mark.slow
+def test_an_installation_elsewhere_finds_what_builds_its_solver(installed, tmp_path):
+    scripts = installed / "share/ehdmaps/openfoam_cases"
     cache = tmp_path / "cache"
-    told = done([folder / "bin/ehdmaps", "openfoam", "--check"], tmp_path, status=1, EHDMAPS_OPENFOAM=str(cache))
-    script = str(scripts / "build").replace(" ", r"\ ")
-    assert told == f"missing: no {cache}/bin/ehlFoam; run {script}\n"
-    installed = "from ehdmaps.openfoam.installation import cases_folder; print(cases_folder())"
-    assert done([folder / "bin/python", "-c", installed], tmp_path).strip() == str(scripts)
+    told = done([installed / "bin/ehdmaps", "openfoam", "--check"], tmp_path, status=1, EHDMAPS_OPENFOAM=str(cache))
+    problem, _, script = told.partition("; run ")
+    assert problem == f"missing: no {cache}/bin/ehlFoam"
+    assert shlex.split(script) == [str(scripts / "build")]  # as a shell reads it
+    code = "from ehdmaps.openfoam.installation import cases_folder; print(cases_folder())"
+    assert done([installed / "bin/python", "-c", code], tmp_path).strip() == str(scripts)
+
+
+@pytest.mark.slow
+def test_an_installation_elsewhere_has_its_jobs_scenes_exports_and_solids(installed, small_map, tmp_path):
+    program, python = installed / "bin/ehdmaps", installed / "bin/python"
+    code = "import ehdmaps.jobs.reader as r; print(*r.shipped_jobs())"
+    for name in done([python, "-c", code], tmp_path).split():
+        if "openfoam" not in name:  # which asks for a solver that was built
+            done([program, "check", name], tmp_path)
+    code = "import mbs.scene.reader as r; print(*map(r.read_scene, r.shipped_systems()))"
+    done([python, "-c", code], tmp_path)
+    # with the finite elements of its housing
+    done([installed / "bin/mbs", "statics", "gearbox", "--law", "hertz"], tmp_path)
+    for target, name in (("csv", "k.csv"), ("c", "c"), ("ross", "ross.toml"), ("modelica", "m.mo")):
+        done([program, "export", small_map, "--to", target, "-o", name], tmp_path)
+    assert "NU308" in done([program, "solids", "nu308"], tmp_path)
